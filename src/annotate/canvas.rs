@@ -29,7 +29,7 @@ pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Dra
     }
     let (width, height) = (pixels.width(), pixels.height());
     if let Some(mut map) = PixmapMut::from_bytes(bytemuck::cast_slice_mut(pixels.data_mut()), width, height) {
-        drawings.into_iter().flat_map(Drawing::marks).for_each(|mark| fill(&mut map, mark));
+        drawings.into_iter().flat_map(|drawing| &drawing.marks).for_each(|mark| fill(&mut map, mark));
     }
     for pixel in translucent {
         let painted = &mut pixels.data_mut()[pixel.index];

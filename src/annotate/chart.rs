@@ -25,7 +25,6 @@ use crate::draw::pixels::Pixels;
 
 /// The plot's background: a pale sky.
 const SKY: Srgba = Srgba::opaque(0xee, 0xf2, 0xf3);
-/// Lines at nice heights and distances.
 const GRID: Srgba = Srgba([0x1e, 0x23, 0x27, 0x1c]);
 /// Distances from this one on are counted in kilometers.
 const KILOMETERS_FROM_M: f64 = 5000.0;
@@ -109,7 +108,8 @@ impl Chart {
         let heights_m = height_range((low_m, high_m), length_m);
         let (top, bottom) = plot_rows(&sheet, text);
         let figures = height_figures(heights_m, bottom - top, &mut composer);
-        let left = (margin(&sheet) + widest(&figures) + sheet.px(12.0)).round();
+        let left =
+            (margin(&sheet) + widest(figures.iter().map(|(_, figure)| figure)) + sheet.px(12.0)).round();
         let right = (sheet.size.x - margin(&sheet) - sheet.px(12.0)).round().max(left + 8.0);
         let plot = PixelBox { min: Vec2::new(left, top), max: Vec2::new(right, bottom) };
         let mut background = Drawing::default();
@@ -121,10 +121,6 @@ impl Chart {
         chart.draw_height_axis(text, &figures);
         chart.draw_along_axis(text);
         chart
-    }
-
-    fn figure_style(&self) -> TextStyle {
-        figure_style(&self.composer)
     }
 
     /// Writes `text` with its baseline starting at `at`, cut to `most_px`.
@@ -147,13 +143,13 @@ impl Chart {
             self.write_fitted(&text.subtitle, style, at, width, SOFT_INK);
         }
         let stretched = format!("heights ×{}", format_trimmed(self.frame.exaggeration(), 1));
-        let note = self.composer.line(&stretched, self.figure_style());
+        let note = self.composer.line(&stretched, figure_style(&self.composer));
         let at = Vec2::new(plot.max.x - note.advance, plot.min.y - note.style.size_px * 0.95);
         self.background.write(&note, at.round(), SOFT_INK);
     }
 
     fn draw_height_axis(&mut self, text: &ChartText, figures: &[(f64, TextLine)]) {
-        let (sheet, frame, style) = (self.composer.sheet, self.frame, self.figure_style());
+        let (sheet, frame, style) = (self.composer.sheet, self.frame, figure_style(&self.composer));
         for (height_m, figure) in figures {
             let y = frame.at(0.0, *height_m).y.round();
             self.draw_grid_line(Vec2::new(frame.plot.min.x, y), Vec2::new(frame.plot.max.x, y));
@@ -165,7 +161,7 @@ impl Chart {
     }
 
     fn draw_along_axis(&mut self, text: &ChartText) {
-        let (sheet, frame, style) = (self.composer.sheet, self.frame, self.figure_style());
+        let (sheet, frame, style) = (self.composer.sheet, self.frame, figure_style(&self.composer));
         let PixelBox { min, max } = frame.plot;
         let (unit_m, unit) = if frame.length_m >= KILOMETERS_FROM_M { (1000.0, "km") } else { (1.0, "m") };
         let most = (frame.plot.size().x / (style.size_px * 7.0)) as usize;

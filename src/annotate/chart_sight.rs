@@ -119,7 +119,6 @@ fn draw_line(chart: &mut Chart, sight: &SightChart, length_m: f64) {
     }
 }
 
-/// Draws a dashed line, for the part that is blocked.
 fn draw_dashes(chart: &mut Chart, from: Vec2, to: Vec2, width: f32) {
     let (dash, gap) = (chart.composer.sheet.px(DASH.0), chart.composer.sheet.px(DASH.1));
     let length = from.distance(to);

@@ -1,21 +1,27 @@
-//! The sheet and the typesetter that every piece of furniture, chart and map is composed with.
+//! The sheet and the fonts that every piece of furniture, chart and map is composed with.
+
+use parley::fontique::{Collection, CollectionOptions, SourceCache};
+use parley::{FontContext, LayoutContext};
 
 use crate::annotate::nice::{Ticks, format_number};
 use crate::annotate::sheet::Sheet;
-use crate::annotate::text::{TextLine, TextStyle, Typesetter};
+use crate::annotate::text::{TextLine, TextStyle, register_fonts};
 
-/// A sheet with a typesetter.
+/// Lays out text on a sheet; holds tables of the embedded fonts and scratch space between lines.
 pub struct Composer {
-    /// Sizes.
     pub sheet: Sheet,
-    /// Sets lines of text.
-    pub typesetter: Typesetter,
+    pub(super) fonts: FontContext,
+    pub(super) layouts: LayoutContext<()>,
 }
 
 impl Composer {
-    /// The composer for a picture of `width` × `height` pixels.
+    /// The composer for a picture of `width` × `height` pixels, with the embedded fonts and no others.
     pub fn new(width: u32, height: u32) -> Self {
-        Self { sheet: Sheet::new(width, height), typesetter: Typesetter::new() }
+        let options = CollectionOptions { shared: false, system_fonts: false };
+        let mut collection = Collection::new(options);
+        register_fonts(&mut collection);
+        let fonts = FontContext { collection, source_cache: SourceCache::default() };
+        Self { sheet: Sheet::new(width, height), fonts, layouts: LayoutContext::new() }
     }
 
     /// Upright type of `design_px` design pixels.
@@ -23,24 +29,13 @@ impl Composer {
         TextStyle::upright(self.sheet.type_px(design_px), weight)
     }
 
-    /// See [`Typesetter::line`].
-    pub fn line(&mut self, text: &str, style: TextStyle) -> TextLine {
-        self.typesetter.line(text, style)
-    }
-
-    /// See [`Typesetter::fitted`].
-    pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TextLine> {
-        self.typesetter.fitted(text, style, most_px)
-    }
-
-    /// The values of `ticks` with their figures.
     pub fn figures(&mut self, ticks: &Ticks, style: TextStyle) -> Vec<(f64, TextLine)> {
         let figure = |&value: &f64| (value, self.line(&format_number(value, ticks.decimals), style));
         ticks.values.iter().map(figure).collect()
     }
 }
 
-/// The width of the widest of `figures`.
-pub fn widest(figures: &[(f64, TextLine)]) -> f32 {
-    figures.iter().map(|(_, figure)| figure.advance).fold(0.0, f32::max)
+/// The width of the widest of `lines`.
+pub fn widest<'a>(lines: impl IntoIterator<Item = &'a TextLine>) -> f32 {
+    lines.into_iter().map(|line| line.advance).fold(0.0, f32::max)
 }

@@ -47,6 +47,6 @@ mod tests {
         assert!(line("USGS 3DEP, National Map, public domain", 60.0).is_none());
         assert!(line(" ", 900.0).is_none());
         let cut = line("USGS 3DEP, National Map, public domain", 200.0).expect("a part fits");
-        assert!(cut.texts()[0].shortened);
+        assert!(cut.texts[0].shortened);
     }
 }

@@ -14,7 +14,6 @@ use crate::draw::color::Srgba;
 /// polygons.
 const STROKE_PRECISION: f32 = 4.0;
 
-/// A filled path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintedPath {
     /// The outline in pixels, filled by the non-zero rule.
@@ -23,36 +22,23 @@ pub struct PaintedPath {
     pub color: Srgba,
 }
 
-/// A text in a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnText {
-    /// The text as given.
     pub text: String,
     /// Characters that the fonts lack.
     pub missing: usize,
-    /// Whether it ends in an ellipsis.
     pub shortened: bool,
 }
 
 /// Marks in the order in which they are painted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
-    marks: Vec<PaintedPath>,
-    texts: Vec<DrawnText>,
+    pub marks: Vec<PaintedPath>,
+    /// For the report.
+    pub texts: Vec<DrawnText>,
 }
 
 impl Drawing {
-    /// The marks, first painted first.
-    pub fn marks(&self) -> &[PaintedPath] {
-        &self.marks
-    }
-
-    /// The texts recorded for the report.
-    pub fn texts(&self) -> &[DrawnText] {
-        &self.texts
-    }
-
-    /// Records how a text was drawn.
     pub fn record_text(&mut self, text: &str, missing: usize, shortened: bool) {
         self.texts.push(DrawnText { text: text.to_owned(), missing, shortened });
     }
@@ -62,7 +48,6 @@ impl Drawing {
         self.marks.iter().map(|mark| box_of(&mark.path)).fold(PixelBox::EMPTY, PixelBox::union)
     }
 
-    /// Fills `path`.
     pub fn fill(&mut self, path: Path, color: Srgba) {
         self.marks.push(PaintedPath { path, color });
     }
@@ -76,14 +61,12 @@ impl Drawing {
         }
     }
 
-    /// Draws a line with round ends.
     pub fn line(&mut self, line: PixelSegment, width: f32, color: Srgba) {
         if let Some(path) = polyline(&[line.from, line.to]) {
             self.stroke(&path, width, color);
         }
     }
 
-    /// Fills a rectangle.
     pub fn rect(&mut self, area: PixelBox, color: Srgba) {
         if let Some(rect) = rect_of(area) {
             self.fill(PathBuilder::from_rect(rect), color);
@@ -115,7 +98,6 @@ impl Drawing {
         Self { marks: panel.marks, texts: self.texts }
     }
 
-    /// Fills a disc.
     pub fn disc(&mut self, center: Vec2, radius: f32, color: Srgba) {
         let path = PathBuilder::from_circle(center.x, center.y, radius).filter(|_| radius > 0.0);
         self.marks.extend(path.map(|path| PaintedPath { path, color }));
@@ -127,13 +109,11 @@ impl Drawing {
         self.fill(path, color);
     }
 
-    /// Appends another drawing.
     pub fn append(&mut self, other: Self) {
         self.marks.extend(other.marks);
         self.texts.extend(other.texts);
     }
 
-    /// The drawing moved by `by`.
     pub fn moved(self, by: Vec2) -> Self {
         let shift = Transform::from_translate(by.x, by.y);
         let moved = |mark: PaintedPath| Some(PaintedPath { path: mark.path.transform(shift)?, ..mark });
@@ -141,7 +121,6 @@ impl Drawing {
     }
 }
 
-/// The smallest box around a path's points.
 pub fn box_of(path: &Path) -> PixelBox {
     let bounds = path.bounds();
     PixelBox { min: Vec2::new(bounds.left(), bounds.top()), max: Vec2::new(bounds.right(), bounds.bottom()) }
@@ -199,6 +178,6 @@ mod tests {
         drawing.rect(PixelBox::EMPTY, FRAME);
         drawing.line(PixelSegment { from: Vec2::splat(f32::NAN), to: Vec2::ONE }, 1.0, FRAME);
         drawing.disc(Vec2::ZERO, 0.0, FRAME);
-        assert!(drawing.marks().is_empty());
+        assert!(drawing.marks.is_empty());
     }
 }

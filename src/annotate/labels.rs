@@ -7,8 +7,8 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, check, place};
-use crate::annotate::positions::{Alignment, LabelMetrics, LabelPosition, Preference};
+use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, TextAlignment, place};
+use crate::annotate::positions::LabelMetrics;
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
 use crate::annotate::text::{TextLine, TextStyle};
@@ -53,7 +53,6 @@ pub fn draw_labels(
     let requests: Vec<LabelRequest> = prepared.iter().map(PreparedLabel::request).collect();
     let field = field(furniture, &sheet);
     let choices = place(&requests, &field);
-    debug_assert_eq!(check(&requests, &choices, &field), Ok(()));
     let mut drawing = Drawing::default();
     let chosen = prepared.iter().zip(choices);
     let chosen: Vec<_> =
@@ -61,7 +60,7 @@ pub fn draw_labels(
     // Symbols and leaders first, all texts over them.
     for (label, position) in &chosen {
         outcomes[label.number] = LabelOutcome::Placed;
-        label.draw_symbol(&position.candidate, &sheet, &mut drawing);
+        label.draw_symbol(position, &sheet, &mut drawing);
     }
     chosen.iter().for_each(|(label, position)| label.draw_text(position, &mut drawing));
     // In the order of the input.
@@ -70,12 +69,11 @@ pub fn draw_labels(
     for label in in_order {
         drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
     }
-    report.add_texts(drawing.texts());
+    report.add_texts(&drawing.texts);
     labels.iter().zip(outcomes).for_each(|(label, outcome)| outcome.report(&label.text, report));
     drawing
 }
 
-/// What becomes of a label.
 #[derive(Clone, Copy, Debug)]
 enum LabelOutcome {
     Placed,
@@ -122,21 +120,16 @@ fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
     order
 }
 
-/// A label with its text set, ready to be placed.
 struct PreparedLabel<'a> {
     number: usize,
     label: &'a PictureLabel,
     style: LabelStyle,
     block: Paragraph,
     metrics: LabelMetrics,
-    positions: Vec<LabelPosition>,
+    positions: Vec<LabelCandidate>,
 }
 
 impl<'a> PreparedLabel<'a> {
-    /// Sets the label's text and lists its positions.
-    ///
-    /// # Errors
-    /// Its outcome, where nothing would show: it is empty, or the picture is too narrow for a few letters.
     fn new(number: usize, label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
         let style = LabelStyle::new(label.kind, composer);
         let block = set_lines(&label.text, &style, composer);
@@ -145,7 +138,7 @@ impl<'a> PreparedLabel<'a> {
         }
         // Space around the text, so that no two labels read as one.
         let space = composer.sheet.px(2.0);
-        let texts = [Alignment::Left, Alignment::Center, Alignment::Right]
+        let texts = [TextAlignment::Left, TextAlignment::Center, TextAlignment::Right]
             .map(|alignment| block_box(&block.lines, alignment, style.halo).grown(space));
         if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
             return Err(LabelOutcome::Empty);
@@ -155,11 +148,9 @@ impl<'a> PreparedLabel<'a> {
     }
 
     fn request(&self) -> LabelRequest {
-        let candidates = self.positions.iter().map(|position| position.candidate).collect();
-        LabelRequest { candidates, reserved: Some(self.metrics.symbol_box()) }
+        LabelRequest { candidates: self.positions.clone(), reserved: Some(self.metrics.symbol_box()) }
     }
 
-    /// Draws the leader line and the symbol, where the candidate has them.
     fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
         if let Some(line) = candidate.leader {
             let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));
@@ -172,9 +163,9 @@ impl<'a> PreparedLabel<'a> {
     }
 
     /// Writes the text: all halos first, for the name's must not cover the height below it.
-    fn draw_text(&self, position: &LabelPosition, drawing: &mut Drawing) {
+    fn draw_text(&self, position: &LabelCandidate, drawing: &mut Drawing) {
         let text = self.metrics.texts[position.alignment as usize];
-        let by = (position.candidate.text.min - text.min).round();
+        let by = (position.text.min - text.min).round();
         let mut lines = baselines(&self.block.lines, position.alignment);
         lines.iter_mut().for_each(|(_, at)| *at += by);
         drawing.draw_halo(&lines, self.style.halo);
@@ -192,7 +183,7 @@ fn metrics(label: &PictureLabel, texts: [PixelBox; 3], style: &LabelStyle, sheet
         symbol: Vec2::splat(style.symbol + style.halo),
         gap: sheet.px(1.0),
         longest,
-        preference: if label.kind == LabelKind::Water { Preference::OnPlace } else { Preference::Above },
+        may_lie_on_place: label.kind == LabelKind::Water,
     }
 }
 
@@ -222,11 +213,11 @@ fn set_lines(text: &str, style: &LabelStyle, composer: &mut Composer) -> Paragra
 }
 
 /// The lines with the starts of their baselines: the first at y = 0, all aligned to x = 0.
-fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)> {
+fn baselines(lines: &[TextLine], alignment: TextAlignment) -> Vec<(&TextLine, Vec2)> {
     let share = match alignment {
-        Alignment::Left => 0.0,
-        Alignment::Center => 0.5,
-        Alignment::Right => 1.0,
+        TextAlignment::Left => 0.0,
+        TextAlignment::Center => 0.5,
+        TextAlignment::Right => 1.0,
     };
     let mut y = 0.0;
     let place = |(number, line): (usize, &'_ TextLine)| {
@@ -239,7 +230,7 @@ fn baselines(lines: &[TextLine], alignment: Alignment) -> Vec<(&TextLine, Vec2)>
     lines.iter().zip(starts).collect()
 }
 
-fn block_box(lines: &[TextLine], alignment: Alignment, halo: f32) -> PixelBox {
+fn block_box(lines: &[TextLine], alignment: TextAlignment, halo: f32) -> PixelBox {
     let boxes = baselines(lines, alignment).into_iter().map(|(line, at)| line.bounds(halo).moved(at));
     boxes.fold(PixelBox::EMPTY, PixelBox::union)
 }
@@ -252,7 +243,6 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
     PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
 }
 
-/// The look of a kind of label.
 struct LabelStyle {
     name: TextStyle,
     note: TextStyle,
@@ -261,7 +251,6 @@ struct LabelStyle {
     halo: f32,
     /// Half the size of the symbol.
     symbol: f32,
-    /// Usual length of the leader line.
     leader: f32,
 }
 

@@ -67,7 +67,6 @@ pub(in crate::annotate) fn compose(legend: &Legend, composer: &mut Composer) -> 
     Some(drawing.on_panel(corner, &sheet))
 }
 
-/// Nice heights with their figures.
 fn figures(legend: &Legend, ramp_px: f32, composer: &mut Composer) -> Vec<(f64, TextLine)> {
     let style = composer.style(15.0, TextStyle::REGULAR);
     let most = ((ramp_px / (style.size_px * 1.9)) as usize + 1).clamp(2, 7);
@@ -118,7 +117,7 @@ fn draw_figures(
     sheet: &Sheet,
 ) -> f32 {
     let line = sheet.hairline().round();
-    let right = ramp.max.x + sheet.whole_px(10.0) + widest(figures);
+    let right = ramp.max.x + sheet.whole_px(10.0) + widest(figures.iter().map(|(_, figure)| figure));
     for (height, figure) in figures {
         let y = (ramp.max.y - ramp.size().y * share(legend, *height) - line * 0.5)
             .round()
@@ -169,7 +168,7 @@ mod tests {
     #[test]
     fn the_panel_holds_everything() {
         let drawing = draw(&legend()).expect("a range");
-        let panel = drawing.marks().first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

@@ -137,7 +137,7 @@ pub fn compose(map: &Pixels, furniture: &MapFurniture) -> (Pixels, AnnotationRep
     draw_column(&mut drawing, furniture, column, &mut composer);
     paint(&mut pixels, [&drawing]);
     let mut report = AnnotationReport::default();
-    report.add_texts(drawing.texts());
+    report.add_texts(&drawing.texts);
     (pixels, report)
 }
 
@@ -149,7 +149,6 @@ fn paste(pixels: &mut Pixels, map: &Pixels, (x, y): (usize, usize)) {
     }
 }
 
-/// Writes title and subtitle into `area`.
 fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, composer: &mut Composer) {
     let mut baseline = area.min.y;
     for (text, style, color, lead) in [

@@ -25,13 +25,12 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     let furniture = Furniture::lay_out(annotations, &mut composer);
     let boxes: Vec<PixelBox> = furniture.drawings.iter().map(Drawing::bounds).collect();
     let mut report = AnnotationReport { left_out: furniture.left_out, ..AnnotationReport::default() };
-    furniture.drawings.iter().for_each(|drawing| report.add_texts(drawing.texts()));
+    furniture.drawings.iter().for_each(|drawing| report.add_texts(&drawing.texts));
     let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
     paint(pixels, furniture.drawings.iter().chain([&labels]));
     report
 }
 
-/// The furniture placed so far.
 struct Furniture {
     sheet: Sheet,
     drawings: Vec<Drawing>,
@@ -43,17 +42,15 @@ impl Furniture {
     fn lay_out(annotations: &Annotations, composer: &mut Composer) -> Self {
         let mut furniture = Self { sheet: composer.sheet, drawings: Vec::new(), left_out: Vec::new() };
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
-        if title.is_some() || subtitle.is_some() {
-            furniture.place(FurnitureKind::Title, title::compose(title, subtitle, composer));
-        }
-        if let Some(bar) = &annotations.scale_bar {
-            furniture.place(FurnitureKind::ScaleBar, scale_bar::compose(bar, composer));
-        }
-        if let Some(arrow) = &annotations.north {
-            furniture.place(FurnitureKind::NorthArrow, north::compose(arrow, composer));
-        }
-        if let Some(legend) = &annotations.legend {
-            furniture.place(FurnitureKind::Legend, legend::compose(legend, composer));
+        let has_title = title.is_some() || subtitle.is_some();
+        let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
+        for (kind, piece) in [
+            (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
+            (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, composer))),
+            (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
+            (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
+        ] {
+            piece.into_iter().for_each(|drawing| furniture.place(kind, drawing));
         }
         if let Some(text) = &annotations.credit {
             // Flush right in the lower margin, between scale bar and legend.

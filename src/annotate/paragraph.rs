@@ -1,31 +1,23 @@
 //! Text made to fit: lines cleaned of what cannot be printed, cut with an ellipsis, broken between words.
 
-use crate::annotate::text::{TextLine, TextStyle, Typesetter};
+use crate::annotate::composer::Composer;
+use crate::annotate::text::{TextLine, TextStyle};
 
-/// Lines of a text within a given width.
 #[derive(Clone, Debug)]
 pub struct Paragraph {
     /// The lines, first on top.
     pub lines: Vec<TextLine>,
-    /// Whether some of the text was cut off.
     pub shortened: bool,
 }
 
 impl Paragraph {
-    /// Characters that the fonts lack, in all lines.
     pub fn missing(&self) -> usize {
         self.lines.iter().map(|line| line.missing).sum()
     }
-
-    /// The width of the widest line.
-    pub fn width(&self) -> f32 {
-        self.lines.iter().map(|line| line.advance).fold(0.0, f32::max)
-    }
 }
 
-/// The lines of a text as written: split at line ends, without control characters, spaces single, none empty.
-///
-/// At most `most` lines are returned; the second value tells whether any were dropped.
+/// The lines of a text as written: split at line ends, without control characters, spaces single, none empty. At most
+/// `most` lines are returned; the second value tells whether any were dropped.
 pub fn written_lines(text: &str, most: usize) -> (Vec<String>, bool) {
     let is_end = |c: char| matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{b}' | '\u{c}');
     let mut lines = text.split(is_end).map(single_spaced).filter(|line| !line.is_empty());
@@ -39,10 +31,9 @@ fn single_spaced(text: &str) -> String {
     clean.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-impl Typesetter {
-    /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut.
-    ///
-    /// `None` where not even a few letters before the ellipsis fit.
+impl Composer {
+    /// `text` as one line no wider than `most_px`, ending in an ellipsis where it is cut. `None` where not even a few
+    /// letters before the ellipsis fit.
     pub fn fitted(&mut self, text: &str, style: TextStyle, most_px: f32) -> Option<TextLine> {
         let full = self.line(text, style);
         if full.advance <= most_px && !full.shortened {
@@ -69,9 +60,8 @@ impl Typesetter {
         Some(best)
     }
 
-    /// `text` broken between words into at most `most_lines` lines of at most `most_px`.
-    ///
-    /// Written line ends are kept; text that does not fit is cut with an ellipsis. Empty where nothing fits.
+    /// `text` broken between words into at most `most_lines` lines of at most `most_px`. Written line ends are kept;
+    /// text that does not fit is cut with an ellipsis. Empty where nothing fits.
     pub fn broken(&mut self, text: &str, style: TextStyle, most_px: f32, most_lines: usize) -> Paragraph {
         let (written, mut shortened) = written_lines(text, most_lines);
         let mut lines = Vec::new();
@@ -109,6 +99,7 @@ impl Typesetter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::annotate::composer::widest;
 
     const FACE: TextStyle = TextStyle { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
 
@@ -122,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_line_that_fits_is_left_alone_and_a_long_one_gets_an_ellipsis() {
-        let mut setter = Typesetter::new();
+        let mut setter = Composer::new(100, 100);
         let whole = setter.fitted("Norris", FACE, 500.0).expect("fits");
         assert!(!whole.shortened);
         let cut = setter.fitted("Norris Geyser Basin", FACE, 100.0).expect("fits when cut");
@@ -132,7 +123,7 @@ mod tests {
 
     #[test]
     fn cutting_never_parts_a_character() {
-        let mut setter = Typesetter::new();
+        let mut setter = Composer::new(100, 100);
         for width in 0..200 {
             setter.fitted("Źółć 富士山 👩‍👩‍👧 éé", FACE, width as f32);
         }
@@ -140,24 +131,24 @@ mod tests {
 
     #[test]
     fn long_text_is_broken_between_words_and_the_last_line_cut() {
-        let mut setter = Typesetter::new();
+        let mut setter = Composer::new(100, 100);
         let text = "The quick brown fox jumps over the lazy dog and runs away into the hills";
         let two = setter.broken(text, FACE, 200.0, 2);
         assert_eq!(two.lines.len(), 2);
-        assert!(two.shortened && two.width() <= 200.0);
+        assert!(two.shortened && widest(&two.lines) <= 200.0);
         let many = setter.broken(text, FACE, 200.0, 9);
-        assert!(!many.shortened && many.lines.len() >= 4 && many.width() <= 200.0);
+        assert!(!many.shortened && many.lines.len() >= 4 && widest(&many.lines) <= 200.0);
     }
 
     #[test]
     fn where_nothing_fits_there_are_no_lines() {
-        assert!(Typesetter::new().broken("Norris Geyser", FACE, 2.0, 3).lines.is_empty());
-        assert!(Typesetter::new().broken("", FACE, 200.0, 3).lines.is_empty());
+        assert!(Composer::new(100, 100).broken("Norris Geyser", FACE, 2.0, 3).lines.is_empty());
+        assert!(Composer::new(100, 100).broken("", FACE, 200.0, 3).lines.is_empty());
     }
 
     #[test]
     fn the_authors_line_ends_are_kept() {
-        let lines = Typesetter::new().broken("one\ntwo", FACE, 400.0, 3).lines;
+        let lines = Composer::new(100, 100).broken("one\ntwo", FACE, 400.0, 3).lines;
         assert_eq!(lines.len(), 2);
     }
 }

@@ -10,18 +10,13 @@ use crate::geom::rect::Rect;
 /// An upright rectangle on the picture; empty where `min` is not below `max` on both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelBox {
-    /// Upper left corner.
     pub min: Vec2,
-    /// Lower right corner.
     pub max: Vec2,
 }
 
-/// A straight line between two points of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelSegment {
-    /// One end.
     pub from: Vec2,
-    /// The other end.
     pub to: Vec2,
 }
 
@@ -34,12 +29,10 @@ impl PixelBox {
         Self { min, max: min + size }
     }
 
-    /// The box of the given half width and half height around `center`.
     pub fn around(center: Vec2, half: Vec2) -> Self {
         Self { min: center - half, max: center + half }
     }
 
-    /// The smallest box around both.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
@@ -49,7 +42,6 @@ impl PixelBox {
         Self { min: self.min - margin, max: self.max + margin }
     }
 
-    /// This box moved by `by`.
     pub fn moved(self, by: Vec2) -> Self {
         Self { min: self.min + by, max: self.max + by }
     }
@@ -74,12 +66,10 @@ impl PixelBox {
         self.min.cmple(other.min).all() && other.max.cmple(self.max).all()
     }
 
-    /// Whether `point` lies inside or on an edge.
     pub fn contains(&self, point: Vec2) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
-    /// Whether a point of `segment` lies inside or on an edge.
     pub fn meets(&self, segment: &PixelSegment) -> bool {
         let rect = Rect { min: self.min.as_dvec2(), max: self.max.as_dvec2() };
         rect.clip_line(segment.from.as_dvec2(), segment.to.as_dvec2()).is_some()

@@ -1,4 +1,4 @@
-//! Where labels go: a pure function from boxes to choices, and its check.
+//! Where labels go: a pure function from boxes to choices.
 //!
 //! Labels come in order of importance, each with candidate positions in order of preference. One after the other takes
 //! the first candidate that is free. Greedy placement by priority is what a reader expects (a minor label never
@@ -10,18 +10,27 @@
 
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 
-/// One way to draw a label.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelCandidate {
-    /// Around the text.
     pub text: PixelBox,
     /// Around the symbol at the place; `None` where it is drawn without.
     pub symbol: Option<PixelBox>,
     /// The leader line from the symbol to the text; `None` where it is drawn without.
     pub leader: Option<PixelSegment>,
+    pub alignment: TextAlignment,
 }
 
-/// A label to be placed.
+/// The alignment of lines of text; the numbers index the boxes of a label's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextAlignment {
+    /// Flush left: the text is to the right of what it names.
+    Left = 0,
+    /// Centered: the text is over what it names.
+    Center = 1,
+    /// Flush right: the text is to the left of what it names.
+    Right = 2,
+}
+
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LabelRequest {
     /// Ways to draw it, the best first.
@@ -30,7 +39,6 @@ pub struct LabelRequest {
     pub reserved: Option<PixelBox>,
 }
 
-/// The picture to place labels on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelField {
     /// Everything placed stays inside.
@@ -39,23 +47,6 @@ pub struct LabelField {
     pub taken: Vec<PixelBox>,
     /// Pixels that leader lines keep from texts, symbols and `taken`.
     pub leader_gap: f32,
-}
-
-/// What is wrong with a placement; numbers index the requests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum PlacementFault {
-    /// There is not one choice per request, or a choice names no candidate.
-    #[error("label {0} has no such candidate")]
-    NoSuchCandidate(usize),
-    /// A label leaves the bounds.
-    #[error("label {0} leaves the picture")]
-    Outside(usize),
-    /// A label overlaps a box that was taken beforehand.
-    #[error("label {0} overlaps furniture {1}")]
-    OnFurniture(usize, usize),
-    /// Two labels overlap.
-    #[error("labels {0} and {1} overlap")]
-    Overlap(usize, usize),
 }
 
 /// For every request the index of the candidate chosen, or `None` where none is free.
@@ -81,38 +72,7 @@ pub fn place(requests: &[LabelRequest], field: &LabelField) -> Vec<Option<usize>
     choices
 }
 
-/// Checks that `choices` for `requests` keep the promises of [`place`]: everything inside, nothing overlapping.
-///
-/// # Errors
-/// The first [`PlacementFault`] found.
-pub fn check(
-    requests: &[LabelRequest],
-    choices: &[Option<usize>],
-    field: &LabelField,
-) -> Result<(), PlacementFault> {
-    let mut placed: Vec<(usize, LabelCandidate)> = Vec::new();
-    if requests.len() != choices.len() {
-        return Err(PlacementFault::NoSuchCandidate(requests.len().min(choices.len())));
-    }
-    for (number, (request, choice)) in requests.iter().zip(choices).enumerate() {
-        let Some(which) = *choice else { continue };
-        let chosen = request.candidates.get(which).ok_or(PlacementFault::NoSuchCandidate(number))?;
-        if !field.keeps_inside(chosen) {
-            return Err(PlacementFault::Outside(number));
-        }
-        if let Some(on) = field.taken.iter().position(|taken| field.touches(chosen, taken)) {
-            return Err(PlacementFault::OnFurniture(number, on));
-        }
-        if let Some((other, _)) = placed.iter().find(|(_, other)| field.conflict(chosen, other)) {
-            return Err(PlacementFault::Overlap(*other, number));
-        }
-        placed.push((number, *chosen));
-    }
-    Ok(())
-}
-
 impl LabelCandidate {
-    /// The boxes of text and symbol.
     fn boxes(&self) -> impl Iterator<Item = &PixelBox> {
         std::iter::once(&self.text).chain(&self.symbol)
     }
@@ -124,7 +84,6 @@ impl LabelField {
         candidate.boxes().all(|area| self.bounds.holds(area)) && candidate.leader.is_none_or(contains)
     }
 
-    /// Whether any part of `candidate` touches `area`.
     fn touches(&self, candidate: &LabelCandidate, area: &PixelBox) -> bool {
         candidate.boxes().any(|own| own.overlaps(area))
             || candidate.leader.is_some_and(|leader| self.passes_near(&leader, area))
@@ -134,7 +93,6 @@ impl LabelField {
         area.grown(self.leader_gap).meets(leader)
     }
 
-    /// Whether two labels would touch.
     fn conflict(&self, one: &LabelCandidate, other: &LabelCandidate) -> bool {
         other.boxes().any(|area| self.touches(one, area))
             || other.leader.is_some_and(|leader| {
@@ -152,6 +110,45 @@ mod tests {
 
     use super::*;
 
+    /// What is wrong with a placement; numbers index the requests.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    enum PlacementFault {
+        /// There is not one choice per request, or a choice names no candidate.
+        NoSuchCandidate(usize),
+        /// A label leaves the bounds.
+        Outside(usize),
+        /// A label overlaps a box that was taken beforehand.
+        OnFurniture(usize, usize),
+        Overlap(usize, usize),
+    }
+
+    /// Checks that `choices` for `requests` keep the promises of [`place`]: everything inside, nothing overlapping.
+    fn check(
+        requests: &[LabelRequest],
+        choices: &[Option<usize>],
+        field: &LabelField,
+    ) -> Result<(), PlacementFault> {
+        let mut placed: Vec<(usize, LabelCandidate)> = Vec::new();
+        if requests.len() != choices.len() {
+            return Err(PlacementFault::NoSuchCandidate(requests.len().min(choices.len())));
+        }
+        for (number, (request, choice)) in requests.iter().zip(choices).enumerate() {
+            let Some(which) = *choice else { continue };
+            let chosen = request.candidates.get(which).ok_or(PlacementFault::NoSuchCandidate(number))?;
+            if !field.keeps_inside(chosen) {
+                return Err(PlacementFault::Outside(number));
+            }
+            if let Some(on) = field.taken.iter().position(|taken| field.touches(chosen, taken)) {
+                return Err(PlacementFault::OnFurniture(number, on));
+            }
+            if let Some((other, _)) = placed.iter().find(|(_, other)| field.conflict(chosen, other)) {
+                return Err(PlacementFault::Overlap(*other, number));
+            }
+            placed.push((number, *chosen));
+        }
+        Ok(())
+    }
+
     fn field() -> LabelField {
         let bounds = PixelBox::at(Vec2::ZERO, Vec2::new(200.0, 100.0));
         LabelField { bounds, taken: vec![PixelBox::at(Vec2::ZERO, Vec2::new(60.0, 30.0))], leader_gap: 2.0 }
@@ -159,7 +156,7 @@ mod tests {
 
     fn text(x: f32, y: f32) -> LabelCandidate {
         let text = PixelBox::at(Vec2::new(x, y), Vec2::new(40.0, 10.0));
-        LabelCandidate { text, symbol: None, leader: None }
+        LabelCandidate { text, symbol: None, leader: None, alignment: TextAlignment::Center }
     }
 
     fn request(candidates: &[LabelCandidate]) -> LabelRequest {
@@ -233,6 +230,7 @@ mod tests {
                 text: PixelBox::at(Vec2::new(x, y), Vec2::new(width, height)),
                 symbol: (parts & 1 > 0).then(|| PixelBox::around(anchor, Vec2::splat(3.0))),
                 leader: (parts & 2 > 0).then_some(leader),
+                alignment: TextAlignment::Center,
             }
         })
     }

@@ -15,86 +15,53 @@
 use glam::Vec2;
 
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::LabelCandidate;
+use crate::annotate::place::{LabelCandidate, TextAlignment};
 
 /// What the candidates of one label are made from; all lengths in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelMetrics {
-    /// The place.
     pub anchor: Vec2,
     /// From the place to the preferred end of its leader line; upward.
     pub reach: Vec2,
-    /// The box of the text for each [`Alignment`], around any origin; candidates move it by whole pixels.
+    /// The box of the text for each [`TextAlignment`], around any origin; candidates move it by whole pixels.
     pub texts: [PixelBox; 3],
     /// Half the size of the symbol.
     pub symbol: Vec2,
     /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
-    /// The longest leader line.
     pub longest: f32,
-    /// The first choice.
-    pub preference: Preference,
-}
-
-/// One way to draw a label, and the alignment of its lines.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LabelPosition {
-    /// Where everything is.
-    pub candidate: LabelCandidate,
-    /// The alignment of the text's lines.
-    pub alignment: Alignment,
-}
-
-/// The alignment of lines of text; the numbers index [`LabelMetrics::texts`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Alignment {
-    /// Flush left: the text is to the right of what it names.
-    Left = 0,
-    /// Centered: the text is over what it names.
-    Center = 1,
-    /// Flush right: the text is to the left of what it names.
-    Right = 2,
-}
-
-/// The preferred position of a label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preference {
-    /// Above its place, at the end of a leader line.
-    Above,
-    /// On its place, without symbol or line.
-    OnPlace,
+    /// Whether the text goes on the place itself first, without symbol and leader line.
+    pub may_lie_on_place: bool,
 }
 
 /// Lengths of the leader to try, as multiples of the preferred one.
 const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
 /// Where along the text's lower edge the leader meets it.
-const MEETINGS: [(f32, Alignment); 3] =
-    [(0.5, Alignment::Center), (0.14, Alignment::Left), (0.86, Alignment::Right)];
+const MEETINGS: [(f32, TextAlignment); 3] =
+    [(0.5, TextAlignment::Center), (0.14, TextAlignment::Left), (0.86, TextAlignment::Right)];
 
 impl LabelMetrics {
-    /// All positions, the best first.
-    pub fn positions(&self) -> Vec<LabelPosition> {
-        let on_place = (self.preference == Preference::OnPlace).then(|| self.on_place());
+    pub fn positions(&self) -> Vec<LabelCandidate> {
+        let on_place = self.may_lie_on_place.then(|| self.on_place());
         let above = LENGTHS
             .iter()
             .filter(|&&length| self.reach.length() * length <= self.longest)
             .flat_map(|&length| MEETINGS.map(|meeting| self.above(self.reach * length, meeting)));
-        let beside = [(1.0, Alignment::Left), (-1.0, Alignment::Right)].map(|side| self.beside(side));
+        let beside = [(1.0, TextAlignment::Left), (-1.0, TextAlignment::Right)].map(|side| self.beside(side));
         on_place.into_iter().chain(above).chain(beside).collect()
     }
 
-    /// The symbol's box at the place.
     pub fn symbol_box(&self) -> PixelBox {
         PixelBox::around(self.anchor, self.symbol)
     }
 
-    fn on_place(&self) -> LabelPosition {
-        let alignment = Alignment::Center;
+    fn on_place(&self) -> LabelCandidate {
+        let alignment = TextAlignment::Center;
         let text = moved_center(self.texts[alignment as usize], self.anchor);
-        LabelPosition { candidate: LabelCandidate { text, symbol: None, leader: None }, alignment }
+        LabelCandidate { text, symbol: None, leader: None, alignment }
     }
 
-    fn above(&self, reach: Vec2, (meeting, alignment): (f32, Alignment)) -> LabelPosition {
+    fn above(&self, reach: Vec2, (meeting, alignment): (f32, TextAlignment)) -> LabelCandidate {
         let area = self.texts[alignment as usize];
         let end = self.anchor + reach;
         let foot = Vec2::new(area.min.x + area.size().x * meeting, area.max.y + self.gap);
@@ -103,13 +70,10 @@ impl LabelMetrics {
         // The text is moved by whole pixels; the line ends where the text is then.
         let to = Vec2::new(end.x, text.max.y + self.gap);
         let leader = Some(PixelSegment { from, to });
-        LabelPosition {
-            candidate: LabelCandidate { text, symbol: Some(self.symbol_box()), leader },
-            alignment,
-        }
+        LabelCandidate { text, symbol: Some(self.symbol_box()), leader, alignment }
     }
 
-    fn beside(&self, (side, alignment): (f32, Alignment)) -> LabelPosition {
+    fn beside(&self, (side, alignment): (f32, TextAlignment)) -> LabelCandidate {
         let (area, symbol) = (self.texts[alignment as usize], self.symbol_box());
         let away = self.symbol.x + self.gap + area.size().x * 0.5;
         let mut text = moved_center(area, self.anchor + Vec2::new(side * away, 0.0));
@@ -117,7 +81,7 @@ impl LabelMetrics {
         if text.overlaps(&symbol) {
             text = text.moved(Vec2::new(side, 0.0));
         }
-        LabelPosition { candidate: LabelCandidate { text, symbol: Some(symbol), leader: None }, alignment }
+        LabelCandidate { text, symbol: Some(symbol), leader: None, alignment }
     }
 }
 
@@ -139,17 +103,13 @@ mod tests {
             symbol: Vec2::splat(6.0),
             gap: 3.0,
             longest: 200.0,
-            preference: Preference::Above,
+            may_lie_on_place: false,
         }
-    }
-
-    fn candidates(metrics: &LabelMetrics) -> Vec<LabelCandidate> {
-        metrics.positions().into_iter().map(|position| position.candidate).collect()
     }
 
     #[test]
     fn the_first_candidate_is_centered_over_the_leaders_wished_end() {
-        let first = candidates(&metrics())[0];
+        let first = metrics().positions()[0];
         let end = metrics().anchor + metrics().reach;
         assert!((first.text.center().x - end.x).abs() <= 0.5);
         assert!((first.text.max.y + 3.0 - end.y).abs() <= 0.5);
@@ -157,7 +117,7 @@ mod tests {
 
     #[test]
     fn no_candidate_covers_its_own_symbol_or_leader() {
-        for (number, candidate) in candidates(&metrics()).iter().enumerate() {
+        for (number, candidate) in metrics().positions().iter().enumerate() {
             let symbol = candidate.symbol.expect("drawn with a symbol");
             assert!(!candidate.text.overlaps(&symbol), "{number}: {candidate:?}");
             assert!(candidate.leader.is_none_or(|line| !candidate.text.meets(&line)), "{number}");
@@ -167,7 +127,7 @@ mod tests {
     #[test]
     fn texts_move_by_whole_pixels() {
         for position in metrics().positions() {
-            let by = position.candidate.text.min - metrics().texts[position.alignment as usize].min;
+            let by = position.text.min - metrics().texts[position.alignment as usize].min;
             assert!((by - by.round()).length() < 1e-3, "{by}");
         }
     }
@@ -175,18 +135,19 @@ mod tests {
     #[test]
     fn lines_stand_flush_toward_what_they_name() {
         for position in metrics().positions() {
-            let off = position.candidate.text.center().x - metrics().anchor.x - 4.0;
+            let off = position.text.center().x - metrics().anchor.x - 4.0;
             match position.alignment {
-                Alignment::Left => assert!(off > 10.0),
-                Alignment::Right => assert!(off < -10.0),
-                Alignment::Center => assert!(off.abs() < 25.0),
+                TextAlignment::Left => assert!(off > 10.0),
+                TextAlignment::Right => assert!(off < -10.0),
+                TextAlignment::Center => assert!(off.abs() < 25.0),
             }
         }
     }
 
     #[test]
     fn leaders_are_no_longer_than_allowed() {
-        let longest = candidates(&metrics())
+        let longest = metrics()
+            .positions()
             .iter()
             .filter_map(|candidate| candidate.leader)
             .map(|line| (line.to - line.from).length())
@@ -196,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = candidates(&LabelMetrics { preference: Preference::OnPlace, ..metrics() })[0];
+        let first = LabelMetrics { may_lie_on_place: true, ..metrics() }.positions()[0];
         assert!((first.text.center() - metrics().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }

@@ -48,12 +48,6 @@ pub struct MissingGlyphs {
 }
 
 impl AnnotationReport {
-    /// The number of boxes drawn in place of characters, in all texts.
-    pub fn missing_glyph_count(&self) -> usize {
-        self.missing_glyphs.iter().map(|missing| missing.count).sum()
-    }
-
-    /// Adds the flaws of drawn texts.
     pub(in crate::annotate) fn add_texts(&mut self, texts: &[DrawnText]) {
         for DrawnText { text, missing, shortened } in texts {
             if *missing > 0 {

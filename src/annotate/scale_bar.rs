@@ -40,7 +40,6 @@ impl ScaleBar {
     }
 }
 
-/// A bar of nice length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct NiceBar {
     /// Its length in meters.
@@ -121,7 +120,6 @@ fn draw_bar(drawing: &mut Drawing, bar: PixelBox, sheet: &Sheet) {
     }
 }
 
-/// The figures at the start, the middle and the end.
 fn figures(length: &NiceNumber) -> [String; 3] {
     let full = length.value() / unit(length).1;
     let is_integer = |value: f64| (value - libm::round(value)).abs() < 1e-6;
@@ -156,15 +154,15 @@ mod tests {
 
     #[test]
     fn figures_are_exact_in_meters_and_kilometers() {
-        let said = |meters: f64| {
+        let figures_and_unit = |meters: f64| {
             let length = NiceNumber::at_most(meters).expect("positive");
             (figures(&length)[1].clone(), figures(&length)[2].clone(), unit(&length).0)
         };
-        assert_eq!(said(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
-        assert_eq!(said(500.0), ("250".to_owned(), "500".to_owned(), "m"));
-        assert_eq!(said(5.0), ("2.5".to_owned(), "5".to_owned(), "m"));
-        assert_eq!(said(0.5), ("0.25".to_owned(), "0.5".to_owned(), "m"));
-        assert_eq!(said(20_000.0), ("10".to_owned(), "20".to_owned(), "km"));
+        assert_eq!(figures_and_unit(1000.0), ("0.5".to_owned(), "1".to_owned(), "km"));
+        assert_eq!(figures_and_unit(500.0), ("250".to_owned(), "500".to_owned(), "m"));
+        assert_eq!(figures_and_unit(5.0), ("2.5".to_owned(), "5".to_owned(), "m"));
+        assert_eq!(figures_and_unit(0.5), ("0.25".to_owned(), "0.5".to_owned(), "m"));
+        assert_eq!(figures_and_unit(20_000.0), ("10".to_owned(), "20".to_owned(), "km"));
     }
 
     #[test]
@@ -181,7 +179,7 @@ mod tests {
     fn the_black_of_the_bar_is_drawn_as_long_as_measured() {
         let drawing = compose(&bar(0.0437), &mut Composer::new(1920, 1080)).expect("a bar");
         let expected = measure(&bar(0.0437), 260.0).expect("a scale").length_px;
-        let black = drawing.marks().iter().find(|mark| mark.color == INK).expect("the bar comes first");
+        let black = drawing.marks.iter().find(|mark| mark.color == INK).expect("the bar comes first");
         assert_eq!(black.path.bounds().width(), expected);
     }
 

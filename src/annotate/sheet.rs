@@ -32,7 +32,6 @@ const STEADY_SHARE: f32 = 0.32;
 /// The smallest type: below this the embedded light font turns gray.
 const SMALLEST_TYPE_PX: f32 = 9.5;
 
-/// The picture as a sheet to lay things out on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
     /// Width and height in pixels.
@@ -42,7 +41,6 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet of a picture of `width` × `height` pixels.
     pub fn new(width: u32, height: u32) -> Self {
         let size = Vec2::new(width as f32, height as f32);
         let share = size.y.min(size.x * DESIGN_ASPECT) / DESIGN_HEIGHT;
@@ -65,27 +63,22 @@ impl Sheet {
         self.px(design).max(SMALLEST_TYPE_PX)
     }
 
-    /// Distance of furniture from the border.
     pub fn margin(&self) -> f32 {
         self.whole_px(26.0).min((self.size.y * 0.03).round().max(2.0))
     }
 
-    /// Distance of text from its panel's edge.
     pub fn padding(&self) -> f32 {
         self.whole_px(15.0)
     }
 
-    /// Width of thin lines.
     pub fn hairline(&self) -> f32 {
         self.px(1.0).max(1.0)
     }
 
-    /// The whole picture.
     pub fn bounds(&self) -> PixelBox {
         PixelBox { min: Vec2::ZERO, max: self.size }
     }
 
-    /// The picture inside its margin.
     pub fn inner(&self) -> PixelBox {
         self.bounds().grown(-self.margin())
     }

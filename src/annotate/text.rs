@@ -11,15 +11,16 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use parley::fontique::{Blob, Collection, CollectionOptions, FontInfoOverride, SourceCache};
+use parley::GlyphRun;
+use parley::fontique::{Blob, Collection, FontInfoOverride};
 use parley::layout::{Layout, PositionedLayoutItem};
 use parley::style::{FontFamily, FontFamilyName, StyleProperty};
-use parley::{FontContext, GlyphRun, LayoutContext};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 use tiny_skia::{Path, PathBuilder};
 
+use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, box_of};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::HALO;
@@ -36,7 +37,6 @@ const MOST_CHARACTERS: usize = 300;
 const FONT: &str = "sandtable sheet";
 const FALLBACK_FONT: &str = "sandtable signs";
 
-/// Size and shape of type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextStyle {
     /// Height of the em in pixels.
@@ -57,7 +57,6 @@ impl TextStyle {
     /// The weight of names on the picture.
     pub const BOLD: f32 = 0.08;
 
-    /// Upright type.
     pub fn upright(size_px: f32, weight: f32) -> Self {
         Self { size_px, slant: 0.0, weight, tracking: 0.0 }
     }
@@ -67,7 +66,6 @@ impl TextStyle {
         self.size_px * CAP_HEIGHT
     }
 
-    /// Width of the strengthening stroke in pixels.
     fn stroke_px(&self) -> f32 {
         self.weight * self.size_px
     }
@@ -83,7 +81,6 @@ impl TextStyle {
     }
 }
 
-/// A line of text, set.
 #[derive(Clone, Debug)]
 pub struct TextLine {
     /// Outline of all letters, baseline from the origin to the right; `None` where nothing shows.
@@ -92,29 +89,11 @@ pub struct TextLine {
     pub advance: f32,
     /// Characters that the fonts lack; each shows as a box.
     pub missing: usize,
-    /// Whether the end was cut off.
     pub shortened: bool,
-    /// Its style.
     pub style: TextStyle,
 }
 
-/// Sets text in the embedded fonts; holds their tables and scratch space between lines.
-pub struct Typesetter {
-    fonts: FontContext,
-    layouts: LayoutContext<()>,
-}
-
-impl Typesetter {
-    /// A typesetter with the embedded fonts and no others.
-    pub fn new() -> Self {
-        let options = CollectionOptions { shared: false, system_fonts: false };
-        let mut collection = Collection::new(options);
-        register(&mut collection, epaint_default_fonts::UBUNTU_LIGHT, FONT);
-        register(&mut collection, epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT);
-        let fonts = FontContext { collection, source_cache: SourceCache::default() };
-        Self { fonts, layouts: LayoutContext::new() }
-    }
-
+impl Composer {
     /// `text` as one line. Line ends and other control characters become spaces; text is cut after 300 characters.
     pub fn line(&mut self, text: &str, style: TextStyle) -> TextLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
@@ -158,7 +137,6 @@ impl TextLine {
 }
 
 impl Drawing {
-    /// Writes a line of text whose baseline starts at `at`.
     pub fn write(&mut self, line: &TextLine, at: Vec2, color: Srgba) {
         let Some(path) = line.outline_at(at) else { return };
         let stroke = line.style.stroke_px();
@@ -187,9 +165,13 @@ impl Drawing {
     }
 }
 
-fn register(collection: &mut Collection, font: &'static [u8], name: &str) {
-    let naming = FontInfoOverride { family_name: Some(name), ..FontInfoOverride::default() };
-    collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
+pub fn register_fonts(collection: &mut Collection) {
+    for (font, name) in
+        [(epaint_default_fonts::UBUNTU_LIGHT, FONT), (epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT)]
+    {
+        let naming = FontInfoOverride { family_name: Some(name), ..FontInfoOverride::default() };
+        collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
+    }
 }
 
 /// Adds the outlines of `run`, relative to its baseline; returns the number of glyphs that the font lacks.
@@ -254,7 +236,7 @@ mod tests {
     use super::*;
 
     fn set(text: &str) -> TextLine {
-        Typesetter::new().line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
+        Composer::new(100, 100).line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
     }
 
     #[test]
@@ -302,7 +284,7 @@ mod tests {
     #[test]
     fn slanted_type_leans_right() {
         let style = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
-        let lean = box_of(&Typesetter::new().line("I", style).outline.expect("a letter"));
+        let lean = box_of(&Composer::new(100, 100).line("I", style).outline.expect("a letter"));
         let upright = box_of(&set("I").outline.expect("a letter"));
         assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);
     }

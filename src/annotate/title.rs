@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
+use crate::annotate::composer::{Composer, widest};
 use crate::annotate::drawing::Drawing;
 use crate::annotate::paragraph::Paragraph;
 use crate::annotate::sheet::{INK, SOFT_INK, Sheet};
@@ -15,21 +15,19 @@ const HIGHEST_SHARE: f32 = 0.21;
 /// Lines of the title and of the subtitle, from the most generous to the least.
 const MOST_LINES: [(usize, usize); 4] = [(2, 2), (2, 1), (2, 0), (1, 0)];
 
-/// The title block with its upper left corner at the origin; `None` where both texts are empty or do not fit.
-///
-/// On small pictures the subtitle is dropped: first its second line, then all of it.
+/// The title block with its upper left corner at the origin; `None` where both texts are empty or do not fit. On small
+/// pictures the subtitle is dropped: first its second line, then all of it.
 pub fn compose(title: Option<&str>, subtitle: Option<&str>, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let widest = sheet.size.x * WIDEST_SHARE - sheet.padding() * 2.0;
     let [title, subtitle] = [title, subtitle].map(Option::unwrap_or_default);
     let title_style = title_style(title, widest, composer);
     let subtitle_style = composer.style(18.0, TextStyle::REGULAR);
-    let typesetter = &mut composer.typesetter;
     for (title_lines, subtitle_lines) in MOST_LINES {
-        let heading = typesetter.broken(title, title_style, widest, title_lines);
+        let heading = composer.broken(title, title_style, widest, title_lines);
         // A subtitle without a title may use the title's lines.
         let subtitle_lines = if heading.lines.is_empty() { title_lines } else { subtitle_lines };
-        let note = typesetter.broken(subtitle, subtitle_style, widest, subtitle_lines);
+        let note = composer.broken(subtitle, subtitle_style, widest, subtitle_lines);
         let mut drawing = lay_out(&heading, &note, &sheet)?;
         if title_lines == 1 || drawing.bounds().size().y <= sheet.size.y * HIGHEST_SHARE {
             drawing.record_text(title, heading.missing(), heading.shortened);
@@ -68,7 +66,7 @@ fn lay_out(title: &Paragraph, subtitle: &Paragraph, sheet: &Sheet) -> Option<Dra
         drawing.write(line, Vec2::new(padding, baseline), color);
         above = line;
     }
-    let width = title.width().max(subtitle.width());
+    let width = widest(lines());
     // Panels end a padding below the baseline, not below the descenders: the baseline reads as the edge.
     let height = baseline + padding + (last.style.size_px * 0.06).round();
     Some(drawing.on_panel(Vec2::new((width + padding * 2.0).ceil(), height), sheet))
@@ -83,7 +81,7 @@ mod tests {
     }
 
     fn shortened(drawing: &Drawing) -> Vec<&str> {
-        drawing.texts().iter().filter(|text| text.shortened).map(|text| text.text.as_str()).collect()
+        drawing.texts.iter().filter(|text| text.shortened).map(|text| text.text.as_str()).collect()
     }
 
     #[test]
@@ -95,7 +93,7 @@ mod tests {
     #[test]
     fn the_block_holds_its_letters() {
         let drawing = block(Some("Cross Mountain, jgpqy"), Some("Ångström")).expect("a title");
-        let panel = drawing.marks().first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

@@ -23,7 +23,7 @@ pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
 /// What a scene holds, and the notes about it, in lines.
 pub fn contents(scene: &Scene) -> Vec<String> {
     let lattice = &scene.terrain.lattice;
-    let (low, high) = lattice.height_range();
+    let (low, high) = scene.terrain.height_range();
     let size = lattice.extent().size() / 1000.0;
     let ground = format!(
         "{}×{} posts, {:.2}×{:.2} km, {} to {} m, {}",

@@ -1,11 +1,8 @@
 //! Numbers at fixed places of binary files.
 
-/// The order of a number's bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ByteOrder {
-    /// The least significant byte first (Intel).
     Little,
-    /// The most significant byte first (Motorola, network).
     Big,
 }
 
@@ -30,12 +27,10 @@ macro_rules! fields {
 }
 
 impl<'a> ByteFields<'a> {
-    /// Fields with the least significant byte first.
     pub fn little_endian(bytes: &'a [u8]) -> Self {
         Self { bytes, order: ByteOrder::Little }
     }
 
-    /// Fields with the most significant byte first.
     pub fn big_endian(bytes: &'a [u8]) -> Self {
         Self { bytes, order: ByteOrder::Big }
     }

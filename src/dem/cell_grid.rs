@@ -6,8 +6,7 @@ use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::north_up;
 use crate::geom::rect::Rect;
 
-/// How far a side of a stated extent may be from a whole number of cells, in cells: decimal fractions of map units
-/// are not exact in binary.
+/// How many cells a side of a stated extent may be off a whole number: decimal fractions are not exact in binary.
 const SLACK_CELLS: f64 = 1e-6;
 
 /// A lattice of square cells, north up.

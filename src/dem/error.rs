@@ -1,5 +1,7 @@
 //! Errors of reading elevation files.
 
+use glam::U64Vec2;
+
 use crate::archive::ArchiveError;
 use crate::dem::formats;
 use crate::geom::crs::CrsError;
@@ -18,15 +20,12 @@ pub struct DemError {
 /// What was wrong with an elevation file.
 #[derive(Debug, thiserror::Error)]
 pub enum DemErrorKind {
-    /// Neither the content nor the extension belongs to a known format.
+    /// Neither the content nor the extension belongs to a known format; the text says what the file seems to be.
     #[error(
-        "{found}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
-        formats::list()
+        "{}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
+        .0, formats::list()
     )]
-    UnknownFormat {
-        /// What the file seems to be.
-        found: String,
-    },
+    UnknownFormat(String),
     /// The file uses a part of its format that is not read.
     #[error("this {format} uses {what}, which is not read; {remedy}")]
     Unsupported {
@@ -58,33 +57,26 @@ pub enum DemErrorKind {
     },
     /// The raster has more samples than are read.
     #[error(
-        "{width} x {height} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%"
+        "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%",
+        .size.x, .size.y
     )]
     TooLarge {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
+        /// Samples per row and rows, as stated.
+        size: U64Vec2,
         /// The cap.
         most: u64,
     },
-    /// The header states no sample at all.
-    #[error("{width} x {height} samples are none; the header is broken or the file is empty")]
-    NoSamples {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
-    },
+    /// The header states no sample at all, but these samples per row and rows.
+    #[error("{} x {} samples are none; the header is broken or the file is empty", .0.x, .0.y)]
+    NoSamples(U64Vec2),
     /// The header states more samples than the file can hold.
     #[error(
-        "{width} x {height} samples cannot be held by a file of {file_bytes} bytes; it is cut short or its header is broken"
+        "{} x {} samples cannot be held by a file of {file_bytes} bytes; it is cut short or its header is broken",
+        .size.x, .size.y
     )]
     Truncated {
-        /// Samples per row as stated.
-        width: u64,
-        /// Rows as stated.
-        height: u64,
+        /// Samples per row and rows, as stated.
+        size: U64Vec2,
         /// Bytes of the file.
         file_bytes: usize,
     },
@@ -114,12 +106,9 @@ pub enum DemErrorKind {
         "a RAW file has no header: state raw = \"1201x1201:i16be\" under [terrain], or --raw 1201x1201:i16be on the command line (columns, rows, type and byte order)"
     )]
     NoRawLayout,
-    /// The header file that belongs beside the file is missing.
-    #[error("this {format} needs its header, a file of the same name with .hdr, beside it; put it there")]
-    NoHeader {
-        /// The format.
-        format: &'static str,
-    },
+    /// The header file that belongs beside a file of this format is missing.
+    #[error("this {0} needs its header, a file of the same name with .hdr, beside it; put it there")]
+    NoHeader(&'static str),
     /// A hint out of range.
     #[error("{what} is {value}; it must be {wanted}")]
     Hint {

@@ -29,8 +29,7 @@ pub(crate) fn placed(
     Ok(Raster { georeferenced: cell.is_some(), ..raster.placed(north_up(corner, size)) })
 }
 
-/// The six numbers of a world file: x per column, y per column, x per row, y per row, and the center of the
-/// first sample.
+/// Reads a world file: x and y per column, x and y per row, and the center of the first sample.
 fn world_file(text: &str) -> Result<DAffine2, DemErrorKind> {
     let numbers: Vec<f64> =
         text.split_ascii_whitespace().map_while(|word| word.replace(',', ".").parse().ok()).collect();

@@ -1,6 +1,6 @@
 //! Caps that a header must keep before anything is allocated for it.
 
-use glam::UVec2;
+use glam::{U64Vec2, UVec2};
 
 use crate::dem::error::DemErrorKind;
 
@@ -15,15 +15,12 @@ const SPARSE_BYTES: u64 = 64 << 20;
 /// The size that a header claims, to be held against the bytes of its file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SizeClaim {
-    /// Samples per row.
     pub width: u64,
-    /// Rows.
     pub height: u64,
     /// The fewest bytes that a sample decodes to; 0 where a file may leave samples out.
     pub bytes_per_sample: u64,
     /// The most bytes that one byte of the file decodes to.
     pub expansion: u64,
-    /// The most samples that are allowed.
     pub most_samples: u64,
 }
 
@@ -39,15 +36,16 @@ impl SizeClaim {
     /// The size is 0, above the cap, or more than `file_bytes` bytes can hold.
     pub fn check(&self, file_bytes: usize) -> Result<UVec2, DemErrorKind> {
         let Self { width, height, most_samples, .. } = *self;
+        let size = U64Vec2::new(width, height);
         let samples = width.checked_mul(height).filter(|&samples| samples <= most_samples);
-        let samples = samples.ok_or(DemErrorKind::TooLarge { width, height, most: most_samples })?;
+        let samples = samples.ok_or(DemErrorKind::TooLarge { size, most: most_samples })?;
         let (Ok(columns @ 1..), Ok(rows @ 1..)) = (u32::try_from(width), u32::try_from(height)) else {
-            return Err(DemErrorKind::NoSamples { width, height });
+            return Err(DemErrorKind::NoSamples(size));
         };
         let sparse = if self.expansion > 1 { SPARSE_BYTES } else { 0 };
         let possible = (file_bytes as u64).saturating_mul(self.expansion).saturating_add(sparse);
         if samples.saturating_mul(self.bytes_per_sample) > possible {
-            return Err(DemErrorKind::Truncated { width, height, file_bytes });
+            return Err(DemErrorKind::Truncated { size, file_bytes });
         }
         Ok(UVec2::new(columns, rows))
     }

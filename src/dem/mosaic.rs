@@ -8,7 +8,7 @@
 //! that no tile covers are gaps: no data, and counted. Longitudes may continue across ±180°: the mosaic starts east of
 //! the widest gap.
 
-use glam::{DVec2, I64Vec2};
+use glam::{DVec2, I64Vec2, U64Vec2};
 
 use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, SampleFloat, Samples};
@@ -60,12 +60,9 @@ pub enum MosaicError {
     /// There is no tile.
     #[error("there is no elevation file to join")]
     Empty,
-    /// A tile has no georeference.
-    #[error("{tile} does not state where it lies, so it cannot be joined")]
-    NoPlace {
-        /// The tile.
-        tile: String,
-    },
+    /// The tile of this name has no georeference.
+    #[error("{0} does not state where it lies, so it cannot be joined")]
+    NoPlace(String),
     /// Two tiles are not alike.
     #[error(
         "{first} and {other} are not tiles of one raster: their {what} are {} and {}; bring them to one, for example with: sandtable dem convert",
@@ -94,22 +91,14 @@ pub enum MosaicError {
         /// By how many cells, from −0.5 to 0.5.
         off: DVec2,
     },
-    /// The tiles hold more samples together than are joined.
-    #[error("the tiles hold {samples} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
-    TooMany {
-        /// The samples up to the tile that is too many.
-        samples: u64,
-    },
+    /// The tiles hold more samples together than are joined; those up to the tile that is too many.
+    #[error("the tiles hold {0} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
+    TooMany(u64),
     /// The rectangle around all tiles has more samples than a raster.
     #[error(
-        "the tiles span {width} x {height} samples, more than the {MOST_SAMPLES} of a raster; join fewer"
+        "the tiles span {} x {} samples, more than the {MOST_SAMPLES} of a raster; join fewer", .0.x, .0.y
     )]
-    TooLarge {
-        /// Samples per row.
-        width: u64,
-        /// Rows.
-        height: u64,
-    },
+    TooLarge(U64Vec2),
 }
 
 /// Tiles of one raster, in the order in which they win.
@@ -129,8 +118,7 @@ impl Tiles {
         self.samples += tile.samples.len() as u64;
         self.names.push(name.into());
         self.rasters.push(tile);
-        let samples = self.samples;
-        if samples > MOST_OF_ALL { Err(MosaicError::TooMany { samples }) } else { Ok(()) }
+        if self.samples > MOST_OF_ALL { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
     }
 
     /// Joins the tiles.
@@ -143,14 +131,8 @@ impl Tiles {
     pub fn join(mut self) -> Result<Mosaic, MosaicError> {
         if self.rasters.len() < 2 {
             let raster = self.rasters.pop().ok_or(MosaicError::Empty)?;
-            return Ok(Mosaic {
-                raster,
-                tiles: 1,
-                overlaps: 0,
-                differing: 0,
-                greatest_difference: 0.0,
-                gaps: 0,
-            });
+            let (overlaps, differing, greatest_difference, gaps) = (0, 0, 0.0, 0);
+            return Ok(Mosaic { raster, tiles: 1, overlaps, differing, greatest_difference, gaps });
         }
         for index in 0..self.rasters.len() {
             self.compare_with_first(index)?;
@@ -172,7 +154,7 @@ impl Tiles {
     fn compare_with_first(&self, index: usize) -> Result<(), MosaicError> {
         let (first, tile) = (&self.rasters[0], &self.rasters[index]);
         if !tile.georeferenced {
-            return Err(MosaicError::NoPlace { tile: self.names[index].clone() });
+            return Err(MosaicError::NoPlace(self.names[index].clone()));
         }
         let differ = |what, found: [String; 2]| {
             let (first, other) = (self.names[0].clone(), self.names[index].clone());
@@ -214,14 +196,12 @@ impl Tiles {
             return Err(MosaicError::Misaligned { first, other, off });
         }
         if at.abs().max_element() > MOST_SAMPLES as f64 {
-            let size = at.abs() + 1.0;
-            return Err(MosaicError::TooLarge { width: size.x as u64, height: size.y as u64 });
+            return Err(MosaicError::TooLarge((at.abs() + 1.0).as_u64vec2()));
         }
         Ok(at.round().as_i64vec2())
     }
 }
 
-/// The cells of a raster, for messages.
 fn cells(raster: &Raster) -> String {
     let [_, a, b, _, c, d] = raster.geotransform();
     if b == 0.0 && c == 0.0 { format!("{a} by {d}") } else { format!("({a}, {c}) by ({b}, {d})") }
@@ -265,12 +245,12 @@ impl MosaicFrame {
         let ends = tiles.iter().zip(corners).map(|(tile, corner)| *corner + size(tile));
         let min = corners.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
         let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
-        let (width, height) = ((max.x - min.x) as u64, (max.y - min.y) as u64);
-        match width.checked_mul(height) {
+        let size = (max - min).as_u64vec2();
+        match size.x.checked_mul(size.y) {
             Some(samples) if samples <= MOST_SAMPLES => {
-                Ok(Self { min, width: width as usize, height: height as usize })
+                Ok(Self { min, width: size.x as usize, height: size.y as usize })
             }
-            _ => Err(MosaicError::TooLarge { width, height }),
+            _ => Err(MosaicError::TooLarge(size)),
         }
     }
 }

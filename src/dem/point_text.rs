@@ -14,7 +14,6 @@ const NAMES: [&[&str]; 3] = [
     &["z", "elevation", "elev", "height", "h", "alt", "altitude", "ele", "hoehe"],
 ];
 
-/// A text of points.
 pub(crate) struct PointText<'a> {
     text: &'a str,
     /// The first line, where it holds column names.
@@ -23,7 +22,6 @@ pub(crate) struct PointText<'a> {
     pub columns: [Option<usize>; 3],
 }
 
-/// A line of a text.
 #[derive(Clone, Copy)]
 pub(crate) struct TextLine<'a> {
     /// Its number, from 1.
@@ -44,7 +42,6 @@ impl<'a> PointText<'a> {
         Self { text, header, columns }
     }
 
-    /// The lines of points.
     pub fn lines(&self) -> impl Iterator<Item = TextLine<'a>> {
         let header = self.header.map_or(0, |header| header.number);
         lines(self.text).filter(move |line| line.number > header)
@@ -57,8 +54,7 @@ fn lines(text: &str) -> impl Iterator<Item = TextLine<'_>> {
 }
 
 impl<'a> TextLine<'a> {
-    /// The point in three columns; its height is NaN where the field is empty. `None` where a column is missing or no
-    /// number, or x or y is not finite.
+    /// The point in three columns, NaN where the height is empty; `None` where x, y or z is no number, or x or y not finite.
     pub fn point(&self, columns: [usize; 3]) -> Option<DVec3> {
         let mut found = [None; 3];
         for (index, field) in self.fields().enumerate() {

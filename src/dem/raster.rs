@@ -36,8 +36,7 @@ pub struct Raster {
     pub crs: Option<Crs>,
     /// The file's value for no data, before scale and offset.
     pub nodata: Option<f64>,
-    /// The vertical datum in the file's words (`NAVD88`, `EGM96 geoid`); `None` where it is not stated. Carried along
-    /// and printed, never computed with.
+    /// The vertical datum in the file's words (`NAVD88`), printed but never computed with; `None` where not stated.
     pub vertical_datum: Option<String>,
 }
 
@@ -51,40 +50,31 @@ pub enum Samples {
 }
 
 /// A float type of [`Samples`].
-pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + Send + Sync {
-    /// No data.
+pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
     const NODATA: Self;
 
-    /// The nearest value of this type.
     fn from_f64(value: f64) -> Self;
 
-    /// The samples with these values.
     fn into_samples(values: Vec<Self>) -> Samples;
 }
 
-impl SampleFloat for f32 {
-    const NODATA: Self = Self::NAN;
+macro_rules! sample_floats {
+    ($($float:ident: $samples:ident),*) => {$(
+        impl SampleFloat for $float {
+            const NODATA: Self = Self::NAN;
 
-    fn from_f64(value: f64) -> Self {
-        value as Self
-    }
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
 
-    fn into_samples(values: Vec<Self>) -> Samples {
-        Samples::F32(values)
-    }
+            fn into_samples(values: Vec<Self>) -> Samples {
+                Samples::$samples(values)
+            }
+        }
+    )*};
 }
 
-impl SampleFloat for f64 {
-    const NODATA: Self = Self::NAN;
-
-    fn from_f64(value: f64) -> Self {
-        value
-    }
-
-    fn into_samples(values: Vec<Self>) -> Samples {
-        Samples::F64(values)
-    }
-}
+sample_floats!(f32: F32, f64: F64);
 
 impl Samples {
     /// The number of samples.
@@ -192,7 +182,6 @@ impl Raster {
         Cow::Owned(self.clone().into_meters())
     }
 
-    /// The raster with its heights in meters.
     pub(crate) fn into_meters(self) -> Self {
         Self { samples: self.samples.scaled(self.meters_per_z, 0.0), meters_per_z: 1.0, ..self }
     }
@@ -203,8 +192,7 @@ impl Raster {
         Self { samples: Samples::F32(Vec::new()), crs, vertical_datum, ..*self }
     }
 
-    /// Grid position (column, row) of a point in the raster's own coordinates; NaN where the georeference
-    /// cannot be inverted.
+    /// Grid position (column, row) of a map position; NaN where the georeference cannot be inverted.
     pub fn grid_from_map(&self, at: DVec2) -> DVec2 {
         // The large map coordinates cancel before the small cell divides them.
         self.map_from_grid.matrix2.inverse() * (at - self.map_from_grid.translation)
@@ -216,7 +204,6 @@ impl Raster {
         DVec2::new(axes.x_axis.length(), axes.y_axis.length())
     }
 
-    /// Whether rows and columns run along the axes of the map.
     pub(crate) fn is_axis_aligned(&self) -> bool {
         let axes = self.map_from_grid.matrix2;
         axes.x_axis.y == 0.0 && axes.y_axis.x == 0.0
@@ -246,14 +233,12 @@ impl Raster {
         Rect { min: min + half, max: max - half }
     }
 
-    /// The georeference in GDAL's order: x of the corner, x per column, x per row, y of the corner, y per
-    /// column, y per row.
+    /// The georeference in GDAL's order: x of the corner, x per column, x per row, then the same of y.
     pub fn geotransform(&self) -> [f64; 6] {
         let DAffine2 { matrix2: DMat2 { x_axis, y_axis }, translation } = self.map_from_grid;
         [translation.x, x_axis.x, y_axis.x, translation.y, x_axis.y, y_axis.y]
     }
 
-    /// Columns and rows.
     pub(crate) fn grid_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.width), f64::from(self.height))
     }

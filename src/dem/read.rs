@@ -11,8 +11,7 @@ use crate::geom::crs::Crs;
 /// What the caller knows of a file beyond its bytes.
 #[derive(Clone)]
 pub struct DemHints<'a> {
-    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1). Other
-    /// formats ignore it.
+    /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
     pub height_scale: Option<f64>,
     /// Elevation in meters of value 0. Default 0.
     pub height_offset: Option<f64>,
@@ -22,8 +21,7 @@ pub struct DemHints<'a> {
     pub raw: Option<RawLayout>,
     /// The vertical datum, in place of the file's.
     pub vertical_datum: Option<String>,
-    /// Distance in meters between samples of a file without georeference; its south-west sample is then at (0, 0).
-    /// Files with a georeference keep theirs.
+    /// Meters between samples of a file without georeference, whose south-west sample is then at (0, 0).
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,
@@ -72,7 +70,6 @@ impl DemFile<'_> {
         split_extension(self.name).1.to_ascii_lowercase()
     }
 
-    /// The file name without folders and extension.
     pub fn stem(&self) -> &str {
         split_extension(file_name(self.name)).0
     }
@@ -155,7 +152,6 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
     Ok(raster)
 }
 
-/// Reads a file that may be packed.
 fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if archive::is_gzip(file.bytes) {
         let (name, content) = (unpacked_name(file.name), archive::gunzip(file.bytes, MAX_RASTER_BYTES)?);
@@ -191,14 +187,14 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if file.hints.raw.is_some() {
         return (raw::FORMAT.reader)(file);
     }
-    let recognized = find(|format| format.recognizes_content(file.bytes))
-        .or_else(|| {
-            by_extension(&extension).filter(|format| matches!(format.recognition, Recognition::Extension))
-        })
-        .or_else(|| {
-            let header = file.header()?;
-            find(|format| format.recognizes_header(&header))
-        });
+    let by_content = |format: &DemFormat| matches!(format.recognition, Recognition::Content { matches, .. } if matches(file.bytes));
+    let by_name =
+        || by_extension(&extension).filter(|format| matches!(format.recognition, Recognition::Extension));
+    let by_header = || {
+        let header = file.header()?;
+        find(|format| matches!(format.recognition, Recognition::HeaderFile { matches } if matches(&header)))
+    };
+    let recognized = find(by_content).or_else(by_name).or_else(by_header);
     match recognized {
         Some(format) => (format.reader)(file),
         None => Err(not_recognized(file.bytes, &extension)),
@@ -217,16 +213,15 @@ fn not_recognized(bytes: &[u8], extension: &str) -> DemErrorKind {
     let Some(format) = by_extension(extension) else { return unknown(describe(bytes, extension)) };
     match format.recognition {
         Recognition::Content { start, .. } => format.broken(format!("it does not start with {start}")),
-        Recognition::HeaderFile { .. } => DemErrorKind::NoHeader { format: format.name },
+        Recognition::HeaderFile { .. } => DemErrorKind::NoHeader(format.name),
         Recognition::Statement | Recognition::Extension => DemErrorKind::NoRawLayout,
     }
 }
 
 fn unknown(found: impl Into<String>) -> DemErrorKind {
-    DemErrorKind::UnknownFormat { found: found.into() }
+    DemErrorKind::UnknownFormat(found.into())
 }
 
-/// An unknown file in words.
 fn describe(bytes: &[u8], extension: &str) -> String {
     const KNOWN: [(&[u8], &str); 6] = [
         (b"SQLite format 3", "it is an SQLite database, perhaps a GeoPackage"),
@@ -245,7 +240,6 @@ fn describe(bytes: &[u8], extension: &str) -> String {
     }
 }
 
-/// A name without folders.
 fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
@@ -260,7 +254,6 @@ fn unpacked_name(name: &str) -> String {
     }
 }
 
-/// A name without its extension, and the extension.
 fn split_extension(name: &str) -> (&str, &str) {
     match name.rsplit_once('.') {
         Some((base, extension)) if !extension.contains(['/', '\\']) => (base, extension),

@@ -9,8 +9,7 @@ use glam::DVec2;
 use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
 
-/// How far outside the border, in samples, a point still counts as on it: map coordinates of a corner written with a
-/// dozen digits lose this much.
+/// How far outside the border, in samples, a point still counts as on it: decimal map coordinates lose this much.
 const BORDER: f64 = 1e-6;
 
 /// A position nearer than this, in samples, to a row or column of centers lies on it: rounding in map coordinates must

@@ -1,6 +1,5 @@
 //! Types of stored samples.
 
-/// The type of a stored sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SampleType {
     U8,
@@ -19,53 +18,41 @@ pub(crate) enum SampleType {
 /// What the bits of a number mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberKind {
-    /// An integer from 0 on.
     Unsigned,
-    /// An integer in two's complement.
     Signed,
-    /// An IEEE 754 number.
     Float,
 }
 
+/// Every type in the order of the enum: its kind, its bytes, and its name in GDAL.
+const TYPES: [(SampleType, NumberKind, usize, &str); 11] = [
+    (SampleType::U8, NumberKind::Unsigned, 1, "Byte"),
+    (SampleType::I8, NumberKind::Signed, 1, "Int8"),
+    (SampleType::U16, NumberKind::Unsigned, 2, "UInt16"),
+    (SampleType::I16, NumberKind::Signed, 2, "Int16"),
+    (SampleType::U32, NumberKind::Unsigned, 4, "UInt32"),
+    (SampleType::I32, NumberKind::Signed, 4, "Int32"),
+    (SampleType::U64, NumberKind::Unsigned, 8, "UInt64"),
+    (SampleType::I64, NumberKind::Signed, 8, "Int64"),
+    (SampleType::F16, NumberKind::Float, 2, "Float32"),
+    (SampleType::F32, NumberKind::Float, 4, "Float32"),
+    (SampleType::F64, NumberKind::Float, 8, "Float64"),
+];
+
 impl SampleType {
-    /// The type of a kind with so many bits; `None` where there is none.
+    /// The type of a kind with a number of bits; `None` where there is none.
     pub fn new(kind: NumberKind, bits: u64) -> Option<Self> {
-        Some(match (kind, bits) {
-            (NumberKind::Unsigned, 8) => Self::U8,
-            (NumberKind::Signed, 8) => Self::I8,
-            (NumberKind::Unsigned, 16) => Self::U16,
-            (NumberKind::Signed, 16) => Self::I16,
-            (NumberKind::Float, 16) => Self::F16,
-            (NumberKind::Unsigned, 32) => Self::U32,
-            (NumberKind::Signed, 32) => Self::I32,
-            (NumberKind::Float, 32) => Self::F32,
-            (NumberKind::Unsigned, 64) => Self::U64,
-            (NumberKind::Signed, 64) => Self::I64,
-            (NumberKind::Float, 64) => Self::F64,
-            _ => return None,
-        })
+        let mut known = TYPES.iter().filter(|known| known.1 == kind);
+        known.find(|known| known.2 as u64 * 8 == bits).map(|known| known.0)
     }
 
-    /// Bytes of a sample.
     pub fn bytes(self) -> usize {
-        match self {
-            Self::U8 | Self::I8 => 1,
-            Self::U16 | Self::I16 | Self::F16 => 2,
-            Self::U32 | Self::I32 | Self::F32 => 4,
-            Self::U64 | Self::I64 | Self::F64 => 8,
-        }
+        TYPES[self as usize].2
     }
 
-    /// What its bits mean.
     pub fn kind(self) -> NumberKind {
-        match self {
-            Self::U8 | Self::U16 | Self::U32 | Self::U64 => NumberKind::Unsigned,
-            Self::I8 | Self::I16 | Self::I32 | Self::I64 => NumberKind::Signed,
-            Self::F16 | Self::F32 | Self::F64 => NumberKind::Float,
-        }
+        TYPES[self as usize].1
     }
 
-    /// Whether it holds fractions.
     pub fn is_float(self) -> bool {
         self.kind() == NumberKind::Float
     }
@@ -77,18 +64,7 @@ impl SampleType {
 
     /// Its name, as GDAL names its types.
     pub fn gdal_name(self) -> &'static str {
-        match self {
-            Self::U8 => "Byte",
-            Self::I8 => "Int8",
-            Self::U16 => "UInt16",
-            Self::I16 => "Int16",
-            Self::U32 => "UInt32",
-            Self::I32 => "Int32",
-            Self::U64 => "UInt64",
-            Self::I64 => "Int64",
-            Self::F16 | Self::F32 => "Float32",
-            Self::F64 => "Float64",
-        }
+        TYPES[self as usize].3
     }
 
     /// A no-data value as a sample can equal it; NaN, which equals nothing, where there is none.
@@ -100,7 +76,6 @@ impl SampleType {
         }
     }
 
-    /// The least and the greatest value.
     pub fn range(self) -> (f64, f64) {
         let bits = self.bytes() as i32 * 8;
         match self.kind() {

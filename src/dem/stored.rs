@@ -10,7 +10,6 @@ use crate::dem::sample_type::SampleType;
 /// A type, and its value for no data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StoredSamples {
-    /// The type.
     pub sample: SampleType,
     /// The value for no data; `None` where the raster has no holes and names no value.
     pub nodata: Option<f64>,
@@ -18,7 +17,7 @@ pub(crate) struct StoredSamples {
 
 impl StoredSamples {
     /// How the samples of `raster` are stored without a loss.
-    pub fn of(raster: &Raster) -> Self {
+    pub fn new(raster: &Raster) -> Self {
         let (integers, float) = match raster.samples {
             Samples::F32(_) => ([SampleType::I16, SampleType::U16], SampleType::F32),
             Samples::F64(_) => ([SampleType::I32, SampleType::U32], SampleType::F64),
@@ -60,7 +59,7 @@ mod tests {
     use crate::dem::raster::tests::small;
 
     fn stored(samples: Samples) -> (SampleType, Option<f64>) {
-        let StoredSamples { sample, nodata } = StoredSamples::of(&Raster::new(2, samples));
+        let StoredSamples { sample, nodata } = StoredSamples::new(&Raster::new(2, samples));
         (sample, nodata)
     }
 
@@ -81,9 +80,9 @@ mod tests {
         assert_eq!(stored(Samples::F32(vec![f32::NAN, -32768.0])), (SampleType::I16, Some(32767.0)));
         assert_eq!(stored(Samples::F32(vec![f32::NAN, -9999.5])), (SampleType::F32, Some(-9999.0)));
         let raster = Raster { nodata: Some(7.0), ..small(2, 1, vec![7.0, 8.0]) };
-        assert_eq!(StoredSamples::of(&raster).nodata, Some(-32768.0));
+        assert_eq!(StoredSamples::new(&raster).nodata, Some(-32768.0));
         let raster = Raster { nodata: Some(0.0), ..small(2, 1, vec![7.0, f32::NAN]) };
         let stored = StoredSamples { sample: SampleType::I16, nodata: Some(0.0) };
-        assert_eq!(StoredSamples::of(&raster), stored);
+        assert_eq!(StoredSamples::new(&raster), stored);
     }
 }

@@ -6,35 +6,30 @@ pub(crate) const FOOT_M: f64 = 0.3048;
 /// Meters in a US survey foot.
 pub(crate) const US_SURVEY_FOOT_M: f64 = 1200.0 / 3937.0;
 
-/// EPSG's numbers, and the names that GDAL gives vertical units: the first is written, all are read.
-const LENGTHS: [(u16, f64, &[&str]); 4] = [
+/// EPSG's number (0 for none), meters, and the names in GDAL: the first is written, all are read.
+const LENGTHS: [(u16, f64, &[&str]); 6] = [
     (9001, 1.0, &["m", "", "metre", "meter", "metres", "meters"]),
     (9002, FOOT_M, &["ft", "foot", "feet", "international foot", "international feet"]),
     (9003, US_SURVEY_FOOT_M, &["US survey foot", "us-ft", "ftus", "sft", "us survey feet", "foot_us"]),
     (9036, 1000.0, &["km", "kilometre", "kilometer"]),
-];
-
-/// Units that GDAL names and EPSG does not number.
-const NAMED_LENGTHS: [(f64, &[&str]); 2] = [
-    (0.01, &["cm", "centimetre", "centimeter", "centimetres", "centimeters"]),
-    (0.1, &["dm", "decimetre", "decimeter", "decimetres", "decimeters"]),
+    (0, 0.01, &["cm", "centimetre", "centimeter", "centimetres", "centimeters"]),
+    (0, 0.1, &["dm", "decimetre", "decimeter", "decimetres", "decimeters"]),
 ];
 
 /// Meters in the unit with an EPSG number.
 pub(crate) fn length_of_code(code: u16) -> Option<f64> {
-    LENGTHS.iter().find(|(known, ..)| *known == code).map(|(_, meters, _)| *meters)
+    LENGTHS.iter().find(|(known, ..)| code != 0 && *known == code).map(|(_, meters, _)| *meters)
 }
 
-/// EPSG's number of a unit of `meters`.
 pub(crate) fn code_of_length(meters: f64) -> Option<u16> {
-    LENGTHS.iter().find(|(_, known, _)| (meters - known).abs() < 1e-12).map(|(code, ..)| *code)
+    let known = LENGTHS.iter().find(|(_, known, _)| (meters - known).abs() < 1e-12);
+    known.map(|(code, ..)| *code).filter(|code| *code != 0)
 }
 
 /// Meters in a unit by its name, in any case.
 pub(crate) fn length_of_name(name: &str) -> Option<f64> {
-    let all = LENGTHS.iter().map(|(_, meters, names)| (*meters, *names)).chain(NAMED_LENGTHS);
-    let mut named = all.filter(|(_, names)| names.iter().any(|known| known.eq_ignore_ascii_case(name)));
-    named.next().map(|(meters, _)| meters)
+    let is_named = |names: &[&str]| names.iter().any(|known| known.eq_ignore_ascii_case(name));
+    LENGTHS.iter().find(|(.., names)| is_named(names)).map(|(_, meters, _)| *meters)
 }
 
 /// GDAL's name of a unit of `meters`: a meter or a foot.

@@ -18,8 +18,7 @@ use crate::geom::crs::Crs;
 /// the time, which grows with the power of one and a half.
 pub const MOST_CELLS: u64 = 100_000;
 
-/// The membrane is at rest when no height moves more than this in a sweep, in the vertical unit: far below the
-/// resolution of any survey.
+/// At rest no height moves more than this in a sweep, in the vertical unit: far below the resolution of any survey.
 const AT_REST: f64 = 1e-6;
 
 /// The most sweeps per sample of a void's longer side. Over-relaxation needs about two.
@@ -88,7 +87,6 @@ pub fn count(raster: &Raster) -> (u64, u64) {
 struct Void {
     /// Its samples in order; cut off at [`MOST_CELLS`].
     cells: Vec<usize>,
-    /// The number of its samples.
     count: u64,
 }
 
@@ -132,8 +130,7 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
     }
 }
 
-/// The weights of a neighbor along a row and of one along a column: the inverse squares of their distances, halved so
-/// that the four add up to 1.
+/// The weights of a neighbor along a row and along a column: inverse squares of distances, of which four add up to 1.
 fn weights(raster: &Raster) -> DVec2 {
     let mut spacing = raster.spacing();
     if raster.crs.as_ref().is_some_and(Crs::is_geographic) {

@@ -3,6 +3,8 @@
 //! A raster larger than the memory is read window by window. A raster in memory is read alike, so that code that works
 //! on windows can be tested against it.
 
+use std::ops::Range;
+
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, scaled};
 
@@ -23,6 +25,19 @@ impl RasterWindow {
     /// The number of its samples.
     pub fn samples(&self) -> usize {
         self.width as usize * self.height as usize
+    }
+
+    /// For each row that this window shares with another, its samples as ranges of indices in either.
+    pub(crate) fn shared_rows(self, other: Self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+        let first = self.column.max(other.column);
+        let last = (self.column + self.width).min(other.column + other.width).max(first);
+        let rows = self.row.max(other.row)..(self.row + self.height).min(other.row + other.height);
+        let range = move |window: Self, row: u32| {
+            let start =
+                (row - window.row) as usize * window.width as usize + (first - window.column) as usize;
+            start..start + (last - first) as usize
+        };
+        rows.map(move |row| (range(self, row), range(other, row)))
     }
 
     /// # Panics
@@ -57,7 +72,6 @@ pub trait Windows {
     }
 }
 
-/// A raster in memory.
 impl Windows for Raster {
     fn metadata(&self) -> &Raster {
         self

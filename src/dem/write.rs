@@ -40,25 +40,16 @@ impl WrittenDem {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WriteError {
     /// The format is only read.
-    #[error("elevation is not written as {format}; write a GeoTIFF")]
-    OnlyRead {
-        /// The format.
-        format: &'static str,
-    },
+    #[error("elevation is not written as {0}; write a GeoTIFF")]
+    OnlyRead(&'static str),
     /// Rows or columns run in another direction than the format's.
     #[error(
-        "a {format} has rows that run east, from the northernmost to the southernmost, and this elevation lies otherwise; write a GeoTIFF, or turn it with --crs"
+        "a {0} has rows that run east, from the northernmost to the southernmost, and this elevation lies otherwise; write a GeoTIFF, or turn it with --crs"
     )]
-    NotNorthUp {
-        /// The format.
-        format: &'static str,
-    },
+    NotNorthUp(&'static str),
     /// The format needs a georeference, and the raster has none.
-    #[error("a {format} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG")]
-    NoPlace {
-        /// The format.
-        format: &'static str,
-    },
+    #[error("a {0} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG")]
+    NoPlace(&'static str),
     /// The format's value for no data is one of the heights.
     #[error("a {format} writes {value} for no data, and {value} is one of the heights; write a GeoTIFF")]
     NoDataTaken {
@@ -91,12 +82,9 @@ pub enum WriteError {
         /// The shape of the raster.
         found: String,
     },
-    /// The file's name states another place than the raster's.
-    #[error("an SRTM tile is named by its south-west corner: name this one {wanted}.hgt")]
-    Name {
-        /// The right name, without its extension.
-        wanted: String,
-    },
+    /// The file's name states another place than the raster's; the right name, without its extension.
+    #[error("an SRTM tile is named by its south-west corner: name this one {0}.hgt")]
+    Name(String),
     /// There is no height to write.
     #[error("a PNG needs at least one height to choose its scale by, and all samples are no data")]
     Empty,
@@ -122,6 +110,6 @@ pub enum WriteError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write(raster: &Raster, format: &DemFormat, stem: &str) -> Result<WrittenDem, WriteError> {
-    let writer = format.writer.ok_or(WriteError::OnlyRead { format: format.name })?;
+    let writer = format.writer.ok_or(WriteError::OnlyRead(format.name))?;
     writer(raster, stem)
 }

@@ -43,13 +43,8 @@ pub enum Presence {
 pub enum KeyKind {
     /// A number.
     Number(Bounds),
-    /// A whole number.
-    Integer {
-        /// The least value.
-        least: u32,
-        /// The greatest value.
-        most: u32,
-    },
+    /// A whole number from the first to the second.
+    Integer(u32, u32),
     /// A number, or an expression that gives one for each feature.
     FeatureNumber(Bounds),
     /// `true` or `false`.
@@ -59,15 +54,9 @@ pub enum KeyKind {
     /// Text that is not empty.
     FilledText,
     /// Text that is not empty, or a list of such texts.
-    TextList {
-        /// The greatest number of texts.
-        most: usize,
-    },
+    TextList,
     /// A table of texts under names that the user chooses.
-    TextTable {
-        /// The greatest number of texts.
-        most: usize,
-    },
+    TextTable,
     /// An expression over a feature's properties.
     Expression,
     /// One of some words.
@@ -78,34 +67,16 @@ pub enum KeyKind {
     Color,
     /// A coordinate pair.
     Point,
-    /// A list of coordinate pairs.
-    Points {
-        /// The least number of points.
-        least: usize,
-        /// The greatest number of points.
-        most: usize,
-    },
+    /// A list of coordinate pairs, at least so many.
+    Points(usize),
     /// Two numbers, from and to.
     NumberRange(Bounds),
     /// A list of numbers.
-    Numbers {
-        /// The range of each.
-        range: Bounds,
-        /// The greatest number of numbers.
-        most: usize,
-    },
-    /// The name of a color ramp, or a list of its stops.
-    Ramp {
-        /// The names.
-        words: &'static [WordDeclaration],
-        /// The greatest number of stops.
-        most: usize,
-    },
+    Numbers(Bounds),
+    /// The name of a color ramp ([`RampName`](crate::description::words::RampName)), or a list of its stops.
+    Ramp,
     /// A table of properties with the values wanted of each, or an expression.
-    Selection {
-        /// The greatest number of values of one property.
-        most: usize,
-    },
+    Selection,
     /// A table.
     Table(&'static [KeyDeclaration]),
     /// A list of tables.

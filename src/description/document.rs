@@ -56,7 +56,7 @@ pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);
 
 table! {
     /// A whole scene file.
-    Document {
+    struct Document {
         with source: Arc<SourceText> = TableReader::source;
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
@@ -103,26 +103,9 @@ table! {
     check(reader) {
         check_names(reader, cameras.as_deref().unwrap_or_default());
     }
-}
 
-impl Document {
-    /// The keys outside tables, and the tables with their keys.
-    pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
-
-    /// `cause`, an error or a sentence, about a value.
-    pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
-        self.error_at(value.span().unwrap_or_default(), cause)
-    }
-
-    /// `cause`, an error or a sentence, about the bytes `span` of the scene file.
-    pub fn error_at(&self, span: Range<usize>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
-        Diagnostic::new(&self.source, span, cause)
-    }
-}
-
-table! {
     /// `[terrain]`: the elevation model.
-    TerrainTable {
+    struct TerrainTable {
         /// The elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a value wins.
         dem: Stated<Vec<String>> = key::files(&[]), required;
         /// Coordinate system of the DEM where the file names none or a wrong one.
@@ -146,11 +129,9 @@ table! {
         /// Greatest error of the drawn ground; one pixel is what an eye can just see.
         tolerance_px: f64 = key::number(Above(0.0, 1000.0), "px"), default 1;
     }
-}
 
-table! {
     /// `[style]`: how the ground looks.
-    StyleTable {
+    struct StyleTable {
         /// Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`.
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
@@ -161,11 +142,9 @@ table! {
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
             otherwise "eight times the longest side of the terrain, its drawn height included";
     }
-}
 
-table! {
     /// `[style.contours]`.
-    ContourTable {
+    struct ContourTable {
         /// Height between lines.
         interval: f64 = key::number(Within(0.01, 100_000.0), "m"), required;
         /// One in this many lines is drawn heavier.
@@ -173,21 +152,17 @@ table! {
         /// Color of the lines.
         color: Option<Color> = key::color(), otherwise "a translucent brown";
     }
-}
 
-table! {
     /// `[style.light]`.
-    LightTable {
+    struct LightTable {
         /// Direction of the sun: north-west by default, since hills lit from below right look like holes.
         azimuth: f64 = key::number(DIRECTION, "°"), default 315;
         /// Height of the sun above the horizon.
         altitude: f64 = key::number(Above(0.0, 90.0), "°"), default 45;
     }
-}
 
-table! {
     /// `[[label]]`.
-    LabelTable {
+    struct LabelTable {
         /// The text; `{height}` becomes the ground's elevation in whole meters.
         text: String = key::filled_text(), required;
         /// The place that it names.
@@ -199,11 +174,9 @@ table! {
         /// What the label names.
         kind: LabelKind = key::word::<LabelKind>(), default "place";
     }
-}
 
-table! {
     /// `[[camera]]`.
-    CameraTable {
+    struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
         name: Stated<String> = key::filled_text(), required;
         /// Place of the eye.
@@ -227,12 +200,10 @@ table! {
             reader.error(span, "the eye has both a height and an elevation", help);
         }
     }
-}
 
-table! {
     /// `[furniture]`: what frames the picture.
     #[derive(Copy, PartialEq, Eq)]
-    FurnitureTable {
+    struct FurnitureTable {
         /// Whether the picture has its title and subtitle.
         title: bool = key::switch(), default true;
         /// Whether the picture has a north arrow.
@@ -241,6 +212,21 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+    }
+}
+
+impl Document {
+    /// The keys outside tables, and the tables with their keys.
+    pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
+
+    /// `cause`, an error or a sentence, about a value.
+    pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
+        self.error_at(value.span().unwrap_or_default(), cause)
+    }
+
+    /// `cause`, an error or a sentence, about the bytes `span` of the scene file.
+    pub fn error_at(&self, span: Range<usize>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
+        Diagnostic::new(&self.source, span, cause)
     }
 }
 

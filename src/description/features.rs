@@ -47,7 +47,7 @@ const BUILT_IN: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
 
 table! {
     /// Where the coordinates of a feature come from: inline `points`, or a `file`. The keys stand in the feature's own table.
-    FeatureSource [const LEAST: usize] {
+    struct FeatureSource [const LEAST: usize] {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
         points: Option<Stated<Vec<[f64; 2]>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
         /// A vector file: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
@@ -67,19 +67,9 @@ table! {
             reader.without_effect(&["layer", "where"], "on inline `points`", "name a `file`, or remove it");
         }
     }
-}
 
-impl FeatureSource {
-    /// The bytes of the scene file that state the coordinates or the file's name, for messages.
-    pub fn span(&self) -> Range<usize> {
-        let points = self.points.as_ref().and_then(Stated::span);
-        points.or_else(|| self.file.as_ref().and_then(Stated::span)).unwrap_or_default()
-    }
-}
-
-table! {
     /// `[[road]]`.
-    RoadTable {
+    struct RoadTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline.
@@ -128,11 +118,9 @@ table! {
             reader.without_effect(&keys, "on a draped road", "set `profile = \"conform\"`, or remove it");
         }
     }
-}
 
-table! {
     /// `[[bridge]]`: a bridge along a line.
-    BridgeTable {
+    struct BridgeTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline, from abutment to abutment.
@@ -147,11 +135,9 @@ table! {
         /// Widest span between piers; 25 is what a beam of plain concrete spans. Without it high bridges have wider spans.
         pier_spacing: Stated<f64> = key::number(Within(1.0, 10_000.0), "m"), default 25;
     }
-}
 
-table! {
     /// `[[river]]`.
-    RiverTable {
+    struct RiverTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The centerline.
@@ -180,25 +166,9 @@ table! {
             reader.without_effect(&["max_cut"], "on draped water", "set `water = \"falls\"`, or remove it");
         }
     }
-}
 
-/// Notes `widths` that are not one for each inline point.
-fn check_widths(
-    reader: &mut TableReader<'_, '_>,
-    source: Option<&FeatureSource>,
-    widths: Option<&Stated<Vec<f64>>>,
-) {
-    let Some(widths) = widths else { return };
-    let points = source.and_then(|source| source.points.as_ref()).map_or(0, |points| points.len());
-    if widths.len() != points {
-        let message = format!("there are {} `widths` for {points} inline points", widths.len());
-        reader.error(widths.span().unwrap_or_default(), message, "give each inline point one width");
-    }
-}
-
-table! {
     /// `[[lake]]`.
-    LakeTable {
+    struct LakeTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The shore.
@@ -214,11 +184,9 @@ table! {
             reader.exclude("level_rule", "level");
         }
     }
-}
 
-table! {
     /// `[[area]]`: what covers the ground.
-    AreaTable {
+    struct AreaTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The outline.
@@ -232,11 +200,9 @@ table! {
         /// Width of that line; hatching grows with it.
         border_width: f64 = key::number(SIZE, "m"), default 4;
     }
-}
 
-table! {
     /// `[[building]]`: footprints raised to a height.
-    BuildingTable {
+    struct BuildingTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The footprints.
@@ -257,11 +223,9 @@ table! {
         /// Color of the roof.
         roof_color: Option<Color> = key::color(), otherwise "the property `roof:colour`, else one of a few, chosen by the place";
     }
-}
 
-table! {
     /// `[[fence]]`: what stands or runs along a line.
-    FenceTable {
+    struct FenceTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The line.
@@ -286,11 +250,9 @@ table! {
         /// Of a power line: how deep the wire hangs in a span, as a part of the span.
         sag: f64 = key::number(Within(0.0, 0.2), ""), default 0.03;
     }
-}
 
-table! {
     /// `[[model]]`: a model file, once or many times.
-    ModelPlacement {
+    struct ModelPlacement {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
         /// The model file, or the bare name of a built-in model: `conifer`, `broadleaf`, `shrub` or `rock`.
@@ -341,26 +303,9 @@ table! {
             reader.without_effect(&["anchor", "tilt", "sink"], "on a model at a stated elevation", help);
         }
     }
-}
 
-/// Notes `variants` and `variant` that have no effect.
-fn check_variants(reader: &mut TableReader<'_, '_>) {
-    let (variants, variant) = (reader.key_span("variants"), reader.key_span("variant"));
-    if reader.key_span("instances").is_none() {
-        let key = if variants.is_some() { "variants" } else { "variant" };
-        reader.without_effect(&[key], "on a model at one place", "use `[model.instances]`, or remove it");
-    } else if variant.is_none() {
-        let reason = "without a `variant`, which chooses among them at each point";
-        reader.without_effect(&["variants"], reason, "add `variant = \"property\"`");
-    } else if variants.is_none() {
-        let reason = "without `variants` to choose from";
-        reader.without_effect(&["variant"], reason, "add `variants = { value = \"file\", ... }`");
-    }
-}
-
-table! {
     /// `[[scatter]]`: models strewn over areas.
-    ScatterTable {
+    struct ScatterTable {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "none";
         /// The areas.
@@ -380,5 +325,42 @@ table! {
         elevation: Option<[f64; 2]> = key::number_range(Bounds::ELEVATION, "m"), otherwise "anywhere";
         /// Another number strews otherwise.
         seed: u32 = key::integer(0, u32::MAX), default 0;
+    }
+}
+
+impl FeatureSource {
+    /// The bytes of the scene file that state the coordinates or the file's name, for messages.
+    pub fn span(&self) -> Range<usize> {
+        let points = self.points.as_ref().and_then(Stated::span);
+        points.or_else(|| self.file.as_ref().and_then(Stated::span)).unwrap_or_default()
+    }
+}
+
+/// Notes `widths` that are not one for each inline point.
+fn check_widths(
+    reader: &mut TableReader<'_, '_>,
+    source: Option<&FeatureSource>,
+    widths: Option<&Stated<Vec<f64>>>,
+) {
+    let Some(widths) = widths else { return };
+    let points = source.and_then(|source| source.points.as_ref()).map_or(0, |points| points.len());
+    if widths.len() != points {
+        let message = format!("there are {} `widths` for {points} inline points", widths.len());
+        reader.error(widths.span().unwrap_or_default(), message, "give each inline point one width");
+    }
+}
+
+/// Notes `variants` and `variant` that have no effect.
+fn check_variants(reader: &mut TableReader<'_, '_>) {
+    let (variants, variant) = (reader.key_span("variants"), reader.key_span("variant"));
+    if reader.key_span("instances").is_none() {
+        let key = if variants.is_some() { "variants" } else { "variant" };
+        reader.without_effect(&[key], "on a model at one place", "use `[model.instances]`, or remove it");
+    } else if variant.is_none() {
+        let reason = "without a `variant`, which chooses among them at each point";
+        reader.without_effect(&["variants"], reason, "add `variant = \"property\"`");
+    } else if variants.is_none() {
+        let reason = "without `variants` to choose from";
+        reader.without_effect(&["variant"], reason, "add `variants = { value = \"file\", ... }`");
     }
 }

@@ -41,30 +41,15 @@ pub enum IncludeError {
     /// More files than the limits allow.
     #[error("files may include files {MAX_DEPTH} deep, {MAX_FILES} in all")]
     TooMany,
-    /// The file cannot be read.
-    #[error("'{name}' cannot be included")]
-    Unreadable {
-        /// The file as the scene file names it.
-        name: String,
-        /// Why it cannot be read.
-        source: Box<dyn Error + Send + Sync>,
-    },
-    /// The scene would be larger than the limit.
-    #[error("'{name}' cannot be included: with it the scene has more than {max_bytes} bytes")]
-    TooLarge {
-        /// The file as the scene file names it.
-        name: String,
-        /// The limit.
-        max_bytes: usize,
-    },
-    /// The file is no text.
-    #[error("'{name}' cannot be included: its line {line} is not UTF-8 text")]
-    NotText {
-        /// The file as the scene file names it.
-        name: String,
-        /// The first line that is wrong.
-        line: usize,
-    },
+    /// The file of this name cannot be read.
+    #[error("'{0}' cannot be included")]
+    Unreadable(String, #[source] Box<dyn Error + Send + Sync>),
+    /// With the file of this name the scene would have more than so many bytes.
+    #[error("'{0}' cannot be included: with it the scene has more than {1} bytes")]
+    TooLarge(String, usize),
+    /// The file of this name is not text on this line.
+    #[error("'{0}' cannot be included: its line {1} is not UTF-8 text")]
+    NotText(String, usize),
 }
 
 impl IncludeError {
@@ -150,16 +135,13 @@ impl Gathering<'_> {
             return Ok(None);
         }
         let name = quoted(named);
-        let bytes = match (self.load)(&path) {
-            Ok(bytes) => bytes,
-            Err(source) => return Err(IncludeError::Unreadable { name, source }),
-        };
+        let bytes = (self.load)(&path).map_err(|error| IncludeError::Unreadable(name.clone(), error))?;
         if source.text().len() + bytes.len() > self.max_bytes {
-            return Err(IncludeError::TooLarge { name, max_bytes: self.max_bytes });
+            return Err(IncludeError::TooLarge(name, self.max_bytes));
         }
         let text = String::from_utf8(bytes).map_err(|error| {
             let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-            IncludeError::NotText { name, line: before.iter().filter(|&&byte| byte == b'\n').count() + 1 }
+            IncludeError::NotText(name, before.iter().filter(|&&byte| byte == b'\n').count() + 1)
         })?;
         Ok(Some((path, text)))
     }
@@ -214,20 +196,15 @@ pub(super) fn joined(folder: &str, name: &str) -> String {
     format!("{root}{}", parts.join("/"))
 }
 
-/// The tables of all files as one; `tables` in the order of the list of files.
-pub(super) fn merged<'i>(tables: Vec<DeTable<'i>>, includes: &[Vec<usize>]) -> DeTable<'i> {
-    let mut tables: Vec<Option<DeTable<'i>>> = tables.into_iter().map(Some).collect();
-    merged_from(0, &mut tables, includes)
-}
-
-fn merged_from<'i>(file: usize, tables: &mut [Option<DeTable<'i>>], includes: &[Vec<usize>]) -> DeTable<'i> {
+/// The tables of a file and of all that it includes as one, taken out of `tables`, the tables of each file.
+pub(super) fn merged<'i>(file: usize, tables: &mut [DeTable<'i>], includes: &[Vec<usize>]) -> DeTable<'i> {
     let mut before = DeTable::new();
     for &included in &includes[file] {
-        let mut table = merged_from(included, tables, includes);
+        let mut table = merged(included, tables, includes);
         table.remove("include");
         lay_over(&mut before, table, ListMerge::Append);
     }
-    lay_over(&mut before, tables[file].take().unwrap_or_default(), ListMerge::Append);
+    lay_over(&mut before, std::mem::take(&mut tables[file]), ListMerge::Append);
     before
 }
 

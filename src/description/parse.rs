@@ -24,17 +24,33 @@ pub const MAX_BYTES: usize = 4 << 20;
 /// Everything wrong in the file as far as it shows without another file. Where the text is not TOML, only that is
 /// reported, since what the rest means is then a guess.
 pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
-    parse_including(file_name, text, NO_FILES)
+    parse_bytes(file_name, text.as_bytes())
 }
 
-/// As [`parse`], for a scene file that may include others, which `load` gives.
+/// As [`parse`], for bytes as they come from a disk.
 ///
 /// # Errors
-/// As [`parse`], of all the files, and where one cannot be included.
-pub fn parse_including(file_name: &str, text: &str, load: LoadFile<'_>) -> Result<Document, Diagnostics> {
-    if text.len() > MAX_BYTES {
-        return Err(too_large(file_name, text.len()));
+/// As [`parse`], and where the bytes are not UTF-8.
+pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostics> {
+    parse_including(file_name, bytes, &|_| Err("other files are not read here".into()))
+}
+
+/// As [`parse_bytes`], for a scene file that may include others, which `load` gives.
+///
+/// # Errors
+/// As [`parse_bytes`], of all the files, and where one cannot be included.
+pub fn parse_including(file_name: &str, bytes: &[u8], load: LoadFile<'_>) -> Result<Document, Diagnostics> {
+    if bytes.len() > MAX_BYTES {
+        let message = format!("the scene file has {} bytes, more than the {MAX_BYTES} allowed", bytes.len());
+        let help = "put long lists of points in GeoJSON files and name them with `file`";
+        return Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).with_help(help).into());
     }
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
+        let at = error.valid_up_to();
+        let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
+        wrong.with_help("save the file as UTF-8")
+    })?;
     let gathered = gather(file_name, text, load, MAX_BYTES);
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
@@ -43,8 +59,8 @@ pub fn parse_including(file_name: &str, text: &str, load: LoadFile<'_>) -> Resul
         report.error(span, error, help);
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
-    let root =
-        tables.into_iter().collect::<Option<Vec<_>>>().map(|tables| merged(tables, &gathered.includes));
+    let tables: Option<Vec<_>> = tables.into_iter().collect();
+    let root = tables.map(|mut tables| merged(0, &mut tables, &gathered.includes));
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
@@ -55,41 +71,14 @@ pub fn parse_including(file_name: &str, text: &str, load: LoadFile<'_>) -> Resul
     };
     match (report.into_diagnostics(), parsed) {
         (None, Some(document)) => Ok(document),
-        (errors, _) => Err(errors.unwrap_or_else(|| unread(file_name))),
+        (Some(errors), _) => Err(errors),
+        (None, None) => {
+            // A bug: each table that cannot be read notes an error.
+            let message = "the scene file cannot be understood";
+            Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).into())
+        }
     }
 }
-
-/// As [`parse`], for bytes as they come from a disk.
-///
-/// # Errors
-/// As [`parse`], and where the bytes are not UTF-8.
-pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostics> {
-    parse_bytes_including(file_name, bytes, NO_FILES)
-}
-
-/// As [`parse_including`], for bytes as they come from a disk.
-///
-/// # Errors
-/// As [`parse_including`], and where the bytes are not UTF-8.
-pub fn parse_bytes_including(
-    file_name: &str,
-    bytes: &[u8],
-    load: LoadFile<'_>,
-) -> Result<Document, Diagnostics> {
-    if bytes.len() > MAX_BYTES {
-        return Err(too_large(file_name, bytes.len()));
-    }
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
-        let at = error.valid_up_to();
-        let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
-        wrong.with_help("save the file as UTF-8")
-    })?;
-    parse_including(file_name, text, load)
-}
-
-/// For a scene file without includes.
-const NO_FILES: LoadFile<'static> = &|_| Err("other files are not read here".into());
 
 /// The TOML parser's message about a key that is there already.
 const DUPLICATE: &str = "duplicate key";
@@ -150,16 +139,4 @@ fn excerpt(span: &Range<usize>, text: &str) -> Range<usize> {
     let start = text.floor_char_boundary(span.start);
     let end = text.floor_char_boundary(span.end.min(start + 60)).max(start);
     start..text[start..end].find('\n').map_or(end, |feed| start + feed)
-}
-
-fn too_large(file_name: &str, bytes: usize) -> Diagnostics {
-    let message = format!("the scene file has {bytes} bytes, more than the {MAX_BYTES} allowed");
-    Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message)
-        .with_help("put long lists of points in GeoJSON files and name them with `file`")
-        .into()
-}
-
-/// For a table that cannot be read though no error is noted, which is a bug.
-fn unread(file_name: &str) -> Diagnostics {
-    Diagnostic::new(&SourceText::new(file_name, ""), 0..0, "the scene file cannot be understood").into()
 }

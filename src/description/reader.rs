@@ -192,7 +192,8 @@ impl<'r, 't> TableReader<'r, 't> {
         (key_span, value): (Range<usize>, &Spanned<DeValue<'_>>),
         key: &Key<V, A>,
     ) -> Option<V> {
-        key.read(KeyValue { context: self.context, table: &self.name, key: name, key_span, value })
+        let value = KeyValue { context: self.context, table: &self.name, key: name, key_span, value };
+        (key.read)(value, key.arguments)
     }
 
     /// A key of the table or of its style.

@@ -7,7 +7,7 @@ use toml::de::DeValue;
 use crate::description::bounds::Bounds;
 use crate::description::expression::Expression;
 use crate::description::scalar::Scalar;
-use crate::description::value::{KeyValue, MAX_LIST, type_name};
+use crate::description::value::{KeyValue, type_name};
 use crate::message::suggest::quoted;
 
 /// Which features of a file are meant.
@@ -28,23 +28,11 @@ impl KeyValue<'_, '_> {
                 self.wrong(format!("`{}` names no property", self.key), help)
             }
             DeValue::Table(table) => {
-                self.each_entry(table, |values| values.wanted_values()).map(Selection::Matching)
+                let values = |values: KeyValue<'_, '_>| values.one_or_more("values", |value| value.scalar());
+                self.each_entry(table, values).map(Selection::Matching)
             }
             DeValue::String(_) => self.expression().map(Selection::Holding),
             _ => self.wrong_type("a table or an expression", help),
-        }
-    }
-
-    fn wanted_values(mut self) -> Option<Vec<Scalar>> {
-        match self.value.get_ref() {
-            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
-                self.each(list, |value| value.scalar())
-            }
-            DeValue::Array(list) => {
-                let message = format!("`{}` lists {} values", quoted(self.key), list.len());
-                self.wrong(message, format!("list from 1 to {MAX_LIST}"))
-            }
-            _ => self.scalar().map(|value| vec![value]),
         }
     }
 

@@ -112,7 +112,7 @@ impl Styles<'_> {
 
 impl KeyValue<'_, '_> {
     /// The names of the styles; [`Styles::read`] checks them.
-    pub fn style_names(self) -> Option<Vec<String>> {
+    pub fn styles(self) -> Option<Vec<String>> {
         let styles = self.value.get_ref().as_table()?;
         Some(styles.keys().map(|name| name.get_ref().to_string()).collect())
     }

@@ -1,4 +1,4 @@
-//! The macro that declares a table of the scene file: its struct, its decoder and its list of keys, from one block.
+//! The macro that declares tables of the scene file: struct, decoder and list of keys of each, from one block.
 //!
 //! To add a key to a table, add its documentation and one line to the block:
 //!
@@ -72,11 +72,11 @@ impl<T: FromScalar> DefaultedField<FeatureValue<T>> for DefaultedValue<T> {
     }
 }
 
-/// Declares a table; the head of this file says how.
+/// Declares tables; the head of this file says how.
 macro_rules! table {
-    (
+    ($(
         $(#[$attribute:meta])*
-        $table:ident $([const $least:ident: usize])? {
+        struct $table:ident $([const $least:ident: usize])? {
             $(with $extra:ident: $extra_type:ty = $extra_value:expr;)?
             $(
                 $(#[doc = $doc:literal])+
@@ -85,7 +85,7 @@ macro_rules! table {
             )+
         }
         $(check($check_reader:ident) $check:block)?
-    ) => {
+    )+) => {$(
         $(#[$attribute])*
         #[derive(Clone, Debug)]
         pub struct $table {
@@ -122,7 +122,7 @@ macro_rules! table {
                 Some(Self { $($extra: ($extra_value)(reader),)? $($field: $field?),+ })
             }
         }
-    };
+    )+};
     (@name $field:ident) => { stringify!($field) };
     (@name $field:ident $name:literal) => { $name };
     (@presence required) => { Presence::Required };

@@ -67,6 +67,7 @@ fn words<W: Word>() -> Vec<&'static str> {
     W::DECLARATIONS.iter().map(|declared| declared.word).collect()
 }
 
+/// What reads a value of a type that [`key`](crate::description::key) declares has the name of the type.
 impl<'t> KeyValue<'_, 't> {
     /// Notes an error about the value; always `None`.
     pub fn wrong<T>(
@@ -113,7 +114,6 @@ impl<'t> KeyValue<'_, 't> {
         entries.into_iter().collect()
     }
 
-    /// A finite number within `range`.
     pub fn number(mut self, range: Bounds) -> Option<f64> {
         match number_of(self.value.get_ref()) {
             Some(number) if range.hold(number) => Some(number),
@@ -125,7 +125,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// A whole number from `least` to `most`.
     pub fn integer(mut self, least: u32, most: u32) -> Option<u32> {
         let range = Bounds::Within(f64::from(least), f64::from(most));
         let wanted = format!("from {least} to {most}");
@@ -150,7 +149,6 @@ impl<'t> KeyValue<'_, 't> {
         self.wrong_type("a number", help)
     }
 
-    /// Two numbers within `range`, the second not less than the first.
     pub fn number_range(mut self, range: Bounds) -> Option<[f64; 2]> {
         let help = "write [from, to]";
         let DeValue::Array(list) = self.value.get_ref() else { return self.wrong_type("two numbers", help) };
@@ -163,7 +161,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// At most as many numbers as points, each within `range`.
     pub fn numbers(mut self, range: Bounds) -> Option<Vec<f64>> {
         match self.value.get_ref() {
             DeValue::Array(list) if list.len() <= MAX_POINTS => {
@@ -173,7 +170,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// A number within `range`, or an expression that gives one.
     pub fn feature_number(mut self, range: Bounds) -> Option<FeatureValue<f64>> {
         match self.value.get_ref() {
             DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
@@ -184,7 +180,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// One of `W`'s words, or an expression that gives one.
     pub fn feature_word<W: Word>(mut self) -> Option<FeatureValue<W>> {
         match self.value.get_ref() {
             DeValue::String(text) if W::from_word(text).is_none() && Expression::computes(text) => {
@@ -199,7 +194,6 @@ impl<'t> KeyValue<'_, 't> {
         format!("{} {}", self.table.title(), self.key)
     }
 
-    /// An expression over a feature's properties.
     pub fn expression(mut self) -> Option<Expression> {
         self.expression_among(&[])
     }
@@ -228,7 +222,6 @@ impl<'t> KeyValue<'_, 't> {
         (written == text).then_some(within)
     }
 
-    /// True or false.
     pub fn switch(mut self) -> Option<bool> {
         match self.value.get_ref() {
             DeValue::Boolean(on) => Some(*on),
@@ -236,7 +229,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// Text of bounded length, possibly empty.
     pub fn text(mut self) -> Option<String> {
         match self.value.get_ref() {
             DeValue::String(text) if text.chars().nth(MAX_TEXT).is_none() => Some(text.to_string()),
@@ -247,7 +239,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// Text that is not empty.
     pub fn filled_text(mut self) -> Option<String> {
         let text = self.element(self.value).text()?;
         if text.trim().is_empty() {
@@ -257,27 +248,31 @@ impl<'t> KeyValue<'_, 't> {
         Some(text)
     }
 
-    /// Text that is not empty, or a list of such texts.
-    pub fn text_list(mut self) -> Option<Vec<String>> {
+    pub fn text_list(self) -> Option<Vec<String>> {
+        self.one_or_more("texts", |text| text.filled_text())
+    }
+
+    /// A value, or a list of them; messages call several of them `plural`.
+    pub fn one_or_more<T>(
+        mut self,
+        plural: &str,
+        read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
+    ) -> Option<Vec<T>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => {
-                self.each(list, |text| text.filled_text())
-            }
+            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => self.each(list, read),
             DeValue::Array(list) => {
-                let message = format!("`{}` lists {} texts", self.key, list.len());
+                let message = format!("`{}` lists {} {plural}", quoted(self.key), list.len());
                 self.wrong(message, format!("list from 1 to {MAX_LIST}"))
             }
-            _ => self.filled_text().map(|text| vec![text]),
+            _ => read(self.element(self.value)).map(|value| vec![value]),
         }
     }
 
-    /// The name of a file, as seen from the scene file.
     pub fn file(self) -> Option<String> {
         let folder = self.folder();
         self.filled_text().map(|name| seen_from(&folder, name))
     }
 
-    /// The names of one or more files, as seen from the scene file; a name among `built_in` is none.
     pub fn files(self, built_in: &[&str]) -> Option<Vec<String>> {
         let folder = self.folder();
         let seen =
@@ -285,7 +280,6 @@ impl<'t> KeyValue<'_, 't> {
         self.text_list().map(|names| names.into_iter().map(seen).collect())
     }
 
-    /// The names of files by words of the user's, as seen from the scene file.
     pub fn named_files(mut self) -> Option<BTreeMap<String, String>> {
         match self.value.get_ref() {
             DeValue::Table(table) if (1..=MAX_LIST).contains(&table.len()) => {
@@ -303,13 +297,11 @@ impl<'t> KeyValue<'_, 't> {
         self.context.report.source().folder_at(self.value.span().start).to_owned()
     }
 
-    /// A coordinate reference system.
     pub fn crs(mut self) -> Option<Crs> {
         let text = self.element(self.value).filled_text()?;
         Crs::parse(&text).map_or_else(|error| self.wrong(error, CRS_HELP), Some)
     }
 
-    /// A coordinate reference system in meters: heights, widths and distances of a scene are.
     pub fn metric_crs(mut self) -> Option<Crs> {
         let crs = self.element(self.value).crs()?;
         let (name, unit) = (crs.name(), crs.meters_per_unit());
@@ -321,7 +313,6 @@ impl<'t> KeyValue<'_, 't> {
         self.wrong(format!("the scene's coordinate system must be metric, but {found}"), CRS_HELP)
     }
 
-    /// One of `W`'s words.
     pub fn word<W: Word>(mut self) -> Option<W> {
         let DeValue::String(text) = self.value.get_ref() else {
             return self.wrong_type("a word in quotes", remedy("", &words::<W>(), "it may be"));
@@ -332,7 +323,6 @@ impl<'t> KeyValue<'_, 't> {
         })
     }
 
-    /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     pub fn color(mut self) -> Option<Color> {
         let help = "write \"#rgb\", \"#rrggbb\" or \"#rrggbbaa\" in hexadecimal digits";
         let DeValue::String(text) = self.value.get_ref() else {
@@ -341,7 +331,6 @@ impl<'t> KeyValue<'_, 't> {
         Color::parse(text).or_else(|| self.wrong(format!("\"{}\" is not a color", quoted(text)), help))
     }
 
-    /// The name of a ramp, or its stops from low to high.
     pub fn ramp(mut self) -> Option<RampChoice> {
         match self.value.get_ref() {
             DeValue::Array(stops) => self.stops(stops).map(RampChoice::Stops),
@@ -375,7 +364,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// A coordinate pair.
     pub fn point(mut self) -> Option<[f64; 2]> {
         let help =
             "write [easting, northing], or [longitude, latitude] in degrees; heights come from the ground";
@@ -391,7 +379,6 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the first.
     pub fn points(mut self, least: usize) -> Option<Vec<[f64; 2]>> {
         let help = format!("write at least {least} points as [[x1, y1], [x2, y2], ...]");
         let DeValue::Array(list) = self.value.get_ref() else {

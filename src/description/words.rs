@@ -34,263 +34,163 @@ pub struct WordDeclaration {
     pub doc: &'static str,
 }
 
-/// Declares an enum of words: `/// Doc.`, `Variant = "word"`.
+/// Declares enums of words: `Variant = "word": "what it means"`. The first is the default.
 macro_rules! words {
-    ($(#[$attribute:meta])* $name:ident {
-        $(#[doc = $doc:literal] $(#[$variant_attribute:meta])* $variant:ident = $word:literal,)+
-    }) => {
-        $(#[$attribute])*
+    ($(
+        $(#[doc = $enum_doc:literal])+
+        enum $name:ident { $($variant:ident = $word:literal: $doc:literal,)+ }
+    )+) => {$(
+        $(#[doc = $enum_doc])+
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum $name {
-            $(#[doc = concat!("`", $word, "`:", $doc)] $(#[$variant_attribute])* $variant,)+
+            $(#[doc = concat!("`", $word, "`: ", $doc)] $variant,)+
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self::ALL[0]
+            }
         }
 
         impl Word for $name {
             const ALL: &'static [Self] = &[$(Self::$variant),+];
             const DECLARATIONS: &'static [WordDeclaration] =
-                &[$(WordDeclaration { word: $word, doc: $doc.trim_ascii() }),+];
+                &[$(WordDeclaration { word: $word, doc: $doc }),+];
         }
-    };
+    )+};
 }
 
 words! {
     /// The paving of a road.
-    RoadSurface {
-        /// paved
-        Asphalt = "asphalt",
-        /// a made road without a seal
-        Gravel = "gravel",
-        /// worn, not made
-        Track = "track",
+    enum RoadSurface {
+        Asphalt = "asphalt": "paved",
+        Gravel = "gravel": "a made road without a seal",
+        Track = "track": "worn, not made",
     }
-}
 
-words! {
     /// How the height of a model is found.
-    #[derive(Default)]
-    Clamp {
-        /// its lowest point stands on the ground; of a built-in model, its origin
-        #[default]
-        Ground = "ground",
-        /// its origin is `height` above the ground
-        Relative = "relative",
-        /// its origin is at elevation `height`
-        Absolute = "absolute",
+    enum Clamp {
+        Ground = "ground": "its lowest point stands on the ground; of a built-in model, its origin",
+        Relative = "relative": "its origin is `height` above the ground",
+        Absolute = "absolute": "its origin is at elevation `height`",
     }
-}
 
-words! {
     /// What a label names; decides its type and its symbol.
-    LabelKind {
-        /// a summit
-        Summit = "summit",
-        /// a town or a farm
-        Place = "place",
-        /// a river or a lake
-        Water = "water",
-        /// anything else
-        Point = "point",
+    enum LabelKind {
+        Summit = "summit": "a summit",
+        Place = "place": "a town or a farm",
+        Water = "water": "a river or a lake",
+        Point = "point": "anything else",
     }
-}
 
-words! {
     /// A built-in color ramp, stretched from the lowest to the highest ground.
-    RampName {
-        /// green lowland over yellow and brown to white
-        Atlas = "atlas",
-        /// sand over red rock
-        Desert = "desert",
-        /// dark to light
-        Gray = "gray",
+    enum RampName {
+        Atlas = "atlas": "green lowland over yellow and brown to white",
+        Desert = "desert": "sand over red rock",
+        Gray = "gray": "dark to light",
     }
-}
 
-words! {
     /// How the colors of a PNG encode heights.
-    HeightEncodingWord {
-        /// Mapbox Terrain-RGB
-        TerrainRgb = "terrain-rgb",
-        /// Mapzen Terrarium
-        Terrarium = "terrarium",
+    enum HeightEncodingWord {
+        TerrainRgb = "terrain-rgb": "Mapbox Terrain-RGB",
+        Terrarium = "terrarium": "Mapzen Terrarium",
     }
-}
 
-words! {
     /// How two segments of a road meet.
-    Join {
-        /// both edges run on until they meet
-        Miter = "miter",
-        /// the outer corner is cut off
-        Bevel = "bevel",
-        /// the outer corner is an arc
-        Round = "round",
+    enum Join {
+        Miter = "miter": "both edges run on until they meet",
+        Bevel = "bevel": "the outer corner is cut off",
+        Round = "round": "the outer corner is an arc",
     }
-}
 
-words! {
     /// The lines on asphalt.
-    Markings {
-        /// edge lines and a dashed center line
-        Dashed = "dashed",
-        /// edge lines and a solid center line
-        Solid = "solid",
-        /// edge lines only
-        Edges = "edges",
-        /// no lines
-        None = "none",
+    enum Markings {
+        Dashed = "dashed": "edge lines and a dashed center line",
+        Solid = "solid": "edge lines and a solid center line",
+        Edges = "edges": "edge lines only",
+        None = "none": "no lines",
     }
-}
 
-words! {
     /// Which of road and ground follows the other.
-    ProfileMode {
-        /// the road follows the ground
-        Drape = "drape",
-        /// the ground follows the road
-        Conform = "conform",
+    enum ProfileMode {
+        Drape = "drape": "the road follows the ground",
+        Conform = "conform": "the ground follows the road",
     }
-}
 
-words! {
     /// Where a river's water lies.
-    Water {
-        /// its level never rises downstream, and the ground is cut to it
-        Falls = "falls",
-        /// on the ground as it is
-        Drape = "drape",
+    enum Water {
+        Falls = "falls": "its level never rises downstream, and the ground is cut to it",
+        Drape = "drape": "on the ground as it is",
     }
-}
 
-words! {
     /// Which height of the ground along its shore is a lake's level.
-    LevelRule {
-        /// the lowest
-        Lowest = "lowest",
-        /// the median
-        Median = "median",
-        /// the mean
-        Mean = "mean",
+    enum LevelRule {
+        Lowest = "lowest": "the lowest",
+        Median = "median": "the median",
+        Mean = "mean": "the mean",
     }
-}
 
-words! {
     /// What covers an area.
-    Cover {
-        /// trees
-        Forest = "forest",
-        /// bushes
-        Scrub = "scrub",
-        /// grass
-        Meadow = "meadow",
-        /// crops in rows
-        Field = "field",
-        /// fruit trees or vines in rows
-        Orchard = "orchard",
-        /// marsh
-        Wetland = "wetland",
-        /// sand or beach
-        Sand = "sand",
-        /// bare rock
-        Rock = "rock",
-        /// houses and yards
-        BuiltUp = "built-up",
-        /// halls and yards
-        Industry = "industry",
-        /// closed ground, hatched
-        Restricted = "restricted",
+    enum Cover {
+        Forest = "forest": "trees",
+        Scrub = "scrub": "bushes",
+        Meadow = "meadow": "grass",
+        Field = "field": "crops in rows",
+        Orchard = "orchard": "fruit trees or vines in rows",
+        Wetland = "wetland": "marsh",
+        Sand = "sand": "sand or beach",
+        Rock = "rock": "bare rock",
+        BuiltUp = "built-up": "houses and yards",
+        Industry = "industry": "halls and yards",
+        Restricted = "restricted": "closed ground, hatched",
     }
-}
 
-words! {
     /// The line along an area's outline.
-    Border {
-        /// no line
-        None = "none",
-        /// an unbroken line
-        Solid = "solid",
-        /// dashes
-        Dashed = "dashed",
+    enum Border {
+        None = "none": "no line",
+        Solid = "solid": "an unbroken line",
+        Dashed = "dashed": "dashes",
     }
-}
 
-words! {
     /// The height of the ground under its footprint at which a building stands.
-    BaseRule {
-        /// the lowest
-        Lowest = "lowest",
-        /// the mean
-        Mean = "mean",
-        /// the highest
-        Highest = "highest",
-        /// the mean, to which the ground is leveled
-        Pad = "pad",
+    enum BaseRule {
+        Lowest = "lowest": "the lowest",
+        Mean = "mean": "the mean",
+        Highest = "highest": "the highest",
+        Pad = "pad": "the mean, to which the ground is leveled",
     }
-}
 
-words! {
     /// The shape of a roof.
-    #[derive(Default)]
-    RoofShape {
-        /// level
-        #[default]
-        Flat = "flat",
-        /// two slopes and two gables
-        Gabled = "gabled",
-        /// four slopes
-        Hipped = "hipped",
-        /// slopes that meet in one point
-        Pyramidal = "pyramidal",
+    enum RoofShape {
+        Flat = "flat": "level",
+        Gabled = "gabled": "two slopes and two gables",
+        Hipped = "hipped": "four slopes",
+        Pyramidal = "pyramidal": "slopes that meet in one point",
     }
-}
 
-words! {
     /// What stands or runs along a line.
-    #[derive(Default)]
-    FenceKind {
-        /// posts and rails
-        #[default]
-        Fence = "fence",
-        /// masonry
-        Wall = "wall",
-        /// a row of bushes
-        Hedge = "hedge",
-        /// pylons and sagging wires
-        PowerLine = "power-line",
-        /// a trench with a parapet
-        Trench = "trench",
-        /// a belt of obstacles
-        Obstacles = "obstacles",
-        /// a dashed line on the ground
-        Boundary = "boundary",
+    enum FenceKind {
+        Fence = "fence": "posts and rails",
+        Wall = "wall": "masonry",
+        Hedge = "hedge": "a row of bushes",
+        PowerLine = "power-line": "pylons and sagging wires",
+        Trench = "trench": "a trench with a parapet",
+        Obstacles = "obstacles": "a belt of obstacles",
+        Boundary = "boundary": "a dashed line on the ground",
     }
-}
 
-words! {
     /// The height of the ground that a model stands on.
-    #[derive(Default)]
-    Anchor {
-        /// that under its origin
-        #[default]
-        Origin = "origin",
-        /// the lowest under its footprint
-        Lowest = "lowest",
-        /// the highest under its footprint
-        Highest = "highest",
-        /// the mean under its footprint
-        Mean = "mean",
+    enum Anchor {
+        Origin = "origin": "that under its origin",
+        Lowest = "lowest": "the lowest under its footprint",
+        Highest = "highest": "the highest under its footprint",
+        Mean = "mean": "the mean under its footprint",
     }
-}
 
-words! {
     /// What fills the gap between a model and the ground.
-    #[derive(Default)]
-    Footing {
-        /// nothing
-        #[default]
-        None = "none",
-        /// a block down to the ground
-        Plinth = "plinth",
-        /// the ground is leveled
-        Pad = "pad",
+    enum Footing {
+        None = "none": "nothing",
+        Plinth = "plinth": "a block down to the ground",
+        Pad = "pad": "the ground is leveled",
     }
 }

@@ -1,9 +1,8 @@
 //! Light, haze and sky: one formula for both renderers.
 //!
-//! A surface point with albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing
-//! is in the way) shows
-//! `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` meters from the
-//! eye, `mix(lit, haze.color, 1 − exp(−d / haze.distance_m))`. Where nothing is drawn, a ray with unit
+//! A surface point with albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing is
+//! in the way) shows `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` meters
+//! from the eye, `mix(lit, haze.color, 1 − exp(−d / haze.distance_m))`. Where nothing is drawn, a ray with unit
 //! direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
 
 use glam::Vec3;

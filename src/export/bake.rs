@@ -39,17 +39,12 @@ pub fn bake(map: &GroundMap) -> BakedGround {
     let pixels = (size / meters_per_px).round().max(Vec2::ONE);
     let (width, height) = (pixels.x as u32, pixels.y as u32);
     let step = size / pixels;
-    let rows: Vec<Vec<Srgba>> = (0..height)
-        .into_par_iter()
-        .map(|y| {
-            let north = size.y - (y as f32 + 0.5) * step.y;
-            (0..width)
-                .map(|x| color(map, map.origin + Vec2::new((x as f32 + 0.5) * step.x, north), step))
-                .collect()
-        })
-        .collect();
-    let pixels =
-        Pixels::from_data(width, height, rows.concat()).expect("a row of pixels for each of `height`");
+    let pixel = |index: u32| {
+        let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
+        color(map, map.origin + Vec2::new(x * step.x, size.y - y * step.y), step)
+    };
+    let data = (0..width * height).into_par_iter().map(pixel).collect();
+    let pixels = Pixels::from_data(width, height, data).expect("as many pixels as the size says");
     BakedGround { pixels, origin: map.origin, size }
 }
 

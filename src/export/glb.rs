@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::draw::color::{Srgba, linear_from_srgb};
 use crate::draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
 use crate::draw::material::{AlphaMode, Material, TextureId};
-use crate::export::{SceneExport, png};
+use crate::export::{SceneExport, encode_png};
 use crate::mesh::numbering::Numbering;
 use crate::mesh::sink::VertexId;
 use crate::mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
@@ -116,7 +116,7 @@ impl GlbSceneBuilder {
         }
         let number = self.images.number(texture);
         if number.is_new {
-            self.scene.images.push(png::encode(pixels));
+            self.scene.images.push(encode_png(pixels));
         }
         Some(number.index as usize)
     }
@@ -129,7 +129,6 @@ fn linear(color: Srgba) -> [u16; 4] {
     [light(red), light(green), light(blue), u16::from(alpha) * 257]
 }
 
-/// The glTF object of a material.
 fn object_of(material: &Material, image: Option<usize>) -> Value {
     let [red, green, blue] = material.base_color.linear().to_array();
     let alpha = if material.alpha == AlphaMode::Opaque { 1.0 } else { material.base_color.alpha() };

@@ -14,13 +14,15 @@ mod bake;
 pub mod glb;
 mod inlay;
 pub mod obj;
-pub mod png;
 pub mod prepare;
 
 use std::ops::Range;
 
+use image::{ExtendedColorType, ImageEncoder};
+
 use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId};
 use crate::draw::material::Material;
+use crate::draw::pixels::Pixels;
 use crate::mesh::sink::VertexId;
 use crate::mesh::write::Remarks;
 
@@ -44,9 +46,24 @@ impl SceneExport<'_> {
         &self.list.materials[item.material.0 as usize]
     }
 
-    /// The triangles that `item` draws.
     fn triangles(&self, item: &DrawItem) -> &[[VertexId; 3]] {
         let Range { start, end } = item.triangles;
         &self.mesh(item).triangles[start as usize..end as usize]
     }
+}
+
+/// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty.
+pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
+    let mut png = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut png);
+    let (width, height) = (pixels.width(), pixels.height());
+    let written = if pixels.data().iter().all(|color| color.0[3] == 255) {
+        let rgb: Vec<u8> =
+            pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
+        encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8)
+    } else {
+        encoder.write_image(pixels.bytes(), width, height, ExtendedColorType::Rgba8)
+    };
+    written.expect("memory takes all bytes, and there are as many as the size says");
+    png
 }

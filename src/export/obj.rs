@@ -11,7 +11,7 @@ use glam::{Mat3, Vec2, Vec3};
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex, MaterialId};
 use crate::draw::material::{AlphaMode, TextureId};
-use crate::export::{SceneExport, png};
+use crate::export::{SceneExport, encode_png};
 use crate::mesh::sink::VertexId;
 use crate::mesh::write::obj::{ObjObject, ObjWriter, word};
 
@@ -28,7 +28,7 @@ pub struct ObjCompanion {
 pub fn companions(list: &DrawList, stem: &str) -> Vec<ObjCompanion> {
     let texture = |id: TextureId| ObjCompanion {
         name: texture_name(stem, id),
-        bytes: png::encode(&list.textures[id.0 as usize]),
+        bytes: encode_png(&list.textures[id.0 as usize]),
     };
     let library = ObjCompanion { name: library_name(stem), bytes: library(list, stem).into_bytes() };
     textures(list).into_iter().map(texture).chain([library]).collect()
@@ -42,7 +42,6 @@ fn texture_name(stem: &str, id: TextureId) -> String {
     format!("{stem}_{}.png", id.0)
 }
 
-/// Distinct names for distinct materials.
 fn material_name(list: &DrawList, MaterialId(id): MaterialId) -> String {
     format!("{}_{id}", word(&list.materials[id as usize].name))
 }

@@ -50,9 +50,6 @@ pub enum ModelError {
         /// What was found and what to do.
         reason: String,
     },
-    /// The chunks of a GLB file are broken.
-    #[error("glTF file, the GLB chunks; the file may be cut off")]
-    GlbChunks(#[source] gltf::Error),
     /// The JSON of a glTF file is broken.
     #[error("glTF file, the JSON")]
     GltfJson(#[source] serde_json::Error),
@@ -81,7 +78,6 @@ impl ModelError {
         Self::ThreeDs { offset, reason: reason.into() }
     }
 
-    /// An error in a glTF file.
     pub(super) fn gltf(place: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Gltf { place: place.into(), reason: reason.into() }
     }

@@ -50,7 +50,6 @@ const AROUND: usize = 21;
 /// The elevations of the rings in degrees: eyes over a landscape look a little down, maps straight down.
 const RINGS_DEG: [f32; 4] = [5.0, 32.0, 60.0, 90.0];
 
-/// The number of views.
 const VIEWS: usize = AROUND * (RINGS_DEG.len() - 1) + 1;
 
 /// Models of fewer triangles have no impostor: the quad would cost about as much.
@@ -108,7 +107,6 @@ pub(super) struct ViewAxes {
     pub toward_eye: Vec3,
 }
 
-/// One view as drawn.
 struct ImpostorView {
     pixels: Vec<Srgba>,
     corners: [DrawVertex; 4],
@@ -217,7 +215,6 @@ fn area_keeping_cutoff(views: &[ImpostorView]) -> f32 {
     (cutoff as f32 / full as f32).clamp(RANGE[0], RANGE[1])
 }
 
-/// Normals as an affine function on a quad.
 struct QuadNormals {
     mean: Vec3,
     across: Vec3,
@@ -227,18 +224,15 @@ struct QuadNormals {
 impl QuadNormals {
     /// The least-squares fit to the raster's normals; their mean where the samples are on a line.
     fn fit(raster: &ImpostorRaster) -> Self {
-        let (mut moments, mut sums) = ([0.0f64; 6], [DVec3::ZERO; 3]);
+        let (mut matrix, mut sums) = (DMat3::ZERO, [DVec3::ZERO; 3]);
         for (place, normal) in raster.normals() {
-            let (x, y) = (f64::from(place.x), f64::from(place.y));
-            for (sum, term) in moments.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
-                *sum += term;
-            }
-            for (sum, term) in sums.iter_mut().zip([1.0, x, y]) {
+            let terms = DVec3::new(1.0, place.x.into(), place.y.into());
+            matrix += DMat3::from_cols(terms, terms * terms.y, terms * terms.z);
+            for (sum, term) in sums.iter_mut().zip(terms.to_array()) {
                 *sum += normal.as_dvec3() * term;
             }
         }
-        let [one, x, y, xx, xy, yy] = moments;
-        let matrix = DMat3::from_cols(DVec3::new(one, x, y), DVec3::new(x, xx, xy), DVec3::new(y, xy, yy));
+        let one = matrix.x_axis.x;
         if matrix.determinant().abs() <= 1e-9 * one * one * one {
             let mean = (sums[0] / one.max(1.0)).as_vec3();
             return Self { mean, across: Vec3::ZERO, down: Vec3::ZERO };

@@ -15,7 +15,6 @@ use crate::model::{Model, ModelPart};
 /// Samples along the side of a pixel.
 pub(super) const SAMPLES: u32 = 3;
 
-/// Samples along the side of the grid.
 const SIDE: usize = (INNER * SAMPLES) as usize;
 
 /// How often the triangles' boxes may cover the grid: bounds the time of all views of a hostile model to about a second.
@@ -24,7 +23,6 @@ const MAX_LAYERS: usize = 256;
 /// Textures are reduced until no side is longer: two of their pixels for each pixel of a tile.
 const MAX_TEXTURE_SIDE: u32 = 128;
 
-/// A model prepared for views from many sides.
 pub(super) struct ImpostorSource<'a> {
     parts: &'a [ModelPart],
     materials: &'a [Material],
@@ -32,7 +30,6 @@ pub(super) struct ImpostorSource<'a> {
     center: Vec3,
 }
 
-/// The front surface at one sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceSample {
     /// Position along the view; greater is nearer to the eye.
@@ -42,7 +39,6 @@ pub(super) struct SurfaceSample {
     normal: Vec3,
 }
 
-/// A view of a model.
 pub(super) struct ImpostorRaster {
     /// The lower left corner of the model, along the axes to the right and up.
     pub low: Vec2,

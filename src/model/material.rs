@@ -5,24 +5,24 @@ use crate::draw::material::{AlphaMode, Material};
 use crate::model::texture::Textures;
 
 /// A material whose maps are not loaded yet.
-pub(super) struct MappedMaterial<'a> {
-    pub name: &'a str,
+#[derive(Clone, Debug)]
+pub(super) struct MappedMaterial {
+    pub name: String,
     pub color: Srgba,
     /// Replaces `color` where the map can be loaded.
     pub color_under_map: Srgba,
     /// 255 is opaque.
     pub alpha: u8,
     /// The color map's file.
-    pub map: Option<&'a str>,
+    pub map: Option<String>,
     /// The opacity map's file: dark where the surface has holes.
-    pub opacity_map: Option<&'a str>,
+    pub opacity_map: Option<String>,
     pub two_sided: bool,
 }
 
-impl MappedMaterial<'_> {
-    /// The material with its maps in `textures`.
+impl MappedMaterial {
     pub(super) fn load(&self, textures: &mut Textures<'_>) -> Material {
-        let [map, mask] = [self.map, self.opacity_map].map(|file| textures.load(file?));
+        let [map, mask] = [&self.map, &self.opacity_map].map(|file| textures.load(file.as_deref()?));
         let mut base_color = if map.is_some() { self.color_under_map } else { self.color };
         base_color.0[3] = self.alpha;
         let texture = mask.map_or(map, |mask| textures.masked(map, mask));
@@ -31,7 +31,7 @@ impl MappedMaterial<'_> {
             Some(id) if textures.has_holes(id) => AlphaMode::Mask(0.5),
             _ => AlphaMode::Opaque,
         };
-        let (name, two_sided) = (self.name.to_owned(), self.two_sided);
+        let (name, two_sided) = (self.name.clone(), self.two_sided);
         Material { name, base_color, texture, alpha, two_sided, ..Material::default() }
     }
 }

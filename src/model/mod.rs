@@ -27,7 +27,6 @@ mod quadric;
 pub mod read;
 pub mod simplify;
 mod soup;
-mod surface_edges;
 mod texture;
 pub mod three_ds;
 mod triangulate;
@@ -82,9 +81,6 @@ pub struct Census {
 /// Loads the files that a model names: buffers, textures, material libraries.
 pub trait Companions {
     /// The bytes of the file that the model calls `name`.
-    ///
-    /// # Errors
-    /// Whatever prevents loading it.
     fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError>;
 }
 

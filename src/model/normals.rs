@@ -70,7 +70,6 @@ pub(super) fn corner_normals(
     normals
 }
 
-/// A corner of a triangle, with the triangle's angle there.
 #[derive(Clone, Copy)]
 struct CornerAngle {
     triangle: usize,

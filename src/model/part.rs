@@ -23,10 +23,6 @@ pub(super) struct TriangleBudget {
 }
 
 impl TriangleBudget {
-    /// Takes `triangles` from the budget.
-    ///
-    /// # Errors
-    /// [`ModelError::TooLarge`].
     pub(super) fn take(&mut self, triangles: usize) -> Result<(), ModelError> {
         self.used = self.used.saturating_add(triangles);
         if self.used > MAX_TRIANGLES {
@@ -36,7 +32,6 @@ impl TriangleBudget {
     }
 }
 
-/// One corner of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ModelCorner {
     pub position: Vec3,
@@ -60,7 +55,6 @@ struct WeldedPart {
 }
 
 impl PartBuilder {
-    /// Parts of an object called `name`.
     pub(super) fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }

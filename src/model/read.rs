@@ -6,7 +6,6 @@ use crate::model::error::ModelError;
 use crate::model::{Companions, Model};
 use crate::model::{gltf, obj, three_ds};
 
-/// The formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ModelFormat {
     ThreeDs,
@@ -49,26 +48,18 @@ fn shorten(notes: &mut Vec<String>) {
     }
 }
 
+/// The format by its content, else by its extension.
 fn format_of(name: &str, bytes: &[u8]) -> Option<ModelFormat> {
-    by_content(bytes).or_else(|| by_extension(name))
-}
-
-fn by_content(bytes: &[u8]) -> Option<ModelFormat> {
     /// The id of the outermost chunk of a 3DS file, `0x4D4D`.
     const MAIN_CHUNK: &[u8] = b"MM";
-    if bytes.starts_with(b"glTF") {
-        return Some(ModelFormat::Gltf);
-    }
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     if bytes.starts_with(MAIN_CHUNK) {
         return Some(ModelFormat::ThreeDs);
     }
-    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    (text.trim_ascii_start().first() == Some(&b'{')).then_some(ModelFormat::Gltf)
-}
-
-fn by_extension(name: &str) -> Option<ModelFormat> {
-    let (_, extension) = name.rsplit_once('.')?;
-    match extension.to_ascii_lowercase().as_str() {
+    if bytes.starts_with(b"glTF") || text.starts_with(b"{") {
+        return Some(ModelFormat::Gltf);
+    }
+    match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
         "3ds" => Some(ModelFormat::ThreeDs),
         "obj" => Some(ModelFormat::Obj),
         "gltf" | "glb" => Some(ModelFormat::Gltf),

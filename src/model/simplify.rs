@@ -29,9 +29,8 @@ use glam::{DVec3, Vec3};
 use crate::draw::list::DrawVertex;
 use crate::geom::triangle;
 use crate::model::appearance::difference;
-use crate::model::quadric::Quadric;
+use crate::model::quadric::{Quadric, edges, quadrics};
 use crate::model::soup::{PointId, Soup, SoupWedge, WedgeId};
-use crate::model::surface_edges::{edges, quadrics};
 use crate::model::{Model, ModelPart};
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
@@ -106,7 +105,6 @@ pub fn levels(model: &Model) -> Vec<DetailLevel> {
     levels
 }
 
-/// Why simplification stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StopReason {
     /// The target is reached.
@@ -124,7 +122,6 @@ struct CollapseCandidate {
     to: PointId,
 }
 
-/// An allowed step.
 struct CollapseStep {
     cost: f64,
     /// The change in appearance, in the model's units.

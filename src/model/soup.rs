@@ -16,15 +16,12 @@ use crate::mesh::numbering::{Numbering, weld_key};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::{Model, ModelPart};
 
-/// The index of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct PointId(pub u32);
 
-/// The index of a wedge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct WedgeId(pub u32);
 
-/// One part's vertex at a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SoupWedge {
     pub point: PointId,
@@ -84,7 +81,6 @@ impl Soup {
         self.triangle_count = self.triangles.len();
     }
 
-    /// The wedge with this id.
     pub(super) fn wedge(&self, id: WedgeId) -> &SoupWedge {
         &self.wedges[id.0 as usize]
     }
@@ -100,7 +96,6 @@ impl Soup {
         })
     }
 
-    /// The area of the surface.
     pub(super) fn area(&self) -> f64 {
         let is_present = |triangle: &u32| {
             let [first, second, _] = self.triangles[*triangle as usize];
@@ -110,17 +105,14 @@ impl Soup {
         present.map(|triangle| triangle::normal(self.corner_positions(triangle)).length()).sum::<f64>() * 0.5
     }
 
-    /// The position of a point.
     pub(super) fn position(&self, id: PointId) -> DVec3 {
         self.points[id.0 as usize]
     }
 
-    /// The points of a triangle.
     pub(super) fn corners(&self, triangle: u32) -> [PointId; 3] {
         self.triangles[triangle as usize].map(|id| self.wedge(id).point)
     }
 
-    /// The positions of a triangle's points.
     pub(super) fn corner_positions(&self, triangle: u32) -> [DVec3; 3] {
         self.corners(triangle).map(|point| self.position(point))
     }

@@ -28,7 +28,6 @@ pub(super) struct Textures<'a> {
     notes: Vec<String>,
 }
 
-/// Why bytes do not become a texture.
 #[derive(Debug, thiserror::Error)]
 enum TextureError {
     #[error("it is not PNG, JPEG, BMP or TGA")]
@@ -42,7 +41,6 @@ enum TextureError {
 }
 
 impl<'a> Textures<'a> {
-    /// No textures yet.
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
         let (by_name, masked) = (BTreeMap::new(), BTreeMap::new());
         Self { companions, by_name, masked, pixels: Vec::new(), pixels_left: MAX_PIXELS, notes: Vec::new() }
@@ -124,13 +122,11 @@ impl<'a> Textures<'a> {
         Some(self.add(masked))
     }
 
-    /// Whether a texture has pixels that are not opaque.
     pub(super) fn has_holes(&self, id: TextureId) -> bool {
         let pixels = self.pixels.get(id.0 as usize);
         pixels.is_some_and(|pixels| pixels.data().iter().any(|pixel| pixel.0[3] < 255))
     }
 
-    /// Moves the textures and notes to `model`.
     pub(super) fn move_to(self, model: &mut Model) {
         model.textures = self.pixels;
         model.notes.extend(self.notes);
@@ -145,9 +141,6 @@ fn brightness(pixel: Srgba) -> u8 {
 
 /// The companion called `name`, also tried without its folders and in other letter cases: models leave the systems on
 /// which 3DS and OBJ files were written.
-///
-/// # Errors
-/// That of the first try.
 pub(super) fn load_any(companions: &dyn Companions, name: &str) -> Result<Vec<u8>, CompanionError> {
     let name = name.trim().replace('\\', "/");
     let file = name.rsplit('/').next().unwrap_or(&name);

@@ -13,7 +13,7 @@ use crate::dem::raster::Raster;
 use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::dem::{self, DemOptions, OpenDemError};
 use crate::pipeline::ground::{self, GroundError};
-use crate::pipeline::scene_file::{OpenSceneError, open_scene};
+use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
 use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Interpolation, Surface};
@@ -110,8 +110,8 @@ impl Dataset {
     pub fn open(path: &Path, options: &DatasetOptions) -> Result<Self, OpenError> {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-            let scene = open_scene(path, &options.allowed, &|_| ())?;
-            return Ok(Self { name, content: DatasetContent::Scene(scene.heights) });
+            let ground = open_scene_ground(path, &options.allowed)?;
+            return Ok(Self { name, content: DatasetContent::Scene(ground.heights) });
         }
         let mosaic = dem::open(path, &options.dem)?;
         let warning = dem::warning(path, &mosaic);

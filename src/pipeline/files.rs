@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
 use crate::draw::pixels::Pixels;
-use crate::export::png;
+use crate::export::encode_png;
 use crate::pipeline::error::FileError;
 
 /// The largest input file: more than any elevation tile in use, less than the memory of today's machines.
@@ -204,7 +204,7 @@ pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result
 /// # Errors
 /// The file cannot be written.
 pub fn write_picture(path: &Path, pixels: &Pixels) -> Result<(), WriteFileError> {
-    write(path, &png::encode(pixels))
+    write(path, &encode_png(pixels))
 }
 
 /// Writes a file: first under another name beside `path`, then renamed to it.

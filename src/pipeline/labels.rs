@@ -62,14 +62,14 @@ fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
 }
 
 fn legend(scene: &Scene) -> Legend {
-    let (low_m, high_m) = scene.terrain.lattice.height_range();
+    let (low_m, high_m) = scene.terrain.height_range();
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
     Legend {
-        ramp: scene.map.ramp.clone(),
+        ramp: scene.ramp.clone(),
         low_m,
         high_m,
         vertical_exaggeration: scene.terrain.exaggeration,
-        contour_interval: scene.map.contours.map(|contours| contours.interval_m),
+        contour_interval: scene.contours.map(|contours| contours.interval_m),
         vertical_datum: datum.map(|name| format!("Heights: {name}")),
     }
 }

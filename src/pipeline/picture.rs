@@ -20,8 +20,10 @@ pub struct PictureSize {
 }
 
 impl Choice for RenderBackend {
-    const CHOICES: &'static [Word<Self>] =
-        &[word(Self::Cpu, "cpu", "The processor"), word(Self::Gpu, "gpu", "A graphics adapter")];
+    const CHOICES: &'static [Word<Self>] = &[
+        word(Self::Cpu, "cpu", "The processor"),
+        word(Self::Gpu, "gpu", "A graphics adapter; needs the Cargo feature `gpu`"),
+    ];
 }
 
 /// An annotated picture and what it was made of.

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::description::document::Document;
-use crate::description::parse::parse_bytes_including;
+use crate::description::parse::parse_including;
 use crate::pipeline::files::{self, ReadFileError};
-use crate::scene::Scene;
 use crate::scene::assets::{AssetError, Assets};
-use crate::scene::build::build;
+use crate::scene::build::{build, build_ground};
+use crate::scene::{Scene, SceneGround};
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +42,16 @@ pub fn open_scene(
     Ok(build(&document, &assets, progress)?)
 }
 
+/// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for heights.
+/// Files of features that leave the ground as it is are not read.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_ground(path: &Path, allowed: &[PathBuf]) -> Result<SceneGround, OpenSceneError> {
+    let (document, assets) = open_document(path, allowed)?;
+    Ok(build_ground(&document, &assets)?)
+}
+
 /// [`open_scene`] with heights true to scale, whatever exaggeration the scene file states.
 ///
 /// # Errors
@@ -61,6 +71,6 @@ fn open_document(path: &Path, allowed: &[PathBuf]) -> Result<(Document, Assets),
     let bytes = files::read(path)?;
     let assets = Assets::new(path, allowed)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_bytes_including(&path.to_string_lossy(), &bytes, &load)?;
+    let document = parse_including(&path.to_string_lossy(), &bytes, &load)?;
     Ok((document, assets))
 }

@@ -52,13 +52,13 @@ pub fn viewshed_map(
     options: &ViewshedOptions,
     text: SheetText,
 ) -> Pixels {
-    let ramp = style::atlas(lattice);
+    let (low_m, high_m) = lattice.height_range();
+    let ramp = style::atlas((low_m, high_m));
     let colors = colors(lattice, viewshed, &ramp);
     let frame = MapFrame::around(lattice);
     let mut map = frame.resampled(&colors);
     let outlook = outlook(lattice, options, &frame);
     draw_observer(&mut map, &outlook, sheet_size((frame.width, frame.height)));
-    let (low_m, high_m) = lattice.height_range();
     let furniture = MapFurniture {
         title: text.title,
         subtitle: text.subtitle,

@@ -14,26 +14,21 @@ use crate::draw::ground::{GroundMap, GroundPost};
 /// Weights of a post and its two neighbors.
 const KERNEL: [(usize, f32); 3] = [(0, 0.25), (1, 0.5), (2, 0.25)];
 
-/// Columns and rows of posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PostCount {
-    /// Posts per row.
     pub columns: u32,
-    /// Rows of posts.
     pub rows: u32,
 }
 
 /// Posts at twice the distance of the level before.
 #[derive(Debug)]
 pub struct GroundLevel {
-    /// The number of posts.
     pub size: PostCount,
     /// The posts, row by row from the south-west.
     pub posts: Vec<GroundPost>,
 }
 
 impl PostCount {
-    /// The posts of `map` itself.
     pub fn from_map(map: &GroundMap) -> Self {
         Self { columns: map.columns, rows: map.rows }
     }
@@ -45,15 +40,13 @@ impl PostCount {
     }
 }
 
-/// The coarser levels of a checked `map`, the finest first, down to two posts a side.
-///
-/// Each level is made when it is taken; earlier ones are not kept.
+/// The coarser levels of a checked `map`, the finest first, down to two posts a side. Each level is made when it is
+/// taken; earlier ones are not kept.
 pub fn coarser_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
     let first = next_level(PostCount::from_map(map), &map.posts);
     successors(first, |level| next_level(level.size, &level.posts))
 }
 
-/// Adds `weight` times `post` to `sum`.
 pub fn add_weighted(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
     *sum = sum.zip_with(post, |sum, value| sum + value * weight);
 }

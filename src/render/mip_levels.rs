@@ -46,10 +46,9 @@ fn mean(by_alpha: Vec4, even: Vec3) -> Srgba {
     Srgba([red, green, blue, (by_alpha.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8])
 }
 
-/// The texels of a row of `side` that texel `index` of the next level covers, with their weights.
-///
-/// Of `2 m + 1` texels, texel `i` of the `m` below covers texel `2 i` to a part of `m - i`, the next one in full and
-/// the one after to a part of `i + 1`, in `m`-ths: integers, so that no rounding adds up along the row.
+/// The texels of a row of `side` that texel `index` of the next level covers, with their weights. Of `2 m + 1` texels,
+/// texel `i` of the `m` below covers texel `2 i` to a part of `m - i`, the next one in full and the one after to a part
+/// of `i + 1`, in `m`-ths: integers, so that no rounding adds up along the row.
 fn covered(index: u32, side: u32) -> impl Iterator<Item = (u32, f32)> {
     let half = side / 2;
     let parts = match (side, side % 2) {

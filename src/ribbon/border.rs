@@ -71,17 +71,8 @@ fn dashed(line: &Polyline, width_m: f64) -> impl Iterator<Item = Polyline> + '_ 
     let step_m = line.length() / count;
     (0..count as u32).filter_map(move |index| {
         let from_m = f64::from(index) * step_m;
-        part(line, from_m, from_m + DRAWN * step_m)
+        line.slice(from_m, from_m + DRAWN * step_m, MERGE_M)
     })
-}
-
-/// The part of a line between two stations.
-fn part(line: &Polyline, from_m: f64, to_m: f64) -> Option<Polyline> {
-    let first = line.stations().partition_point(|&station| station <= from_m);
-    let last = line.stations().partition_point(|&station| station < to_m);
-    let between = line.points().get(first..last).unwrap_or_default();
-    let points = std::iter::once(line.at(from_m)).chain(between.iter().copied());
-    Polyline::new(points.chain([line.at(to_m)]), MERGE_M)
 }
 
 #[cfg(test)]

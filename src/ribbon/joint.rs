@@ -15,19 +15,11 @@
 use glam::DVec2;
 
 use crate::description::words::Join;
+use crate::geom::offset::LineBend;
 
 /// The largest angle between two corners of an arc: at 15 degrees its chords lie within 1 % of a half width of it, which
 /// no picture shows.
 const ARC_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
-
-/// A vertex of a centerline with its neighbors and the ribbon about it.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::ribbon) struct RibbonBend {
-    /// The vertex before, the vertex, and the one after; no two in a row at one place.
-    pub points: [DVec2; 3],
-    /// Half of the ribbon's width at the vertex in meters.
-    pub half_m: f64,
-}
 
 /// What two segments end on, as ways from the vertex between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,92 +69,38 @@ impl JointFan {
     }
 }
 
-impl RibbonBend {
-    /// The miter's left end, as a way from the vertex; `None` where it would be longer than `limit` half widths, or its
-    /// inner corner would reach past the middle of either segment, where the next joint's may.
-    pub fn mitered(&self, limit: f64) -> Option<DVec2> {
-        self.shared().filter(|to_left| to_left.length() <= limit * self.half_m)
-    }
-
-    /// What the segments end on.
-    pub fn joint(&self, join: Join, limit: f64) -> RibbonJoint {
-        let mitered = if join == Join::Miter { self.mitered(limit) } else { None };
-        if let Some(to_left) = mitered.or_else(|| self.straight()) {
-            return RibbonJoint::Shared(to_left);
+impl RibbonJoint {
+    /// What the legs at a bend end on; miters are at most `limit` half widths long.
+    pub fn new(bend: &LineBend, join: Join, limit: f64) -> Self {
+        let turn = bend.turn_rad();
+        let mitered = if join == Join::Miter { bend.mitered(limit) } else { None };
+        // A turn too slight has no outer side.
+        let straight = || if turn.abs() < 1e-3 { bend.fitting_miter() } else { None };
+        if let Some(to_left) = mitered.or_else(straight) {
+            return Self::Shared(to_left);
         }
-        let [before, after] = self.directions().map(|along| along.perp() * self.half_m);
-        let (outer, sign) =
-            if self.turn_rad() >= 0.0 { (RibbonSide::Right, -1.0) } else { (RibbonSide::Left, 1.0) };
-        let inner = self.shared().map(|to_left| to_left * -sign);
+        let [before, after] = bend.directions().map(|along| along.perp() * bend.half);
+        let (outer, sign) = if turn >= 0.0 { (RibbonSide::Right, -1.0) } else { (RibbonSide::Left, 1.0) };
+        let inner = bend.fitting_miter().map(|to_left| to_left * -sign);
         let edge = |to_left: DVec2| match (outer, inner) {
             (RibbonSide::Right, Some(inner)) => [inner, -to_left],
             (RibbonSide::Left, Some(inner)) => [to_left, inner],
             (_, None) => [to_left, -to_left],
         };
-        let mut rim = vec![before * sign];
-        rim.extend(self.corners(join, limit).into_iter().map(|corner| corner * sign));
-        rim.push(after * sign);
+        let corners = match join {
+            Join::Bevel => Vec::new(),
+            Join::Miter => {
+                let miter = bend.miter().filter(|miter| miter.length() <= limit);
+                miter.map(|miter| miter * bend.half).into_iter().collect()
+            }
+            Join::Round => bend.arc(ARC_STEP_RAD),
+        };
+        let corners = std::iter::once(before).chain(corners).chain([after]);
+        let mut rim: Vec<DVec2> = corners.map(|corner| corner * sign).collect();
         if outer == RibbonSide::Left {
             rim.reverse();
         }
         let fan = JointFan { center: inner.unwrap_or_default(), rim, outer };
-        RibbonJoint::Split { closing: edge(before), opening: edge(after), fan }
+        Self::Split { closing: edge(before), opening: edge(after), fan }
     }
-
-    /// The shared edge's left end, whatever its length, where the inner corner fits.
-    fn shared(&self) -> Option<DVec2> {
-        let miter = self.miter()?;
-        let reach = (miter.length_squared() - 1.0).max(0.0).sqrt() * self.half_m;
-        let [before, at, after] = self.points;
-        let shortest = at.distance(before).min(at.distance(after));
-        (2.0 * reach <= shortest).then_some(miter * self.half_m)
-    }
-
-    /// The edge of a turn too slight to have an outer side.
-    fn straight(&self) -> Option<DVec2> {
-        if self.turn_rad().abs() < 1e-3 { self.shared() } else { None }
-    }
-
-    /// The way to the left end of the miter in half widths; `None` where the line turns back on itself.
-    fn miter(&self) -> Option<DVec2> {
-        let [before, after] = self.directions();
-        let sum = before.perp() + after.perp();
-        let square = sum.length_squared();
-        (square > 1e-12).then(|| sum * (2.0 / square))
-    }
-
-    /// What lies on the outer side between the ends of both segments, as ways to the left of the line.
-    fn corners(&self, join: Join, limit: f64) -> Vec<DVec2> {
-        match join {
-            Join::Bevel => Vec::new(),
-            Join::Miter => self
-                .miter()
-                .filter(|miter| miter.length() <= limit)
-                .map(|it| it * self.half_m)
-                .into_iter()
-                .collect(),
-            Join::Round => {
-                let turn = self.turn_rad();
-                let steps = (turn.abs() / ARC_STEP_RAD).ceil().max(1.0);
-                let from = self.directions()[0].perp() * self.half_m;
-                let corner = |step: u32| turned(from, turn * f64::from(step) / steps);
-                (1..steps as u32).map(corner).collect()
-            }
-        }
-    }
-
-    /// How far the line turns, counter-clockwise, in −π..=π.
-    fn turn_rad(&self) -> f64 {
-        let [before, after] = self.directions();
-        libm::atan2(before.perp_dot(after), before.dot(after))
-    }
-
-    fn directions(&self) -> [DVec2; 2] {
-        let [before, at, after] = self.points;
-        [(at - before).normalize_or_zero(), (after - at).normalize_or_zero()]
-    }
-}
-
-fn turned(way: DVec2, angle_rad: f64) -> DVec2 {
-    DVec2::new(libm::cos(angle_rad), libm::sin(angle_rad)).rotate(way)
 }

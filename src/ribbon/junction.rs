@@ -20,14 +20,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::earthworks::alignment::chain::LineEnd;
+use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::convex;
-use crate::geom::polyline::Polyline;
-use crate::ribbon::joint::RibbonBend;
-use crate::ribbon::stroke::{Continuations, StrokeOptions, Widths};
-
-/// Vertices nearer to each other than this are one, in meters: files that mean one point write the same numbers, up to
-/// the rounding of a change of system.
-const SAME_M: f64 = 0.01;
+use crate::geom::offset::LineBend;
+use crate::geom::polyline::{VertexKey, vertex_key};
+use crate::ribbon::stroke::{Continuations, StrokeOptions};
 
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
@@ -36,17 +34,13 @@ const SAME_WIDTH_M: f64 = 1e-6;
 /// curbs meet far away, and the ground between them is better left to their ribbons.
 const LONGEST_REACH: f64 = 2.5;
 
-/// A road as lines go: a centerline and the width about it.
+/// A road or river among those that it may meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Street<'a> {
-    /// The centerline.
-    pub line: &'a Polyline,
-    /// Meters from curb to curb.
-    pub widths: Widths<'a>,
+    /// Its centerline, width and support. Junctions do not reach onto bridges and into tunnels.
+    pub alignment: &'a Alignment,
     /// How it is stroked.
     pub options: StrokeOptions,
-    /// What carries it.
-    pub bed: StreetSupport,
     /// What passes over what.
     pub level: i32,
     /// How good its pavement is: where it meets lesser ones it goes through.
@@ -54,26 +48,18 @@ pub struct Street<'a> {
 }
 
 impl<'a> Street<'a> {
-    /// One of a width that does not change, on the ground, like every other.
-    pub fn new(line: &'a Polyline, options: StrokeOptions) -> Self {
-        Self {
-            line,
-            widths: Widths::Constant(options.width_m),
-            options,
-            bed: StreetSupport::Ground,
-            level: 0,
-            rank: 0,
-        }
+    /// A street of level and rank 0.
+    pub fn new(alignment: &'a Alignment, options: StrokeOptions) -> Self {
+        Self { alignment, options, level: 0, rank: 0 }
     }
-}
 
-/// What carries a street.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StreetSupport {
-    /// The ground.
-    Ground,
-    /// Something that leaves it: a bridge, a tunnel. Junctions do not reach onto it.
-    Structure,
+    fn points(&self) -> &'a [DVec2] {
+        self.alignment.line.points()
+    }
+
+    fn is_on_ground(&self) -> bool {
+        self.alignment.support == Support::Ground
+    }
 }
 
 /// Streets with what they meet.
@@ -82,27 +68,9 @@ pub struct StreetNetwork {
     /// For each street, what goes on at its ends.
     pub continuations: Vec<Continuations>,
     /// The pairs of ends that go on in one another.
-    pub links: Vec<[StreetEnd; 2]>,
+    pub links: Vec<[LineEnd; 2]>,
     /// Where streets do not simply go on.
     pub nodes: Vec<JunctionNode>,
-}
-
-/// An end of a street.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct StreetEnd {
-    /// Which street.
-    pub street: usize,
-    /// Whether it is its first vertex or its last.
-    pub which: LineEnd,
-}
-
-/// One of a line's two ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum LineEnd {
-    /// The first vertex.
-    First,
-    /// The last.
-    Last,
 }
 
 /// A junction at a vertex that streets share.
@@ -129,7 +97,7 @@ struct Arm {
 /// Finds which streets go on in one another, and the nodes of those that do not.
 pub fn connect(streets: &[Street<'_>]) -> StreetNetwork {
     let streets = Streets(streets);
-    let mut arms: Vec<((i64, i64), Arm)> =
+    let mut arms: Vec<(VertexKey, Arm)> =
         (0..streets.0.len()).flat_map(|street| streets.arms(street)).collect();
     arms.par_sort_unstable_by_key(|&(place, arm)| (place, arm.street, arm.vertex, arm.next));
     let mut network = StreetNetwork {
@@ -182,17 +150,17 @@ impl StreetNetwork {
     fn link(&mut self, streets: Streets<'_>, [a, b]: [Arm; 2]) {
         for (arm, other) in [(a, b), (b, a)] {
             let ends = &mut self.continuations[arm.street];
-            let beyond = Some(streets.0[other.street].line.points()[other.next]);
-            match arm.end().which {
-                LineEnd::First => ends.before = beyond,
-                LineEnd::Last => ends.after = beyond,
+            let beyond = Some(streets.0[other.street].points()[other.next]);
+            match arm.end().end {
+                0 => ends.before = beyond,
+                _ => ends.after = beyond,
             }
         }
         self.links.push([a.end(), b.end()]);
     }
 
     fn add_node(&mut self, streets: Streets<'_>, arms: &[Arm], rank: u8) {
-        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].bed == StreetSupport::Ground);
+        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].is_on_ground());
         let widest = on_ground.max_by(|a, b| {
             let by_width = streets.half_m(a).total_cmp(&streets.half_m(b));
             by_width.then(b.street.cmp(&a.street))
@@ -207,9 +175,8 @@ impl StreetNetwork {
 
 impl Arm {
     /// The end it leaves; only for arms that do not pass.
-    fn end(&self) -> StreetEnd {
-        let which = if self.vertex == 0 { LineEnd::First } else { LineEnd::Last };
-        StreetEnd { street: self.street, which }
+    fn end(&self) -> LineEnd {
+        LineEnd { line: self.street, end: usize::from(self.vertex > 0) }
     }
 }
 
@@ -219,12 +186,11 @@ struct Streets<'a>(&'a [Street<'a>]);
 
 impl Streets<'_> {
     /// The arms of a street, with the place each leaves.
-    fn arms(&self, street: usize) -> impl Iterator<Item = ((i64, i64), Arm)> + '_ {
-        let points = self.0[street].line.points();
+    fn arms(&self, street: usize) -> impl Iterator<Item = (VertexKey, Arm)> + '_ {
+        let points = self.0[street].points();
         points.iter().enumerate().flat_map(move |(vertex, &at)| {
-            let place = (at / SAME_M).round();
             let next = [vertex.checked_sub(1), (vertex + 1 < points.len()).then_some(vertex + 1)];
-            let arm = move |next| ((place.x as i64, place.y as i64), Arm { street, vertex, next });
+            let arm = move |next| (vertex_key(at), Arm { street, vertex, next });
             next.into_iter().flatten().map(arm)
         })
     }
@@ -248,8 +214,7 @@ impl Streets<'_> {
                 passing.iter().copied().filter(same).chain(ends.extract_if(.., |arm| same(arm))).collect()
             })
             .collect();
-        let carrying =
-            |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].bed == StreetSupport::Ground);
+        let carrying = |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].is_on_ground());
         match groups.iter_mut().find(carrying) {
             Some(group) => group.append(&mut ends),
             None => groups.push(ends),
@@ -259,11 +224,12 @@ impl Streets<'_> {
     }
 
     fn is_end(&self, arm: &Arm) -> bool {
-        arm.vertex == 0 || arm.vertex + 1 == self.0[arm.street].line.points().len()
+        arm.vertex == 0 || arm.vertex + 1 == self.0[arm.street].points().len()
     }
 
     fn half_m(&self, arm: &Arm) -> f64 {
-        self.0[arm.street].widths.at(arm.vertex) / 2.0
+        let alignment = self.0[arm.street].alignment;
+        alignment.width.at(alignment.line.stations()[arm.vertex]) / 2.0
     }
 
     fn rank(&self, arm: &Arm) -> u8 {
@@ -279,16 +245,16 @@ impl Streets<'_> {
         let (one, other) = (&self.0[a.street], &self.0[b.street]);
         let half_m = self.half_m(&a);
         let limit = one.options.miter_limit.min(other.options.miter_limit);
-        let points = [one.line.points()[a.next], one.line.points()[a.vertex], other.line.points()[b.next]];
+        let points = [one.points()[a.next], one.points()[a.vertex], other.points()[b.next]];
         self.is_end(&a)
             && self.is_end(&b)
             && (half_m - self.half_m(&b)).abs() < SAME_WIDTH_M
-            && RibbonBend { points, half_m }.mitered(limit).is_some()
+            && LineBend { points, half: half_m }.mitered(limit).is_some()
     }
 
     /// The junction of several arms.
     fn hull(&self, arms: &[Arm]) -> Vec<DVec2> {
-        let points = |arm: &Arm| self.0[arm.street].line.points();
+        let points = |arm: &Arm| self.0[arm.street].points();
         let at = points(&arms[0])[arms[0].vertex];
         let way = |arm: &Arm| points(arm)[arm.next] - at;
         let mut around: Vec<HullArm> = arms
@@ -296,11 +262,8 @@ impl Streets<'_> {
             .map(|arm| HullArm {
                 along: way(arm).normalize_or_zero(),
                 half_m: self.half_m(arm),
-                longest_m: match self.0[arm.street].bed {
-                    // An arm shorter than the junction is the junction's whole.
-                    StreetSupport::Ground => way(arm).length(),
-                    StreetSupport::Structure => 0.0,
-                },
+                // An arm shorter than the junction lies in it as a whole.
+                longest_m: if self.0[arm.street].is_on_ground() { way(arm).length() } else { 0.0 },
             })
             .collect();
         let turn = |spoke: &HullArm| libm::atan2(spoke.along.y, spoke.along.x);
@@ -342,7 +305,9 @@ impl HullArm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Width;
     use crate::geom::polygon;
+    use crate::geom::polyline::Polyline;
     use crate::ribbon::plan::PlanMesh;
     use crate::ribbon::stroke::stroke;
 
@@ -350,12 +315,19 @@ mod tests {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
-    fn street(line: &Polyline, width_m: f64) -> Street<'_> {
-        Street::new(line, StrokeOptions { width_m, ..StrokeOptions::default() })
+    fn aligned(line: Polyline, width_m: f64) -> Alignment {
+        Alignment { line, level: None, width: Width::Constant(width_m), support: Support::Ground }
+    }
+
+    fn street(alignment: &Alignment) -> Street<'_> {
+        let width_m = alignment.width.at(0.0);
+        Street::new(alignment, StrokeOptions { width_m, ..StrokeOptions::default() })
     }
 
     fn network(lines: &[Polyline], widths: &[f64]) -> StreetNetwork {
-        connect(&lines.iter().zip(widths).map(|(line, &width_m)| street(line, width_m)).collect::<Vec<_>>())
+        let lines: Vec<Alignment> =
+            lines.iter().zip(widths).map(|(line, &width_m)| aligned(line.clone(), width_m)).collect();
+        connect(&lines.iter().map(street).collect::<Vec<_>>())
     }
 
     fn area(node: &JunctionNode) -> f64 {
@@ -372,7 +344,7 @@ mod tests {
             Continuations { before: None, after: Some(DVec2::new(100.0, 20.0)) }
         );
         assert_eq!(joined.continuations[1].after, Some(DVec2::ZERO));
-        assert_eq!(joined.links, [[0, 1].map(|street| StreetEnd { street, which: LineEnd::Last })]);
+        assert_eq!(joined.links, [[0, 1].map(|line| LineEnd { line, end: 1 })]);
         let mut area = 0.0;
         for (line, beyond) in lines.iter().zip(&joined.continuations) {
             let mut plan = PlanMesh::default();
@@ -427,7 +399,8 @@ mod tests {
             line(&[(50.0, 0.0), (0.0, 0.0)]),
             line(&[(0.0, 0.0), (0.0, 60.0)]),
         ];
-        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        let lines = lines.map(|line| aligned(line, 6.0));
+        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
         streets[0].rank = 2;
         streets[1].rank = 2;
         let joined = connect(&streets);
@@ -450,8 +423,10 @@ mod tests {
             line(&[(0.0, 0.0), (40.0, 5.0), (80.0, 0.0)]),
             line(&[(40.0, -60.0), (40.0, 5.0), (40.0, 60.0)]),
         ];
-        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
-        streets[1] = Street { bed: StreetSupport::Structure, level: 1, ..streets[1] };
+        let mut lines = lines.map(|line| aligned(line, 6.0));
+        lines[1].support = Support::Bridge;
+        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
+        streets[1].level = 1;
         let joined = connect(&streets);
         assert_eq!(joined.continuations[0].after, Some(DVec2::new(40.0, 5.0)));
         assert_eq!(joined.continuations[1].before, Some(DVec2::X * -50.0));
@@ -465,8 +440,10 @@ mod tests {
             line(&[(-50.0, -30.0), (0.0, 0.0)]),
             line(&[(0.0, 0.0), (80.0, 0.0)]),
         ];
-        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
-        streets[2] = Street { bed: StreetSupport::Structure, level: 1, ..streets[2] };
+        let mut lines = lines.map(|line| aligned(line, 6.0));
+        lines[2].support = Support::Bridge;
+        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
+        streets[2].level = 1;
         let joined = connect(&streets);
         assert_eq!(joined.nodes.len(), 1);
         let farthest = polygon::bounds(&joined.nodes[0].outline).max.x;
@@ -477,7 +454,8 @@ mod tests {
     fn roads_of_two_levels_that_pass_a_vertex_do_not_meet() {
         let lines =
             [line(&[(-50.0, 0.0), (0.0, 0.0), (50.0, 0.0)]), line(&[(0.0, -50.0), (0.0, 0.0), (0.0, 50.0)])];
-        let mut streets: Vec<Street<'_>> = lines.iter().map(|line| street(line, 6.0)).collect();
+        let lines = lines.map(|line| aligned(line, 6.0));
+        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
         assert_eq!(connect(&streets).nodes.len(), 1);
         streets[1].level = 1;
         assert_eq!(connect(&streets).nodes, []);

@@ -7,9 +7,11 @@
 use glam::{DVec2, Vec2};
 
 use crate::description::words::Join;
+use crate::earthworks::alignment::Width;
+use crate::geom::offset::LineBend;
 use crate::geom::polyline::Polyline;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::joint::{JointFan, RibbonBend, RibbonJoint};
+use crate::ribbon::joint::{JointFan, RibbonJoint};
 use crate::ribbon::plan::PlanVertex;
 
 /// How much wider a taper may grow from one cross-section to the next. A texture is straight on each of a quad's two
@@ -52,28 +54,6 @@ pub struct Continuations {
     pub after: Option<DVec2>,
 }
 
-/// How wide a ribbon is along its line, in meters; every width above 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Widths<'a> {
-    /// As wide everywhere.
-    Constant(f64),
-    /// A width at each of the line's vertices; it grows or shrinks evenly between them.
-    PerVertex(&'a [f64]),
-}
-
-impl Widths<'_> {
-    /// The width at the line's vertex `index`.
-    ///
-    /// # Panics
-    /// Where there is no width for that vertex.
-    pub fn at(&self, index: usize) -> f64 {
-        match self {
-            Self::Constant(width_m) => *width_m,
-            Self::PerVertex(widths_m) => widths_m[index],
-        }
-    }
-}
-
 /// Where the texture stands along a line, so that it can go on from one ribbon to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stations {
@@ -90,14 +70,14 @@ impl Default for Stations {
     }
 }
 
-/// A ribbon's way: what its options do not say.
+/// The path of a ribbon.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokePath<'a> {
     /// The centerline.
     pub line: &'a Polyline,
-    /// How wide it is; instead of the options' width.
-    pub widths: Widths<'a>,
-    /// What goes on at its ends.
+    /// Its width; instead of the options' width.
+    pub width: &'a Width,
+    /// What continues it at its ends.
     pub beyond: Continuations,
     /// Where its texture stands.
     pub stations: Stations,
@@ -112,25 +92,22 @@ pub fn stroke(
     options: &StrokeOptions,
     sink: &mut impl MeshSink<PlanVertex>,
 ) {
-    let widths = Widths::Constant(options.width_m);
-    stroke_course(&StrokePath { line, widths, beyond, stations: Stations::default() }, options, sink);
+    let width = &Width::Constant(options.width_m);
+    stroke_path(&StrokePath { line, width, beyond, stations: Stations::default() }, options, sink);
 }
 
-/// Writes the ribbon along `course` to `sink`, as [`stroke`] does, with a width of its own at every vertex.
-///
-/// # Panics
-/// Where there are fewer widths than vertices.
-pub fn stroke_course(course: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
-    let last = course.line.points().len() - 1;
-    let mut start = course.end(0, options, sink);
+/// Writes the ribbon along `path` to `sink`, as [`stroke`] does, with the path's width.
+pub fn stroke_path(path: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
+    let last = path.line.points().len() - 1;
+    let mut start = path.end(0, options, sink);
     for index in 1..=last {
         let (closing, opening) = if index == last {
-            let end = course.end(last, options, sink);
+            let end = path.end(last, options, sink);
             (end, end)
         } else {
-            course.bend(index, options, sink)
+            path.bend(index, options, sink)
         };
-        course.segment(index - 1, [start, closing], sink);
+        path.segment(index - 1, [start, closing], sink);
         start = opening;
     }
 }
@@ -152,15 +129,15 @@ impl StrokePath<'_> {
     /// The edge at the line's first or last vertex: shared with what goes on there, else square.
     fn end(&self, index: usize, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) -> RibbonEdge {
         let points = self.line.points();
-        let half_m = self.widths.at(index) / 2.0;
+        let half = self.half_m(index);
         let around = if index == 0 {
             self.beyond.before.map(|before| [before, points[0], points[1]])
         } else {
             self.beyond.after.map(|after| [points[index - 1], points[index], after])
         };
-        let shared = around.and_then(|points| RibbonBend { points, half_m }.mitered(options.miter_limit));
+        let shared = around.and_then(|points| LineBend { points, half }.mitered(options.miter_limit));
         let segment = index.saturating_sub(1);
-        let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half_m;
+        let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half;
         let to_left = shared.unwrap_or(square);
         self.edge(index, [to_left, -to_left], options, sink)
     }
@@ -174,8 +151,8 @@ impl StrokePath<'_> {
     ) -> (RibbonEdge, RibbonEdge) {
         let points = self.line.points();
         let around = [points[index - 1], points[index], points[index + 1]];
-        let bend = RibbonBend { points: around, half_m: self.widths.at(index) / 2.0 };
-        match bend.joint(options.join, options.miter_limit) {
+        let bend = LineBend { points: around, half: self.half_m(index) };
+        match RibbonJoint::new(&bend, options.join, options.miter_limit) {
             RibbonJoint::Shared(to_left) => {
                 let edge = self.edge(index, [to_left, -to_left], options, sink);
                 (edge, edge)
@@ -198,6 +175,10 @@ impl StrokePath<'_> {
         let (at, v) = (self.line.points()[index], self.v(index, options));
         let corner = |side: usize| PlanVertex { at: at + ways[side], uv: Vec2::new(side as f32, v) };
         RibbonEdge::write([corner(0), corner(1)], sink)
+    }
+
+    fn half_m(&self, index: usize) -> f64 {
+        self.width.at(self.line.stations()[index]) / 2.0
     }
 
     fn v(&self, index: usize, options: &StrokeOptions) -> f32 {
@@ -226,7 +207,7 @@ impl StrokePath<'_> {
 
     /// Writes the quad of a segment, in as many pieces as its taper needs.
     fn segment(&self, segment: usize, [from, to]: [RibbonEdge; 2], sink: &mut impl MeshSink<PlanVertex>) {
-        let steps = taper_steps(self.widths.at(segment), self.widths.at(segment + 1));
+        let steps = taper_steps(2.0 * self.half_m(segment), 2.0 * self.half_m(segment + 1));
         let mut start = from;
         for step in 1..=steps {
             let end = if step == steps {
@@ -273,6 +254,7 @@ fn write_triangle(corners: [(VertexId, PlanVertex); 3], sink: &mut impl MeshSink
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::profile::Profile;
     use crate::ribbon::plan::PlanMesh;
 
     fn stroked(points: &[(f64, f64)], options: &StrokeOptions) -> PlanMesh {
@@ -355,14 +337,14 @@ mod tests {
     #[test]
     fn a_taper_is_a_trapezium_with_its_edges_straight() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 100.0], 0.0).expect("a line");
-        let course = StrokePath {
+        let path = StrokePath {
             line: &line,
-            widths: Widths::PerVertex(&[4.0, 12.0]),
+            width: &Width::Varying(Profile::straight(100.0, [4.0, 12.0])),
             beyond: Continuations::default(),
             stations: Stations::default(),
         };
         let mut mesh = PlanMesh::default();
-        stroke_course(&course, &StrokeOptions::default(), &mut mesh);
+        stroke_path(&path, &StrokeOptions::default(), &mut mesh);
         assert!((mesh.area_m2() - 800.0).abs() < 1e-9, "{}", mesh.area_m2());
         for vertex in &mesh.vertices {
             assert!((vertex.at.y.abs() - (2.0 + 0.04 * vertex.at.x)).abs() < 1e-9, "{vertex:?}");
@@ -374,14 +356,14 @@ mod tests {
     fn a_texture_goes_on_where_its_stations_say() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 24.0], 0.0).expect("a line");
         let stations = Stations { first_m: 36.0, per_m: -1.0 };
-        let course = StrokePath {
+        let path = StrokePath {
             line: &line,
-            widths: Widths::Constant(6.0),
+            width: &Width::Constant(6.0),
             beyond: Continuations::default(),
             stations,
         };
         let mut mesh = PlanMesh::default();
-        stroke_course(&course, &StrokeOptions::default(), &mut mesh);
+        stroke_path(&path, &StrokeOptions::default(), &mut mesh);
         let v = |x: f64| mesh.vertices.iter().find(|vertex| vertex.at.x == x).map(|vertex| vertex.uv.y);
         assert_eq!((v(0.0), v(24.0)), (Some(3.0), Some(1.0)));
     }

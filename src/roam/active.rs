@@ -3,9 +3,9 @@
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// Which vertices are active. Patch corners always are.
+/// The active vertices. Patch corners are always active and have no bit.
 ///
-/// Every operation keeps the bits closed under parents, so that whatever is emitted from them is conforming.
+/// Every operation keeps the bits closed under parents, so that all triangles made from them are conforming.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ActiveSet {
     layout: PatchLayout,
@@ -13,12 +13,12 @@ pub struct ActiveSet {
 }
 
 impl ActiveSet {
-    /// No vertex but the patch corners.
+    /// The patch corners alone.
     pub fn new(layout: PatchLayout) -> Self {
         Self { layout, bits: vec![0; layout.vertex_count().div_ceil(64)] }
     }
 
-    /// The layout whose vertices it holds.
+    /// The layout of the vertices.
     pub fn layout(&self) -> &PatchLayout {
         &self.layout
     }
@@ -29,14 +29,20 @@ impl ActiveSet {
         self.layout.is_corner(vertex) || self.bit(self.layout.index(vertex))
     }
 
+    /// Whether the vertex at `index` is active; `false` for patch corners.
+    #[inline]
+    pub fn bit(&self, index: usize) -> bool {
+        self.bits[index / 64] >> (index % 64) & 1 == 1
+    }
+
     /// Activates a vertex and first its inactive parents, up to the roots: the forced split.
     #[inline]
     pub fn activate(&mut self, vertex: Vertex) {
         self.activate_each(vertex, &mut |_| ());
     }
 
-    /// The forced split as [`ActiveSet::activate`] does it; `each` is told every vertex that becomes active,
-    /// parents before their children. Recursion is as deep as the graph has levels, 25 at most.
+    /// [`ActiveSet::activate`] with a call of `each` for every vertex that becomes active, parents before children. The
+    /// recursion is at most 25 deep, the number of levels.
     #[inline]
     pub fn activate_each(&mut self, vertex: Vertex, each: &mut impl FnMut(Vertex)) {
         if self.layout.contains(vertex) && !self.is_active(vertex) {
@@ -53,14 +59,12 @@ impl ActiveSet {
         each(vertex);
     }
 
-    /// Deactivates a vertex and first its active children, down to the finest: the forced merge. Patch corners
-    /// stay.
+    /// Deactivates a vertex and first its active children, down to the finest: the forced merge. Patch corners stay.
     pub fn deactivate(&mut self, vertex: Vertex) {
         self.deactivate_each(vertex, &mut |_| ());
     }
 
-    /// The forced merge as [`ActiveSet::deactivate`] does it; `each` is told every vertex that becomes inactive,
-    /// children before their parents.
+    /// [`ActiveSet::deactivate`] with a call of `each` for every vertex that becomes inactive, children before parents.
     pub fn deactivate_each(&mut self, vertex: Vertex, each: &mut impl FnMut(Vertex)) {
         if !self.layout.contains(vertex) || self.layout.is_corner(vertex) || !self.is_active(vertex) {
             return;
@@ -72,56 +76,44 @@ impl ActiveSet {
         each(vertex);
     }
 
-    /// Deactivates a vertex that can go without any other going; says whether it did. It did not where the
-    /// vertex is a patch corner, not active, or has an active child.
+    /// Deactivates a vertex if it is mergeable; returns whether it was.
     pub fn merge(&mut self, vertex: Vertex) -> bool {
-        let goes = self.is_mergeable(vertex);
-        if goes {
+        let is_mergeable = self.is_mergeable(vertex);
+        if is_mergeable {
             self.clear(vertex);
         }
-        goes
+        is_mergeable
     }
 
     /// Whether the vertex is in the layout, active, no patch corner, and has no active child.
     pub fn is_mergeable(&self, vertex: Vertex) -> bool {
         self.layout.contains(vertex)
             && self.bit(self.layout.index(vertex))
-            && !vertex.children().any(|child| self.layout.contains(child) && self.is_active(child))
+            && !self.layout.children(vertex).any(|child| self.is_active(child))
     }
 
-    /// How many vertices are active, not counting patch corners.
+    /// The number of active vertices, without patch corners.
     pub fn count(&self) -> usize {
         self.bits.iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// Whether every active vertex has its parents active.
+    /// Checks that every active vertex has its parents active.
     ///
-    /// # Errors
-    /// A sentence naming the first vertex whose parent is missing.
-    pub fn check(&self) -> Result<(), String> {
-        let columns = self.layout.columns();
-        for index in (0..self.layout.vertex_count()).filter(|&index| self.bit(index)) {
-            let vertex = Vertex::new((index % columns) as i32, (index / columns) as i32);
-            let missing = vertex
-                .parents()
-                .into_iter()
-                .find(|&parent| self.layout.contains(parent) && !self.is_active(parent));
-            if let Some(parent) = missing {
-                return Err(format!("{vertex:?} is active, its parent {parent:?} is not"));
-            }
+    /// # Panics
+    /// Where one has not.
+    pub fn check(&self) {
+        for vertex in self.layout.vertices().filter(|&vertex| self.is_active(vertex)) {
+            let missing = self.layout.parents(vertex).find(|&parent| !self.is_active(parent));
+            assert!(
+                self.layout.is_corner(vertex) || missing.is_none(),
+                "{vertex:?} is active, its parent {missing:?} is not"
+            );
         }
-        Ok(())
     }
 
     fn clear(&mut self, vertex: Vertex) {
         let index = self.layout.index(vertex);
         self.bits[index / 64] &= !(1 << (index % 64));
-    }
-
-    /// Whether the vertex stored at `index` is active; patch corners have no bit.
-    #[inline]
-    pub fn bit(&self, index: usize) -> bool {
-        self.bits[index / 64] >> (index % 64) & 1 == 1
     }
 }
 
@@ -140,7 +132,7 @@ mod tests {
                 active.activate(Vertex::new(x, y));
                 prop_assert!(!active.layout().contains(Vertex::new(x, y)) || active.is_active(Vertex::new(x, y)));
             }
-            prop_assert_eq!(active.check(), Ok(()));
+            active.check();
         }
 
         #[test]
@@ -177,7 +169,7 @@ mod tests {
             vertices.iter().for_each(|&(x, y)| active.activate(Vertex::new(x, y)));
             for (x, y) in gone {
                 active.deactivate(Vertex::new(x, y));
-                prop_assert_eq!(active.check(), Ok(()));
+                active.check();
                 let inside = active.layout().contains(Vertex::new(x, y));
                 let corner = active.layout().is_corner(Vertex::new(x, y));
                 prop_assert!(!inside || corner || !active.is_active(Vertex::new(x, y)));

@@ -1,4 +1,4 @@
-//! The triangle bintree as pure arithmetic: a triangle is its three corners, nothing is linked.
+//! The triangle bintree as pure arithmetic: a triangle is its three corners.
 
 use crate::roam::graph::Vertex;
 
@@ -14,9 +14,8 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The two triangles of the square patch with south-west corner `corner` and side `side`, a power of two.
-    ///
-    /// The diagonal between them alternates from patch to patch, as the vertex graph asks.
+    /// The two triangles of the square patch with south-west corner `corner` and side `side`, a power of two. The diagonal
+    /// between them alternates from patch to patch, as in the vertex graph.
     #[inline]
     pub const fn roots(corner: Vertex, side: i32) -> [Self; 2] {
         let (south_east, north_west) = (corner.moved(side, 0), corner.moved(0, side));

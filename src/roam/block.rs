@@ -1,53 +1,74 @@
-//! One patch on its own: what refinement needs to know of its vertices, and where it comes from.
+//! One patch on its own: the vertices that refinement reads, and their sources.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::dem::error::DemErrorKind;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
+use crate::terrain::lattice::LatticeError;
 
-/// The vertices of one patch, (patch + 1)² of them, row by row from the south-west; those on a border are the same
-/// in both patches that share it.
+/// The (patch + 1)² vertices of one patch, row by row from the south-west; those on a border are the same in both patches
+/// that share it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchBlock {
     /// World X of each column and Y of each row, meters.
     pub plan: [Vec<f32>; 2],
-    /// Drawn Z, meters; NaN without data.
+    /// Displayed Z, meters; NaN without data.
     pub z: Vec<f32>,
     /// Radius of the nested sphere, meters.
     pub radii: Vec<f32>,
 }
 
-/// Why a patch cannot be had.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the patch at column {column}, row {row} of the elevation model cannot be read: {reason}")]
+/// A patch that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("the patch at column {column}, row {row} of the elevation model cannot be read: {source}")]
 pub struct BlockError {
-    /// Its south-west post, counted eastward.
+    /// The column of its south-west post, counted eastward.
     pub column: u32,
-    /// Counted northward.
+    /// The row of its south-west post, counted northward.
     pub row: u32,
-    /// What went wrong.
-    pub reason: String,
+    /// The cause.
+    pub source: BlockFault,
 }
 
-/// The sphere in the middle of a patch: nothing in the patch is active while the eye is outside it.
+/// Why a patch cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum BlockFault {
+    /// The samples cannot be read.
+    #[error(transparent)]
+    Read(#[from] DemErrorKind),
+    /// The samples are no lattice.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The patch with its surroundings has more vertices than a layout may have.
+    #[error("{columns} x {rows} posts are too many at once")]
+    TooMany {
+        /// Posts per row.
+        columns: u32,
+        /// Rows.
+        rows: u32,
+    },
+}
+
+/// The sphere in the middle of a patch: no vertex of the patch is active while the eye is outside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootSphere {
-    /// The patch's middle, drawn world space.
+    /// The patch's middle, world space.
     pub center: Vec3,
     /// Its radius, meters.
     pub radius: f32,
 }
 
-/// Where patches come from: the memory, or a file larger than it.
+/// A source of patches: memory, or a file larger than it.
 pub trait BlockSource {
     /// The patches.
     fn layout(&self) -> &PatchLayout;
 
-    /// The sphere in the middle of the patch with south-west corner `corner`, known without reading the patch.
+    /// The sphere in the middle of the patch with south-west corner `corner`, without reading the patch.
     fn root(&self, corner: Vertex) -> RootSphere;
 
     /// The patch with south-west corner `corner`.
@@ -57,7 +78,7 @@ pub trait BlockSource {
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError>;
 }
 
-/// Patches of a ground that is in memory.
+/// Patches of a ground in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct WholeGround<'a> {
     /// The heights.
@@ -79,40 +100,27 @@ impl BlockSource for WholeGround<'_> {
     }
 
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
-        Ok(Arc::new(PatchBlock::cut(self.ground, self.spheres, corner)))
+        Ok(Arc::new(PatchBlock::new(self.ground, self.spheres, corner)))
     }
 }
 
 impl PatchBlock {
     /// The patch with south-west corner `corner` of a ground in memory.
-    pub fn cut(ground: PatchedGround<'_>, spheres: &SphereMap, corner: Vertex) -> Self {
+    pub fn new(ground: PatchedGround<'_>, spheres: &SphereMap, corner: Vertex) -> Self {
         let side = ground.layout.patch() + 1;
-        let plan = [
-            (0..side).map(|x| ground.plan(corner.moved(x, 0)).x).collect(),
-            (0..side).map(|y| ground.plan(corner.moved(0, y)).y).collect(),
-        ];
-        let mut block = Self {
-            plan,
-            z: Vec::with_capacity((side * side) as usize),
-            radii: Vec::with_capacity((side * side) as usize),
-        };
-        for y in 0..side {
-            block.append_row(ground, spheres, corner.moved(0, y));
+        let columns = (0..side).map(|x| ground.plan(corner.moved(x, 0)).x).collect();
+        let rows = (0..side).map(|y| ground.plan(corner.moved(0, y)).y).collect();
+        let [mut z, mut radii] = [0; 2].map(|_| Vec::with_capacity((side * side) as usize));
+        for first in (0..side).map(|y| corner.moved(0, y)) {
+            let start = ground.layout.index(first);
+            radii.extend_from_slice(&spheres.values()[start..start + side as usize]);
+            let [from, to] = [first, first.moved(side - 1, 0)]
+                .map(|vertex| ground.lattice.index(ground.layout.post(vertex)));
+            let row = &ground.lattice.heights()[from..=to];
+            z.extend_from_slice(row);
+            // Vertices beyond the east border have the last post's height.
+            z.extend(std::iter::repeat_n(row[row.len() - 1], side as usize - row.len()));
         }
-        block
-    }
-
-    /// Appends the vertices from `first` to the end of the row in its patch.
-    fn append_row(&mut self, ground: PatchedGround<'_>, spheres: &SphereMap, first: Vertex) {
-        let side = ground.layout.patch() as usize + 1;
-        let start = ground.layout.index(first);
-        self.radii.extend_from_slice(&spheres.values()[start..start + side]);
-        let (from, to) = (first, first.moved(side as i32 - 1, 0));
-        let (from, to) = (ground.layout.post(from), ground.layout.post(to));
-        let row = &ground.lattice.heights()[ground.lattice.index(from)..=ground.lattice.index(to)];
-        self.z.extend_from_slice(row);
-        // Vertices beyond the east border stand for the last post.
-        let last = self.z[self.z.len() - 1];
-        self.z.extend(std::iter::repeat_n(last, side - row.len()));
+        Self { plan: [columns, rows], z, radii }
     }
 }

@@ -1,7 +1,7 @@
-//! How far a mesh over the lattice's posts is off the ground, measured at every post.
+//! The vertical distances of a mesh over the lattice's posts from the ground, measured at every post.
 //!
-//! This is the check of the promise an error bound makes, so it shares nothing with what made the mesh but the
-//! lattice: it takes the triangles as they are written, in f64, whatever made them.
+//! This checks the promise of an error bound, so it shares nothing with what made the mesh except the lattice: it takes the
+//! triangles as they are written, in f64.
 
 use glam::DVec3;
 
@@ -18,18 +18,18 @@ pub struct Deviation {
     pub mean_m: f64,
     /// The root of the mean square.
     pub rms_m: f64,
-    /// Where the largest is, the first in order of rows where there are several; `None` where the mesh is empty.
+    /// Where the largest is, the first in order of rows; `None` where the mesh is empty.
     pub worst: Option<Post>,
-    /// Posts with data that stand in a triangle.
+    /// Posts with data in a triangle.
     pub measured: usize,
-    /// Posts with data that stand in none: the mesh leaves them out.
+    /// Posts with data in none.
     pub left_out: usize,
 }
 
 /// Why a mesh cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BoundError {
-    /// A vertex does not stand on a post of the lattice.
+    /// A vertex is not on a post of the lattice.
     #[error("vertex {0} of the mesh stands on no post")]
     OffPosts(usize),
     /// A triangle covers a post that has no data.
@@ -44,10 +44,8 @@ pub enum BoundError {
     },
 }
 
-/// Measures `mesh`, whose vertices stand on posts of `lattice`, heights without exaggeration.
-///
-/// Posts stand where [`Lattice::position`] has them: in f32, as the mesh has its vertices. A post in several
-/// triangles counts with the largest of its distances.
+/// Measures `mesh`, whose vertices are posts of `lattice` at [`Lattice::position`]. A post in several triangles counts with
+/// the largest of its distances.
 ///
 /// # Errors
 /// See [`BoundError`].
@@ -55,36 +53,33 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
     let posts: Vec<Post> = (0..mesh.positions.len())
         .map(|vertex| post_of(lattice, mesh, vertex).ok_or(BoundError::OffPosts(vertex)))
         .collect::<Result<_, _>>()?;
-    let mut off = vec![f64::NAN; lattice.heights().len()];
+    let mut distances = vec![f64::NAN; lattice.heights().len()];
     for (triangle, corners) in mesh.triangles.iter().enumerate() {
         let corner_posts = corners.map(|id| posts[id.index()]);
         let corners = corners.map(|id| mesh.positions[id.index()].as_dvec3());
-        for span in RowSpans::of(corner_posts) {
+        for span in RowSpans::new(corner_posts) {
             for post in (span.first..=span.last).map(|column| Post { column, row: span.row }) {
                 let distance = distance(lattice, &corners, &corner_posts, post);
                 if distance.is_nan() {
                     return Err(BoundError::OverHole { triangle, column: post.column, row: post.row });
                 }
-                let slot = &mut off[lattice.index(post)];
+                let slot = &mut distances[lattice.index(post)];
                 *slot = slot.max(distance);
             }
         }
     }
-    Ok(summary(lattice, &off))
+    Ok(summary(lattice, &distances))
 }
 
 fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
-    let at = mesh.positions[vertex];
-    let grid = (at.truncate().as_dvec2() / lattice.cell()).round();
-    let inside = grid.x >= 0.0
-        && grid.y >= 0.0
-        && grid.x < f64::from(lattice.columns())
-        && grid.y < f64::from(lattice.rows());
-    let post = Post { column: grid.x as u32, row: grid.y as u32 };
-    (inside && lattice.position(post) == at.truncate()).then_some(post)
+    let at = mesh.positions[vertex].truncate();
+    let grid = (at.as_dvec2() / lattice.cell()).round();
+    let is_inside = grid.cmpge(glam::DVec2::ZERO).all() && grid.cmple(lattice.last_grid()).all();
+    let post = Post::at_grid(grid);
+    (is_inside && lattice.position(post) == at).then_some(post)
 }
 
-/// How far a post is off the plane of a triangle; off its very height where it is a corner.
+/// The distance of a post from the plane of a triangle; from the corner itself where it is one.
 fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Post) -> f64 {
     let height = f64::from(lattice.height(post));
     if let Some(corner) = posts.iter().position(|&corner| corner == post) {
@@ -97,9 +92,9 @@ fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Po
     (height - (a.z + (toward_b * ab.z + toward_c * ac.z) / doubled_area)).abs()
 }
 
-fn summary(lattice: &Lattice, off: &[f64]) -> Deviation {
+fn summary(lattice: &Lattice, distances: &[f64]) -> Deviation {
     let (mut worst, mut max_m, mut sum, mut squares, mut measured) = (None, 0.0, 0.0, 0.0, 0);
-    for (post, &distance) in lattice.posts().zip(off).filter(|(_, distance)| !distance.is_nan()) {
+    for (post, &distance) in lattice.posts().zip(distances).filter(|(_, distance)| !distance.is_nan()) {
         if worst.is_none() || distance > max_m {
             (worst, max_m) = (Some(post), distance);
         }

@@ -1,8 +1,8 @@
-//! Which patches can be seen.
+//! The patches that can be in view.
 //!
-//! Patches are asked about in squares of 2ᵏ × 2ᵏ, the coarsest first: a square out of view is left at once, and
-//! one inside a plane is not asked about that plane again, so that the cost follows what can be seen and not how
-//! much terrain there is. The height ranges of the squares are kept level by level:
+//! Squares of 2ᵏ × 2ᵏ patches are tested, the coarsest first: a square out of view is discarded at once, and one inside a
+//! plane is not tested against that plane again, so the cost follows what is in view and not the size of the terrain. The
+//! height ranges of the squares are kept level by level:
 //!
 //! ```text
 //! level 0: one patch      level 1: 2 × 2      level 2: 4 × 4, cut off at the border
@@ -21,7 +21,7 @@ use crate::view::wedge::GroundWedge;
 pub enum Culling {
     /// Nothing: every patch with data is listed.
     Nothing,
-    /// The ground-plane wedge of 000: left, right and far, blind to heights.
+    /// The left, right and far plane on the ground plane, without heights (Lin et al.).
     Wedge(GroundWedge),
     /// All five planes, against boxes with height.
     Frustum(Frustum),
@@ -46,7 +46,7 @@ impl Culling {
         }
     }
 
-    /// The planes of `among` that the box crosses, `None` where it is out of view.
+    /// The planes of `among` that the box crosses; `None` where it is out of view.
     fn crossed(&self, min: Vec3, max: Vec3, among: u8) -> Option<u8> {
         match self {
             Self::Nothing => Some(0),
@@ -56,7 +56,7 @@ impl Culling {
     }
 }
 
-/// The lowest and highest drawn Z of each patch and of squares of them.
+/// The lowest and highest displayed Z of each patch and of squares of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchHeights {
     levels: Vec<RangeLevel>,
@@ -69,11 +69,11 @@ struct RangeLevel {
     ranges: Vec<(f32, f32)>,
 }
 
-/// The range of no post.
+/// The range without posts.
 pub(in crate::roam) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
 
 impl PatchHeights {
-    /// The ranges of the drawn ground; patches without data get an empty range.
+    /// The ranges of a ground; patches without data have an empty range.
     pub fn new(ground: PatchedGround<'_>) -> Self {
         let (columns, _) = ground.layout.patch_grid();
         let ranges = ground.layout.patches().map(|corner| range(ground, corner)).collect();
@@ -86,31 +86,26 @@ impl PatchHeights {
 
     /// Measures the patch with south-west corner `corner` again, after an edit.
     pub fn renew(&mut self, ground: PatchedGround<'_>, corner: Vertex) {
-        let patch = ground.layout.patch();
-        self.put((corner.x / patch) as usize, (corner.y / patch) as usize, range(ground, corner));
+        self.put(ground.layout.patch_index(corner), range(ground, corner));
     }
 
-    /// Sets the range of the patch in column `x` and row `y`, and those of the squares that hold it.
-    fn put(&mut self, mut x: usize, mut y: usize, mut renewed: (f32, f32)) {
-        for place in 0..self.levels.len() {
-            let level = &mut self.levels[place];
-            let index = y * level.columns + x;
-            level.ranges[index] = renewed;
+    /// Sets the range of the patch `index`, and those of the squares that hold it.
+    fn put(&mut self, index: usize, mut range: (f32, f32)) {
+        let (mut x, mut y) = (index % self.levels[0].columns, index / self.levels[0].columns);
+        for level in &mut self.levels {
+            level.ranges[y * level.columns + x] = range;
             (x, y) = (x / 2, y / 2);
-            renewed = level.square(x, y);
+            range = level.square(x, y);
         }
     }
 
-    /// Takes in heights of the patch `index` that are new, drawn Z from `low` to `high`, where none of the range's own
-    /// ends went away.
-    pub(in crate::roam) fn widen(&mut self, index: usize, (low, high): (f32, f32)) {
-        let range = self.levels[0].ranges[index];
-        let columns = self.levels[0].columns;
-        self.put(index % columns, index / columns, (range.0.min(low), range.1.max(high)));
+    /// Widens the range of the patch `index` by new heights, where none of the range's ends was removed.
+    pub(in crate::roam) fn widen(&mut self, index: usize, heights: (f32, f32)) {
+        self.put(index, joined(self.range(index), heights));
     }
 
-    /// The lowest and highest drawn Z of the patch `index`, in the layout's patch order; low above high where it
-    /// has no data.
+    /// The lowest and highest displayed Z of the patch `index`, in the layout's patch order; low above high where it has
+    /// no data.
     pub fn range(&self, index: usize) -> (f32, f32) {
         self.levels[0].ranges[index]
     }
@@ -122,17 +117,13 @@ impl PatchHeights {
         (low <= high).then(|| (ground.plan(corner).extend(low), ground.plan(far).extend(high)))
     }
 
-    /// The box of the two triangles that `vertex` splits, as high and as low as the patches they lie in; `None`
-    /// without data.
+    /// The box of the two triangles that `vertex` splits, as high and as low as the patches they lie in; `None` without
+    /// data.
     pub fn diamond(&self, ground: PatchedGround<'_>, vertex: Vertex) -> Option<(Vec3, Vec3)> {
         let (min, max) = ground.diamond(vertex);
-        let patch = ground.layout.patch();
-        let before = |at: i32| (at - 1).max(0) / patch;
-        let (low, high) = ground
-            .layout
-            .patches_within((before(vertex.x), before(vertex.y)), (vertex.x / patch, vertex.y / patch))
-            .map(|corner| self.range(ground.layout.patch_index(corner)))
-            .reduce(joined)?;
+        let patches = ground.layout.patches_meeting(vertex, vertex);
+        let (low, high) =
+            patches.map(|corner| self.range(ground.layout.patch_index(corner))).reduce(joined)?;
         (low <= high).then(|| (min.extend(low), max.extend(high)))
     }
 }
@@ -159,7 +150,7 @@ impl RangeLevel {
     }
 }
 
-/// The range of both.
+/// The smallest range around both.
 pub(in crate::roam) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
@@ -170,14 +161,12 @@ fn range(ground: PatchedGround<'_>, corner: Vertex) -> (f32, f32) {
     (first.row..=last.row)
         .map(|row| {
             let start = row as usize * lattice.columns() as usize;
-            let posts = &lattice.heights()[start + first.column as usize..=start + last.column as usize];
-            drawn_range(posts)
+            drawn_range(&lattice.heights()[start + first.column as usize..=start + last.column as usize])
         })
         .fold(NO_DATA, joined)
 }
 
-/// The lowest and highest drawn Z of some posts, those without data left out. Several at a time: the smaller of two
-/// numbers must be known before that of three.
+/// The lowest and highest of some heights, those without data left out. In lanes, which do not wait for each other.
 pub(in crate::roam) fn drawn_range(heights: &[f32]) -> (f32, f32) {
     const LANES: usize = 8;
     let (mut low, mut high) = ([NO_DATA.0; LANES], [NO_DATA.1; LANES]);
@@ -196,25 +185,25 @@ pub(in crate::roam) fn drawn_range(heights: &[f32]) -> (f32, f32) {
 
 /// The south-west corners of the patches that hold data and may be seen, row by row.
 pub fn patches_in_view(ground: PatchedGround<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
-    let mut found = Vec::new();
-    cull(ground, heights, &Culling::Frustum(*frustum), &mut found);
-    found
+    let mut patches = Vec::new();
+    cull(ground, heights, &Culling::Frustum(*frustum), &mut patches);
+    patches
 }
 
-/// Fills `found` with the south-west corners of the patches that hold data and are not culled, row by row.
-pub fn cull(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
-    gather(ground, heights, culling, found);
-    found.sort_unstable_by_key(|corner| (corner.y, corner.x));
+/// Fills `patches` with the south-west corners of the patches that hold data and are not culled, row by row.
+pub fn cull(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, patches: &mut Vec<Vertex>) {
+    gather(ground, heights, culling, patches);
+    patches.sort_unstable_by_key(|corner| (corner.y, corner.x));
 }
 
-/// As [`cull`], in the order in which the squares are visited: row by row within every square.
-fn gather(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, found: &mut Vec<Vertex>) {
-    found.clear();
-    let top = heights.levels.len() - 1;
-    visit(ground, heights, culling, PatchSquare { level: top, x: 0, y: 0 }, culling.all(), found);
+/// [`cull`] in the order in which the squares are visited: row by row within every square.
+fn gather(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, patches: &mut Vec<Vertex>) {
+    patches.clear();
+    let top = PatchSquare { level: heights.levels.len() - 1, x: 0, y: 0 };
+    PatchCull { ground, heights, culling, patches }.visit(top, culling.all());
 }
 
-/// The patches in view, culled again only when the view is another.
+/// The patches in view, culled again only when the view changes.
 #[derive(Clone, Debug, Default)]
 pub struct InView {
     culling: Option<Culling>,
@@ -222,8 +211,8 @@ pub struct InView {
 }
 
 impl InView {
-    /// The south-west corners of the patches that hold data and are not culled, by squares: neighbors in the list
-    /// are neighbors on the ground.
+    /// The south-west corners of the patches that hold data and are not culled, by squares: neighbors in the list are
+    /// neighbors on the ground.
     pub fn update(
         &mut self,
         ground: PatchedGround<'_>,
@@ -251,36 +240,36 @@ struct PatchSquare {
     y: usize,
 }
 
-fn visit(
-    ground: PatchedGround<'_>,
-    heights: &PatchHeights,
-    culling: &Culling,
-    square: PatchSquare,
-    among: u8,
-    found: &mut Vec<Vertex>,
-) {
-    let Some(level) = heights.levels.get(square.level).filter(|level| square.x < level.columns) else {
-        return;
-    };
-    let Some(&(low, high)) =
-        level.ranges.get(square.y * level.columns + square.x).filter(|range| range.0 <= range.1)
-    else {
-        return;
-    };
-    let side = ground.layout.patch() << square.level;
-    let corner = Vertex::new(square.x as i32 * side, square.y as i32 * side);
-    // Squares at the border reach past the last patch; their far posts are those on the border all the same.
-    let (min, max) = (ground.plan(corner).extend(low), ground.plan(corner.moved(side, side)).extend(high));
-    let Some(among) = culling.crossed(min, max, among) else {
-        return;
-    };
-    if square.level == 0 {
-        found.push(corner);
-        return;
-    }
-    for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-        let quarter = PatchSquare { level: square.level - 1, x: 2 * square.x + x, y: 2 * square.y + y };
-        visit(ground, heights, culling, quarter, among, found);
+struct PatchCull<'a> {
+    ground: PatchedGround<'a>,
+    heights: &'a PatchHeights,
+    culling: &'a Culling,
+    patches: &'a mut Vec<Vertex>,
+}
+
+impl PatchCull<'_> {
+    fn visit(&mut self, square: PatchSquare, among: u8) {
+        let Some(level) = self.heights.levels.get(square.level).filter(|level| square.x < level.columns)
+        else {
+            return;
+        };
+        let range = level.ranges.get(square.y * level.columns + square.x);
+        let Some(&(low, high)) = range.filter(|range| range.0 <= range.1) else { return };
+        let side = self.ground.layout.patch() << square.level;
+        let corner = Vertex::new(square.x as i32 * side, square.y as i32 * side);
+        // The far posts of a square that reaches past the last patch are those on the border.
+        let (min, max) = (self.ground.plan(corner), self.ground.plan(corner.moved(side, side)));
+        let Some(among) = self.culling.crossed(min.extend(low), max.extend(high), among) else { return };
+        if square.level == 0 {
+            self.patches.push(corner);
+            return;
+        }
+        for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            self.visit(
+                PatchSquare { level: square.level - 1, x: 2 * square.x + x, y: 2 * square.y + y },
+                among,
+            );
+        }
     }
 }
 

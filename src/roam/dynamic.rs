@@ -1,14 +1,12 @@
-//! A terrain whose heights change while it is shown (003's dynamic terrain: craters, tire tracks).
+//! A terrain whose heights change while it is shown (dynamic terrain of Yu and Zhang: craters, tire tracks).
 //!
-//! Whatever is computed from the heights is mended after each edit by what the edit changed, and equals, bit for
-//! bit, what would be made from the new heights from scratch. An edit tells which patches are dirty, so that
-//! whatever lies on the ground or was sent from it is renewed there and nowhere else.
+//! All that is computed from the heights is updated by each edit and equals, bit for bit, a computation from the new
+//! heights. An edit reports its dirty patches; features on the ground and copies of it need an update there alone.
 //!
-//! A terrain is a source of patches, so that a walk can own it: edit the walk's source, and tell the walk which
-//! patches are dirty.
+//! A terrain is a source of patches that a [`Deferred`](crate::roam::refine::deferred::Deferred) mesh can own: edit the
+//! mesh's source, and pass the dirty patches to the mesh.
 //!
-//! The heights are shared: who holds an epoch of them keeps it whole, since an edit then changes a copy. Where nobody
-//! does, an edit copies nothing.
+//! The heights are shared: an edit changes a copy where a snapshot of them is held elsewhere, and copies nothing otherwise.
 
 use std::sync::Arc;
 
@@ -18,7 +16,7 @@ use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeG
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::spheres::Spheres;
 use crate::roam::culling::{NO_DATA, PatchHeights, drawn_range, joined};
-use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
+use crate::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
@@ -30,7 +28,7 @@ use crate::roam::spheres::{OwnRadius, SphereMap};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::volumes::Volumes;
 
-/// What the error of a vertex measures.
+/// The measure of a vertex's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorMeasure {
     /// The midpoint error of the papers.
@@ -39,18 +37,18 @@ pub enum ErrorMeasure {
     Exact,
 }
 
-/// What a vertex's own radius is; see [`OwnRadius`].
+/// A vertex's own radius; see [`OwnRadius`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Radius {
     /// [`OwnRadius::Plain`].
     Plain,
-    /// [`OwnRadius::Constrained`] by the roughness of windows that reach so many posts east and north.
+    /// [`OwnRadius::Constrained`] by the roughness of windows that reach this many posts east and north.
     Constrained((u32, u32)),
     /// [`OwnRadius::Bounding`], a bound where the errors are exact.
     Bounding,
 }
 
-/// How a dynamic terrain is measured.
+/// The measures of a dynamic terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DynamicOptions {
     /// Cells along a patch's side, a power of two from 2 to 4096.
@@ -59,7 +57,7 @@ pub struct DynamicOptions {
     pub measure: ErrorMeasure,
     /// The spheres.
     pub radius: Radius,
-    /// Meters of distance per meter of drawn error; see [`OwnRadius`].
+    /// Meters of distance per meter of error; see [`OwnRadius`].
     pub reach: f32,
 }
 
@@ -70,25 +68,25 @@ pub struct DynamicTerrain {
     lattice: Arc<Lattice>,
     layout: PatchLayout,
     errors: ErrorMap,
-    /// The exact errors of the vertices alone; empty for midpoint errors, which are measured in passing.
+    /// The exact errors of the vertices alone; empty for midpoint errors.
     own: Vec<f32>,
     roughness: Option<Roughness>,
     spheres: SphereMap,
     heights: PatchHeights,
-    epoch: u64,
+    edits: u64,
     /// One a patch, false between edits.
     dirty: Vec<bool>,
 }
 
-/// What an edit did.
+/// The effects of an edit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edit {
-    /// The number of the epoch it began, counted from 1.
-    pub epoch: u64,
+    /// The number of the edit, counted from 1.
+    pub number: u64,
     /// The south-west corners of the dirty patches, in the layout's order. A patch is dirty where one of its vertices,
-    /// its borders included, stands for a post whose height changed, or changed its error or its radius.
+    /// borders included, has a new height, error or radius.
     pub patches: Vec<Vertex>,
-    /// The vertices whose place, error or radius changed; one may be named for each of the three.
+    /// The vertices with a new height, error or radius; one may be listed for each of the three.
     pub vertices: Vec<Vertex>,
     /// The earth moved.
     pub volumes: Volumes,
@@ -100,11 +98,11 @@ impl BlockSource for DynamicTerrain {
     }
 
     fn root(&self, corner: Vertex) -> RootSphere {
-        self.whole().root(corner)
+        self.source().root(corner)
     }
 
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
-        self.whole().block(corner)
+        self.source().block(corner)
     }
 }
 
@@ -124,30 +122,25 @@ impl DynamicTerrain {
             Radius::Constrained(half_window) => Some(Roughness::new(&lattice, half_window)),
             _ => None,
         };
-        let spheres = SphereMap::of(ground, &own_radius(&options, &errors, roughness.as_ref()));
+        let spheres = SphereMap::new(ground, &own_radius(&options, &errors, roughness.as_ref()));
         let heights = PatchHeights::new(ground);
         let lattice = Arc::new(lattice);
         let dirty = vec![false; layout.patch_count()];
-        Some(Self { options, lattice, layout, errors, own, roughness, spheres, heights, epoch: 0, dirty })
+        Some(Self { options, lattice, layout, errors, own, roughness, spheres, heights, edits: 0, dirty })
     }
 
-    /// The heights as they are now; whoever keeps this keeps the epoch.
+    /// The current heights; a snapshot while it is held.
     pub fn lattice(&self) -> &Arc<Lattice> {
         &self.lattice
     }
 
-    fn whole(&self) -> WholeGround<'_> {
+    fn source(&self) -> WholeGround<'_> {
         WholeGround { ground: self.ground(), spheres: &self.spheres }
     }
 
-    /// The ground of this epoch.
+    /// The current ground.
     pub fn ground(&self) -> PatchedGround<'_> {
         PatchedGround { lattice: &self.lattice, layout: &self.layout }
-    }
-
-    /// The patches.
-    pub fn layout(&self) -> &PatchLayout {
-        &self.layout
     }
 
     /// The errors.
@@ -160,24 +153,24 @@ impl DynamicTerrain {
         &self.spheres
     }
 
-    /// How low and high each patch is drawn.
+    /// The lowest and highest Z of each patch.
     pub fn heights(&self) -> &PatchHeights {
         &self.heights
     }
 
-    /// How many edits have changed something.
-    pub fn epoch(&self) -> u64 {
-        self.epoch
+    /// The number of edits that changed something.
+    pub fn edits(&self) -> u64 {
+        self.edits
     }
 
-    /// Lets `brush` change the heights and mends what is computed from them. What it returns must hold everything that
-    /// it changed, in the order it was done, and it may not pin posts. `None` where it changed nothing.
+    /// Lets `brush` change the heights, and updates what is computed from them. `brush` must return all its changes in the
+    /// order in which it made them, and may not pin posts. `None` where it changed nothing.
     pub fn edit(&mut self, brush: impl FnOnce(&mut Lattice) -> BrushChanges) -> Option<Edit> {
         let changes = brush(Arc::make_mut(&mut self.lattice));
         if changes.pieces.is_empty() {
             return None;
         }
-        self.epoch += 1;
+        self.edits += 1;
         let mut vertices =
             Vec::with_capacity(4 * changes.pieces.iter().map(|change| change.before.len()).sum::<usize>());
         for change in &changes.pieces {
@@ -186,10 +179,10 @@ impl DynamicTerrain {
             self.mend(change, &mut vertices);
         }
         let patches = self.patches_of(&vertices);
-        Some(Edit { epoch: self.epoch, patches, vertices, volumes: changes.volumes })
+        Some(Edit { number: self.edits, patches, vertices, volumes: changes.volumes })
     }
 
-    /// Mends everything for one piece and adds the vertices whose error or radius changed to `vertices`.
+    /// Updates errors and spheres for one piece and adds the vertices whose error or radius changed to `vertices`.
     fn mend(&mut self, change: &Change, vertices: &mut Vec<Vertex>) {
         let (lattice, layout) = (&*self.lattice, &self.layout);
         let errors = match self.options.measure {
@@ -201,14 +194,14 @@ impl DynamicTerrain {
         }
         let ground = PatchedGround { lattice, layout };
         let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
-        let spheres: Mended = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
+        let spheres = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
         vertices.extend_from_slice(&errors.vertices);
         vertices.extend_from_slice(&spheres.vertices);
     }
 
-    /// Adds the vertices that stand for posts whose height changed to `vertices`.
+    /// Adds the vertices whose height changed to `vertices`.
     fn add_moved(&self, change: &Change, vertices: &mut Vec<Vertex>) {
-        let rect = VertexRect::of_posts(&self.layout, &change.posts);
+        let rect = VertexRect::from_posts(&self.layout, &change.posts);
         let (first, last) = (change.posts.first, change.posts.last);
         for y in rect.min.y..=rect.max.y {
             let row = self.layout.post(Vertex::new(rect.min.x, y)).row;
@@ -223,12 +216,12 @@ impl DynamicTerrain {
         }
     }
 
-    /// Mends the ranges of the patches that `change` touches: widened by what is new, measured again where the
-    /// lowest or the highest may have gone away.
+    /// Updates the ranges of the patches that `change` touches: widened by the new heights, or measured again where the
+    /// lowest or the highest may have been removed.
     fn renew_heights(&mut self, change: &Change) {
-        let rect = VertexRect::of_posts(&self.layout, &change.posts);
+        let rect = VertexRect::from_posts(&self.layout, &change.posts);
         let (first, last) = (change.posts.first, change.posts.last);
-        for corner in patches_meeting(&self.layout, rect) {
+        for corner in self.layout.patches_meeting(rect.min, rect.max) {
             let index = self.layout.patch_index(corner);
             let far = corner.moved(self.layout.patch(), self.layout.patch());
             let (low, high) = (self.layout.post(corner), self.layout.post(far));
@@ -248,34 +241,24 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (shift, inner) = (self.layout.patch().trailing_zeros(), self.layout.patch() - 1);
-        let (mut dirty, mut last) = (Vec::new(), (-1, -1));
+        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), Vertex::new(-1, -1));
+        let (shift, inner) = (layout.patch().trailing_zeros(), layout.patch() - 1);
         for &vertex in vertices {
-            let own = (vertex.x >> shift, vertex.y >> shift);
+            let own = Vertex::new(vertex.x >> shift, vertex.y >> shift);
             if own == last && vertex.x & inner != 0 && vertex.y & inner != 0 {
                 continue;
             }
             last = own;
-            let (before, after) = (vertex.moved(-1, -1), vertex);
-            for y in before.y.max(0) >> shift..=after.y >> shift {
-                for x in before.x.max(0) >> shift..=after.x >> shift {
-                    dirty.extend(self.layout.patches_within((x, y), (x, y)).filter(|&corner| {
-                        !std::mem::replace(&mut self.dirty[self.layout.patch_index(corner)], true)
-                    }));
-                }
-            }
+            dirty.extend(
+                layout
+                    .patches_meeting(vertex, vertex)
+                    .filter(|&corner| !std::mem::replace(&mut self.dirty[layout.patch_index(corner)], true)),
+            );
         }
-        dirty.sort_unstable_by_key(|&corner| self.layout.patch_index(corner));
-        dirty.iter().for_each(|&corner| self.dirty[self.layout.patch_index(corner)] = false);
+        dirty.sort_unstable_by_key(|&corner| layout.patch_index(corner));
+        dirty.iter().for_each(|&corner| self.dirty[layout.patch_index(corner)] = false);
         dirty
     }
-}
-
-/// The patches that share a vertex with the rectangle, which is not empty.
-fn patches_meeting(layout: &PatchLayout, rect: VertexRect) -> impl Iterator<Item = Vertex> + use<> {
-    let patch = layout.patch();
-    let before = |at: i32| (at - 1).max(0) / patch;
-    layout.patches_within((before(rect.min.x), before(rect.min.y)), (rect.max.x / patch, rect.max.y / patch))
 }
 
 fn own_radius<'a>(
@@ -291,9 +274,9 @@ fn own_radius<'a>(
     }
 }
 
-/// Brings the bits of a mesh made by `criterion` over all patches up to date after `edit`, for the same eye: only
-/// vertices whose place or sphere changed can have changed sides. The criterion must read the mended spheres; their
-/// nesting keeps the bits closed under parents.
+/// Updates the bits of a mesh of all patches by `criterion` after `edit`, for the same eye: only vertices with a new height
+/// or radius can have changed sides. The criterion must read the updated spheres, whose nesting keeps the bits closed under
+/// parents.
 pub fn mend_active(active: &mut ActiveSet, criterion: &Spheres<'_>, edit: &Edit) {
     let layout = *active.layout();
     for &vertex in edit.vertices.iter().filter(|&&vertex| !layout.is_corner(vertex)) {

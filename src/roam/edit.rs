@@ -1,12 +1,12 @@
-//! Mending errors and spheres after heights changed inside a rectangle of posts (003's dynamic terrain).
+//! Updates of errors and spheres after heights changed inside a rectangle of posts (dynamic terrain, Yu and Zhang).
 //!
-//! Only what can have changed is computed again: pass by pass from the finest vertices up, the vertices whose own
-//! measure reads a changed post and the parents of vertices that changed; where a value stays the same, the walk
-//! ends. What was changed in a pass is kept as a rectangle, whose parents the next pass sweeps: the vertices near an
-//! edit are dense, so that a list or a set of them costs more than the few that are looked at in vain.
+//! Only what can have changed is computed again: pass by pass from the finest vertices up, the vertices whose own measure
+//! reads a changed post and the parents of vertices that changed; where a value stays the same, the update ends. The changes
+//! of a pass are kept as a rectangle, whose parents the next pass sweeps: the vertices near an edit are dense, so a list or
+//! a set would cost more than the few vertices swept in vain.
 //!
-//! The result equals, bit for bit, one made anew from the heights as they are now. Where an edit comes in several
-//! rectangles, all heights are changed first and each rectangle is then mended in turn.
+//! The result equals, bit for bit, one computed from the new heights. Where an edit has several rectangles, all heights are
+//! changed first and the updates follow one by one.
 
 use crate::earthworks::brush::Change;
 use crate::roam::errors::ErrorMap;
@@ -20,13 +20,14 @@ use crate::roam::levels::{LevelPass, PassRow, VertexRect, passes};
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::{OwnRadius, SphereMap};
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 
 /// The vertices whose value changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mended {
     /// Each once, the finest first.
     pub vertices: Vec<Vertex>,
-    /// The rectangle around those of each pass, in the order of [`passes`]; the rest is empty.
+    /// The rectangle around those of each pass, in the order of [`passes`]; the other passes have none.
     rects: Vec<VertexRect>,
 }
 
@@ -34,8 +35,8 @@ pub struct Mended {
 const PASSES: usize = 3 * 12;
 
 impl Mended {
-    /// Nothing yet, with room for what a change brings about.
-    fn around(change: &Change) -> Self {
+    /// No vertex yet, with capacity for those of a change.
+    fn with_capacity_for(change: &Change) -> Self {
         Self { vertices: Vec::with_capacity(change.before.len() * 3 / 2), rects: Vec::with_capacity(PASSES) }
     }
 
@@ -44,7 +45,7 @@ impl Mended {
         self.rects.get(pass).copied().unwrap_or(VertexRect::EMPTY)
     }
 
-    /// Sweeps the pass: the rows of the vertices of `rect`, of which `renew` adds those that changed.
+    /// Calls `renew` for the rows of the pass inside `rect`; `renew` adds the vertices that changed.
     fn sweep(
         &mut self,
         layout: &PatchLayout,
@@ -60,11 +61,11 @@ impl Mended {
         self.rects.push(changed.fold(VertexRect::EMPTY, |rect, &vertex| rect.with(vertex)));
     }
 
-    /// The rectangle around the parents, in `pass`, of what changed so far; `pass` is the next to be swept.
+    /// The rectangle around the parents, in `pass`, of the changed vertices; `pass` is the next to be swept.
     fn above(&self, pass: LevelPass) -> VertexRect {
         let (done, step) = (self.rects.len(), pass.step);
         match pass.kind {
-            _ if step == 1 && pass.kind != VertexKind::Center => VertexRect::EMPTY,
+            _ if pass.child_reach() == 0 => VertexRect::EMPTY,
             VertexKind::Center => {
                 self.rect(done - 2).grown(0, step).union(self.rect(done - 1).grown(step, 0))
             }
@@ -74,50 +75,44 @@ impl Mended {
         }
     }
 
-    /// Whether nothing that a pass still to come can read has changed.
+    /// Whether nothing that a later pass can read has changed.
     fn has_ended(&self, pass: LevelPass) -> bool {
         pass.kind == VertexKind::EastEdge && self.rects.last().is_none_or(VertexRect::is_empty)
     }
 }
 
-/// Posts between two that are fetched: what one line of a cache holds.
-const LINE: usize = 16;
-
-/// Reads a value of every cache line of a rectangle. Rows of a big terrain lie far apart, and whoever works on them one
-/// after the other waits for each; these reads wait for nothing, so the memory answers them together.
-fn fetch(values: &[f32], layout: &PatchLayout, rect: VertexRect) {
+/// Reads a value of every cache line of a rectangle. The rows of a large terrain lie far apart, and working on them one by
+/// one waits for each; these reads do not depend on each other, so the memory serves them together.
+fn prefetch(values: &[f32], layout: &PatchLayout, rect: VertexRect) {
+    /// Posts in a cache line.
+    const LINE: usize = 16;
     let inside =
         |low: i32, high: i32, count: usize| (low.max(0) as usize, (high.max(0) as usize).min(count - 1));
     let (west, east) = inside(rect.min.x, rect.max.x, layout.columns());
     let (south, north) = inside(rect.min.y, rect.max.y, layout.rows());
     let row = |y: usize| values.get(y * layout.columns() + west..=y * layout.columns() + east).unwrap_or(&[]);
-    let of_row =
+    let bits =
         |row: &[f32]| row.iter().step_by(LINE).chain(row.last()).fold(0, |all, one| all ^ one.to_bits());
-    std::hint::black_box((south..=north).fold(0, |all, y| all ^ of_row(row(y))));
+    std::hint::black_box((south..=north).fold(0, |all, y| all ^ bits(row(y))));
 }
 
-/// Mends a map of midpoint errors after `change`; `lattice` holds the new heights.
+/// Updates midpoint errors after `change`; `lattice` holds the new heights.
 pub fn mend_midpoint(
     errors: &mut ErrorMap,
     lattice: &Lattice,
     layout: &PatchLayout,
     change: &Change,
 ) -> Mended {
-    let changed = VertexRect::of_posts(layout, &change.posts);
-    let field = HeightField::of(PatchedGround { lattice, layout });
-    fetch(errors.values(), layout, changed.grown(1, 1));
-    let mut mended = Mended::around(change);
+    let changed = VertexRect::from_posts(layout, &change.posts);
+    let field = HeightField::new(PatchedGround { lattice, layout });
+    prefetch(errors.values(), layout, changed.grown(1, 1));
+    let mut mended = Mended::with_capacity_for(change);
     for pass in passes(layout) {
         let posts = changed.snapped(pass.step);
         if posts.is_empty() && mended.has_ended(pass) {
             break;
         }
-        let measured = match pass.kind {
-            VertexKind::EastEdge => posts.grown(pass.step, 0),
-            VertexKind::NorthEdge => posts.grown(0, pass.step),
-            VertexKind::Center => posts.grown(pass.step, pass.step),
-        };
-        let rect = measured.union(mended.above(pass));
+        let rect = pass.reading(posts).union(mended.above(pass));
         mended
             .sweep(layout, pass, rect, |row, changed| renew_midpoints(errors, layout, &field, row, changed));
     }
@@ -152,14 +147,14 @@ fn renew_midpoints(
     }
 }
 
-/// Mends a map of exact errors after `change`, and `own`, the errors of the vertices alone that it was raised from, in
-/// the order of [`PatchLayout::index`]; `lattice` holds the new heights.
+/// Updates exact errors after `change`, and `own`, the errors of the vertices alone that they were raised from, in the order
+/// of [`PatchLayout::index`]; `lattice` holds the new heights.
 ///
-/// A big triangle's error reads every post it covers. It is not scanned again where its corners stand and no changed
-/// post was or is as far off its plane as the worst.
+/// The error of a large triangle reads every post it covers. It is not scanned again where its corners are unchanged and no
+/// changed post was or is as far off its plane as the worst.
 ///
 /// # Panics
-/// Where there is not one own error a vertex.
+/// Unless there is one own error a vertex.
 pub fn mend_exact(
     own: &mut [f32],
     errors: &mut ErrorMap,
@@ -168,15 +163,15 @@ pub fn mend_exact(
     change: &Change,
 ) -> Mended {
     assert_eq!(own.len(), layout.vertex_count(), "one own error a vertex");
-    let changed = VertexRect::of_posts(layout, &change.posts);
-    let mut mended = Mended::around(change);
+    let changed = VertexRect::from_posts(layout, &change.posts);
+    let mut mended = Mended::with_capacity_for(change);
     for pass in passes(layout) {
         let rect = changed.grown(pass.step, pass.step).union(mended.above(pass));
         mended.sweep(layout, pass, rect, |row, changed| {
             let measure = |x: usize| {
                 let vertex = Vertex::new(x as i32, row.y as i32);
                 let slot = &mut own[layout.index(vertex)];
-                if pass.step <= SCANNED || !stands(lattice, layout, vertex, *slot, change) {
+                if pass.step <= SCANNED || !is_unchanged(lattice, layout, vertex, *slot, change) {
                     *slot = own_error(lattice, layout, vertex);
                 }
                 *slot
@@ -187,63 +182,54 @@ pub fn mend_exact(
     mended
 }
 
-/// Triangles at vertices up to this step are scanned again anyway: they hold no more posts than a look at the changed
-/// ones would cost.
+/// Triangles at vertices up to this step are always scanned again: they hold no more posts than a comparison of the changed
+/// ones would read.
 const SCANNED: i32 = 4;
 
-/// Errors of big triangles are measured in f32: each is off by at most this share of the relief that was measured.
-/// Several times what can come about, and still so little that no scan is saved by less.
+/// Errors of large triangles are measured in f32: each is off by at most this share of the relief. Several times the actual
+/// rounding, and still too little to save a scan.
 const ROUNDING: f64 = 4e-6;
 
-/// Whether it is certain that the error of `vertex` alone, `own` before, is what it was: its triangles' corners stand,
-/// none of the changed posts they cover is pinned, and all were and are clearly less far off than the worst.
-fn stands(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex, own: f32, change: &Change) -> bool {
+/// Whether the error of `vertex` alone, `own` before, is certainly unchanged: its triangles' corners are, none of the
+/// changed posts they cover is pinned, and all were and are clearly less far off than the worst.
+fn is_unchanged(lattice: &Lattice, layout: &PatchLayout, vertex: Vertex, own: f32, change: &Change) -> bool {
     own.is_finite()
         && triangles_split_at(layout, vertex).into_iter().flatten().all(|triangle| {
             let corners = triangle.corners().map(|corner| layout.post(corner));
-            if corners.iter().any(|&corner| moved(lattice, change, corner)) {
+            if corners.iter().any(|&corner| has_moved(lattice, change, corner)) {
                 return false;
             }
-            let Some(plane) = PostPlane::through(lattice, corners) else { return true };
+            let Some(plane) = PostPlane::new(lattice, corners) else { return true };
             let clearly_less = f64::from(own) - ROUNDING * (f64::from(own) + relief(lattice, corners));
-            covered(corners, change).all(|(post, before)| {
-                let (after, shown) = (lattice.height(post), plane.height(post));
-                let off = |height: f32| (f64::from(height) - shown).abs();
+            covered(corners, change).all(|post| {
+                let (before, after) = (change.height_before(post), lattice.height(post));
+                let off = |height: f32| (f64::from(height) - plane.height(post)).abs();
                 let is_less = off(before).max(off(after)) < clearly_less;
                 after.to_bits() == before.to_bits() || (is_less && !lattice.is_pinned(post))
             })
         })
 }
 
-/// From the lowest to the highest of three posts, meters.
+/// The difference of the highest and the lowest of three posts, meters.
 fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
     let [a, b, c] = posts.map(|post| f64::from(lattice.height(post)));
     a.max(b).max(c) - a.min(b).min(c)
 }
 
-/// Whether a post has another height than before.
-fn moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
+fn has_moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
     change.posts.contains(post) && change.height_before(post).to_bits() != lattice.height(post).to_bits()
 }
 
-/// The changed posts in the bounding box of a triangle of posts, with their heights before: at least those it covers.
-fn covered<'a>(corners: [Post; 3], change: &'a Change) -> impl Iterator<Item = (Post, f32)> + use<'a> {
-    let range = |along: fn(Post) -> u32| {
-        let [a, b, c] = corners.map(along);
-        (a.min(b).min(c), a.max(b).max(c))
-    };
-    let (columns, rows) = (range(|post| post.column), range(|post| post.row));
+/// The changed posts in the bounding box of a triangle of posts: at least those it covers.
+fn covered([a, b, c]: [Post; 3], change: &Change) -> impl Iterator<Item = Post> {
+    let bounds = PostRect { first: a, last: a }.with(b).with(c);
     let (first, last) = (change.posts.first, change.posts.last);
-    (first.row.max(rows.0)..=last.row.min(rows.1)).flat_map(move |row| {
-        (first.column.max(columns.0)..=last.column.min(columns.1)).map(move |column| {
-            let post = Post { column, row };
-            (post, change.height_before(post))
-        })
-    })
+    let columns = first.column.max(bounds.first.column)..=last.column.min(bounds.last.column);
+    let rows = first.row.max(bounds.first.row)..=last.row.min(bounds.last.row);
+    rows.flat_map(move |row| columns.clone().map(move |column| Post { column, row }))
 }
 
-/// Mends nested spheres after `change`, once the errors are mended: `errors` says where those changed. `own` reads
-/// what is new.
+/// Updates nested spheres after `change`, once the errors are updated, with `errors` the result. `own` reads the new values.
 pub fn mend_spheres(
     spheres: &mut SphereMap,
     ground: PatchedGround<'_>,
@@ -251,13 +237,13 @@ pub fn mend_spheres(
     change: &Change,
     errors: &Mended,
 ) -> Mended {
-    let changed = VertexRect::of_posts(ground.layout, &change.posts);
+    let changed = VertexRect::from_posts(ground.layout, &change.posts);
     let window = change.posts.grown(own.half_window(), ground.lattice);
-    let rough = VertexRect::of_posts(ground.layout, &window);
-    let field = HeightField::of(ground);
-    fetch(spheres.values(), ground.layout, changed.grown(1, 1));
+    let rough = VertexRect::from_posts(ground.layout, &window);
+    let field = HeightField::new(ground);
+    prefetch(spheres.values(), ground.layout, changed.grown(1, 1));
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
-    let mut mended = Mended::around(change);
+    let mut mended = Mended::with_capacity_for(change);
     for (index, pass) in passes(ground.layout).enumerate() {
         let half = (pass.step / 2).max(1);
         let (moved, near) = (changed.snapped(half), rough.snapped(pass.step));

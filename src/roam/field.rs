@@ -1,5 +1,5 @@
-//! Rows of vertices with their heights and places, for loops that look at many: the same values as [`PatchedGround`]'s, without
-//! a look for the post of each.
+//! Rows of vertices with their heights and positions, for loops over many: the values of
+//! [`PatchedGround`] without a search for the post of each.
 
 use glam::DVec2;
 
@@ -7,7 +7,7 @@ use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
-/// A ground laid open.
+/// The rows of a ground.
 #[derive(Clone, Copy, Debug)]
 pub struct HeightField<'a> {
     heights: &'a [f32],
@@ -21,14 +21,15 @@ pub struct HeightField<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct FieldRow<'a> {
     heights: &'a [f32],
-    y: f64,
+    /// World Y of the row, meters.
+    pub y: f64,
     first: u32,
     cell: f64,
 }
 
 impl<'a> HeightField<'a> {
     /// The field of `ground`.
-    pub fn of(ground: PatchedGround<'a>) -> Self {
+    pub fn new(ground: PatchedGround<'a>) -> Self {
         let last = ground.layout.post(Vertex::new(i32::MAX, i32::MAX));
         Self {
             heights: ground.lattice.heights(),
@@ -45,7 +46,7 @@ impl<'a> HeightField<'a> {
         let row = y.min(self.last_row);
         FieldRow {
             heights: &self.heights[row * self.width..][..self.width],
-            y: place(row as u32 + self.first.row, self.cell.y),
+            y: coordinate(row as u32 + self.first.row, self.cell.y),
             first: self.first.column,
             cell: self.cell.x,
         }
@@ -53,7 +54,7 @@ impl<'a> HeightField<'a> {
 }
 
 impl FieldRow<'_> {
-    /// The height of the post that the vertex in column `x` stands for, meters; NaN without data.
+    /// The height of the post of the vertex in column `x`, meters; NaN without data.
     #[inline]
     pub fn height(&self, x: usize) -> f32 {
         self.heights[x.min(self.heights.len() - 1)]
@@ -62,16 +63,10 @@ impl FieldRow<'_> {
     /// World X of the vertex in column `x`, meters.
     #[inline]
     pub fn x(&self, x: usize) -> f64 {
-        place(x.min(self.heights.len() - 1) as u32 + self.first, self.cell)
+        coordinate(x.min(self.heights.len() - 1) as u32 + self.first, self.cell)
     }
 
-    /// World Y of the row, meters.
-    #[inline]
-    pub fn y(&self) -> f64 {
-        self.y
-    }
-
-    /// Drawn Z of the vertex in column `x`, meters; 0 where it has no data.
+    /// World Z of the vertex in column `x`, meters; 0 without data.
     #[inline]
     pub fn z(&self, x: usize) -> f64 {
         let height = self.height(x);
@@ -81,7 +76,7 @@ impl FieldRow<'_> {
 
 /// Rounded to f32, as the ground is drawn. A post's number fits an i32, whose conversion is one instruction.
 #[inline]
-fn place(post: u32, cell: f64) -> f64 {
+fn coordinate(post: u32, cell: f64) -> f64 {
     f64::from((f64::from(post as i32) * cell) as f32)
 }
 
@@ -100,11 +95,11 @@ mod tests {
         let lattice = Lattice::part((DVec2::ZERO, DVec2::new(0.3, 30.7)), first, 21, heights).expect("sound");
         let layout = PatchLayout::new(21, 13, 16).expect("sound");
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
-        let field = HeightField::of(ground);
+        let field = HeightField::new(ground);
         for (x, y) in (0..33).flat_map(|x| (0..17).map(move |y| (x, y))) {
             let vertex = Vertex::new(x, y);
             let row = field.row(y as usize);
-            let place = DVec3::new(row.x(x as usize), row.y(), row.z(x as usize));
+            let place = DVec3::new(row.x(x as usize), row.y, row.z(x as usize));
             assert_eq!(place, ground.position(vertex).as_dvec3());
             let height = lattice.height(layout.post(vertex));
             assert_eq!(row.height(x as usize).to_bits(), height.to_bits());

@@ -1,4 +1,4 @@
-//! What changed from one frame to the next.
+//! The changes from one frame to the next.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,41 +6,36 @@ use std::sync::Arc;
 use crate::roam::graph::Vertex;
 use crate::roam::shown::{LocalTriangle, PatchList};
 
-/// Remembers the last frame, to compare the next with it.
+/// The last frame, for comparison with the next.
 #[derive(Clone, Debug, Default)]
 pub struct LastFrame {
     last: BTreeMap<Vertex, Arc<Vec<LocalTriangle>>>,
 }
 
-/// How a frame differs from the one before.
+/// The difference between a frame and the one before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameChange {
-    /// Triangles that are shown now and were not shown before: split, merged, or come into view with their patch.
+    /// Triangles that are shown now and were not before: split, merged, or come into view with their patch.
     pub appeared: usize,
-    /// Triangles that were shown before and are not shown now.
+    /// Triangles that were shown before and are not now.
     pub vanished: usize,
-    /// Bytes of the index lists that are not what they were, those of patches come into view among them.
+    /// Bytes of the index lists that changed, including those of patches that came into view.
     pub list_bytes: usize,
 }
 
 impl LastFrame {
-    /// Compares a frame with the last one given, or with an empty one, and remembers it.
+    /// Compares a frame with the last one, or with an empty one, and keeps it.
     ///
-    /// The order of triangles in a list, and where a triangle starts, make no difference to the triangles; they do
-    /// to the bytes.
+    /// The order of triangles in a list, and of the corners of a triangle, matters to the bytes but not to the triangles.
     pub fn compare(&mut self, shown: &[PatchList]) -> FrameChange {
         let mut last = std::mem::take(&mut self.last);
         let mut change = FrameChange::default();
         for list in shown {
-            let before = last.remove(&list.corner);
-            let same = before
-                .as_ref()
-                .is_some_and(|before| Arc::ptr_eq(before, &list.triangles) || *before == list.triangles);
-            if !same {
-                let last = before.as_ref().map_or(0, |before| before.len());
-                let kept = before.map_or(0, |before| in_both(&before, &list.triangles));
+            let before = last.remove(&list.corner).unwrap_or_default();
+            if !Arc::ptr_eq(&before, &list.triangles) && before != list.triangles {
+                let kept = common(&before, &list.triangles);
                 change.appeared += list.triangles.len() - kept;
-                change.vanished += last - kept;
+                change.vanished += before.len() - kept;
                 change.list_bytes += list.bytes();
             }
             self.last.insert(list.corner, Arc::clone(&list.triangles));
@@ -50,25 +45,24 @@ impl LastFrame {
     }
 }
 
-/// How many triangles are in both lists; none is twice in one.
-fn in_both(one: &[LocalTriangle], other: &[LocalTriangle]) -> usize {
-    let (one, other) = (in_order(one), in_order(other));
+/// The number of triangles in both lists, each of which holds a triangle once.
+fn common(one: &[LocalTriangle], other: &[LocalTriangle]) -> usize {
+    let (one, other) = (sorted_keys(one), sorted_keys(other));
     let mut other = other.iter().peekable();
-    let found = one.iter().filter(|triangle| {
-        while other.next_if(|next| next < triangle).is_some() {}
-        other.next_if_eq(triangle).is_some()
-    });
-    found.count()
+    let is_in_both = |key: &&u64| {
+        while other.next_if(|next| next < key).is_some() {}
+        other.next_if_eq(key).is_some()
+    };
+    one.iter().filter(is_in_both).count()
 }
 
-/// The triangles, each from its lowest corner on, as numbers in rising order.
-fn in_order(triangles: &[LocalTriangle]) -> Vec<u64> {
-    let number = |[a, b, c]: LocalTriangle| u64::from(a) << 32 | u64::from(b) << 16 | u64::from(c);
-    let from_lowest =
-        |&[a, b, c]: &LocalTriangle| number([a, b, c]).min(number([b, c, a])).min(number([c, a, b]));
-    let mut numbers: Vec<u64> = triangles.iter().map(from_lowest).collect();
-    numbers.sort_unstable();
-    numbers
+/// The triangles as numbers in ascending order, each from its lowest corner on.
+fn sorted_keys(triangles: &[LocalTriangle]) -> Vec<u64> {
+    let key = |[a, b, c]: LocalTriangle| u64::from(a) << 32 | u64::from(b) << 16 | u64::from(c);
+    let from_lowest = |&[a, b, c]: &LocalTriangle| key([a, b, c]).min(key([b, c, a])).min(key([c, a, b]));
+    let mut keys: Vec<u64> = triangles.iter().map(from_lowest).collect();
+    keys.sort_unstable();
+    keys
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The vertex graph as pure arithmetic on coordinates.
 //!
-//! With `k` the largest power of two that divides both coordinates, a vertex is the center of a square of
-//! side 2k where both coordinates divided by k are odd, else the middle of an edge of length 2k:
+//! With `k` the largest power of two that divides both coordinates, a vertex is the center of a square of side 2k where
+//! both coordinates divided by k are odd, else the middle of an edge of length 2k:
 //!
 //! ```text
 //! o───────e───────o      k = 1: c is a center (both odd), e are edge middles
@@ -11,9 +11,9 @@
 //! o───────e───────o      then the right-angled corner of both halves
 //! ```
 //!
-//! Splitting at a vertex needs the two triangles that share its hypotenuse, and those exist once their own
-//! right-angled corners are active: these corners are the vertex's parents. For an edge middle they are the
-//! two centers beside it; for a center they are the two edge middles among the corners of its square.
+//! A split needs the two triangles that share the hypotenuse, and they exist once their right-angled corners are active:
+//! these corners are the vertex's parents. The parents of an edge middle are the two centers beside it; those of a center
+//! are the two edge middles among the corners of its square.
 
 /// A grid vertex, counted from the south-west corner of the first patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -54,8 +54,8 @@ impl Vertex {
         Self { x: (self.x + other.x) / 2, y: (self.y + other.y) / 2 }
     }
 
-    /// Half the side of the square, or half the length of the edge, that this vertex is the middle of. The
-    /// origin's is meaningless: it is a patch corner whatever the patch size.
+    /// Half the side of the square, or half the length of the edge, that this vertex is the middle of. Meaningless for the
+    /// origin, which is a patch corner whatever the patch size.
     #[inline]
     pub const fn step(self) -> i32 {
         let bits = self.x | self.y;
@@ -85,8 +85,8 @@ impl Vertex {
         }
     }
 
-    /// The vertices that must be active before this one: the right-angled corners of the two triangles that
-    /// share its hypotenuse. One of them may lie outside the terrain, where only one triangle is there.
+    /// The vertices that must be active before this one: the right-angled corners of the two triangles that share its
+    /// hypotenuse. On the border of the terrain one of them lies outside.
     #[inline]
     pub const fn parents(self) -> [Self; 2] {
         let step = self.step();
@@ -98,13 +98,20 @@ impl Vertex {
         }
     }
 
-    /// Whether any vertex names this one as a parent: all but the middles of the finest level's edges.
+    /// The bit, 1 or 2, of the triangle that this vertex splits and whose right-angled corner is `apex`, a parent: 1 for
+    /// the parent that is smaller in (y, x).
+    #[inline]
+    pub const fn side_bit(self, apex: Self) -> u8 {
+        if apex.y < self.y || (apex.y == self.y && apex.x < self.x) { 1 } else { 2 }
+    }
+
+    /// Whether any vertex has this one as a parent: all but the edge middles of the finest level have.
     #[inline]
     pub const fn has_children(self) -> bool {
         (self.x ^ self.y) & 1 == 0
     }
 
-    /// The vertices that name this one as a parent; none for vertices of the finest level's edges.
+    /// The vertices that have this one as a parent.
     #[inline]
     pub fn children(self) -> impl Iterator<Item = Self> {
         let step = self.step();
@@ -116,8 +123,8 @@ impl Vertex {
         offsets.into_iter().take(present).map(move |(dx, dy)| self.moved(dx * reach, dy * reach))
     }
 
-    /// Whether a center's hypotenuse runs from south-west to north-east: it joins the corners of its square
-    /// whose coordinates, in units of the square's side, are both even or both odd.
+    /// Whether a center's hypotenuse runs from south-west to north-east: it joins the corners of its square whose
+    /// coordinates, in units of the square's side, are both even or both odd.
     #[inline]
     const fn diagonal_rises(self) -> bool {
         (self.x ^ self.y) & (self.step() * 2) == 0

@@ -1,9 +1,9 @@
 //! Square patches laid over a lattice of any size.
 //!
-//! Patches of 2ⁿ cells a side start at the south-west post and reach past the lattice's east and north borders
-//! where its size is no multiple of theirs. A vertex beyond a border stands for the nearest post on it: every
-//! axis is mapped monotonically, so triangles across the border shrink to its near side, those beyond it lose
-//! their area and are not drawn, and the mesh stays conforming without a single extra vertex.
+//! Patches of 2ⁿ cells a side start at the south-west post and reach past the lattice's east and north borders where its
+//! size is no multiple of theirs. A vertex beyond a border is mapped to the nearest post on it. Each axis is mapped
+//! monotonically, so triangles across the border shrink to its near side, those beyond it have no area and are not drawn,
+//! and the mesh stays conforming without additional vertices.
 
 use crate::roam::graph::Vertex;
 use crate::terrain::lattice::Post;
@@ -20,29 +20,28 @@ pub struct PatchLayout {
     last_row: i32,
 }
 
-/// Cells along a patch's side where the caller has no reason for another: 65² vertices keep an index list
-/// within 16 bits, and culling a patch saves up to 8,192 triangles.
+/// The default number of cells along a patch's side: 65² vertices keep an index list within 16 bits, and culling a patch
+/// saves up to 8,192 triangles.
 pub const DEFAULT_PATCH: u32 = 64;
 
-/// The most vertices of a layout. Posts are limited where rasters are read, but patches over a lattice of two
-/// rows have up to 2048 vertices a post: indices would not fit a u32, and errors not the memory.
+/// The most vertices of a layout. Posts are limited where rasters are read, but patches over a lattice of two rows have up
+/// to 2048 vertices per post: indices would exceed a u32, and errors the memory.
 pub const MOST_VERTICES: u64 = 1 << 29;
 
-/// The most patches of a layout whose vertices are never in memory together: 65,536 posts a side in patches of 64.
-/// What is kept of every patch is small, and a million of it is tens of megabytes.
+/// The most patches of a layout whose vertices are never in memory together: 65,536 posts a side in patches of 64. The
+/// summaries of a million patches take tens of megabytes.
 pub const MOST_PATCHES: u64 = 1 << 20;
 
 impl PatchLayout {
-    /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows`
-    /// posts, at least 2 × 2 and at most 2²⁸ either way, with at most [`MOST_VERTICES`] vertices in all.
-    /// `None` otherwise.
+    /// Patches of `patch` cells a side, a power of two from 2 to 4096, over a lattice of `columns` × `rows` posts, at least
+    /// 2 × 2 and at most 2²⁸ either way, with at most [`MOST_VERTICES`] vertices. `None` otherwise.
     pub fn new(columns: u32, rows: u32, patch: u32) -> Option<Self> {
         let layout = Self::over(columns, rows, patch)?;
         (layout.columns() as u64 * layout.rows() as u64 <= MOST_VERTICES).then_some(layout)
     }
 
-    /// As [`PatchLayout::new`], for patches that are had one at a time: at most [`MOST_PATCHES`] of them, with any number
-    /// of vertices in all.
+    /// As [`PatchLayout::new`], for patches that are read one at a time: at most [`MOST_PATCHES`] of them, with any number
+    /// of vertices.
     pub fn paged(columns: u32, rows: u32, patch: u32) -> Option<Self> {
         let layout = Self::over(columns, rows, patch)?;
         (layout.patches_east as u64 * layout.patches_north as u64 <= MOST_PATCHES).then_some(layout)
@@ -77,12 +76,11 @@ impl PatchLayout {
 
     /// The south-west corners of all patches, row by row.
     pub fn patches(&self) -> impl Iterator<Item = Vertex> + use<> {
-        let (patch, east) = (self.patch, self.patches_east);
-        (0..self.patches_north).flat_map(move |y| (0..east).map(move |x| Vertex::new(x * patch, y * patch)))
+        self.patches_within((0, 0), (i32::MAX, i32::MAX))
     }
 
-    /// The south-west corners of the patches from (`first`) to (`last`) east and north, counted in patches and
-    /// ends included; those beyond the borders are left out.
+    /// The south-west corners of the patches from `first` to `last`, counted in patches east and north, ends included;
+    /// those beyond the borders are left out.
     pub fn patches_within(
         &self,
         first: (i32, i32),
@@ -93,6 +91,12 @@ impl PatchLayout {
         north.flat_map(move |y| east.clone().map(move |x| Vertex::new(x * patch, y * patch)))
     }
 
+    /// The south-west corners of the patches that share a vertex with the rectangle `min`..=`max` of vertices.
+    pub fn patches_meeting(&self, min: Vertex, max: Vertex) -> impl Iterator<Item = Vertex> + use<> {
+        let before = |at: i32| (at - 1).max(0) / self.patch;
+        self.patches_within((before(min.x), before(min.y)), (max.x / self.patch, max.y / self.patch))
+    }
+
     /// The place of the patch with south-west corner `corner` in [`PatchLayout::patches`].
     #[inline]
     pub fn patch_index(&self, corner: Vertex) -> usize {
@@ -100,20 +104,20 @@ impl PatchLayout {
         ((corner.y >> shift) * self.patches_east + (corner.x >> shift)) as usize
     }
 
-    /// The place in [`PatchLayout::patches`] of the patch that holds the triangle which `vertex` splits and whose
-    /// right-angled corner is `apex`, one of its parents; both are vertices of the layout.
+    /// The place in [`PatchLayout::patches`] of the patch of the triangle that `vertex` splits and whose right-angled
+    /// corner is `apex`, one of its parents; both are vertices of the layout.
     #[inline]
     pub fn patch_holding(&self, vertex: Vertex, apex: Vertex) -> usize {
-        // Halfway between them lies inside that patch, whatever borders the two are on.
+        // The point halfway between them lies inside that patch, whatever borders the two are on.
         self.patch_index(Vertex::new((vertex.x + apex.x) >> 1, (vertex.y + apex.y) >> 1))
     }
 
-    /// How many patches lie side by side eastward and northward.
+    /// Patches eastward and northward.
     pub fn patch_grid(&self) -> (usize, usize) {
         (self.patches_east as usize, self.patches_north as usize)
     }
 
-    /// How many patches there are.
+    /// The number of patches.
     pub fn patch_count(&self) -> usize {
         self.patches_east as usize * self.patches_north as usize
     }
@@ -130,7 +134,7 @@ impl PatchLayout {
         self.rows as usize
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     #[inline]
     pub fn vertex_count(&self) -> usize {
         self.columns() * self.rows()
@@ -142,20 +146,49 @@ impl PatchLayout {
         (vertex.x as usize) < self.columns() && (vertex.y as usize) < self.rows()
     }
 
-    /// Where a vertex is stored, row by row. The vertex must be contained.
+    /// The index of a vertex of the layout, row by row.
     #[inline]
     pub fn index(&self, vertex: Vertex) -> usize {
         debug_assert!(self.contains(vertex), "{vertex:?} is outside {self:?}");
         vertex.y as usize * self.columns() + vertex.x as usize
     }
 
-    /// Whether the vertex is a corner of patches, which is always there.
+    /// The vertex with an index.
+    #[inline]
+    pub fn vertex(&self, index: usize) -> Vertex {
+        Vertex::new((index % self.columns()) as i32, (index / self.columns()) as i32)
+    }
+
+    /// All vertices by their indices.
+    pub fn vertices(&self) -> impl Iterator<Item = Vertex> {
+        (0..self.vertex_count()).map(|index| self.vertex(index))
+    }
+
+    /// The parents of a vertex that belong to the layout: the right-angled corners of the triangles that it splits.
+    #[inline]
+    pub fn parents(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> {
+        vertex.parents().into_iter().filter(|&parent| self.contains(parent))
+    }
+
+    /// The children of a vertex that belong to the layout.
+    #[inline]
+    pub fn children(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> {
+        vertex.children().filter(|&child| self.contains(child))
+    }
+
+    /// Every vertex that is no patch corner, with each of its children.
+    pub fn descents(&self) -> impl Iterator<Item = (Vertex, Vertex)> {
+        let inner = self.vertices().filter(|&vertex| !self.is_corner(vertex));
+        inner.flat_map(|vertex| self.children(vertex).map(move |child| (vertex, child)))
+    }
+
+    /// Whether the vertex is a corner of patches, which is always active.
     #[inline]
     pub fn is_corner(&self, vertex: Vertex) -> bool {
         (vertex.x | vertex.y) & (self.patch - 1) == 0
     }
 
-    /// The post that a vertex stands for: itself, or the nearest on the border.
+    /// The post of a vertex: its own, or the nearest on the border.
     #[inline]
     pub fn post(&self, vertex: Vertex) -> Post {
         Post { column: vertex.x.min(self.last_column) as u32, row: vertex.y.min(self.last_row) as u32 }

@@ -1,12 +1,13 @@
 //! The vertices of a layout level by level, the finest first: all of them, or those inside a rectangle.
 //!
-//! Whatever is nested up the vertex graph (errors, spheres) is made in passes: at each step the edge middles, whose
-//! children are the centers of half the step, then the centers, whose children are those edge middles. Vertices of
-//! one pass do not depend on each other, so a pass may run in parallel, and a change of a few vertices is followed
-//! upwards by sweeping, pass by pass, the rectangle that can have changed.
+//! Values nested up the vertex graph (errors, spheres) are computed in passes: at each step the edge middles, whose
+//! children are the centers of half the step, then the centers, whose children are those edge middles. Vertices of one pass
+//! do not depend on each other, so a pass may run in parallel, and an edit is followed upward by sweeping, pass by pass, the
+//! rectangle that can have changed.
 
 use rayon::prelude::*;
 
+use crate::roam::errors::scan::larger;
 use crate::roam::graph::{Vertex, VertexKind};
 use crate::roam::layout::PatchLayout;
 use crate::terrain::post_rect::PostRect;
@@ -20,18 +21,31 @@ pub struct LevelPass {
     pub step: i32,
 }
 
-/// The passes of a layout, the finest first, patch corners left out: a vertex comes after all its children.
+/// The passes of a layout, the finest first, without patch corners: a vertex comes after all its children.
 pub fn passes(layout: &PatchLayout) -> impl Iterator<Item = LevelPass> + use<> {
     let steps = std::iter::successors(Some(1), |step| Some(2 * step));
     let patch = layout.patch();
     steps.take_while(move |&step| step < patch).flat_map(|step| {
-        [VertexKind::EastEdge, VertexKind::NorthEdge, VertexKind::Center]
-            .into_iter()
-            .map(move |kind| LevelPass { kind, step })
+        [VertexKind::EastEdge, VertexKind::NorthEdge, VertexKind::Center].map(|kind| LevelPass { kind, step })
     })
 }
 
 impl LevelPass {
+    /// How far the hypotenuses of its vertices reach east and north; also the first vertex of the pass.
+    fn offsets(self) -> (i32, i32) {
+        match self.kind {
+            VertexKind::EastEdge => (self.step, 0),
+            VertexKind::NorthEdge => (0, self.step),
+            VertexKind::Center => (self.step, self.step),
+        }
+    }
+
+    /// The vertices whose hypotenuses have an end or their middle in `posts`, and a few more.
+    pub(in crate::roam) fn reading(self, posts: VertexRect) -> VertexRect {
+        let (dx, dy) = self.offsets();
+        posts.grown(dx, dy)
+    }
+
     /// The rows of the pass's vertices inside the rectangle and the layout, from the south.
     pub fn rows_within(
         self,
@@ -39,11 +53,7 @@ impl LevelPass {
         rect: &VertexRect,
     ) -> impl Iterator<Item = PassRow> + use<> {
         let (stride, limit) = (2 * self.step, (layout.columns() as i32, layout.rows() as i32));
-        let (dx, dy) = match self.kind {
-            VertexKind::EastEdge => (self.step, 0),
-            VertexKind::NorthEdge => (0, self.step),
-            VertexKind::Center => (self.step, self.step),
-        };
+        let (dx, dy) = self.offsets();
         let from = |first: i32, low: i32| first + ((low - first).max(0) + stride - 1) / stride * stride;
         let (x, y) = (from(dx, rect.min.x), from(dy, rect.min.y));
         let end = (rect.max.x.min(limit.0 - 1) + 1, rect.max.y.min(limit.1 - 1) + 1);
@@ -56,12 +66,6 @@ impl LevelPass {
         })
     }
 
-    /// The pass's vertices inside the rectangle and the layout, row by row.
-    pub fn within(self, layout: &PatchLayout, rect: &VertexRect) -> impl Iterator<Item = Vertex> + use<> {
-        let of_row = |row: PassRow| row.columns().map(move |x| Vertex::new(x as i32, row.y as i32));
-        self.rows_within(layout, rect).flat_map(of_row)
-    }
-
     /// Whether the hypotenuse of the center in column `x` and row `y` runs from south-west to north-east.
     #[inline]
     pub fn rises(self, x: usize, y: usize) -> bool {
@@ -69,12 +73,7 @@ impl LevelPass {
         ((x >> side) + (y >> side)) & 1 == 0
     }
 
-    /// Whether its vertices have no children: edge middles of the finest step.
-    pub fn is_finest(self) -> bool {
-        self.step == 1 && self.kind != VertexKind::Center
-    }
-
-    /// How far its vertices' children lie from them, along both axes or along one of them.
+    /// The distance of its vertices' children, along both axes or along one of them; 0 where they have none.
     pub fn child_reach(self) -> usize {
         (if self.kind == VertexKind::Center { self.step } else { self.step / 2 }) as usize
     }
@@ -91,7 +90,7 @@ pub struct PassRow {
     end: usize,
 }
 
-/// A row of values, one a vertex, and the rows in which its vertices' children are.
+/// A row of values, one a vertex, and the rows of its vertices' children.
 pub struct ChildRows<'a> {
     /// The row itself.
     pub here: &'a mut [f32],
@@ -108,8 +107,7 @@ impl PassRow {
         (self.first..self.end).step_by(2 * self.pass.step as usize)
     }
 
-    /// The rows south and north in which children are, of the layout's `rows`: twice the same where the border leaves
-    /// one out.
+    /// The rows of the children south and north, of the layout's `rows`: twice the same where the border leaves one out.
     #[inline]
     pub fn child_rows(self, rows: usize) -> [usize; 2] {
         both_sides(self.y, self.pass.child_reach(), rows)
@@ -117,7 +115,7 @@ impl PassRow {
 
     /// Its values among those of all vertices of the layout.
     #[inline]
-    pub fn of<'a>(self, values: &'a mut [f32], layout: &PatchLayout) -> ChildRows<'a> {
+    pub fn values<'a>(self, values: &'a mut [f32], layout: &PatchLayout) -> ChildRows<'a> {
         let columns = layout.columns();
         let [south, north] = self.child_rows(layout.rows());
         let (before, rest) = values.split_at_mut(self.y * columns);
@@ -128,9 +126,42 @@ impl PassRow {
         };
         ChildRows { south: row(south), north: row(north), here }
     }
+
+    /// Sets the value of each of its vertices again and adds the vertices whose value changed to `changed`. The value is
+    /// the larger of `own`, by column, and that of the children, by `below_edge` for edge middles and `below_center` for
+    /// centers.
+    #[inline]
+    pub(in crate::roam) fn renew(
+        self,
+        mut rows: ChildRows<'_>,
+        mut own: impl FnMut(usize) -> f32,
+        below_edge: impl Fn(&ChildRows<'_>, usize) -> f32,
+        below_center: impl Fn(&ChildRows<'_>, usize) -> f32,
+        changed: &mut Vec<Vertex>,
+    ) {
+        let mut put = |rows: &mut ChildRows<'_>, x: usize, below: f32| {
+            let value = larger(own(x), below);
+            if std::mem::replace(&mut rows.here[x], value) != value {
+                changed.push(Vertex::new(x as i32, self.y as i32));
+            }
+        };
+        if self.pass.child_reach() == 0 {
+            self.columns().for_each(|x| put(&mut rows, x, 0.0));
+        } else if self.pass.kind == VertexKind::Center {
+            for x in self.columns() {
+                let below = below_center(&rows, x);
+                put(&mut rows, x, below);
+            }
+        } else {
+            for x in self.columns() {
+                let below = below_edge(&rows, x);
+                put(&mut rows, x, below);
+            }
+        }
+    }
 }
 
-/// The places `reach` below and above `at` of `count`; where one is not there, the other twice.
+/// The places `reach` below and above `at` of `count`; where one is missing, the other twice.
 #[inline]
 pub fn both_sides(at: usize, reach: usize, count: usize) -> [usize; 2] {
     let (below, above) = (at.checked_sub(reach), at + reach);
@@ -151,8 +182,8 @@ impl VertexRect {
     pub const EMPTY: Self =
         Self { min: Vertex::new(i32::MAX, i32::MAX), max: Vertex::new(i32::MIN, i32::MIN) };
 
-    /// The vertices that stand for posts of `posts`, those beyond the lattice's border included.
-    pub fn of_posts(layout: &PatchLayout, posts: &PostRect) -> Self {
+    /// The vertices of the posts of `posts`, including those beyond the lattice's border.
+    pub fn from_posts(layout: &PatchLayout, posts: &PostRect) -> Self {
         let beyond = |at: u32, last: u32, end: usize| if at >= last { end as i32 - 1 } else { at as i32 };
         let last = layout.post(Vertex::new(i32::MAX, i32::MAX));
         Self {
@@ -169,7 +200,7 @@ impl VertexRect {
         self.min.x > self.max.x || self.min.y > self.max.y
     }
 
-    /// Grown by `dx` east and west, by `dy` north and south; what is empty stays so.
+    /// Grown by `dx` east and west, by `dy` north and south; an empty one stays empty.
     pub fn grown(self, dx: i32, dy: i32) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
@@ -179,12 +210,10 @@ impl VertexRect {
 
     /// The smallest rectangle around both.
     pub fn union(self, other: Self) -> Self {
-        if self.is_empty() || other.is_empty() {
-            return if self.is_empty() { other } else { self };
-        }
-        Self {
-            min: Vertex::new(self.min.x.min(other.min.x), self.min.y.min(other.min.y)),
-            max: Vertex::new(self.max.x.max(other.max.x), self.max.y.max(other.max.y)),
+        match (self.is_empty(), other.is_empty()) {
+            (true, _) => other,
+            (_, true) => self,
+            _ => self.with(other.min).with(other.max),
         }
     }
 
@@ -211,7 +240,7 @@ impl VertexRect {
     }
 }
 
-/// Which rows a row sweep writes, of those whose number is a multiple of `half`; it reads the others of them.
+/// The rows that a row sweep writes, of those whose number is a multiple of `half`; it reads the others of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SweepRows {
     /// Those at even multiples.
@@ -220,8 +249,9 @@ pub enum SweepRows {
     Odd,
 }
 
-/// Calls `write` with every written row of `values`, `columns` long each: its number, the row itself, the read rows
-/// `half` south and north of it (twice the same where one lies beyond the border). In parallel; rows do not depend on each other.
+/// Calls `write` with every written row of `values`, `columns` long each: its number, the row itself, and the read rows
+/// `half` south and north of it (twice the same where one lies beyond the border). In parallel; rows do not depend on each
+/// other.
 pub fn for_rows(
     values: &mut [f32],
     columns: usize,
@@ -258,13 +288,18 @@ pub fn for_rows(
 mod tests {
     use super::*;
 
+    fn within(pass: LevelPass, layout: &PatchLayout, rect: &VertexRect) -> impl Iterator<Item = Vertex> {
+        let vertices = |row: PassRow| row.columns().map(move |x| Vertex::new(x as i32, row.y as i32));
+        pass.rows_within(layout, rect).flat_map(vertices)
+    }
+
     #[test]
     fn the_passes_hold_every_vertex_but_the_corners_once_and_children_first() {
         let layout = PatchLayout::new(40, 21, 16).expect("sound");
         let all = VertexRect { min: Vertex::new(0, 0), max: Vertex::new(i32::MAX - 1, i32::MAX - 1) };
         let mut seen = vec![false; layout.vertex_count()];
         for pass in passes(&layout) {
-            for vertex in pass.within(&layout, &all) {
+            for vertex in within(pass, &layout, &all) {
                 assert_eq!((vertex.kind(), vertex.step()), (pass.kind, pass.step));
                 assert!(!std::mem::replace(&mut seen[layout.index(vertex)], true));
                 if pass.kind == VertexKind::Center {
@@ -273,7 +308,7 @@ mod tests {
                     assert_eq!(rises, (to.x > from.x) == (to.y > from.y));
                 }
                 let mut children: Vec<Vertex> = vertex.children().collect();
-                assert_eq!(pass.is_finest(), children.is_empty());
+                assert_eq!(pass.child_reach() == 0, children.is_empty());
                 let reach = pass.child_reach() as i32;
                 let is_near =
                     |child: &Vertex| (child.x - vertex.x).abs().max((child.y - vertex.y).abs()) == reach;
@@ -294,7 +329,7 @@ mod tests {
         let mut rows_of = |kind, step| {
             let rows = LevelPass { kind, step }.rows_within(&layout, &all);
             let of = |row: PassRow| {
-                let beside = row.of(&mut values, &layout);
+                let beside = row.values(&mut values, &layout);
                 [beside.south[0], beside.here[0], beside.north[8]]
             };
             rows.map(of).collect::<Vec<[f32; 3]>>()
@@ -309,7 +344,7 @@ mod tests {
     fn a_rectangle_holds_just_the_vertices_inside() {
         let layout = PatchLayout::new(65, 65, 32).expect("sound");
         let rect = VertexRect { min: Vertex::new(-3, 7), max: Vertex::new(90, 40) };
-        let inside: usize = passes(&layout).map(|pass| pass.within(&layout, &rect).count()).sum();
+        let inside: usize = passes(&layout).map(|pass| within(pass, &layout, &rect).count()).sum();
         let corners = 3;
         assert_eq!(inside, 65 * 34 - corners);
         let snapped = VertexRect { min: Vertex::new(5, 7), max: Vertex::new(17, 9) }.snapped(8);

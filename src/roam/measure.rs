@@ -1,13 +1,11 @@
-//! How far the triangles that are shown are off the elevation model, at every post they cover.
+//! The vertical distance of the shown triangles from the elevation model, at every post they cover.
 //!
-//! Every shown triangle's posts are scanned once against its plane: no query structure, no sampling, nothing that
-//! a criterion believes about itself. A post on an edge is covered by several triangles and counts once; posts
-//! inside a patch are kept apart by a bitmap, those on its border are brought together at the end.
+//! The posts of every shown triangle are compared once with its plane, without sampling and independently of any criterion.
+//! A post on an edge is covered by several triangles and counts once: a bitmap marks the posts inside a patch, and those on
+//! its border are merged at the end.
 //!
-//! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left
-//! out because a corner has no data.
-//!
-//! What is off in meters far away is small on the picture: with a picture, pixels are measured too.
+//! Not measured: posts without data, posts of patches that are not shown, and posts under triangles that are left out
+//! because a corner has no data.
 
 use rayon::prelude::*;
 
@@ -17,10 +15,10 @@ use crate::roam::layout::PatchLayout;
 use crate::roam::shown::{LocalTriangle, PatchList};
 use crate::terrain::lattice::{Lattice, Post};
 
-/// `|shown − elevation model|` over posts, in meters without exaggeration.
+/// `|shown − elevation model|` over posts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeightDifference {
-    /// How many posts were measured.
+    /// The number of posts measured.
     pub posts: u64,
     sum: f64,
     squares: f64,
@@ -44,7 +42,7 @@ impl HeightDifference {
         (self.posts > 0).then_some(self.max_m)
     }
 
-    /// The longest on the picture, pixels, where it was measured with one; `None` where nothing was.
+    /// The longest in the picture, pixels; `None` where nothing was measured.
     pub fn max_px(&self) -> Option<f64> {
         (self.posts > 0).then_some(self.max_px)
     }
@@ -61,87 +59,80 @@ impl HeightDifference {
     }
 
     fn add(&mut self, off_m: f64, seen_px: f64) {
-        self.posts += 1;
-        self.sum += off_m;
-        self.squares += off_m * off_m;
-        self.max_m = self.max_m.max(off_m);
-        self.max_px = self.max_px.max(seen_px);
+        let one = Self { posts: 1, sum: off_m, squares: off_m * off_m, max_m: off_m, max_px: seen_px };
+        *self = self.with(one);
     }
 }
 
-/// Measures the triangles of `shown`, no patch twice; in parallel over patches, the same for any number of threads.
-pub fn height_difference(lattice: &Lattice, layout: &PatchLayout, shown: &[PatchList]) -> HeightDifference {
-    height_difference_seen(lattice, layout, shown, |_, _| Some(0.0))
-}
-
-/// As [`height_difference`], at posts in a picture only: `seen_px` says of a post with data and the height that is
-/// shown there how many pixels are between the two, and `None` of a post that is not in the picture.
-pub fn height_difference_seen(
+/// Measures the triangles of `shown`, which holds no patch twice; in parallel over patches, the same for any number of
+/// threads. `seen_px` returns the pixels between a post with data and the height that is shown there, `None` for a post out
+/// of the picture, which is not measured.
+pub fn height_difference(
     lattice: &Lattice,
     layout: &PatchLayout,
     shown: &[PatchList],
     seen_px: impl Fn(Post, f64) -> Option<f64> + Sync,
 ) -> HeightDifference {
     let patches: Vec<PatchMeasure> =
-        shown.par_iter().map(|list| Scan::new(lattice, layout, list, &seen_px).measured()).collect();
-    let mut border: Vec<OnBorder> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
+        shown.par_iter().map(|list| PatchScan::new(lattice, layout, list, &seen_px).measured()).collect();
+    let mut border: Vec<BorderPost> = patches.iter().flat_map(|patch| &patch.border).copied().collect();
     // Neighbors agree about a border post but for rounding; the larger counts.
     border.sort_unstable_by(|a, b| a.post.cmp(&b.post).then(b.off_m.total_cmp(&a.off_m)));
     border.dedup_by_key(|measured| measured.post);
-    let mut whole = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
-    border.iter().for_each(|measured| whole.add(measured.off_m, measured.seen_px));
-    whole
+    let mut total = patches.iter().fold(HeightDifference::default(), |sum, patch| sum.with(patch.inside));
+    border.iter().for_each(|measured| total.add(measured.off_m, measured.seen_px));
+    total
 }
 
-/// What was measured of one patch.
+/// The measurement of one patch.
 struct PatchMeasure {
     inside: HeightDifference,
-    border: Vec<OnBorder>,
+    border: Vec<BorderPost>,
 }
 
-/// What was measured at a post on a patch's border.
+/// The measurement of a post on a patch's border.
 #[derive(Clone, Copy)]
-struct OnBorder {
+struct BorderPost {
     /// Its index in the lattice.
     post: usize,
     off_m: f64,
     seen_px: f64,
 }
 
-/// One patch being measured.
-struct Scan<'a, S> {
+/// A patch under measurement.
+struct PatchScan<'a, S> {
     lattice: &'a Lattice,
     layout: &'a PatchLayout,
     list: &'a PatchList,
     seen_px: &'a S,
     first: Post,
     last: Post,
-    seen: Vec<bool>,
-    found: PatchMeasure,
+    is_measured: Vec<bool>,
+    result: PatchMeasure,
 }
 
-impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
+impl<'a, S: Fn(Post, f64) -> Option<f64>> PatchScan<'a, S> {
     fn new(lattice: &'a Lattice, layout: &'a PatchLayout, list: &'a PatchList, seen_px: &'a S) -> Self {
         let patch = layout.patch();
         let (first, last) = (layout.post(list.corner), layout.post(list.corner.moved(patch, patch)));
         let posts = (last.column - first.column + 1) as usize * (last.row - first.row + 1) as usize;
-        let found = PatchMeasure { inside: HeightDifference::default(), border: Vec::new() };
-        Self { lattice, layout, list, seen_px, first, last, seen: vec![false; posts], found }
+        let result = PatchMeasure { inside: HeightDifference::default(), border: Vec::new() };
+        Self { lattice, layout, list, seen_px, first, last, is_measured: vec![false; posts], result }
     }
 
     fn measured(mut self) -> PatchMeasure {
         for triangle in self.list.triangles.iter() {
             self.scan(triangle);
         }
-        self.found
+        self.result
     }
 
     fn scan(&mut self, triangle: &LocalTriangle) {
         let posts = triangle.map(|index| self.layout.post(self.list.vertex(self.layout, index)));
-        let Some(plane) = PostPlane::through(self.lattice, posts).filter(PostPlane::has_data) else {
+        let Some(plane) = PostPlane::new(self.lattice, posts).filter(PostPlane::has_data) else {
             return;
         };
-        for RowSpan { row, first, last } in RowSpans::of(posts) {
+        for RowSpan { row, first, last } in RowSpans::new(posts) {
             if row == self.first.row || row == self.last.row {
                 (first..=last).for_each(|column| self.measure_on_border(Post { column, row }, &plane));
                 continue;
@@ -151,49 +142,44 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> Scan<'a, S> {
                     self.measure_on_border(Post { column, row }, &plane);
                 }
             }
-            self.measure_inside(
-                row,
-                first.max(self.first.column + 1),
-                last.min(self.last.column - 1),
-                &plane,
-            );
+            let (first, last) = (first.max(self.first.column + 1), last.min(self.last.column - 1));
+            if first <= last {
+                self.measure_inside(RowSpan { row, first, last }, &plane);
+            }
         }
     }
 
-    /// The posts of a row from `first` to `last`, all of them off the patch's border; none for first above last.
-    fn measure_inside(&mut self, row: u32, first: u32, last: u32, plane: &PostPlane) {
-        if first > last {
-            return;
-        }
-        let (start, place) = (Post { column: first, row }, self.place(Post { column: first, row }));
-        let count = (last - first + 1) as usize;
+    /// Measures the posts of a row off the patch's border.
+    fn measure_inside(&mut self, span: RowSpan, plane: &PostPlane) {
+        let start = Post { column: span.first, row: span.row };
+        let (place, count) = (self.place(start), (span.last - span.first + 1) as usize);
         let heights = &self.lattice.heights()[self.lattice.index(start)..][..count];
-        let seen = &mut self.seen[place..place + count];
+        let is_measured = &mut self.is_measured[place..place + count];
         let shown = plane.height(start);
-        let mut found = HeightDifference::default();
-        for (at, (&height, seen)) in heights.iter().zip(seen).enumerate() {
-            if height.is_nan() || std::mem::replace(seen, true) {
+        let mut sum = HeightDifference::default();
+        for (at, (&height, is_measured)) in heights.iter().zip(is_measured).enumerate() {
+            if height.is_nan() || std::mem::replace(is_measured, true) {
                 continue;
             }
             let shown_m = shown + plane.per_column * at as f64;
-            if let Some(seen_px) = (self.seen_px)(Post { column: first + at as u32, row }, shown_m) {
-                found.add((f64::from(height) - shown_m).abs(), seen_px);
+            if let Some(seen_px) = (self.seen_px)(start.offset(at as u32, 0), shown_m) {
+                sum.add((f64::from(height) - shown_m).abs(), seen_px);
             }
         }
-        self.found.inside = self.found.inside.with(found);
+        self.result.inside = self.result.inside.with(sum);
     }
 
     fn measure_on_border(&mut self, post: Post, plane: &PostPlane) {
         let (place, height) = (self.place(post), self.lattice.height(post));
-        let is_new = !height.is_nan() && !std::mem::replace(&mut self.seen[place], true);
+        let is_new = !height.is_nan() && !std::mem::replace(&mut self.is_measured[place], true);
         let shown_m = plane.height(post);
         if is_new && let Some(seen_px) = (self.seen_px)(post, shown_m) {
             let off_m = (f64::from(height) - shown_m).abs();
-            self.found.border.push(OnBorder { post: self.lattice.index(post), off_m, seen_px });
+            self.result.border.push(BorderPost { post: self.lattice.index(post), off_m, seen_px });
         }
     }
 
-    /// Where a post of the patch is among those seen.
+    /// The index of a post of the patch.
     fn place(&self, post: Post) -> usize {
         let width = (self.last.column - self.first.column + 1) as usize;
         (post.row - self.first.row) as usize * width + (post.column - self.first.column) as usize
@@ -249,7 +235,7 @@ mod tests {
                 layout.patches().enumerate().filter(|&(at, _)| at != hidden).map(|(_, corner)| corner).collect();
             let lists: Vec<PatchList> =
                 patches.iter().map(|&corner| PatchList::bintree(ground, &active, corner)).collect();
-            let found = height_difference(&lattice, &layout, &lists);
+            let found = height_difference(&lattice, &layout, &lists, |_, _| Some(0.0));
             let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, patches);
             let plain = plainly(&lattice, &terrain);
             prop_assert_eq!(found.posts, plain.posts);
@@ -271,12 +257,12 @@ mod tests {
         (0..289).for_each(|at| active.activate(Vertex::new(at % 17, at / 17)));
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let list = PatchList::bintree(ground, &active, Vertex::new(0, 0));
-        let found = height_difference(&lattice, &layout, &[list]);
+        let found = height_difference(&lattice, &layout, &[list], |_, _| Some(0.0));
         assert_eq!(
             (found.posts, found.max_m(), found.mean_m(), found.rms_m()),
             (289, Some(0.0), Some(0.0), Some(0.0))
         );
-        assert_eq!(height_difference(&lattice, &layout, &[]).mean_m(), None);
+        assert_eq!(height_difference(&lattice, &layout, &[], |_, _| Some(0.0)).mean_m(), None);
     }
 
     #[test]
@@ -285,8 +271,8 @@ mod tests {
         let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let shown = [PatchList::bintree(ground, &ActiveSet::new(layout), Vertex::new(0, 0))];
-        let whole = height_difference(&lattice, &layout, &shown);
-        let seen = height_difference_seen(&lattice, &layout, &shown, |post, shown_m| {
+        let whole = height_difference(&lattice, &layout, &shown, |_, _| Some(0.0));
+        let seen = height_difference(&lattice, &layout, &shown, |post, shown_m| {
             let off_m = (f64::from(lattice.height(post)) - shown_m).abs();
             (post.column < 5).then_some(2.0 * off_m)
         });

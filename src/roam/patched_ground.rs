@@ -1,4 +1,4 @@
-//! The ground as the vertex graph sees it: every vertex with its place in drawn world space.
+//! The ground that refinement reads: every vertex with its position in world space.
 
 use glam::{Vec2, Vec3};
 
@@ -6,10 +6,10 @@ use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::terrain::lattice::{Lattice, Post};
 
-/// What refinement reads: heights, the patches over them, and how many times heights are stretched when drawn.
+/// A displayed lattice and the patches over it.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchedGround<'a> {
-    /// The heights.
+    /// The heights, as they are displayed.
     pub lattice: &'a Lattice,
     /// The patches over them.
     pub layout: &'a PatchLayout,
@@ -22,15 +22,15 @@ impl PatchedGround<'_> {
         self.lattice.position(self.layout.post(vertex))
     }
 
-    /// Where a vertex of the layout is drawn, meters; at Z 0 where it has no data.
+    /// The world position of a vertex of the layout, meters; Z 0 where it has no data.
     #[inline]
     pub fn position(&self, vertex: Vertex) -> Vec3 {
         let height = self.lattice.height(self.layout.post(vertex));
         self.plan(vertex).extend(if height.is_nan() { 0.0 } else { height })
     }
 
-    /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that
-    /// all its triangles are drawn.
+    /// Whether the patch with south-west corner `corner` lies within the borders and has data at every post, so that all
+    /// its triangles are drawn.
     pub fn is_whole(&self, corner: Vertex) -> bool {
         let (lattice, side) = (self.lattice, self.layout.patch());
         let far = corner.moved(side, side);
@@ -42,12 +42,14 @@ impl PatchedGround<'_> {
         within && (corner.y..=far.y).all(|y| row(y).iter().all(|height| !height.is_nan()))
     }
 
-    /// The rectangle of the two triangles that `vertex` splits, south-west and north-east corner in meters; of
-    /// one of them where the other lies outside the terrain.
+    /// The corners in the layout of the two triangles that `vertex` splits; of one of them on the border of the terrain.
+    pub fn diamond_corners(&self, vertex: Vertex) -> impl Iterator<Item = Vertex> {
+        vertex.hypotenuse().into_iter().chain(self.layout.parents(vertex))
+    }
+
+    /// The south-west and north-east corner, in meters, of the rectangle around [`PatchedGround::diamond_corners`].
     pub fn diamond(&self, vertex: Vertex) -> (Vec2, Vec2) {
-        let ends = vertex.hypotenuse().into_iter();
-        let apexes = vertex.parents().into_iter().filter(|&parent| self.layout.contains(parent));
-        ends.chain(apexes)
+        self.diamond_corners(vertex)
             .map(|corner| self.plan(corner))
             .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), at| (min.min(at), max.max(at)))
     }

@@ -1,9 +1,8 @@
 //! Local roughness: how far the posts around a post differ from it in height.
 //!
-//! `f = (1/n) Σ (z − z_i)²` over a window of M × N posts around the post, itself included: n = M · N, or those of it
-//! that are there and hold data (constrained nested error criterion; 3 × 3 in the paper's tests). The factor that it gives,
-//! `k = 1 − 1/(f + 1 + ξ)` with `0 < k < 1`, is near 1 on rough ground and near 0 on flat ground. It is no length and
-//! knows no scale: a slope counts as roughness, and meters are what f is measured in, as the paper has it.
+//! `f = (1/n) Σ (z − z_i)²` over the n posts with data in a window around the post, itself included (constrained nested
+//! error criterion; 3 × 3 in the paper's tests). The factor `k = 1 − 1/(f + 1 + ξ)`, `0 < k < 1`, is near 1 on rough ground
+//! and near 0 on flat ground. It has no unit: a slope counts as roughness, and f is measured in meters.
 
 use rayon::prelude::*;
 
@@ -13,7 +12,7 @@ use crate::terrain::post_rect::PostRect;
 /// The paper's ξ: keeps k above 0 on level ground, so that an infinite error stays infinite.
 const XI: f64 = 1e-6;
 
-/// The local roughness of every post, square meters of height without exaggeration.
+/// The local roughness of every post, square meters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roughness {
     columns: usize,
@@ -40,7 +39,7 @@ impl Roughness {
         self.half_window
     }
 
-    /// The roughness of a post of the lattice it was measured with; 0 without data.
+    /// The roughness of a post of the lattice; 0 without data.
     pub fn at(&self, post: Post) -> f32 {
         self.values[post.row as usize * self.columns + post.column as usize]
     }
@@ -50,14 +49,10 @@ impl Roughness {
         1.0 - 1.0 / (f64::from(self.at(post)) + 1.0 + XI)
     }
 
-    /// Measures again whatever the posts of `posts`, which have new heights, have a part in.
+    /// Measures the windows of the posts of `posts`, which have new heights, again.
     pub fn renew(&mut self, lattice: &Lattice, posts: &PostRect) {
-        let grown = posts.grown(self.half_window, lattice);
-        for row in grown.first.row..=grown.last.row {
-            for column in grown.first.column..=grown.last.column {
-                let post = Post { column, row };
-                self.values[lattice.index(post)] = local(lattice, post, self.half_window);
-            }
+        for post in posts.grown(self.half_window, lattice).posts() {
+            self.values[lattice.index(post)] = local(lattice, post, self.half_window);
         }
     }
 }
@@ -68,8 +63,7 @@ fn local(lattice: &Lattice, post: Post, half_window: (u32, u32)) -> f32 {
     let (mut sum, mut count) = (0.0, 0u32);
     for row in window.first.row..=window.last.row {
         let start = lattice.index(Post { column: window.first.column, row });
-        let width = (window.last.column - window.first.column) as usize;
-        for &height in &lattice.heights()[start..=start + width] {
+        for &height in &lattice.heights()[start..start + window.width()] {
             let rise = own - f64::from(height);
             if !rise.is_nan() {
                 sum += rise * rise;
@@ -77,7 +71,6 @@ fn local(lattice: &Lattice, post: Post, half_window: (u32, u32)) -> f32 {
             }
         }
     }
-    // Without data the post is no neighbor of itself either.
     if count > 0 { (sum / f64::from(count)) as f32 } else { 0.0 }
 }
 

@@ -1,7 +1,7 @@
 //! What one frame shows: for each patch an index list of 16 bits into its own block of vertices.
 //!
-//! Whatever refines and whatever emits, this is what reaches a graphics adapter, and so it is what methods are
-//! compared by: their triangles, what changed since the frame before, what had to be sent.
+//! Index lists are what a graphics adapter receives, so methods of refining and emitting are compared by them: their
+//! triangles, what changed since the frame before, and what was sent.
 
 use std::sync::Arc;
 
@@ -11,9 +11,6 @@ use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::roam::patched_ground::PatchedGround;
-
-/// Why there are indices.
-const SHORT: &str = "patches of at most 128 cells have 16-bit indices";
 
 /// Three vertices of a patch, counter-clockwise seen from above; vertices count row by row from the south-west.
 pub type LocalTriangle = [u16; 3];
@@ -25,12 +22,12 @@ pub struct PatchList {
     pub corner: Vertex,
     /// Its triangles; shared with the frame before where nothing changed.
     pub triangles: Arc<Vec<LocalTriangle>>,
-    /// How many indices say so: three a triangle in a list, fewer in strips.
+    /// The number of indices that encode them: three a triangle in a list, fewer in strips.
     pub indices: usize,
 }
 
 impl PatchList {
-    /// The list that names every triangle's three vertices.
+    /// The list with three indices a triangle.
     pub fn of_triangles(corner: Vertex, triangles: Arc<Vec<LocalTriangle>>) -> Self {
         let indices = 3 * triangles.len();
         Self { corner, triangles, indices }
@@ -39,23 +36,22 @@ impl PatchList {
     /// The list of triangles of vertices of the patch with south-west corner `corner`.
     ///
     /// # Panics
-    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    /// Where patches are larger than 128 cells, since their vertices have no 16-bit index.
     pub fn of_vertices(
         layout: &PatchLayout,
         corner: Vertex,
         triangles: impl IntoIterator<Item = [Vertex; 3]>,
     ) -> Self {
-        let named = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
-        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(named).collect()))
+        let local = |corners: [Vertex; 3]| corners.map(|vertex| local(layout, corner, vertex));
+        Self::of_triangles(corner, Arc::new(triangles.into_iter().map(local).collect()))
     }
 
-    /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no
-    /// data.
+    /// The bintree's leaves in the patch with south-west corner `corner`, without those beyond the border or over no data.
     ///
     /// # Panics
-    /// Where patches are larger than 128 cells: their vertices have no 16-bit index.
+    /// Where patches are larger than 128 cells, since their vertices have no 16-bit index.
     pub fn bintree(ground: PatchedGround<'_>, active: &ActiveSet, corner: Vertex) -> Self {
-        let block = VertexBlock::of(ground.layout).expect(SHORT);
+        let block = block(ground.layout);
         let is_drawn = |triangle: LocalTriangle| {
             drawn_posts(ground, triangle.map(|index| block.vertex(corner, index))).is_some()
         };
@@ -66,8 +62,7 @@ impl PatchList {
 
     /// The vertex with index `index` in this patch.
     pub fn vertex(&self, layout: &PatchLayout, index: u16) -> Vertex {
-        let (row, side) = (i32::from(index), layout.patch() + 1);
-        self.corner.moved(row % side, row / side)
+        block(layout).vertex(self.corner, index)
     }
 
     /// Bytes of the index list.
@@ -81,8 +76,11 @@ impl PatchList {
 /// # Panics
 /// Where patches are larger than 128 cells.
 pub fn local(layout: &PatchLayout, corner: Vertex, vertex: Vertex) -> u16 {
-    let index = (vertex.y - corner.y) * (layout.patch() + 1) + vertex.x - corner.x;
-    u16::try_from(index).expect(SHORT)
+    block(layout).index(corner, vertex)
+}
+
+fn block(layout: &PatchLayout) -> VertexBlock {
+    VertexBlock::new(layout).expect("patches of at most 128 cells have 16-bit indices")
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! Nested spheres: one radius a vertex says from where the vertex is wanted.
 //!
-//! A vertex is active exactly while the eye is inside its sphere. Each sphere holds the spheres of the vertex's
-//! children, so whoever is inside a child's is inside its parents': the active vertices are closed under parents
-//! by themselves, and no split is ever forced.
+//! A vertex is active exactly while the eye is inside its sphere. Each sphere holds the spheres of the vertex's children,
+//! so an eye inside a child's is inside its parents': the active vertices are closed under parents, and no split is forced.
 //!
-//! `R = r` for a vertex without children, else `R = max(r, max over children c of |p − p_c| + R_c)`, with `r` the
-//! distance within which the vertex's own error shows (constrained nested error criterion; Lindstrom and Pascucci
-//! 2001 nest spheres the same way). What `r` is differs: see [`OwnRadius`].
+//! `R = r` for a vertex without children, else `R = max(r, max over children c of |p − p_c| + R_c)`, with `r` the distance
+//! within which the vertex's own error shows (constrained nested error criterion; Lindstrom and Pascucci 2001 nest spheres
+//! the same way). For `r` see [`OwnRadius`].
 
 use rayon::prelude::*;
 
@@ -14,73 +13,72 @@ use crate::roam::errors::ErrorMap;
 use crate::roam::errors::midpoint::midpoint_error_at;
 use crate::roam::errors::scan::larger;
 use crate::roam::field::{FieldRow, HeightField};
-use crate::roam::graph::{Vertex, VertexKind};
+use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{ChildRows, PassRow, SweepRows, both_sides, for_rows};
+use crate::roam::levels::{PassRow, SweepRows, both_sides, for_rows};
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
 use crate::view::camera::Camera;
 
-/// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never make
-/// a child's sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
+/// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never let a child's
+/// sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
 const MARGIN: f64 = 1e-6;
 
-/// The radius of every vertex's sphere, meters in drawn world space about the drawn vertex.
+/// The radius of every vertex's sphere, meters in world space about the displayed vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereMap {
     radii: Vec<f32>,
 }
 
-/// What a vertex's own radius is, before it is grown to hold its children's spheres.
+/// A vertex's own radius, before it is grown to hold its children's spheres.
 ///
-/// `reach`, the papers' λ·d/τ, is meters of distance per meter of drawn error: see [`reach`]. No error gives radius
-/// 0, an infinite one an infinite radius.
+/// `reach`, the papers' λ·d/τ, is meters of distance per meter of error, finite and not negative: see [`reach`]. No error
+/// gives radius 0, an infinite one an infinite radius.
 #[derive(Clone, Copy, Debug)]
 pub enum OwnRadius<'a> {
-    /// `r = reach · δ`, where δ is the vertex's error as drawn (nested error criterion). Errors raised to those of
-    /// the children give the same nested spheres as the vertices' own: a child's sphere, which the parent's holds,
-    /// already reaches as far as the child's error does.
+    /// `r = reach · δ` with δ the vertex's error (nested error criterion). Errors raised to those of the children give the
+    /// same nested spheres as the vertices' own: a child's sphere, which the parent's holds, already reaches as far as the
+    /// child's error does.
     Plain {
-        /// δ without exaggeration.
+        /// δ.
         errors: &'a ErrorMap,
-        /// Meters per meter, finite and not negative.
+        /// Meters per meter.
         reach: f32,
     },
-    /// `r' = k · reach · δ` with δ the vertex's own midpoint error and `k = 1 − 1/(f + 1 + ξ)` of its local roughness
-    /// f: fewer triangles on flat ground (constrained nested error criterion). Promises nothing.
+    /// `r' = k · reach · δ` with δ the vertex's own midpoint error and `k = 1 − 1/(f + 1 + ξ)` of its local roughness f:
+    /// fewer triangles on flat ground (constrained nested error criterion). It promises no bound.
     Constrained {
-        /// Meters per meter, finite and not negative.
+        /// Meters per meter.
         reach: f32,
         /// f.
         roughness: &'a Roughness,
     },
-    /// `r = reach · e + e + extent` with `e` the exact error as drawn and `extent` the largest drawn distance from the
-    /// vertex to the corners of the triangles it splits.
+    /// `r = reach · e + e + extent` with `e` the exact error and `extent` the largest distance from the vertex to the
+    /// corners of the triangles it splits.
     ///
-    /// A triangle's points lie within `extent` of its split vertex and the ground over or under them within `e` more,
-    /// so from an eye outside the sphere every bit of a vertical error of length `e` is at least `reach · e` away:
-    /// `|displayed − ground|` spans no more than the tolerance, wherever the eye is. This is a bound like that of
-    /// `criterion::screen`, without its frustum.
+    /// A triangle's points lie within `extent` of its split vertex and the ground over or under them within `e` more, so
+    /// from an eye outside the sphere a vertical error of length `e` is at least `reach · e` away everywhere:
+    /// `|displayed − ground|` spans no more than the tolerance. This is a bound like that of `criterion::screen`, without
+    /// its frustum.
     Bounding {
-        /// Exact errors, without exaggeration.
+        /// Exact errors.
         errors: &'a ErrorMap,
-        /// Meters per meter, finite and not negative.
+        /// Meters per meter.
         reach: f32,
     },
 }
 
-/// Meters of distance per meter of drawn error for a tolerance of `tolerance_px` in every corner of the camera's
-/// picture, where pixels are largest; `camera.pixels_per_meter(1.0) / tolerance_px`, as the paper has it, holds in
-/// its middle only.
+/// Meters of distance per meter of error for a tolerance of `tolerance_px` in every corner of the camera's picture, where
+/// pixels are largest; the papers' `camera.pixels_per_meter(1.0) / tolerance_px` holds in its middle only.
 pub fn reach(camera: &Camera, tolerance_px: f32) -> f32 {
     let corner = 1.0 + camera.tan_half_fov().length_squared();
     camera.pixels_per_meter(1.0) * corner / tolerance_px
 }
 
 impl OwnRadius<'_> {
-    /// The own radius of a vertex of the layout, meters; 0 for patch corners, which are always there.
+    /// The own radius of a vertex of the layout, meters; 0 for patch corners, which are always active.
     #[inline]
-    pub fn of(&self, ground: PatchedGround<'_>, vertex: Vertex) -> f32 {
+    pub fn at(&self, ground: PatchedGround<'_>, vertex: Vertex) -> f32 {
         if ground.layout.is_corner(vertex) {
             return 0.0;
         }
@@ -88,8 +86,7 @@ impl OwnRadius<'_> {
             Self::Plain { errors, reach } => plain_radius(errors.at(ground.layout, vertex), reach),
             Self::Constrained { reach, roughness } => {
                 let reach = f64::from(reach) * roughness.factor(ground.layout.post(vertex));
-                let error = midpoint_error_at(ground.lattice, ground.layout, vertex);
-                scaled(error, |error| reach * error)
+                scaled(midpoint_error_at(ground.lattice, ground.layout, vertex), |error| reach * error)
             }
             Self::Bounding { errors, reach } => scaled(errors.at(ground.layout, vertex), |error| {
                 (f64::from(reach) * error + error + extent(ground, vertex)) * (1.0 + MARGIN)
@@ -112,7 +109,7 @@ fn plain_radius(error: f32, reach: f32) -> f32 {
     scaled(error, |error| f64::from(reach) * error)
 }
 
-/// The radius that a finite error has; 0 for no error, infinite for an infinite one.
+/// The radius of a finite error; 0 for no error, infinite for an infinite one.
 #[inline]
 fn scaled(error: f32, radius: impl FnOnce(f64) -> f64) -> f32 {
     match error {
@@ -122,75 +119,73 @@ fn scaled(error: f32, radius: impl FnOnce(f64) -> f64) -> f32 {
     }
 }
 
-/// The largest drawn distance from a vertex to the corners of the triangles it splits, meters.
+/// The largest distance from a vertex to the corners of the triangles it splits, meters.
 fn extent(ground: PatchedGround<'_>, vertex: Vertex) -> f64 {
     let center = ground.position(vertex).as_dvec3();
-    let parents = vertex.parents().into_iter().filter(|&parent| ground.layout.contains(parent));
-    let corners = vertex.hypotenuse().into_iter().chain(parents);
-    corners.map(|corner| ground.position(corner).as_dvec3().distance(center)).fold(0.0, f64::max)
+    let distance = |corner| ground.position(corner).as_dvec3().distance(center);
+    ground.diamond_corners(vertex).map(distance).fold(0.0, f64::max)
 }
 
 impl SphereMap {
     /// Nested spheres about own radii `reach · δ`: see [`OwnRadius::Plain`].
     pub fn plain(ground: PatchedGround<'_>, errors: &ErrorMap, reach: f32) -> Self {
-        Self::of(ground, &OwnRadius::Plain { errors, reach })
+        Self::new(ground, &OwnRadius::Plain { errors, reach })
     }
 
     /// Nested spheres about own radii `k · reach · δ`: see [`OwnRadius::Constrained`].
     pub fn constrained(ground: PatchedGround<'_>, reach: f32, roughness: &Roughness) -> Self {
-        Self::of(ground, &OwnRadius::Constrained { reach, roughness })
+        Self::new(ground, &OwnRadius::Constrained { reach, roughness })
     }
 
     /// Nested spheres that keep a tolerance, from exact errors: see [`OwnRadius::Bounding`].
     pub fn bounding(ground: PatchedGround<'_>, errors: &ErrorMap, reach: f32) -> Self {
-        Self::of(ground, &OwnRadius::Bounding { errors, reach })
+        Self::new(ground, &OwnRadius::Bounding { errors, reach })
     }
 
-    /// Nested spheres about the given own radii; in parallel, the same for any number of threads.
-    pub fn of(ground: PatchedGround<'_>, own: &OwnRadius<'_>) -> Self {
+    /// Nested spheres about own radii; in parallel, the same for any number of threads.
+    pub fn new(ground: PatchedGround<'_>, own: &OwnRadius<'_>) -> Self {
         let columns = ground.layout.columns();
         let mut radii = vec![0.0; ground.layout.vertex_count()];
         radii.par_chunks_mut(columns).enumerate().for_each(|(y, row)| {
             if let OwnRadius::Plain { errors, reach } = *own {
                 let errors = errors.row(ground.layout, y).iter();
-                let radius = |&error: &f32| plain_radius(error, reach);
-                row.iter_mut().zip(errors.map(radius)).for_each(|(slot, radius)| *slot = radius);
+                row.iter_mut().zip(errors).for_each(|(slot, &error)| *slot = plain_radius(error, reach));
                 return;
             }
             for (x, radius) in row.iter_mut().enumerate() {
-                *radius = own.of(ground, Vertex::new(x as i32, y as i32));
+                *radius = own.at(ground, Vertex::new(x as i32, y as i32));
             }
         });
         Self::nested(ground, radii)
     }
 
-    /// The spheres whose own radii, in the order of [`PatchLayout::index`], are given: each grown until it holds those of
-    /// its children. A vertex that never shows has radius 0 and an own radius of 0; infinite radii are allowed.
+    /// The spheres about given own radii, in the order of [`PatchLayout::index`], each grown until it holds those of its
+    /// children. A vertex that never shows has radius 0 and an own radius of 0; infinite radii are allowed.
     ///
     /// In parallel over rows, the same for any number of threads.
     ///
     /// # Panics
-    /// Where there is not one radius a vertex.
+    /// Unless there is one radius a vertex.
     pub fn nested(ground: PatchedGround<'_>, own: Vec<f32>) -> Self {
         assert_eq!(own.len(), ground.layout.vertex_count(), "one radius a vertex");
-        let (mut radii, layout, field) = (own, ground.layout, HeightField::of(ground));
+        let (mut radii, layout, field) = (own, ground.layout, HeightField::new(ground));
         let columns = layout.columns();
         let mut step = 1;
         while step < layout.patch() as usize {
             if step > 1 {
                 let half = step / 2;
                 for_rows(&mut radii, columns, half, SweepRows::Even, |y, row, beside| {
-                    let nest = Nest::of(&field, y, both_sides(y, half, layout.rows()), beside);
+                    let nest = SphereNest::new(&field, y, both_sides(y, half, layout.rows()));
                     let first = if (y / step).is_multiple_of(2) { step } else { 0 };
                     for x in (first..columns).step_by(2 * step) {
-                        row[x] = larger(row[x], nest.about_edge(half, x));
+                        row[x] = larger(row[x], nest.about_edge(half, x, beside));
                     }
                 });
             }
             for_rows(&mut radii, columns, step, SweepRows::Odd, |y, row, beside| {
-                let nest = Nest::of(&field, y, [y - step, y + step], beside);
+                let nest = SphereNest::new(&field, y, [y - step, y + step]);
                 for x in (step..columns).step_by(2 * step) {
-                    row[x] = larger(row[x], nest.about_center(step, x, row));
+                    row[x] = larger(row[x], nest.about_center(step, x, row, beside));
                 }
             });
             step *= 2;
@@ -209,33 +204,24 @@ impl SphereMap {
         &self.radii
     }
 
-    /// Whether every sphere holds those of its vertex's children.
+    /// Checks that every sphere holds those of its vertex's children.
     ///
-    /// # Errors
-    /// A sentence naming the first pair where it does not.
-    pub fn check(&self, ground: PatchedGround<'_>) -> Result<(), String> {
-        let layout = ground.layout;
-        for index in 0..layout.vertex_count() {
-            let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
-            if layout.is_corner(vertex) {
-                continue;
-            }
-            let center = ground.position(vertex).as_dvec3();
-            for child in vertex.children().filter(|&child| layout.contains(child)) {
-                let (own, below) = (f64::from(self.radii[index]), f64::from(self.at(layout, child)));
-                let needed = ground.position(child).as_dvec3().distance(center) + below;
-                if below > 0.0 && own < needed {
-                    return Err(format!(
-                        "{vertex:?} has radius {own} m, its child {child:?} reaches to {needed} m"
-                    ));
-                }
-            }
+    /// # Panics
+    /// Where one does not.
+    pub fn check(&self, ground: PatchedGround<'_>) {
+        for (vertex, child) in ground.layout.descents() {
+            let [own, below] = [vertex, child].map(|vertex| f64::from(self.at(ground.layout, vertex)));
+            let [center, at] = [vertex, child].map(|vertex| ground.position(vertex).as_dvec3());
+            let needed = at.distance(center) + below;
+            assert!(
+                below == 0.0 || own >= needed,
+                "{vertex:?} has radius {own} m, its child {child:?} reaches to {needed} m"
+            );
         }
-        Ok(())
     }
 
-    /// Sets the radii of a row of a pass again from the vertices' own and their children's spheres, which are as they
-    /// shall be; adds the vertices whose radius changed to `changed`.
+    /// Sets the radii of a row of a pass again from the vertices' own radii and their children's spheres; adds the vertices
+    /// whose radius changed to `changed`.
     pub(in crate::roam) fn renew_row(
         &mut self,
         ground: PatchedGround<'_>,
@@ -244,22 +230,20 @@ impl SphereMap {
         own: &OwnRadius<'_>,
         changed: &mut Vec<Vertex>,
     ) {
-        let layout = ground.layout;
         match *own {
             OwnRadius::Plain { errors, reach } => {
-                let errors = errors.row(layout, row.y);
-                let own = |x: usize| plain_radius(errors[x], reach);
-                self.put_row(layout, field, row, own, changed);
+                let errors = errors.row(ground.layout, row.y);
+                self.renew_row_by(ground.layout, field, row, |x| plain_radius(errors[x], reach), changed);
             }
             _ => {
-                let own = |x: usize| own.of(ground, Vertex::new(x as i32, row.y as i32));
-                self.put_row(layout, field, row, own, changed);
+                let own = |x: usize| own.at(ground, Vertex::new(x as i32, row.y as i32));
+                self.renew_row_by(ground.layout, field, row, own, changed);
             }
         }
     }
 
     #[inline]
-    fn put_row(
+    fn renew_row_by(
         &mut self,
         layout: &PatchLayout,
         field: &HeightField<'_>,
@@ -267,45 +251,38 @@ impl SphereMap {
         own: impl Fn(usize) -> f32,
         changed: &mut Vec<Vertex>,
     ) {
-        let ChildRows { here, south, north } = row.of(&mut self.radii, layout);
-        let nest = Nest::of(field, row.y, row.child_rows(layout.rows()), [south, north]);
-        let mut put = |here: &mut [f32], x: usize, held: f32| {
-            let radius = larger(own(x), held);
-            if std::mem::replace(&mut here[x], radius) != radius {
-                changed.push(Vertex::new(x as i32, row.y as i32));
-            }
-        };
+        let nest = SphereNest::new(field, row.y, row.child_rows(layout.rows()));
         let reach = row.pass.child_reach();
-        if row.pass.is_finest() {
-            row.columns().for_each(|x| put(here, x, 0.0));
-        } else if row.pass.kind == VertexKind::Center {
-            row.columns().for_each(|x| put(here, x, nest.about_center(reach, x, here)));
-        } else {
-            row.columns().for_each(|x| put(here, x, nest.about_edge(reach, x)));
-        }
+        row.renew(
+            row.values(&mut self.radii, layout),
+            own,
+            |rows, x| nest.about_edge(reach, x, [rows.south, rows.north]),
+            |rows, x| nest.about_center(reach, x, rows.here, [rows.south, rows.north]),
+            changed,
+        );
     }
 }
 
-/// A row of vertices with the rows in which their children are: their places, and the radii of the children's spheres.
-struct Nest<'a> {
+/// The positions of a row of vertices and of the rows of their children.
+struct SphereNest<'a> {
     here: FieldRow<'a>,
     beside: [FieldRow<'a>; 2],
-    radii: [&'a [f32]; 2],
 }
 
-impl<'a> Nest<'a> {
-    fn of(field: &HeightField<'a>, y: usize, beside: [usize; 2], radii: [&'a [f32]; 2]) -> Self {
-        Self { here: field.row(y), beside: beside.map(|y| field.row(y)), radii }
+impl<'a> SphereNest<'a> {
+    fn new(field: &HeightField<'a>, y: usize, beside: [usize; 2]) -> Self {
+        Self { here: field.row(y), beside: beside.map(|y| field.row(y)) }
     }
 
-    /// The radius about the edge middle in column `x` that holds the spheres of the centers around.
+    /// The radius about the edge middle in column `x` that holds the spheres of the centers around it, whose radii are in
+    /// the rows `south` and `north`.
     #[inline]
-    fn about_edge(&self, reach: usize, x: usize) -> f32 {
-        let ([south, north], [below, above]) = (self.radii, &self.beside);
+    fn about_edge(&self, reach: usize, x: usize, [south, north]: [&[f32]; 2]) -> f32 {
+        let [below, above] = &self.beside;
         let [west, east] = both_sides(x, reach, south.len());
         let (at, z) = (self.here.x(x), self.here.z(x));
         let [aside, ahead] = [west, east].map(|x| at - self.here.x(x));
-        let [down, up] = [below, above].map(|row| self.here.y() - row.y());
+        let [down, up] = [below, above].map(|row| self.here.y - row.y);
         let squares = [
             square(aside, down, z - below.z(west)),
             square(ahead, down, z - below.z(east)),
@@ -315,18 +292,18 @@ impl<'a> Nest<'a> {
         holding(squares, [south[west], south[east], north[west], north[east]])
     }
 
-    /// The radius about the center in column `x` that holds the spheres of the edge middles around; `row` has the radii
+    /// The radius about the center in column `x` that holds the spheres of the edge middles around it; `row` has the radii
     /// of its own row.
     #[inline]
-    fn about_center(&self, reach: usize, x: usize, row: &[f32]) -> f32 {
-        let ([south, north], [below, above]) = (self.radii, &self.beside);
+    fn about_center(&self, reach: usize, x: usize, row: &[f32], [south, north]: [&[f32]; 2]) -> f32 {
+        let [below, above] = &self.beside;
         let (west, east) = (x - reach, x + reach);
         let (at, z) = (self.here.x(x), self.here.z(x));
         let squares = [
             square(at - self.here.x(west), 0.0, z - self.here.z(west)),
             square(at - self.here.x(east), 0.0, z - self.here.z(east)),
-            square(0.0, self.here.y() - below.y(), z - below.z(x)),
-            square(0.0, self.here.y() - above.y(), z - above.z(x)),
+            square(0.0, self.here.y - below.y, z - below.z(x)),
+            square(0.0, self.here.y - above.y, z - above.z(x)),
         ];
         holding(squares, [row[west], row[east], south[x], north[x]])
     }
@@ -337,8 +314,8 @@ fn square(x: f64, y: f64, z: f64) -> f64 {
     x * x + y * y + z * z
 }
 
-/// The radius that holds the spheres of the given radii at the given squared distances; those that never show take no
-/// room. All four at once: square roots come in pairs.
+/// The radius that holds spheres at the given squared distances; those of radius 0 need no room. All four at once: square
+/// roots are computed in pairs.
 #[inline]
 fn holding(squares: [f64; 4], radii: [f32; 4]) -> f32 {
     let distances = squares.map(f64::sqrt);

@@ -1,7 +1,7 @@
 //! Bridges and tunnels: from spans to solids, decks to stand on, and rows of the report.
 //!
 //! ```text
-//!  spans::collect ─► chains::join ─► levels::settle ─┬─► a bridge for each span: structure::bridge
+//!  spans::collect ─► SpanChain::all ─► levels::settle ─┬─► a bridge for each span: structure::bridge
 //!                                                    ├─► portals where a tunnel's chain enters a hill
 //!                                                    └─► an underpass: the road stays on the ground
 //! ```
@@ -15,19 +15,23 @@ use std::collections::BTreeSet;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::earthworks::alignment::Support;
+use crate::earthworks::alignment::chain::{ChainLink, Direction};
+use crate::geom::polyline::{VertexKey, vertex_key};
+use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::report::SpanRow;
-use crate::scene::roads::centerline::{Centerline, Support};
-use crate::scene::roads::chains::{self, ChainEnd, SpanChain, SpanLink};
+use crate::scene::roads::centerline::Centerline;
+use crate::scene::roads::chains::{ChainEnd, SpanChain};
 use crate::scene::roads::levels::{self, ChainRun, Site};
-use crate::scene::roads::spans::{self, PointKey, RoadSpan};
+use crate::scene::roads::spans::{self, RoadSpan};
 use crate::scene::sources::Sources;
 use crate::scene::{Coat, FeatureKind, Solid};
 use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
 use crate::structure::deck::DeckCourse;
-use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
+use crate::structure::deck_profile::ClearancePoint;
 use crate::structure::tunnel::Portal;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::{Deck, DeckError};
@@ -47,6 +51,9 @@ const BURIED: f64 = 0.4;
 
 /// How high the soffit is over the ground where an abutment ends, in meters: high enough to see through below.
 const ABUTMENT_M: f64 = 1.5;
+
+/// Stations of a profile nearer to each other than this are one, in meters.
+const MERGE_M: f64 = 1e-6;
 
 /// The longest part of a bridge that an abutment takes.
 const LONGEST_ABUTMENT: f64 = 0.25;
@@ -71,21 +78,21 @@ pub fn build(
     check_piers(document, &spans)?;
     let water = water(collected).map_err(|error| document.error_at(0..0, WaterError(error)))?;
     let site = Site { lattice, water: &water, exaggeration };
-    let chains = chains::join(&spans, roads);
+    let chains = SpanChain::all(&spans, roads);
     let runs = levels::settle(&spans, &chains, roads, &site);
-    let mouths: BTreeSet<PointKey> = spans
+    let mouths: BTreeSet<VertexKey> = spans
         .iter()
-        .filter(|span| span.carried == Support::Tunnel)
-        .flat_map(|span| [0, 1].map(|end| spans::place(span.end(end))))
+        .filter(|span| span.alignment.support == Support::Tunnel)
+        .flat_map(|span| span.alignment.line.ends().map(vertex_key))
         .collect();
-    let mut bridges: Vec<(BuiltChain<'_>, &SpanLink, BridgeOptions)> = Vec::new();
+    let mut bridges: Vec<(BuiltChain<'_>, &ChainLink, BridgeOptions)> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
             collected.notes.push(format!("{} left out: no ground lies along it", called(&spans, chain)));
             continue;
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
-        match spans[chain.links[0].span].carried {
+        match spans[chain.links[0].line].alignment.support {
             Support::Bridge => {
                 bridges.extend(built.planned(&extent).map(|(link, options)| (built, link, options)))
             }
@@ -103,9 +110,10 @@ pub fn build(
 }
 
 fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic> {
-    let wanted =
-        |span: &&RoadSpan| span.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M);
-    let bridges = spans.iter().filter(|span| span.carried == Support::Bridge);
+    let wanted = |span: &&RoadSpan| {
+        span.alignment.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M)
+    };
+    let bridges = spans.iter().filter(|span| span.alignment.support == Support::Bridge);
     let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
@@ -137,8 +145,8 @@ fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
 struct WaterError(#[source] DeckError);
 
 fn called(spans: &[RoadSpan], chain: &SpanChain) -> String {
-    let span = &spans[chain.links[0].span];
-    let kind = if span.carried == Support::Tunnel { "tunnel" } else { "bridge" };
+    let span = &spans[chain.links[0].line];
+    let kind = if span.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
     if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
 }
 
@@ -150,34 +158,35 @@ struct BuiltChain<'a> {
     run: &'a ChainRun,
     site: &'a Site<'a>,
     /// Where tunnels end.
-    mouths: &'a BTreeSet<PointKey>,
+    mouths: &'a BTreeSet<VertexKey>,
 }
 
 impl<'a> BuiltChain<'a> {
     /// How the bridges of the chain are to be built, one a span.
-    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a SpanLink, BridgeOptions)> {
+    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a ChainLink, BridgeOptions)> {
         let widest =
-            self.chain.links.iter().map(|link| self.spans[link.span].options.width_m).fold(0.0, f64::max);
+            self.chain.links.iter().map(|link| self.spans[link.line].options.width_m).fold(0.0, f64::max);
         let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
         let piers = self.piers(abutments);
         self.chain.links.iter().enumerate().map(move |(index, link)| {
-            let span = &self.spans[link.span];
-            let is_backward = link.reach_m[1] < link.reach_m[0];
+            let span = &self.spans[link.line];
+            let is_backward = link.direction == Direction::Backward;
             let own_ends = [index == 0, index + 1 == self.chain.links.len()];
             let mut of_link = [0, 1].map(|end| abutments[end].filter(|_| own_ends[end]));
             if is_backward {
                 of_link.reverse();
             }
-            let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
+            let (low, high) = (link.start_m, link.end_m());
             let here = piers.iter().filter(|&&station| station >= low && station < high);
             let across = [0, 1].map(|end| {
-                let is_mouth = self.mouths.contains(&spans::place(span.end(end)));
+                let is_mouth = self.mouths.contains(&vertex_key(span.alignment.line.ends()[end]));
                 if of_link[end].is_some() && !is_mouth { Across::AsGround } else { Across::Level }
             });
             let options = BridgeOptions {
                 depth_m: self.run.depth_m,
-                piers_m: here.map(|station| (station - link.reach_m[0]).abs()).collect(),
-                abutments_m: of_link.map(|length| length.map(|length| length.min(span.line.length() / 2.0))),
+                piers_m: here.map(|station| (station - link.reach_m()[0]).abs()).collect(),
+                abutments_m: of_link
+                    .map(|length| length.map(|length| length.min(span.alignment.line.length() / 2.0))),
                 across,
                 texture_length_m: span.options.texture_length_m,
                 exaggeration: self.site.exaggeration,
@@ -187,36 +196,36 @@ impl<'a> BuiltChain<'a> {
     }
 
     /// The course and the elevations of a bridge.
-    fn course(&self, link: &SpanLink) -> (DeckCourse<'a>, DeckProfile) {
-        let span = &self.spans[link.span];
+    fn course(&self, link: &ChainLink) -> (DeckCourse<'a>, Profile) {
+        let span = &self.spans[link.line];
         let course = DeckCourse {
-            line: &span.line,
+            line: &span.alignment.line,
             beyond: span.beyond,
             width_m: span.options.width_m,
             miter_limit: span.options.miter_limit,
         };
-        (course, self.run.profile.part(link.reach_m[0], link.reach_m[1]))
+        (course, self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M))
     }
 
-    fn deck(&self, link: &SpanLink, options: &BridgeOptions) -> Vec<SurfaceTriangle> {
+    fn deck(&self, link: &ChainLink, options: &BridgeOptions) -> Vec<SurfaceTriangle> {
         let (course, profile) = self.course(link);
         bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
     }
 
     fn bridge(
         &self,
-        (link, options): (&SpanLink, &BridgeOptions),
+        (link, options): (&ChainLink, &BridgeOptions),
         decks: &Deck,
         collected: &mut SceneBuilder,
     ) {
-        let span = &self.spans[link.span];
+        let span = &self.spans[link.line];
         let (course, profile) = self.course(link);
         let built = bridge::build(&course, &profile, options, (&|at| self.site.ground_m(at), decks));
         let feature = collected.add(FeatureKind::Bridge, span.name.clone());
         collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
         collected.decks.extend(built.deck);
-        self.tell(link, (Some(built.piers), None), profile.steepest(), collected);
+        self.tell(link, (Some(built.piers), None), profile.steepest(0.0), collected);
     }
 
     /// How far the abutment at an end of the chain reaches under it; `None` where the chain goes on or leaves the model.
@@ -233,8 +242,7 @@ impl<'a> BuiltChain<'a> {
             let Some(ground_m) = self.site.ground_m(self.chain.at(self.spans, at(from_end))) else {
                 return true;
             };
-            let above =
-                (self.run.profile.level_m(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
+            let above = (self.run.profile.at(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
             above - self.run.depth_m > ABUTMENT_M * by
         };
         let least = (1.2 * by).min(longest);
@@ -269,21 +277,21 @@ impl<'a> BuiltChain<'a> {
 
     /// The portals of the chain, or a road on the ground in its place.
     fn tunnel(&self, extent: &Rect, roads: &mut [Centerline], collected: &mut SceneBuilder) {
-        let cover = |floor: &ClearancePoint| floor.level_m - self.run.profile.level_m(floor.station_m);
+        let cover = |floor: &ClearancePoint| floor.level_m - self.run.profile.at(floor.station_m);
         let cover_m = self.run.ground.iter().map(cover).fold(f64::NEG_INFINITY, f64::max);
         let is_shallow = cover_m < LEAST_COVER_M;
         let open_ends = !self.chain.ends.iter().any(|end| matches!(end, ChainEnd::Onward(_)));
         if is_shallow && open_ends && self.chain.length_m <= LONGEST_UNDERPASS_M {
             for link in &self.chain.links {
-                if let Some(road) = self.spans[link.span].road {
-                    roads[road].carried = Support::Ground;
+                if let Some(road) = self.spans[link.line].road {
+                    roads[road].alignment.support = Support::Ground;
                 }
-                self.tell(link, (None, Some(0)), self.run.profile.steepest(), collected);
+                self.tell(link, (None, Some(0)), self.run.profile.steepest(0.0), collected);
             }
             return;
         }
         for link in &self.chain.links {
-            let feature = collected.add(FeatureKind::Tunnel, self.spans[link.span].name.clone());
+            let feature = collected.add(FeatureKind::Tunnel, self.spans[link.line].name.clone());
             let portals: Vec<Portal> = if is_shallow {
                 Vec::new()
             } else {
@@ -293,26 +301,26 @@ impl<'a> BuiltChain<'a> {
                 let mesh = portal.build(&|at| self.site.ground_m(at));
                 collected.solids.push(Solid { mesh, coat: Coat::Painted, feature });
             }
-            let grade = self.run.profile.part(link.reach_m[0], link.reach_m[1]).steepest();
+            let grade = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M).steepest(0.0);
             self.tell(link, (None, Some(portals.len())), grade, collected);
         }
     }
 
     /// The portal at an end of a span, where it comes out of a hill there.
-    fn portal(&self, link: &SpanLink, end: usize, extent: &Rect) -> Option<Portal> {
-        let span = &self.spans[link.span];
-        let station = link.reach_m[end];
+    fn portal(&self, link: &ChainLink, end: usize, extent: &Rect) -> Option<Portal> {
+        let span = &self.spans[link.line];
+        let station = link.reach_m()[end];
         let corner = if station <= 0.0 { 0 } else { 1 };
         let is_chain_end = station <= 0.0 || station >= self.chain.length_m;
-        let at = span.end(end);
+        let at = span.alignment.line.ends()[end];
         if !is_chain_end || self.chain.ends[corner] != ChainEnd::Ground || !extent.grown(-1e-3).contains(at) {
             return None;
         }
-        let points = span.line.points();
+        let points = span.alignment.line.points();
         let inner = if end == 0 { points[1] } else { points[points.len() - 2] };
         let portal = Portal {
             at,
-            level_m: self.run.profile.level_m(station),
+            level_m: self.run.profile.at(station),
             outward: (at - inner).normalize_or_zero(),
             width_m: span.options.width_m,
             exaggeration: self.site.exaggeration,
@@ -323,15 +331,15 @@ impl<'a> BuiltChain<'a> {
     /// Adds a span's row to the report; `counts` are its piers and portals.
     fn tell(
         &self,
-        link: &SpanLink,
+        link: &ChainLink,
         counts: (Option<usize>, Option<usize>),
         grade: f64,
         collected: &mut SceneBuilder,
     ) {
-        let span = &self.spans[link.span];
-        let (low, high) = (link.reach_m[0].min(link.reach_m[1]), link.reach_m[0].max(link.reach_m[1]));
+        let span = &self.spans[link.line];
+        let (low, high) = (link.start_m, link.end_m());
         let under = self.run.ground.iter().filter(|floor| floor.station_m >= low && floor.station_m <= high);
-        let above = under.map(|floor| self.run.profile.level_m(floor.station_m) - floor.level_m);
+        let above = under.map(|floor| self.run.profile.at(floor.station_m) - floor.level_m);
         let (least, most) =
             above.fold((0.0f64, 0.0f64), |(least, most), here| (least.min(here), most.max(here)));
         let depth_m = self.run.depth_m / f64::from(self.site.exaggeration);
@@ -341,11 +349,9 @@ impl<'a> BuiltChain<'a> {
             .iter()
             .filter(|passage| passage.reach_m[1] >= low && passage.reach_m[0] <= high);
         let clearance = here
-            .flat_map(|passage| {
-                passage.reach_m.map(|at| self.run.profile.level_m(at) - depth_m - passage.level_m)
-            })
+            .flat_map(|passage| passage.reach_m.map(|at| self.run.profile.at(at) - depth_m - passage.level_m))
             .reduce(f64::min);
-        let kind = match (span.carried, counts.1) {
+        let kind = match (span.alignment.support, counts.1) {
             (Support::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
             (Support::Tunnel, _) => "tunnel",
             _ => "bridge",
@@ -353,8 +359,8 @@ impl<'a> BuiltChain<'a> {
         collected.report.bridges_and_tunnels.push(SpanRow {
             name: span.name.clone(),
             kind,
-            by: span.by.word(),
-            length: span.line.length(),
+            by: span.origin.word(),
+            length: span.alignment.line.length(),
             greatest_height_above_ground: most,
             greatest_depth_below_ground: -least,
             steepest_grade: grade * 100.0,

@@ -1,7 +1,15 @@
-//! From a document and its assets to a scene, pass by pass.
+//! From a document and its assets to a scene, pass by pass, in two stages.
+//!
+//! ```text
+//!  elevation ─► lakes, rivers, roads, pads, trenches, bridges ─┬─► pads of models ─► SceneGround: heights
+//!                                                              └─► networks, fences, buildings, models, views ─► Scene
+//! ```
+//!
+//! Neither stage computes what only a picture needs: see [`Scene::map`] and [`Terrain`].
 
 use std::sync::{Arc, OnceLock};
 
+use crate::dem::raster::Raster;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::geom::crs::Crs;
@@ -11,26 +19,46 @@ use crate::scene::assets::Assets;
 use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::buildings;
+use crate::scene::buildings::{self, Plot};
 use crate::scene::drawn_ground::DrawnGround;
-use crate::scene::fences;
+use crate::scene::fences::{self, FenceLine};
 use crate::scene::ground;
 use crate::scene::models;
-use crate::scene::roads::{centerline, conform, network};
+use crate::scene::roads::centerline::{self, Centerline};
+use crate::scene::roads::{conform, network};
 use crate::scene::sources::Sources;
 use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{Scene, Terrain};
+use crate::scene::{Scene, SceneGround, Terrain};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
+use crate::terrain::triangle_surface::SurfaceTriangle;
+
+/// Builds the ground of the scene that `document` describes, with the decks over it. Of the models, only those that have
+/// the ground leveled are read.
+///
+/// # Errors
+/// The first file that cannot be read or table that does not fit, at its place in the scene file.
+pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
+    let loaded = ground::load(document, assets)?;
+    let mut lattice = loaded.lattice;
+    let frame = WorldFrame::new(document, &loaded.crs, lattice.origin());
+    let sources = Sources::new(&frame, assets);
+    let mut collected = SceneBuilder::default();
+    shape(document, &sources, &mut lattice, &mut collected)?;
+    models::level_pads(&sources, &mut lattice)?;
+    let lattice = Arc::new(lattice);
+    let heights = height_service(document, loaded.source, loaded.crs.clone(), lattice, &collected.decks)?;
+    Ok(SceneGround { heights, files: assets.files_read() })
+}
 
 /// Builds the scene that `document` describes. `progress` is called with the name of each pass as it begins.
 ///
 /// # Errors
-/// The first thing that cannot be had or does not fit, pointing at its place in the scene file.
+/// The first file that cannot be read or table that does not fit, at its place in the scene file.
 pub fn build(
     document: &Document,
     assets: &Assets,
@@ -39,61 +67,47 @@ pub fn build(
     progress("reading elevation");
     let loaded = ground::load(document, assets)?;
     let (crs, mut lattice) = (loaded.crs, loaded.lattice);
-    let places = places(document, &crs, &lattice);
+    let frame = WorldFrame::new(document, &crs, lattice.origin());
 
     progress("laying features");
-    let sources = Sources::new(&places, assets);
+    let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder { notes: loaded.notes, ..SceneBuilder::default() };
-    let extent = lattice.extent();
-    lakes::lay(document, &sources, &mut lattice, &mut collected)?;
-    rivers::lay(document, &sources, &mut lattice, &mut collected)?;
-    areas::lay(document, &sources, &extent, &mut collected)?;
-    let mut roads = centerline::collect(document, &sources, &extent, &mut collected)?;
-    conform::conform(document, &mut lattice, &mut roads, &mut collected)?;
-    let plots = buildings::lay_out(document, &sources, &mut lattice, &mut collected)?;
-    let lines = fences::lay_out(document, &sources, &mut lattice, &mut collected)?;
-    bridges::build(document, &sources, (&lattice, places.exaggeration), &mut roads, &mut collected)?;
-    network::lay(&roads, &extent, &mut collected);
-    let finest = DrawnGround { lattice: &lattice, exaggeration: places.exaggeration };
-    fences::set(&lines, finest, &mut collected);
-    buildings::raise(document, &plots, finest, &mut collected);
+    let shaped = shape(document, &sources, &mut lattice, &mut collected)?;
+    network::lay(&shaped.roads, &lattice.extent(), &mut collected);
+    let finest = DrawnGround { lattice: &lattice, exaggeration: frame.exaggeration };
+    fences::set(&shaped.lines, finest, &mut collected);
+    buildings::raise(document, &shaped.plots, finest, &mut collected);
     collected.resolve_overlaps();
 
     progress("loading models");
-    let (models, placements) =
-        models::place(document, (&places, &sources, assets), &mut lattice, &mut collected)?;
-
+    let placed = models::place(&sources, &mut lattice, &mut collected)?;
+    let models = placed.library.into_models();
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
     progress("placing labels and cameras");
     let terrain = terrain(document, lattice)?;
-    let labels = views::labels(document, &places, &terrain)?;
-    let cameras = views::cameras(document, &places, &terrain)?;
+    let labels = views::labels(document, &frame, &terrain)?;
+    let cameras = views::cameras(document, &frame, &terrain)?;
     collected.notes.extend(views::buried(&cameras, &terrain));
-
-    progress("lighting terrain");
     let (low, high) = terrain.bounds();
-    let lighting = style::lighting(document, (high - low).max_element());
-    let ramp = style::ramp(document, &terrain.lattice)?;
-    let map = style::ground_map(&terrain, lighting.to_sun, ramp, style::contours(document));
-
-    let heights = HeightService::new(loaded.source, crs.clone(), Arc::clone(&terrain.lattice));
-    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
-    let heights = if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) };
+    let heights =
+        height_service(document, loaded.source, crs.clone(), Arc::clone(&terrain.lattice), &collected.decks)?;
     Ok(Scene {
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),
         heights,
+        ramp: style::ramp(document, terrain.height_range())?,
+        contours: style::contours(document),
+        lighting: style::lighting(document, (high - low).max_element()),
+        map: OnceLock::new(),
         terrain,
-        map: Arc::new(map),
-        lighting,
         ribbons: collected.ribbons,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),
         models,
-        placements,
+        placements: placed.placements,
         labels,
         cameras,
         furniture: document.furniture,
@@ -106,14 +120,43 @@ pub fn build(
     })
 }
 
-fn places<'a>(document: &'a Document, crs: &'a Crs, lattice: &Lattice) -> WorldFrame<'a> {
-    WorldFrame {
-        document,
-        crs,
-        points_crs: document.points_crs.as_ref().unwrap_or(crs).clone(),
-        origin: lattice.origin(),
-        exaggeration: document.terrain.vertical_exaggeration as f32,
-    }
+/// Features that shaped the ground and are not built yet.
+struct ShapedFeatures {
+    roads: Vec<Centerline>,
+    plots: Vec<Plot>,
+    lines: Vec<FenceLine>,
+}
+
+/// Shapes the ground for everything but models, and builds the decks over it.
+fn shape(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    collected: &mut SceneBuilder,
+) -> Result<ShapedFeatures, Diagnostic> {
+    let extent = lattice.extent();
+    lakes::lay(document, sources, lattice, collected)?;
+    rivers::lay(document, sources, lattice, collected)?;
+    areas::lay(document, sources, &extent, collected)?;
+    let mut roads = centerline::collect(document, sources, &extent, collected)?;
+    conform::conform(document, lattice, &mut roads, collected)?;
+    let plots = buildings::lay_out(document, sources, lattice, collected)?;
+    let lines = fences::lay_out(document, sources, lattice, collected)?;
+    let exaggeration = document.terrain.vertical_exaggeration as f32;
+    bridges::build(document, sources, (lattice, exaggeration), &mut roads, collected)?;
+    Ok(ShapedFeatures { roads, plots, lines })
+}
+
+fn height_service(
+    document: &Document,
+    source: Arc<Raster>,
+    crs: Crs,
+    lattice: Arc<Lattice>,
+    decks: &[SurfaceTriangle],
+) -> Result<HeightService, Diagnostic> {
+    let heights = HeightService::new(source, crs, lattice);
+    let decks = Deck::new(decks).map_err(|error| document.error_at(0..0, error))?;
+    Ok(if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) })
 }
 
 fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {

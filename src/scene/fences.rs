@@ -142,7 +142,7 @@ fn line_of(
     let mut size = |key, default: f64| attributes.number_or(key, default, &mut collected.default_counts);
     FenceLine {
         kind,
-        parts: within(line.points(), extent),
+        parts: line.clip(extent),
         height_m: size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
         width_m: size(fence.width.as_ref(), sizes.width_m),
         spacing_m: size(fence.spacing.as_deref(), sizes.spacing_m),
@@ -167,21 +167,6 @@ fn tagged_kind(fence: &FenceTable, attributes: &Attributes) -> FenceKind {
         ("", "", boundary) if !boundary.is_empty() => FenceKind::Boundary,
         _ => FenceKind::default(),
     }
-}
-
-/// The parts of a line that lie on the elevation model.
-fn within(points: &[DVec2], extent: &Rect) -> Vec<Vec<DVec2>> {
-    let mut parts: Vec<Vec<DVec2>> = Vec::new();
-    for pair in points.windows(2) {
-        let Some((from, to)) = extent.clip_line(pair[0], pair[1]).filter(|(from, to)| from != to) else {
-            continue;
-        };
-        match parts.last_mut() {
-            Some(part) if part.last() == Some(&from) => part.push(to),
-            _ => parts.push(vec![from, to]),
-        }
-    }
-    parts
 }
 
 impl FenceLine {
@@ -317,21 +302,10 @@ fn dashes(points: &[DVec2], line: &FenceLine, extent: &Rect) -> PlanMesh {
         let dash = (start_m, start_m + period_m / 2.0);
         let dot = (start_m + period_m * 0.75 - dot_m / 2.0, start_m + period_m * 0.75 + dot_m / 2.0);
         for (from, to) in [dash, dot] {
-            append(
-                &mut all,
-                ribbon(&between(&whole, from, to), line.width_m, RibbonSurface::Boundary, extent),
-            );
+            append(&mut all, ribbon(&whole.between(from, to), line.width_m, RibbonSurface::Boundary, extent));
         }
     }
     all
-}
-
-/// The points of a line from one station to another.
-fn between(line: &Polyline, from: f64, to: f64) -> Vec<DVec2> {
-    let first = line.stations().partition_point(|&station| station <= from);
-    let last = line.stations().partition_point(|&station| station < to);
-    let inner = line.points().get(first..last.max(first)).unwrap_or_default();
-    std::iter::once(line.at(from)).chain(inner.iter().copied()).chain(std::iter::once(line.at(to))).collect()
 }
 
 fn append(all: &mut PlanMesh, more: PlanMesh) {

@@ -38,7 +38,7 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
+use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
@@ -69,10 +69,13 @@ pub struct Scene {
     pub terrain: Terrain,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
-    /// What the ground looks like.
-    pub map: Arc<GroundMap>,
+    /// The colors of the ground by height.
+    pub ramp: ColorRamp,
+    /// Lines of equal height on the ground.
+    pub contours: Option<Contours>,
     /// Light, haze and sky.
     pub lighting: Lighting,
+    map: OnceLock<Arc<GroundMap>>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
     /// What has a shape of its own: buildings, bridges.
@@ -103,6 +106,14 @@ pub struct Scene {
     pub files: Vec<std::path::PathBuf>,
 }
 
+/// The ground of a scene: all that height queries, profiles and lines of sight need.
+pub struct SceneGround {
+    /// Answers height queries in map coordinates.
+    pub heights: HeightService,
+    /// The files it was made of, besides the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
+}
+
 /// The ground with what refinement needs to know of it.
 pub struct Terrain {
     /// The heights.
@@ -113,6 +124,7 @@ pub struct Terrain {
     pub exaggeration: f32,
     /// How many pixels the drawn ground may be off.
     pub tolerance_px: f32,
+    height_range: OnceLock<(f32, f32)>,
     displayed: OnceLock<Arc<Lattice>>,
     errors: OnceLock<ErrorMap>,
     patch_heights: OnceLock<PatchHeights>,
@@ -126,10 +138,16 @@ impl Terrain {
             layout,
             exaggeration,
             tolerance_px,
+            height_range: OnceLock::new(),
             displayed: OnceLock::new(),
             errors: OnceLock::new(),
             patch_heights: OnceLock::new(),
         }
+    }
+
+    /// The lowest and the highest height in meters, measured on first use.
+    pub fn height_range(&self) -> (f32, f32) {
+        *self.height_range.get_or_init(|| self.lattice.height_range())
     }
 
     /// The heights as they are displayed, made on first use; `lattice` itself without exaggeration.
@@ -157,7 +175,7 @@ impl Terrain {
 
     /// The box of the ground in world space, drawn heights.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let (low, high) = self.lattice.height_range();
+        let (low, high) = self.height_range();
         let Rect { min, max } = self.lattice.extent();
         let corner = |plan: DVec2, z: f32| plan.as_vec2().extend(z * self.exaggeration);
         (corner(min, low), corner(max, high))
@@ -280,8 +298,8 @@ pub struct Placement {
     pub at: Vec2,
     /// How its height is found.
     pub clamp: Clamp,
-    /// Meters above the ground, or elevation, as `clamp` says; 0 where it stands on the ground.
-    pub height_m: f32,
+    /// Meters above the ground, or displayed elevation, as `clamp` says; 0 where it stands on the ground.
+    pub height: f64,
     /// Which way its front points, radians clockwise from north.
     pub heading_rad: f32,
     /// Meters per unit of the model.
@@ -339,6 +357,20 @@ pub struct View {
 }
 
 impl Scene {
+    /// What the ground looks like, its light computed on first use.
+    pub fn map(&self) -> &Arc<GroundMap> {
+        self.map.get_or_init(|| {
+            let map =
+                style::ground_map(&self.terrain, self.lighting.to_sun, self.ramp.clone(), self.contours);
+            Arc::new(map)
+        })
+    }
+
+    /// Whether [`Scene::map`] has been made.
+    pub fn is_lit(&self) -> bool {
+        self.map.get().is_some()
+    }
+
     /// The view called `name`, or the first where no name is given.
     pub fn view(&self, name: Option<&str>) -> Option<&View> {
         match name {

@@ -18,10 +18,9 @@ use crate::description::words::{Anchor, Clamp, Footing};
 use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
 use crate::scene::Placement;
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::{ModelFootprint, Under};
 use crate::structure::plinth;
-use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::support_surface::SupportSurface;
 
 /// How far a plinth reaches out beyond the footprint, as a part of the longer side: it shows as a step.
 pub const PLINTH_REACH: f32 = 0.05;
@@ -29,15 +28,6 @@ pub const PLINTH_REACH: f32 = 0.05;
 const PLINTH_DEPTH_M: f64 = 0.5;
 /// A footprint counts as displayed where this part of it is; the rest is rounding.
 const WHOLE: f64 = 0.999;
-
-/// The ground that models stand on.
-#[derive(Clone, Copy)]
-pub struct Grounds<'a> {
-    /// As it is displayed.
-    pub displayed: &'a dyn TriangleSurface,
-    /// As it is.
-    pub finest: DrawnGround<'a>,
-}
 
 /// A model on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,29 +40,24 @@ pub struct ModelPose {
     pub tilt_rad: f64,
 }
 
-impl Grounds<'_> {
-    /// Drawn height of the ground at a world position: as displayed, or as it is where that is out of view, since a
-    /// model's upper parts may be in view all the same. `None` over no data.
-    fn z(&self, at: DVec2) -> Option<f64> {
-        self.displayed.displayed_z(at).or_else(|| self.finest.displayed_z(at))
-    }
-
-    /// The ground under an outline, seen from `at`: as displayed, or as it is where not all of that is in view.
-    fn under(&self, outline: &[DVec2; 4], at: DVec2) -> Option<Under> {
-        let local = outline.map(|corner| corner - at);
-        let area_m2 = polygon::doubled_area(&local) / 2.0;
-        let displayed = Under::cut(self.displayed, outline, at);
-        displayed
-            .filter(|under| under.area_m2() >= area_m2 * WHOLE)
-            .or_else(|| Under::cut(&self.finest, outline, at))
-    }
+/// The ground under an outline, seen from `at`: as displayed, or at full resolution where not all of that is in view.
+fn under(ground: SupportSurface<'_>, outline: &[DVec2; 4], at: DVec2) -> Option<Under> {
+    let local = outline.map(|corner| corner - at);
+    let area_m2 = polygon::doubled_area(&local) / 2.0;
+    Under::cut(ground.displayed, outline, at)
+        .filter(|under| under.area_m2() >= area_m2 * WHOLE)
+        .or_else(|| Under::cut(ground.ground, outline, at))
 }
 
 /// How a model with this footprint stands on the ground; `None` where there is none.
-pub fn stand(placement: &Placement, footprint: &ModelFootprint, grounds: &Grounds<'_>) -> Option<ModelPose> {
+pub fn stand(
+    placement: &Placement,
+    footprint: &ModelFootprint,
+    ground: SupportSurface<'_>,
+) -> Option<ModelPose> {
     let at = placement.at.as_dvec2();
     let whole =
-        if placement.needs_footprint() { grounds.under(&outline(placement, footprint), at) } else { None };
+        if placement.needs_footprint() { under(ground, &outline(placement, footprint), at) } else { None };
     let lean = whole
         .as_ref()
         .map_or(DVec2::ZERO, |under| leaning(under.gradient(), f64::from(placement.standing.tilt_rad)));
@@ -80,12 +65,11 @@ pub fn stand(placement: &Placement, footprint: &ModelFootprint, grounds: &Ground
         (Anchor::Lowest, Some(under)) => under.lowest(lean),
         (Anchor::Highest, Some(under)) => under.highest(lean),
         (Anchor::Mean, Some(under)) => under.mean(lean),
-        (Anchor::Origin, _) | (_, None) => grounds.z(at)?,
+        (Anchor::Origin, _) | (_, None) => ground.z(at)?,
     };
-    let exaggeration = f64::from(grounds.finest.exaggeration);
     let tilt_rad = libm::atan(lean.length());
     Some(ModelPose {
-        world_from_model: pose(placement, footprint, (anchor_z, lean), exaggeration),
+        world_from_model: pose(placement, footprint, anchor_z, lean),
         anchor_z,
         tilt_rad,
     })
@@ -103,9 +87,9 @@ impl ModelPose {
         &self,
         placement: &Placement,
         footprint: &ModelFootprint,
-        grounds: &Grounds<'_>,
+        ground: SupportSurface<'_>,
     ) -> Option<DrawMesh> {
-        let foot_z = self.plinth_foot_z(placement, footprint, grounds)? - PLINTH_DEPTH_M;
+        let foot_z = self.plinth_foot_z(placement, footprint, ground)? - PLINTH_DEPTH_M;
         Some(plinth::block(&self.base(&footprint.grown(PLINTH_REACH)), foot_z as f32))
     }
 
@@ -114,9 +98,9 @@ impl ModelPose {
         &self,
         placement: &Placement,
         footprint: &ModelFootprint,
-        grounds: &Grounds<'_>,
+        ground: SupportSurface<'_>,
     ) -> Option<f64> {
-        let foot_z = self.plinth_foot_z(placement, footprint, grounds)?;
+        let foot_z = self.plinth_foot_z(placement, footprint, ground)?;
         Some(top_z(&self.base(&footprint.grown(PLINTH_REACH))) - foot_z)
     }
 
@@ -125,14 +109,14 @@ impl ModelPose {
         &self,
         placement: &Placement,
         footprint: &ModelFootprint,
-        grounds: &Grounds<'_>,
+        ground: SupportSurface<'_>,
     ) -> Option<f64> {
         if placement.standing.footing != Footing::Plinth {
             return None;
         }
         let base = self.base(&footprint.grown(PLINTH_REACH));
         let outline = base.map(|corner| corner.truncate().as_dvec2());
-        let foot_z = grounds.under(&outline, placement.at.as_dvec2())?.lowest(DVec2::ZERO);
+        let foot_z = under(ground, &outline, placement.at.as_dvec2())?.lowest(DVec2::ZERO);
         (top_z(&base) > foot_z).then_some(foot_z)
     }
 }
@@ -160,16 +144,16 @@ fn leaning(gradient: DVec2, tilt_rad: f64) -> DVec2 {
 fn pose(
     placement: &Placement,
     footprint: &ModelFootprint,
-    (anchor_z, lean): (f64, DVec2),
-    exaggeration: f64,
+    anchor_z: f64,
+    lean: DVec2,
 ) -> Mat4 {
     let rotation = tilted(lean.as_vec2()) * heading(placement.heading_rad);
-    let (height_m, sink_m) = (f64::from(placement.height_m), f64::from(placement.standing.sink_m));
+    let sink_m = f64::from(placement.standing.sink_m);
     let foot = Vec3::Z * footprint.min.z;
     let (held, z) = match placement.clamp {
         Clamp::Ground => (foot, anchor_z - sink_m),
-        Clamp::Relative => (Vec3::ZERO, anchor_z + height_m - sink_m),
-        Clamp::Absolute => (Vec3::ZERO, height_m * exaggeration),
+        Clamp::Relative => (Vec3::ZERO, anchor_z + placement.height - sink_m),
+        Clamp::Absolute => (Vec3::ZERO, placement.height),
     };
     let origin = placement.at.extend(z as f32) - rotation * (held * placement.scale);
     Mat4::from_scale_rotation_translation(Vec3::splat(placement.scale), rotation, origin)
@@ -194,7 +178,10 @@ mod tests {
     use super::*;
     use crate::draw::list::FeatureId;
     use crate::scene::GroundFit;
+    use crate::scene::drawn_ground::DrawnGround;
+    use crate::terrain::full_resolution::FullResolution;
     use crate::terrain::lattice::Lattice;
+    use crate::terrain::triangle_surface::TriangleSurface;
     use glam::DVec2;
 
     const FOOTPRINT: ModelFootprint =
@@ -206,7 +193,7 @@ mod tests {
             model: 0,
             at: AT,
             clamp: Clamp::Ground,
-            height_m: 0.0,
+            height: 0.0,
             heading_rad: heading_deg.to_radians(),
             scale: 2.0,
             standing,
@@ -222,8 +209,8 @@ mod tests {
     }
 
     fn stand_on(lattice: &Lattice, placement: &Placement) -> ModelPose {
-        let finest = DrawnGround { lattice, exaggeration: 1.0 };
-        stand(placement, &FOOTPRINT, &Grounds { displayed: &finest, finest }).expect("on the ground")
+        let finest = FullResolution { lattice };
+        stand(placement, &FOOTPRINT, SupportSurface { displayed: &finest, ground: &finest }).expect("on the ground")
     }
 
     #[test]
@@ -289,13 +276,13 @@ mod tests {
             (gaps(rise, &placement(0.0, GroundFit::default())), gaps(rise, &placement(0.0, sunk)));
         assert!(plain.iter().zip(low).all(|(plain, low)| (plain - low - 0.75).abs() < 1e-3));
         let lattice = ground(|at| 300.0 + at.dot(rise));
-        let finest = DrawnGround { lattice: &lattice, exaggeration: 1.0 };
-        let grounds = Grounds { displayed: &finest, finest };
+        let finest = FullResolution { lattice: &lattice };
+        let ground = SupportSurface { displayed: &finest, ground: &finest };
         let footing = GroundFit { footing: Footing::Plinth, anchor: Anchor::Highest, ..GroundFit::default() };
         let placed = placement(20.0, footing);
         let stand = stand_on(&lattice, &placed);
-        let mesh = stand.plinth(&placed, &FOOTPRINT, &grounds).expect("there is a gap");
-        let height = stand.plinth_height_m(&placed, &FOOTPRINT, &grounds).expect("there is a gap");
+        let mesh = stand.plinth(&placed, &FOOTPRINT, ground).expect("there is a gap");
+        let height = stand.plinth_height_m(&placed, &FOOTPRINT, ground).expect("there is a gap");
         assert!(height > 10.0, "{height}");
         for vertex in &mesh.vertices {
             let [x, y, z] = vertex.position.map(f64::from);
@@ -304,7 +291,7 @@ mod tests {
             assert!(is_top || above < -0.4, "its foot is in the ground everywhere: {above}");
         }
         let none = placement(20.0, GroundFit { anchor: Anchor::Highest, ..GroundFit::default() });
-        assert!(stand.plinth(&none, &FOOTPRINT, &grounds).is_none());
+        assert!(stand.plinth(&none, &FOOTPRINT, ground).is_none());
     }
 
     #[test]
@@ -322,7 +309,7 @@ mod tests {
         let finest = DrawnGround { lattice: &lattice, exaggeration: 3.0 };
         for anchor in [Anchor::Origin, Anchor::Mean] {
             let placed = placement(0.0, GroundFit { anchor, ..GroundFit::default() });
-            let found = stand(&placed, &FOOTPRINT, &Grounds { displayed: &Nothing, finest })
+            let found = stand(&placed, &FOOTPRINT, SupportSurface { displayed: &Nothing, ground: &finest })
                 .expect("there is ground");
             assert!((found.anchor_z - 300.0).abs() < 1e-2, "{anchor:?}: {}", found.anchor_z);
         }

@@ -50,28 +50,21 @@ pub enum ReportCell {
     Empty,
 }
 
-impl From<String> for ReportCell {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
+macro_rules! cells {
+    ($($value:ty => $cell:expr;)+) => {$(
+        impl From<$value> for ReportCell {
+            fn from(value: $value) -> Self {
+                $cell(value.into())
+            }
+        }
+    )+};
 }
 
-impl From<&'static str> for ReportCell {
-    fn from(text: &'static str) -> Self {
-        Self::Text(text.into())
-    }
-}
-
-impl From<f64> for ReportCell {
-    fn from(number: f64) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<usize> for ReportCell {
-    fn from(count: usize) -> Self {
-        Self::Count(count)
-    }
+cells! {
+    String => Self::Text;
+    &'static str => Self::Text;
+    f64 => Self::Number;
+    usize => Self::Count;
 }
 
 impl<T: Into<Self>> From<Option<T>> for ReportCell {
@@ -80,19 +73,19 @@ impl<T: Into<Self>> From<Option<T>> for ReportCell {
     }
 }
 
-/// Declares the tables of the report and the struct of each one's rows.
+/// Declares the tables of the report and the struct of each one's rows: `column: type, "unit" => "what it holds"`.
 macro_rules! report {
     ($(
         $(#[$table_attribute:meta])*
         $table:ident: $row:ident {
-            $($(#[$attribute:meta])* $field:ident $(as $name:literal)?: $type:ty $(, $unit:literal)?;)+
+            $($field:ident $(as $name:literal)?: $type:ty $(, $unit:literal)? => $doc:literal;)+
         }
     )+) => {
         $(
             $(#[$table_attribute])*
             #[derive(Clone, Debug, PartialEq)]
             pub struct $row {
-                $($(#[$attribute])* pub $field: $type,)+
+                $(#[doc = $doc] pub $field: $type,)+
             }
 
             impl $row {
@@ -130,178 +123,108 @@ macro_rules! report {
 report! {
     /// Lakes.
     lakes: LakeRow {
-        /// The lake; may be empty, as in all rows.
-        name: String;
-        /// Elevation of the water.
-        level: f64, "m";
-        /// How the level was found: the level rule, or `given`.
-        rule: &'static str;
-        /// Lowest ground along the shore.
-        lowest_shore: Option<f64>, "m";
-        /// Highest ground along the shore.
-        highest_shore: Option<f64>, "m";
-        /// Area of the water, on the elevation model or off, without islands.
-        area: f64, "m2";
-        /// Earth cut.
-        cut: f64, "m3";
-        /// Earth filled.
-        fill: f64, "m3";
+        name: String => "The lake; may be empty, as in all rows.";
+        level: f64, "m" => "Elevation of the water.";
+        rule: &'static str => "How the level was found: the level rule, or `given`.";
+        lowest_shore: Option<f64>, "m" => "Lowest ground along the shore.";
+        highest_shore: Option<f64>, "m" => "Highest ground along the shore.";
+        area: f64, "m2" => "Area of the water, on the elevation model or off, without islands.";
+        cut: f64, "m3" => "Earth cut.";
+        fill: f64, "m3" => "Earth filled.";
     }
 
     /// Rivers whose water falls.
     rivers: RiverRow {
-        /// The river.
-        name: String;
-        /// Length of the centerline.
-        length: f64, "m";
-        /// Elevation of the water at its source.
-        from: Option<f64>, "m";
-        /// Elevation of the water at its mouth.
-        to: Option<f64>, "m";
-        /// Deepest cut.
-        deepest_cut: f64, "m";
-        /// Earth cut.
-        cut: f64, "m3";
-        /// Earth filled.
-        fill: f64, "m3";
-        /// Places where the ground rises downstream by more than may be cut.
-        climbs: usize;
-        /// Greatest rise of the ground at one of them.
-        greatest_climb: Option<f64>, "m";
+        name: String => "The river.";
+        length: f64, "m" => "Length of the centerline.";
+        from: Option<f64>, "m" => "Elevation of the water at its source.";
+        to: Option<f64>, "m" => "Elevation of the water at its mouth.";
+        deepest_cut: f64, "m" => "Deepest cut.";
+        cut: f64, "m3" => "Earth cut.";
+        fill: f64, "m3" => "Earth filled.";
+        climbs: usize => "Places where the ground rises downstream by more than may be cut.";
+        greatest_climb: Option<f64>, "m" => "Greatest rise of the ground at one of them.";
     }
 
     /// Roads that the ground follows.
     conformed_roads: ConformedRoadRow {
-        /// The road.
-        name: String;
-        /// Length of the centerline.
-        length: f64, "m";
-        /// Steepest grade along it.
-        highest_grade: f64, "%";
-        /// Earth cut.
-        cut: f64, "m3";
-        /// Earth filled.
-        fill: f64, "m3";
-        /// Height of its highest embankment.
-        highest_fill: f64, "m";
-        /// Depth of its deepest cutting.
-        deepest_cut: f64, "m";
-        /// Stretches on bridges.
-        bridges: usize;
-        /// Stretches in tunnels.
-        tunnels: usize;
+        name: String => "The road.";
+        length: f64, "m" => "Length of the centerline.";
+        highest_grade: f64, "%" => "Steepest grade along it.";
+        cut: f64, "m3" => "Earth cut.";
+        fill: f64, "m3" => "Earth filled.";
+        highest_fill: f64, "m" => "Height of its highest embankment.";
+        deepest_cut: f64, "m" => "Depth of its deepest cutting.";
+        bridges: usize => "Stretches on bridges.";
+        tunnels: usize => "Stretches in tunnels.";
     }
 
     /// Ground leveled under buildings.
     building_pads: BuildingPadRow {
-        /// The building.
-        name: String;
-        /// Elevation of the pad.
-        level: f64, "m";
-        /// Earth cut.
-        cut: f64, "m3";
-        /// Earth filled.
-        fill: f64, "m3";
+        name: String => "The building.";
+        level: f64, "m" => "Elevation of the pad.";
+        cut: f64, "m3" => "Earth cut.";
+        fill: f64, "m3" => "Earth filled.";
     }
 
     /// Trenches dug.
     trenches: TrenchRow {
-        /// The trench.
-        name: String;
-        /// Length on the elevation model.
-        length: f64, "m";
-        /// Earth cut.
-        cut: f64, "m3";
+        name: String => "The trench.";
+        length: f64, "m" => "Length on the elevation model.";
+        cut: f64, "m3" => "Earth cut.";
     }
 
     /// Bridges and tunnels.
     bridges_and_tunnels: SpanRow {
-        /// The road or the bridge.
-        name: String;
-        /// `bridge`, `tunnel` or `underpass`.
-        kind: &'static str;
-        /// Why it is one: `tag`, `rule` or `table`.
-        by: &'static str;
-        /// Length of the centerline.
-        length: f64, "m";
-        /// Greatest height of the carriageway above the ground.
-        greatest_height_above_ground: f64, "m";
-        /// Greatest depth of the carriageway below the ground.
-        greatest_depth_below_ground: f64, "m";
-        /// Steepest grade along it.
-        steepest_grade: f64, "%";
-        /// Piers of a bridge.
-        piers: Option<usize>;
-        /// Portals of a tunnel.
-        portals: Option<usize>;
-        /// Lowest clearance over what passes below.
-        lowest_clearance: Option<f64>, "m";
+        name: String => "The road or the bridge.";
+        kind: &'static str => "`bridge`, `tunnel` or `underpass`.";
+        by: &'static str => "Why it is one: `tag`, `rule` or `table`.";
+        length: f64, "m" => "Length of the centerline.";
+        greatest_height_above_ground: f64, "m" => "Greatest height of the carriageway above the ground.";
+        greatest_depth_below_ground: f64, "m" => "Greatest depth of the carriageway below the ground.";
+        steepest_grade: f64, "%" => "Steepest grade along it.";
+        piers: Option<usize> => "Piers of a bridge.";
+        portals: Option<usize> => "Portals of a tunnel.";
+        lowest_clearance: Option<f64>, "m" => "Lowest clearance over what passes below.";
     }
 
     /// Models that stand at one place. A gap is the height of a corner of the model's foot above the ground under it,
     /// negative where it is buried; over the finest ground.
     models: ModelRow {
-        /// The model.
-        name: String;
-        /// Elevation of the ground that it stands on; of a model at a stated elevation none.
-        anchor: Option<f64>, "m";
-        /// Gap at the front left corner.
-        gap_front_left: Option<f64>, "m";
-        /// Gap at the front right corner.
-        gap_front_right: Option<f64>, "m";
-        /// Gap at the back right corner.
-        gap_back_right: Option<f64>, "m";
-        /// Gap at the back left corner.
-        gap_back_left: Option<f64>, "m";
-        /// Lean.
-        tilt: f64, "deg";
-        /// Height of its plinth.
-        plinth: Option<f64>, "m";
-        /// Earth cut for its pad.
-        cut: Option<f64>, "m3";
-        /// Earth filled for its pad.
-        fill: Option<f64>, "m3";
+        name: String => "The model.";
+        anchor: Option<f64>, "m" => "Elevation of the ground that it stands on; of a model at a stated elevation none.";
+        gap_front_left: Option<f64>, "m" => "Gap at the front left corner.";
+        gap_front_right: Option<f64>, "m" => "Gap at the front right corner.";
+        gap_back_right: Option<f64>, "m" => "Gap at the back right corner.";
+        gap_back_left: Option<f64>, "m" => "Gap at the back left corner.";
+        tilt: f64, "deg" => "Lean.";
+        plinth: Option<f64>, "m" => "Height of its plinth.";
+        cut: Option<f64>, "m3" => "Earth cut for its pad.";
+        fill: Option<f64>, "m3" => "Earth filled for its pad.";
     }
 
     /// Tables of models with instances.
     instances: InstancesRow {
-        /// The table, or its file.
-        name: String;
-        /// Models that stand.
-        models: usize;
-        /// Points off the ground.
-        off_the_ground: usize;
-        /// Points that name none of the variants.
-        of_no_variant: usize;
-        /// Least gap at any corner.
-        least_gap: Option<f64>, "m";
-        /// Greatest gap at any corner.
-        greatest_gap: Option<f64>, "m";
-        /// Greatest lean.
-        greatest_tilt: Option<f64>, "deg";
-        /// Height of the highest plinth.
-        highest_plinth: Option<f64>, "m";
-        /// Earth cut for pads.
-        cut: Option<f64>, "m3";
-        /// Earth filled for pads.
-        fill: Option<f64>, "m3";
+        name: String => "The table, or its file.";
+        models: usize => "Models that stand.";
+        off_the_ground: usize => "Points off the ground.";
+        of_no_variant: usize => "Points that name none of the variants.";
+        least_gap: Option<f64>, "m" => "Least gap at any corner.";
+        greatest_gap: Option<f64>, "m" => "Greatest gap at any corner.";
+        greatest_tilt: Option<f64>, "deg" => "Greatest lean.";
+        highest_plinth: Option<f64>, "m" => "Height of the highest plinth.";
+        cut: Option<f64>, "m3" => "Earth cut for pads.";
+        fill: Option<f64>, "m3" => "Earth filled for pads.";
     }
 
     /// Models strewn over areas.
     scattered: ScatterRow {
-        /// The table.
-        name: String;
-        /// Models that stand.
-        models: usize;
-        /// Areas.
-        areas: usize;
-        /// Places left free for the slope of the ground.
-        by_slope: usize;
-        /// Places left free for the elevation of the ground.
-        by_elevation: usize;
-        /// Places left free for roads, water and buildings.
-        by_obstacles as "by roads, water and buildings": usize;
-        /// Places off the ground.
-        off_the_ground: usize;
+        name: String => "The table.";
+        models: usize => "Models that stand.";
+        areas: usize => "Areas.";
+        by_slope: usize => "Places left free for the slope of the ground.";
+        by_elevation: usize => "Places left free for the elevation of the ground.";
+        by_obstacles as "by roads, water and buildings": usize => "Places left free for roads, water and buildings.";
+        off_the_ground: usize => "Places off the ground.";
     }
 }

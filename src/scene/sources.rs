@@ -27,8 +27,10 @@ type LayerKey = (String, Option<String>, Option<String>);
 
 /// Reads vector files, each once.
 pub struct Sources<'a> {
-    places: &'a WorldFrame<'a>,
-    assets: &'a Assets,
+    /// The document and its place in the world.
+    pub frame: &'a WorldFrame<'a>,
+    /// The files that the document may name.
+    pub assets: &'a Assets,
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
 }
 
@@ -41,9 +43,9 @@ pub struct Sourced<T> {
 }
 
 impl<'a> Sources<'a> {
-    /// Sources that read through `assets` and place through `places`.
-    pub fn new(places: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        Self { places, assets, layers: RefCell::default() }
+    /// Sources that read through `assets` and place through `frame`.
+    pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
+        Self { frame, assets, layers: RefCell::default() }
     }
 
     /// The lines of a source.
@@ -100,11 +102,11 @@ impl<'a> Sources<'a> {
             let line = points.iter().map(|&point| DVec2::from(point)).collect();
             let shape = pick(&Geometry::Lines(vec![line]));
             let sourced = |shape| Sourced { attributes: Attributes::default(), shape };
-            let crs = source.crs.as_ref().unwrap_or(&self.places.points_crs);
+            let crs = source.crs.as_ref().unwrap_or(&self.frame.points_crs);
             return Ok((crs.clone(), shape.into_iter().map(sourced).collect()));
         }
         let Some(file) = &source.file else {
-            return Ok((self.places.crs.clone(), Vec::new()));
+            return Ok((self.frame.crs.clone(), Vec::new()));
         };
         let layer = self.layer(file, source.layer.as_ref(), source.crs.as_ref())?;
         let filter = filter_of(source);
@@ -137,7 +139,7 @@ impl<'a> Sources<'a> {
     ) -> Diagnostic {
         let name = file.as_str();
         let unmatched =
-            |selection| self.places.document.error(selection, format!("no feature of '{name}' matches"));
+            |selection| self.frame.document.error(selection, format!("no feature of '{name}' matches"));
         if let Some(selection) = &source.selection
             && let Selection::Holding(condition) = &**selection
             && !(0..layer.features.len())
@@ -157,7 +159,7 @@ impl<'a> Sources<'a> {
                 let kinds: Vec<_> = kinds.into_iter().collect();
                 let count = layer.features.len();
                 let help = format!("the file's {count} features are {}", kinds.join(", "));
-                self.places.document.error(file, message).with_help(help)
+                self.frame.document.error(file, message).with_help(help)
             }
         }
     }
@@ -173,7 +175,7 @@ impl<'a> Sources<'a> {
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Arc::clone(layer));
         }
-        let bytes = self.assets.read(file).map_err(|error| self.places.document.error(file, error))?;
+        let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
         let companions = |name: &str| self.assets.read(name).ok();
         let hints = VectorHints { crs: stated, layer: name, companions: &companions };
         let layer = read::read(file, &bytes, &hints).map_err(|error| self.unread(file, wanted, error))?;
@@ -189,7 +191,7 @@ impl<'a> Sources<'a> {
         wanted: Option<&Stated<String>>,
         error: VectorError,
     ) -> Diagnostic {
-        let document = self.places.document;
+        let document = self.frame.document;
         match (&error, wanted) {
             (VectorError::NoSuchLayer { wanted, suggestion, names }, Some(key)) => {
                 let message =
@@ -212,14 +214,14 @@ impl<'a> Sources<'a> {
         (from, shapes): (Crs, Vec<Sourced<T>>),
         transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<U, CrsError>,
     ) -> Result<Vec<Sourced<U>>, Diagnostic> {
-        let place = |at: DVec2| self.places.world(&from, at);
+        let place = |at: DVec2| self.frame.world(&from, at);
         shapes
             .into_iter()
             .map(|Sourced { attributes, shape }| {
                 transform(shape, &place).map(|shape| Sourced { attributes, shape })
             })
             .collect::<Result<_, _>>()
-            .map_err(|error| self.places.document.error_at(source.span(), error))
+            .map_err(|error| self.frame.document.error_at(source.span(), error))
     }
 }
 

@@ -24,7 +24,14 @@ pub struct WorldFrame<'a> {
     pub exaggeration: f32,
 }
 
-impl WorldFrame<'_> {
+impl<'a> WorldFrame<'a> {
+    /// The frame of a document whose ground lies in `crs`, from `origin` on.
+    pub fn new(document: &'a Document, crs: &'a Crs, origin: DVec2) -> Self {
+        let points_crs = document.points_crs.as_ref().unwrap_or(crs).clone();
+        let exaggeration = document.terrain.vertical_exaggeration as f32;
+        Self { document, crs, points_crs, origin, exaggeration }
+    }
+
     /// World X and Y of a point in `from`.
     ///
     /// # Errors

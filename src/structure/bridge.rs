@@ -18,9 +18,9 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
+use crate::geom::profile::Profile;
 use crate::structure::deck::{DeckCourse, DeckSection};
 use crate::structure::deck_check;
-use crate::structure::deck_profile::DeckProfile;
 use crate::structure::faces::Faces;
 use crate::structure::pier;
 use crate::terrain::query::deck::Deck;
@@ -104,7 +104,7 @@ pub fn magnified(width_m: f64) -> f64 {
 /// The carriageway alone of the bridge that [`build`] builds.
 pub fn deck(
     course: &DeckCourse<'_>,
-    profile: &DeckProfile,
+    profile: &Profile,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
 ) -> Vec<SurfaceTriangle> {
@@ -115,7 +115,7 @@ pub fn deck(
 /// where one of the other carriageways of `decks` goes on beside it.
 pub fn build(
     course: &DeckCourse<'_>,
-    profile: &DeckProfile,
+    profile: &Profile,
     options: &BridgeOptions,
     (ground, decks): (&GroundHeight<'_>, &Deck),
 ) -> BridgeSolids {
@@ -157,14 +157,14 @@ fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
 /// The course's sections, turned at its ends as the ground lies across.
 fn sections(
     course: &DeckCourse<'_>,
-    profile: &DeckProfile,
+    profile: &Profile,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
 ) -> Vec<DeckSection> {
     let length_m = course.line.length();
     let fade_m = (course.width_m * TILT_WIDTHS).min(length_m / 2.0);
     let abutments = options.abutments_m.map(|length| length.unwrap_or(0.0));
-    let mut breaks: Vec<f64> = profile.stations().collect();
+    let mut breaks: Vec<f64> = profile.stations().to_vec();
     breaks.extend([abutments[0], length_m - abutments[1]]);
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| part * fade_m));
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| length_m - part * fade_m));
@@ -175,7 +175,7 @@ fn sections(
             breaks.extend(from_end.map(|from_end| if end == 0 { from_end } else { length_m - from_end }));
         }
     }
-    let mut sections = course.sections(&breaks, &|station| profile.level_m(station));
+    let mut sections = course.sections(&breaks, &|station| profile.at(station));
     let last = sections.len() - 1;
     for (index, end) in [0, last].into_iter().enumerate() {
         if options.across[index] == Across::Level {
@@ -339,6 +339,7 @@ mod tests {
     use super::*;
     use crate::geom::polyline::Polyline;
     use crate::structure::deck_profile::ClearancePoint;
+    use crate::structure::deck_profile::clearing;
     use proptest::prelude::*;
 
     fn options(length_m: f64) -> BridgeOptions {
@@ -368,7 +369,7 @@ mod tests {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
         let decks = Deck::new(&beside).expect("sound");
-        let level = DeckProfile::straight(90.0, [50.0; 2]);
+        let level = Profile::straight(90.0, [50.0; 2]);
         let bridge = build(&course(&line), &level, &options, (&|_| Some(50.0), &decks));
         bridge.check().expect("sound");
         let highest = |side: f32| {
@@ -389,14 +390,14 @@ mod tests {
             let turn = |at: DVec2| (0..quarter).fold(at, |at, _| at.perp());
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
-            let profile = DeckProfile::straight(120.0, [100.0, 102.4]);
+            let profile = Profile::straight(120.0, [100.0, 102.4]);
             let bridge = build(&course(&line), &profile, &options(120.0), (&valley, &none()));
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
                 let at = line.at(station);
                 let ground = valley(at).expect("ground") * 1.5;
-                let soffit = profile.level_m(station) * 1.5 - depth_m(30.0);
+                let soffit = profile.at(station) * 1.5 - depth_m(30.0);
                 let near = bridge.body.vertices.iter().map(|vertex| Vec3::from(vertex.position));
                 let near: Vec<Vec3> =
                     near.filter(|corner| corner.truncate().as_dvec2().distance(at) < 3.5).collect();
@@ -411,7 +412,7 @@ mod tests {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
         let bridge =
-            build(&course(&line), &DeckProfile::straight(90.0, [50.0; 2]), &options(90.0), (&slope, &none()));
+            build(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), (&slope, &none()));
         let height = |x: f32, y: f32| {
             let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
@@ -438,7 +439,7 @@ mod tests {
             let floors: Vec<ClearancePoint> = line.stations().iter().zip(&heights)
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
-            let profile = DeckProfile::clearing((line.length(), ends), &floors, &[], 0.1);
+            let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
             let bridge = build(&course(&line), &profile, &options(line.length()), (&|_| Some(95.0), &none()));
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());

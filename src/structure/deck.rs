@@ -16,6 +16,7 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::geom::offset::LineBend;
 use crate::geom::polyline::Polyline;
 use crate::structure::bridge::{PARAPET_THICK_M, magnified};
 
@@ -93,48 +94,29 @@ impl DeckCourse<'_> {
         sections
     }
 
-    /// The ways to both edges at a vertex.
+    /// The vectors from a vertex to both edges.
     fn aside(&self, index: usize) -> [DVec2; 2] {
         let points = self.line.points();
+        let at = points[index];
         let before = if index > 0 { Some(points[index - 1]) } else { self.beyond[0] };
         let after = points.get(index + 1).copied().or(self.beyond[1]);
-        let is_end = index == 0 || index + 1 == points.len();
-        let along = |from: Option<DVec2>, to: Option<DVec2>| Some((to? - from?).normalize_or_zero());
-        let at = Some(points[index]);
-        let (arriving, leaving) = (along(before, at), along(at, after));
         let half = self.width_m / 2.0;
-        let own = if index == 0 { leaving } else { arriving };
-        let square = own.unwrap_or(DVec2::X).perp() * half;
-        let (Some(arriving), Some(leaving)) = (arriving, leaving) else { return [square, -square] };
-        let Some(miter) = miter(arriving, leaving) else { return [square, -square] };
-        let shortest = [before, after]
-            .into_iter()
-            .flatten()
-            .map(|other| other.distance(points[index]))
-            .fold(f64::INFINITY, f64::min);
-        let reach = (miter.length_squared() - 1.0).max(0.0).sqrt() * half;
-        if miter.length() <= self.miter_limit && 2.0 * reach <= shortest {
-            return [miter * half, miter * -half];
+        let leg = index.saturating_sub(1);
+        let to_left = (points[leg + 1] - points[leg]).normalize_or_zero().perp() * half;
+        let square = [to_left, -to_left];
+        let (Some(before), Some(after)) = (before, after) else { return square };
+        let bend = LineBend { points: [before, at, after], half };
+        if let Some(miter) = bend.mitered(self.miter_limit) {
+            return [miter, -miter];
         }
-        // What goes on beyond an end does so with an edge of its own; see `ribbon::stroke`.
-        if is_end {
-            return [square, -square];
-        }
-        let outer = miter * half * (self.miter_limit / miter.length()).min(1.0);
-        let inner = miter * half * (LONGEST_INNER * shortest / reach).min(1.0);
-        if arriving.perp_dot(leaving) > 0.0 { [inner, -outer] } else { [outer, -inner] }
+        // What continues beyond an end does so with an edge of its own; see `ribbon::stroke`.
+        let is_end = index == 0 || index + 1 == points.len();
+        bend.limited(self.miter_limit, LONGEST_INNER).filter(|_| !is_end).unwrap_or(square)
     }
 }
 
 fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> DeckSection {
     DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2] }
-}
-
-/// The way to the left end of the miter, in half widths; `None` where the line turns back on itself.
-fn miter(arriving: DVec2, leaving: DVec2) -> Option<DVec2> {
-    let sum = arriving.perp() + leaving.perp();
-    let square = sum.length_squared();
-    (square > 1e-12).then(|| sum * (2.0 / square))
 }
 
 impl DeckSection {

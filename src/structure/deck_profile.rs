@@ -1,10 +1,8 @@
-//! How high a deck lies along its way: stated, or as a rope pulled taut over what it has to clear.
+//! How high a deck lies: a rope pulled taut over what it has to clear.
 //!
-//! The ends lie where the road comes from the ground. Between them the deck runs straight where it can; where the
-//! ground, a road or water below needs room, it is lifted over it as little as it can be: the upper hull of all that it
-//! must clear. What passes below asks for more room than there may be way to climb, so what it asks for is cut off where
-//! it could only be reached too steeply from either end. Then the hull's corners are rounded by parabolas, as vertical
-//! curves of roads are.
+//! The ends lie where the road leaves the ground. Between them the deck is the upper hull of what it must clear: ground,
+//! roads, water. Clearance that could only be reached too steeply from either end is reduced. The hull's corners are
+//! rounded by parabolas, as vertical curves of roads are.
 //!
 //! ```text
 //!              ╭─────────────╮            hull, rounded
@@ -17,6 +15,7 @@
 use glam::DVec2;
 
 use crate::geom::convex;
+use crate::geom::profile::Profile;
 
 /// How far rounding may take a deck down below the corner it rounds, in meters: what is lifted over the ground has this
 /// much to spare.
@@ -43,88 +42,34 @@ pub struct ClearancePoint {
     pub level_m: f64,
 }
 
-/// The elevations along a deck: straight between stations.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DeckProfile {
-    /// Stations rising, at least two.
-    points: Vec<ClearancePoint>,
-}
-
-impl DeckProfile {
-    /// A profile through stated levels; `None` where there are fewer than two, or stations do not rise.
-    pub fn stated(points: Vec<ClearancePoint>) -> Option<Self> {
-        let rises = points.windows(2).all(|pair| pair[0].station_m < pair[1].station_m);
-        let finite = points.iter().all(|point| point.station_m.is_finite() && point.level_m.is_finite());
-        (points.len() >= 2 && rises && finite).then_some(Self { points })
-    }
-
-    /// The straight line over `length_m` between the levels of both ends.
-    pub fn straight(length_m: f64, ends_m: [f64; 2]) -> Self {
-        let [from, to] = ends_m;
-        let end = |station_m, level_m| ClearancePoint { station_m, level_m };
-        Self { points: vec![end(0.0, from), end(length_m, to)] }
-    }
-
-    /// The lowest profile over `length_m` that keeps its ends, clears the `ground` and, as far as it can be climbed at
-    /// the grade `steepest` (rise over run), what passes below.
-    pub fn clearing(
-        (length_m, ends_m): (f64, [f64; 2]),
-        ground: &[ClearancePoint],
-        passages: &[ClearancePoint],
-        steepest: f64,
-    ) -> Self {
-        let line = Self::straight(length_m, ends_m);
-        let from_end = |station: f64| station.min(length_m - station);
-        let over_ground = ground.iter().map(|floor| {
-            let lift = OVER_GROUND_M.min(TO_OVER_GROUND * from_end(floor.station_m));
-            ClearancePoint { level_m: floor.level_m + lift, ..*floor }
-        });
-        let over_passages = passages.iter().map(|floor| {
-            let climbed = (ends_m[0] + steepest * floor.station_m)
-                .min(ends_m[1] + steepest * (length_m - floor.station_m));
-            let wanted = floor.level_m + ROUNDED_OFF_M;
-            ClearancePoint { level_m: wanted.min(climbed).max(line.level_m(floor.station_m)), ..*floor }
-        });
-        let mut points: Vec<ClearancePoint> = over_ground.chain(over_passages).collect();
-        points.retain(|point| {
-            let inside = point.station_m > 0.0 && point.station_m < length_m;
-            inside && point.level_m.is_finite()
-        });
-        points.extend(line.points);
-        points.sort_by(|a, b| a.station_m.total_cmp(&b.station_m).then(a.level_m.total_cmp(&b.level_m)));
-        Self { points: rounded(&upper_hull(&points)) }
-    }
-
-    /// The elevation at a station in meters, that of the nearer end beyond the ends.
-    pub fn level_m(&self, station_m: f64) -> f64 {
-        let last = self.points.len() - 1;
-        let after = self.points.partition_point(|point| point.station_m < station_m).clamp(1, last);
-        let (from, to) = (self.points[after - 1], self.points[after]);
-        let part = ((station_m - from.station_m) / (to.station_m - from.station_m)).clamp(0.0, 1.0);
-        from.level_m * (1.0 - part) + to.level_m * part
-    }
-
-    /// Where it bends.
-    pub fn stations(&self) -> impl Iterator<Item = f64> + '_ {
-        self.points.iter().map(|point| point.station_m)
-    }
-
-    /// The part from one station to another, its own stations from 0; backwards where the second is the lower.
-    pub fn part(&self, from_m: f64, to_m: f64) -> Self {
-        let (low, high) = (from_m.min(to_m), from_m.max(to_m).max(from_m.min(to_m) + 1e-6));
-        let within = self.stations().filter(|&station| station > low + 1e-6 && station < high - 1e-6);
-        let stations: Vec<f64> = std::iter::once(low).chain(within).chain([high]).collect();
-        let point = |&at: &f64| ClearancePoint { station_m: (at - from_m).abs(), level_m: self.level_m(at) };
-        let mut points: Vec<ClearancePoint> = stations.iter().map(point).collect();
-        points.sort_by(|a, b| a.station_m.total_cmp(&b.station_m));
-        points.dedup_by(|next, kept| next.station_m <= kept.station_m);
-        Self { points }
-    }
-
-    /// The steepest rise or fall, meters a meter.
-    pub fn steepest(&self) -> f64 {
-        self.points.windows(2).map(|pair| grade(pair[0], pair[1]).abs()).fold(0.0, f64::max)
-    }
+/// The lowest profile that keeps the ends of the straight one `line`, clears the `ground` and, as far as it can be climbed
+/// at the grade `steepest` (rise over run), what passes below.
+pub fn clearing(
+    line: &Profile,
+    ground: &[ClearancePoint],
+    passages: &[ClearancePoint],
+    steepest: f64,
+) -> Profile {
+    let ([.., length_m], &[from_m, to_m]) = (line.stations(), line.values()) else { return line.clone() };
+    let over_ground = ground.iter().map(|floor| {
+        let from_end = floor.station_m.min(length_m - floor.station_m);
+        let lift = OVER_GROUND_M.min(TO_OVER_GROUND * from_end);
+        ClearancePoint { level_m: floor.level_m + lift, ..*floor }
+    });
+    let over_passages = passages.iter().map(|floor| {
+        let climbed =
+            (from_m + steepest * floor.station_m).min(to_m + steepest * (length_m - floor.station_m));
+        let wanted = floor.level_m + ROUNDED_OFF_M;
+        ClearancePoint { level_m: wanted.min(climbed).max(line.at(floor.station_m)), ..*floor }
+    });
+    let mut points: Vec<ClearancePoint> = over_ground.chain(over_passages).collect();
+    points.retain(|point| point.station_m > 0.0 && point.station_m < *length_m && point.level_m.is_finite());
+    let ends = [(0.0, from_m), (*length_m, to_m)];
+    points.extend(ends.map(|(station_m, level_m)| ClearancePoint { station_m, level_m }));
+    points.sort_by(|a, b| a.station_m.total_cmp(&b.station_m).then(a.level_m.total_cmp(&b.level_m)));
+    let (stations, levels) =
+        rounded(&upper_hull(&points)).iter().map(|point| (point.station_m, point.level_m)).unzip();
+    Profile::new(stations, levels).unwrap_or_else(|| line.clone())
 }
 
 fn grade(from: ClearancePoint, to: ClearancePoint) -> f64 {
@@ -183,22 +128,22 @@ mod tests {
     fn over_a_valley_a_deck_runs_straight() {
         let ground: Vec<ClearancePoint> =
             (1..100).map(|at| floor((f64::from(at), 50.0 - f64::from(at.min(100 - at))))).collect();
-        let profile = DeckProfile::clearing((100.0, [50.0, 53.0]), &ground, &[], 0.1);
+        let profile = clearing(&Profile::straight(100.0, [50.0, 53.0]), &ground, &[], 0.1);
         for station in 0..=100 {
             let station = f64::from(station);
-            assert!((profile.level_m(station) - (50.0 + 0.03 * station)).abs() < 1e-9);
+            assert!((profile.at(station) - (50.0 + 0.03 * station)).abs() < 1e-9);
         }
     }
 
     #[test]
     fn a_road_below_gets_its_room_where_there_is_way_to_climb() {
         let passages = [floor((200.0, 6.0))];
-        let long = DeckProfile::clearing((400.0, [0.0, 0.0]), &[], &passages, 0.1);
-        assert!(long.level_m(200.0) >= 6.0 && long.level_m(200.0) < 6.3, "{}", long.level_m(200.0));
-        assert!(long.steepest() < 0.1);
-        let short = DeckProfile::clearing((40.0, [0.0, 0.0]), &[], &[floor((20.0, 6.0))], 0.1);
-        assert!(short.level_m(20.0) > 1.6 && short.level_m(20.0) <= 2.0, "{}", short.level_m(20.0));
-        assert!(short.steepest() <= 0.1 + 1e-9);
+        let long = clearing(&Profile::straight(400.0, [0.0, 0.0]), &[], &passages, 0.1);
+        assert!(long.at(200.0) >= 6.0 && long.at(200.0) < 6.3, "{}", long.at(200.0));
+        assert!(long.steepest(0.0) < 0.1);
+        let short = clearing(&Profile::straight(40.0, [0.0, 0.0]), &[], &[floor((20.0, 6.0))], 0.1);
+        assert!(short.at(20.0) > 1.6 && short.at(20.0) <= 2.0, "{}", short.at(20.0));
+        assert!(short.steepest(0.0) <= 0.1 + 1e-9);
     }
 
     proptest! {
@@ -210,12 +155,12 @@ mod tests {
             let length = heights.len() as f64 * 10.0;
             let ground: Vec<ClearancePoint> =
                 heights.iter().enumerate().map(|(at, &height)| floor((at as f64 * 10.0 + 5.0, height))).collect();
-            let profile = DeckProfile::clearing((length, [ends.0, ends.1]), &ground, &[], 0.1);
-            prop_assert!(profile.stations().zip(profile.stations().skip(1)).all(|(a, b)| a < b));
-            prop_assert_eq!(profile.level_m(0.0), ends.0);
-            prop_assert_eq!(profile.level_m(length), ends.1);
+            let profile = clearing(&Profile::straight(length, [ends.0, ends.1]), &ground, &[], 0.1);
+            prop_assert!(profile.stations().windows(2).all(|pair| pair[0] < pair[1]));
+            prop_assert_eq!(profile.at(0.0), ends.0);
+            prop_assert_eq!(profile.at(length), ends.1);
             for floor in ground {
-                let over = profile.level_m(floor.station_m) - floor.level_m;
+                let over = profile.at(floor.station_m) - floor.level_m;
                 prop_assert!(over > -1e-6, "{} m over the ground at {}", over, floor.station_m);
             }
         }

@@ -12,6 +12,8 @@
 
 use glam::DVec2;
 
+use crate::geom::offset::LineBend;
+
 /// How long a miter may be in half widths: turns of up to 120 degrees keep theirs.
 const MITER_LIMIT: f64 = 2.0;
 
@@ -62,7 +64,8 @@ impl Track {
     pub fn new(points: &[DVec2], half_width_m: f64) -> Self {
         let last = points.len().saturating_sub(1);
         let round = last >= 3 && points[0] == points[last];
-        let around = round.then(|| miter([points[last - 1], points[0], points[1]], half_width_m)).flatten();
+        let miter = |points: [DVec2; 3]| LineBend { points, half: half_width_m }.mitered(MITER_LIMIT);
+        let around = round.then(|| miter([points[last - 1], points[0], points[1]])).flatten();
         let square = |from: DVec2, to: DVec2| (to - from).normalize_or_zero().perp() * half_width_m;
         let mut stretches = Vec::new();
         let mut joints = Vec::new();
@@ -73,7 +76,7 @@ impl Track {
                 joints.push(end(around.unwrap_or_else(|| square(at, points[1]))));
             } else if index == last && last > 0 {
                 joints.push(end(around.unwrap_or_else(|| square(points[last - 1], at))));
-            } else if let Some(to_left) = miter([points[index - 1], at, points[index + 1]], half_width_m) {
+            } else if let Some(to_left) = miter([points[index - 1], at, points[index + 1]]) {
                 joints.push(end(to_left));
             } else {
                 joints.push(end(square(points[index - 1], at)));
@@ -85,17 +88,6 @@ impl Track {
         stretches.extend((joints.len() > 1).then_some(TrackStretch { joints, ends }));
         Self { stretches }
     }
-}
-
-/// From the middle one of three vertices to the left side; `None` where the miter would be longer than it may be, or its
-/// inner corner would reach past the middle of either segment.
-fn miter([before, at, after]: [DVec2; 3], half_width_m: f64) -> Option<DVec2> {
-    let sum = (at - before).normalize_or_zero().perp() + (after - at).normalize_or_zero().perp();
-    let square = sum.length_squared();
-    let to_left = (square > 1e-12).then(|| sum * (2.0 / square))?;
-    let reach = (to_left.length_squared() - 1.0).max(0.0).sqrt() * half_width_m;
-    let shortest = at.distance(before).min(at.distance(after));
-    (to_left.length() <= MITER_LIMIT && 2.0 * reach <= shortest).then(|| to_left * half_width_m)
 }
 
 #[cfg(test)]

@@ -299,7 +299,7 @@ mod tests {
     fn a_wire_hangs_less_deep_over_a_ridge_and_keeps_its_clearance() {
         let lattice = ridge(10.0);
         let ground = FullResolution { lattice: &lattice };
-        let under = SupportSurface { displayed: &ground, ground };
+        let under = SupportSurface { displayed: &ground, ground: &ground };
         let found = ground_runs(&ground, DVec2::new(350.0, 50.0), DVec2::new(650.0, 50.0));
         let ends = (DVec3::new(350.0, 50.0, 20.4), DVec3::new(650.0, 50.0, 20.4));
         let sag_m = sag(ends, 15.0, &found, 6.0);
@@ -324,7 +324,7 @@ mod tests {
         for height_m in [12.0, 40.0] {
             let mut faces = Faces::default();
             let line = PowerLine { height_m, ..line(vec![stand(300.0)]) };
-            line.build(SupportSurface { displayed: &ground, ground }, &mut faces);
+            line.build(SupportSurface { displayed: &ground, ground: &ground }, &mut faces);
             let mesh = faces.into_mesh();
             let heights = mesh.vertices.iter().map(|vertex| f64::from(vertex.position[2]));
             let (low, high) =

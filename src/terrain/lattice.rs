@@ -18,7 +18,7 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::dem::raster::Raster;
+use crate::dem::raster::{Raster, Samples};
 use crate::geom::rect::Rect;
 
 /// Posts of a regular grid with their heights.
@@ -104,11 +104,12 @@ impl Lattice {
     pub fn from_raster(raster: &Raster) -> Result<Self, LatticeError> {
         let (origin, cell) = Self::frame(raster)?;
         let columns = raster.width;
-        let heights: Vec<f32> = (0..raster.height)
-            .rev()
-            .flat_map(|row| (0..columns).map(move |column| (column, row)))
-            .map(|(column, row)| raster.at(column, row) as f32)
-            .collect();
+        let heights = match &raster.samples {
+            Samples::F32(values) => values.chunks(columns as usize).rev().collect::<Vec<_>>().concat(),
+            Samples::F64(values) => {
+                values.chunks(columns as usize).rev().flatten().map(|&height| height as f32).collect()
+            }
+        };
         Self::new(origin, cell, columns, heights)
     }
 

@@ -12,7 +12,6 @@ use glam::DVec2;
 
 use crate::geom::convex;
 use crate::geom::rect::Rect;
-use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::triangle_surface::{TriangleSurface, plan, plane_z};
 
 /// A position this far beside a triangle, in meters, still lies in it: more than rounding, so that no line falls between
@@ -109,7 +108,7 @@ pub struct SupportSurface<'a> {
     /// The displayed ground.
     pub displayed: &'a dyn TriangleSurface,
     /// The ground at full resolution.
-    pub ground: FullResolution<'a>,
+    pub ground: &'a dyn TriangleSurface,
 }
 
 impl SupportSurface<'_> {
@@ -122,6 +121,7 @@ impl SupportSurface<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::full_resolution::FullResolution;
     use crate::terrain::lattice::Lattice;
     use proptest::prelude::*;
 

@@ -15,12 +15,10 @@ use crate::vector::feature::{Feature, Geometry, Polygon, Properties, VectorLayer
 /// The vertices of a line or a ring.
 pub(crate) type Vertices = Vec<DVec3>;
 
-/// Returns the position (x, y) at an elevation, NaN for none.
 pub(crate) fn position(x: f64, y: f64, elevation: Option<f64>) -> DVec3 {
     DVec3::new(x, y, elevation.unwrap_or(f64::NAN))
 }
 
-/// Collects the features of one layer.
 pub(crate) struct LayerBuilder {
     crs: Crs,
     feature_count: usize,
@@ -29,7 +27,6 @@ pub(crate) struct LayerBuilder {
     notes: Vec<String>,
 }
 
-/// The shapes of one feature.
 #[derive(Default)]
 pub(crate) struct FeatureParts {
     points: Vertices,
@@ -39,7 +36,6 @@ pub(crate) struct FeatureParts {
     omitted: OmissionCounts,
 }
 
-/// What can be left out.
 #[derive(Clone, Copy)]
 enum Omission {
     Feature,
@@ -61,7 +57,6 @@ const OMISSIONS: [&str; 5] = [
 ];
 
 impl LayerBuilder {
-    /// A layer without features in `crs`.
     pub fn new(crs: Crs) -> Self {
         let omitted = OmissionCounts::default();
         Self { crs, feature_count: 0, features: Vec::new(), omitted, notes: Vec::new() }
@@ -95,7 +90,6 @@ impl LayerBuilder {
         self.features.is_empty()
     }
 
-    /// Adds a note for the user.
     pub fn note(&mut self, note: impl Into<String>) {
         self.notes.push(note.into());
     }
@@ -105,7 +99,6 @@ impl LayerBuilder {
         self.notes.extend(omission_note(count, what));
     }
 
-    /// Returns the layer.
     pub fn finish(self) -> VectorLayer {
         let counted = self.omitted.into_iter().zip(OMISSIONS);
         let notes =
@@ -119,11 +112,9 @@ fn omission_note(count: usize, what: &str) -> Option<String> {
 }
 
 impl FeatureParts {
-    /// Adds a point.
-    pub fn add_point(&mut self, position: DVec3) {
-        let mut points = vec![position];
+    pub fn add_points(&mut self, mut points: Vertices) {
         self.keep_finite(&mut points);
-        self.points.extend(points);
+        self.points.append(&mut points);
     }
 
     /// Adds a line; one of less than two vertices is left out.
@@ -150,12 +141,10 @@ impl FeatureParts {
         self.polygons.extend(exterior.map(|exterior| iter::once(exterior).chain(holes).collect()));
     }
 
-    /// Counts a position of less than two numbers.
     pub fn count_short_position(&mut self) {
         self.omitted[Omission::ShortPosition as usize] += 1;
     }
 
-    /// Returns whether nothing usable was added.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty() && self.lines.is_empty() && self.polygons.is_empty()
     }
@@ -166,7 +155,6 @@ impl FeatureParts {
         self.omitted[Omission::PositionNotFinite as usize] += count - vertices.len();
     }
 
-    /// Returns each kind of shape, with its elevations.
     fn into_shapes(self) -> impl Iterator<Item = (Geometry, Option<Vec<f64>>)> {
         let Self { points, lines, polygons, .. } = self;
         let points = (!points.is_empty()).then(|| {
@@ -249,7 +237,7 @@ mod tests {
     fn positions_that_are_not_numbers_are_left_out_and_noted() {
         let mut parts = FeatureParts::default();
         parts.add_line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::NAN, DVec3::new(f64::INFINITY, 0.0, 0.0)]);
-        parts.add_point(DVec3::new(1.0, 2.0, f64::NAN));
+        parts.add_points(vec![DVec3::new(1.0, 2.0, f64::NAN)]);
         let layer = layer(parts);
         assert_eq!(layer.features.len(), 1);
         assert_eq!(layer.features[0].elevations, None);

@@ -18,7 +18,6 @@ pub(crate) enum TextEncoding {
 }
 
 impl TextEncoding {
-    /// UTF-8.
     pub const UTF_8: Self = Self::Standard(UTF_8);
 
     /// Returns the Unicode encoding that the byte order mark at the start of `bytes` states, and the bytes behind it.
@@ -27,7 +26,6 @@ impl TextEncoding {
         Some((Self::Standard(encoding), &bytes[mark_bytes..]))
     }
 
-    /// Returns whether this is UTF-8.
     pub fn is_utf_8(self) -> bool {
         matches!(self, Self::Standard(encoding) if encoding == UTF_8)
     }
@@ -96,7 +94,6 @@ impl TextEncoding {
         Encoding::for_label(label.as_bytes()).map(Self::Standard)
     }
 
-    /// Decodes `bytes`.
     pub fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         match (self, std::str::from_utf8(bytes)) {
             (Self::Guess, Ok(text)) => Cow::Borrowed(text),

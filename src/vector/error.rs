@@ -37,24 +37,14 @@ pub enum VectorError {
         /// What to do.
         remedy: &'static str,
     },
-    /// The file contradicts itself or ends too early.
-    #[error("the {format} is broken at {place}: {reason}; fetch or export the file again")]
+    /// The file contradicts itself, ends too early, or is refused by the library that reads its format.
+    #[error("the {format} is broken at {place}: {source}; fetch or export the file again")]
     Broken {
         /// The format's name.
         format: &'static str,
         /// A byte, a line, a record.
         place: String,
         /// What was found.
-        reason: Cow<'static, str>,
-    },
-    /// The library that reads the format refused the file.
-    #[error("the {format} is broken at {place}: {source}; fetch or export the file again")]
-    Refused {
-        /// The format's name.
-        format: &'static str,
-        /// A byte, a line, a record.
-        place: String,
-        /// The library's error.
         source: Box<dyn Error + Send + Sync>,
     },
     /// The format is read, but not this kind of it.
@@ -148,18 +138,9 @@ impl VectorError {
     pub(crate) fn broken(
         format: &'static str,
         place: impl Display,
-        reason: impl Into<Cow<'static, str>>,
+        source: impl Into<Box<dyn Error + Send + Sync>>,
     ) -> Self {
-        Self::Broken { format, place: place.to_string(), reason: reason.into() }
-    }
-
-    /// A [`VectorError::Refused`].
-    pub(crate) fn refused(
-        format: &'static str,
-        place: impl Display,
-        source: impl Error + Send + Sync + 'static,
-    ) -> Self {
-        Self::Refused { format, place: place.to_string(), source: Box::new(source) }
+        Self::Broken { format, place: place.to_string(), source: source.into() }
     }
 
     /// A [`VectorError::Unsupported`] about curves, which no reader turns into lines.
@@ -173,18 +154,18 @@ impl VectorError {
 
     /// A [`VectorError::WhichLayer`] among `names`.
     pub(crate) fn which_layer(names: &[&str]) -> Self {
-        Self::WhichLayer { names: owned(names) }
+        Self::WhichLayer { names: names.iter().copied().map(str::to_owned).collect() }
     }
 
     /// A [`VectorError::NoSuchLayer`] among `names`.
     pub(crate) fn no_such_layer(wanted: &str, names: &[&str]) -> Self {
         let suggestion = nearest(wanted, names.iter().copied()).map(str::to_owned);
-        Self::NoSuchLayer { wanted: shorten(wanted), suggestion, names: owned(names) }
+        Self::NoSuchLayer {
+            wanted: shorten(wanted),
+            suggestion,
+            names: names.iter().copied().map(str::to_owned).collect(),
+        }
     }
-}
-
-fn owned(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
 }
 
 /// Returns the first [`MAX_NAME_CHARS`] characters of `name`.

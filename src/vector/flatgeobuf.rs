@@ -23,7 +23,6 @@ const FORMAT: &str = "FlatGeobuf file";
 /// Bytes of a node of the index.
 const NODE_BYTES: u64 = 40;
 
-/// Returns whether `bytes` are FlatGeobuf, of any version.
 pub(super) fn is_flatgeobuf(bytes: &[u8]) -> bool {
     bytes.starts_with(b"fgb\x03") || (bytes.starts_with(b"fgb") && bytes.get(4..7) == Some(b"fgb"))
 }
@@ -40,7 +39,7 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let mut cursor = ByteCursor::new(bytes.get(8..).unwrap_or_default());
     let buffer = next_buffer(&mut cursor).ok_or_else(|| broken_header("it is longer than the file"))?;
     let header = flatgeobuf::size_prefixed_root_as_header(buffer)
-        .map_err(|error| VectorError::refused(FORMAT, "its header", error))?;
+        .map_err(|error| VectorError::broken(FORMAT, "its header", error))?;
     let mut layer = LayerBuilder::new(crs_of(&header, hints)?);
     let index = index_bytes(&header, bytes.len());
     let index = index.ok_or_else(|| broken_header("it promises more than the file holds"))?;
@@ -115,7 +114,7 @@ impl FgbReader<'_> {
         let broken = |reason: &'static str| VectorError::broken(FORMAT, &place, reason);
         let buffer = next_buffer(cursor).ok_or_else(|| broken("it reaches past the end of the file"))?;
         let feature = flatgeobuf::size_prefixed_root_as_feature(buffer)
-            .map_err(|error| VectorError::refused(FORMAT, &place, error))?;
+            .map_err(|error| VectorError::broken(FORMAT, &place, error))?;
         let mut parts = FeatureParts::default();
         if let Some(geometry) = feature.geometry() {
             // Shapes that do not state their type have that of the layer.
@@ -144,7 +143,7 @@ impl FgbReader<'_> {
         };
         let kind_of_parts = match kind {
             GeometryType::Point | GeometryType::MultiPoint => {
-                self.vertices(geometry)?.into_iter().for_each(|position| parts.add_point(position));
+                parts.add_points(self.vertices(geometry)?);
                 return Ok(());
             }
             GeometryType::LineString | GeometryType::MultiLineString => {

@@ -99,7 +99,7 @@ fn parse(text: &[u8], first_line: usize) -> Result<GeoJson, VectorError> {
         other_json(text).unwrap_or_else(|| {
             let line = first_line + error.line().max(1) - 1;
             let place = format!("line {line}, column {}", error.column().max(1));
-            VectorError::refused(FORMAT, place, GeoJsonError(error))
+            VectorError::broken(FORMAT, place, GeoJsonError(error))
         })
     })
 }
@@ -168,7 +168,8 @@ fn add_shape(parts: &mut FeatureParts, value: &GeometryValue) {
 }
 
 fn add_points(parts: &mut FeatureParts, positions: &[Position]) {
-    vertices(positions, parts).into_iter().for_each(|position| parts.add_point(position));
+    let points = vertices(positions, parts);
+    parts.add_points(points);
 }
 
 fn add_line(parts: &mut FeatureParts, line: &[Position]) {

@@ -148,7 +148,7 @@ impl<'a> GpxReader<'a> {
             properties.insert("ele".into(), elevation.into());
         }
         let mut parts = FeatureParts::default();
-        parts.add_point(position);
+        parts.add_points(vec![position]);
         self.layers[layer].add(parts, properties)
     }
 

@@ -122,7 +122,7 @@ impl<'a> KmlReader<'a> {
             }
             "Point" => {
                 let lists = self.vertex_lists(element, placemark)?;
-                lists.into_iter().flatten().for_each(|position| placemark.parts.add_point(position));
+                placemark.parts.add_points(lists.concat());
             }
             "LineString" | "LinearRing" | "Track" => {
                 let lists = self.vertex_lists(element, placemark)?;
@@ -183,7 +183,7 @@ impl<'a> KmlReader<'a> {
     }
 
     fn check<T>(&self, element: &XmlElement<'_>, result: Result<T, InvalidTuple>) -> Result<T, VectorError> {
-        result.map_err(|error| self.xml.refused_at(element, error))
+        result.map_err(|error| self.xml.broken_at(element, error))
     }
 }
 

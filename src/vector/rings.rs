@@ -29,7 +29,6 @@ pub(crate) enum HoleRule {
 #[error("too many rings lie inside one another")]
 pub(crate) struct RingLimitExceeded;
 
-/// Sorts the rings of one file.
 pub(crate) struct RingSorter {
     rule: HoleRule,
     steps_left: u64,
@@ -46,7 +45,6 @@ struct SortedRing {
 }
 
 impl RingSorter {
-    /// A sorter with the full budget.
     pub fn new(rule: HoleRule) -> Self {
         Self { rule, steps_left: MAX_STEPS }
     }

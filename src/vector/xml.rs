@@ -5,6 +5,7 @@
 //! thousandfold by them. Elements lie at most [`MAX_DEPTH`] deep.
 
 use std::borrow::Cow;
+use std::error::Error;
 
 use quick_xml::XmlVersion;
 use quick_xml::escape::resolve_predefined_entity;
@@ -20,7 +21,6 @@ const MAX_DEPTH: usize = 64;
 /// Bytes of a document in which its declaration is searched.
 const DECLARATION_BYTES: usize = 200;
 
-/// Reads a document from start to end.
 pub(crate) struct XmlReader<'a> {
     reader: Reader<&'a [u8]>,
     text: &'a str,
@@ -41,12 +41,6 @@ enum XmlContent<'a> {
     Text(Cow<'a, str>),
 }
 
-enum XmlToken<'a> {
-    Content(XmlContent<'a>),
-    Close,
-    End,
-}
-
 /// Decodes a document by its byte order mark, else by its declaration, else as UTF-8.
 ///
 /// # Errors
@@ -61,7 +55,7 @@ pub(crate) fn decode<'a>(bytes: &'a [u8], format: &'static str) -> Result<Cow<'a
     }
     std::str::from_utf8(bytes).map(Cow::Borrowed).map_err(|error| {
         let place = format!("byte {}", error.valid_up_to() + 1);
-        VectorError::refused(format, place, error)
+        VectorError::broken(format, place, error)
     })
 }
 
@@ -88,22 +82,17 @@ impl<'a> XmlReader<'a> {
     }
 
     /// Returns the error that the document is broken where the reader stands.
-    pub fn broken(&self, reason: impl Into<Cow<'static, str>>) -> VectorError {
-        VectorError::broken(self.format, self.line_at(self.offset()), reason)
+    pub fn broken(&self, source: impl Into<Box<dyn Error + Send + Sync>>) -> VectorError {
+        VectorError::broken(self.format, self.line_at(self.offset()), source)
     }
 
     /// Returns the error that the document is broken at `element`.
-    pub fn broken_at(&self, element: &XmlElement<'_>, reason: impl Into<Cow<'static, str>>) -> VectorError {
-        VectorError::broken(self.format, self.line_at(element.offset), reason)
-    }
-
-    /// Returns the error that `element` cannot be read because of `error`.
-    pub fn refused_at(
+    pub fn broken_at(
         &self,
         element: &XmlElement<'_>,
-        error: impl std::error::Error + Send + Sync + 'static,
+        source: impl Into<Box<dyn Error + Send + Sync>>,
     ) -> VectorError {
-        VectorError::refused(self.format, self.line_at(element.offset), error)
+        VectorError::broken(self.format, self.line_at(element.offset), source)
     }
 
     fn offset(&self) -> usize {
@@ -122,10 +111,10 @@ impl<'a> XmlReader<'a> {
     pub fn root(&mut self) -> Result<XmlElement<'a>, VectorError> {
         loop {
             match self.next()? {
-                XmlToken::Content(XmlContent::Element(element)) => return Ok(element),
-                XmlToken::Content(XmlContent::Text(text)) if text.trim().is_empty() => {}
-                XmlToken::Content(_) => return Err(self.broken("text precedes the first element")),
-                XmlToken::Close | XmlToken::End => return Err(self.broken("there is no element")),
+                Some(XmlContent::Element(element)) => return Ok(element),
+                Some(XmlContent::Text(text)) if text.trim().is_empty() => {}
+                Some(_) => return Err(self.broken("text precedes the first element")),
+                None => return Err(self.broken("there is no element")),
             }
         }
     }
@@ -134,7 +123,7 @@ impl<'a> XmlReader<'a> {
     /// that element closes it and returns `None`.
     pub fn next_child(&mut self) -> Result<Option<XmlElement<'a>>, VectorError> {
         loop {
-            match self.next_within()? {
+            match self.next()? {
                 Some(XmlContent::Element(element)) => return Ok(Some(element)),
                 Some(XmlContent::Text(_)) => {}
                 None => return Ok(None),
@@ -144,7 +133,7 @@ impl<'a> XmlReader<'a> {
 
     /// Reads the content of the element just opened.
     pub fn read(&mut self, mut element: XmlElement<'a>) -> Result<XmlElement<'a>, VectorError> {
-        while let Some(content) = self.next_within()? {
+        while let Some(content) = self.next()? {
             element.content.push(match content {
                 XmlContent::Element(child) => XmlContent::Element(self.read(child)?),
                 text => text,
@@ -157,7 +146,7 @@ impl<'a> XmlReader<'a> {
     pub fn skip(&mut self) -> Result<(), VectorError> {
         let outside = self.depth - 1;
         while self.depth > outside {
-            self.next_within()?;
+            self.next()?;
         }
         Ok(())
     }
@@ -166,35 +155,24 @@ impl<'a> XmlReader<'a> {
     pub fn finish(&mut self) -> Result<(), VectorError> {
         loop {
             match self.next()? {
-                XmlToken::End => return Ok(()),
-                XmlToken::Content(XmlContent::Text(text)) if text.trim().is_empty() => {}
-                _ => return Err(self.broken("something follows after the document's end")),
+                None => return Ok(()),
+                Some(XmlContent::Text(text)) if text.trim().is_empty() => {}
+                Some(_) => return Err(self.broken("something follows after the document's end")),
             }
         }
     }
 
-    /// Returns the next content of the innermost open element; `None` at its end.
-    fn next_within(&mut self) -> Result<Option<XmlContent<'a>>, VectorError> {
-        match self.next()? {
-            XmlToken::Content(content) => Ok(Some(content)),
-            XmlToken::Close => Ok(None),
-            XmlToken::End => Err(self.broken("the file ends within an element")),
-        }
-    }
-
-    fn next(&mut self) -> Result<XmlToken<'a>, VectorError> {
+    /// Returns the next content of the innermost open element; `None` at its end, and outside all at the document's.
+    fn next(&mut self) -> Result<Option<XmlContent<'a>>, VectorError> {
         loop {
-            let event = self
-                .reader
-                .read_event()
-                .map_err(|error| VectorError::refused(self.format, self.line_at(self.offset()), error))?;
-            let text = match event {
-                Event::Start(start) | Event::Empty(start) => return self.open(start),
+            let text = match self.reader.read_event().map_err(|error| self.broken(error))? {
+                Event::Start(start) | Event::Empty(start) => return self.open(start).map(Some),
                 Event::End(_) => {
                     self.depth = self.depth.saturating_sub(1);
-                    return Ok(XmlToken::Close);
+                    return Ok(None);
                 }
-                Event::Eof => return Ok(XmlToken::End),
+                Event::Eof if self.depth > 0 => return Err(self.broken("the file ends within an element")),
+                Event::Eof => return Ok(None),
                 Event::Text(text) => text.xml10_content(),
                 Event::CData(text) => text.xml10_content(),
                 Event::GeneralRef(name) => {
@@ -213,17 +191,16 @@ impl<'a> XmlReader<'a> {
                 }
                 Event::DocType(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) => continue,
             };
-            return Ok(XmlToken::Content(XmlContent::Text(text)));
+            return Ok(Some(XmlContent::Text(text)));
         }
     }
 
-    fn open(&mut self, start: BytesStart<'a>) -> Result<XmlToken<'a>, VectorError> {
+    fn open(&mut self, start: BytesStart<'a>) -> Result<XmlContent<'a>, VectorError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err(self.broken(format!("elements lie more than {MAX_DEPTH} deep")));
         }
-        let element = XmlElement { start, offset: self.offset(), content: Vec::new() };
-        Ok(XmlToken::Content(XmlContent::Element(element)))
+        Ok(XmlContent::Element(XmlElement { start, offset: self.offset(), content: Vec::new() }))
     }
 }
 
@@ -233,7 +210,6 @@ impl<'a> XmlElement<'a> {
         self.start.local_name().into_inner()
     }
 
-    /// Returns its child elements.
     pub fn children(&self) -> impl Iterator<Item = &XmlElement<'a>> {
         self.content.iter().filter_map(|content| match content {
             XmlContent::Element(element) => Some(element),
@@ -241,7 +217,6 @@ impl<'a> XmlElement<'a> {
         })
     }
 
-    /// Returns its child elements called `name`.
     pub fn children_named(&self, name: &str) -> impl Iterator<Item = &XmlElement<'a>> {
         self.children().filter(move |child| child.name() == name)
     }
@@ -268,7 +243,6 @@ impl<'a> XmlElement<'a> {
         self.raw_attribute(name)?.normalized_value(XmlVersion::Implicit1_0).ok()
     }
 
-    /// Returns the value of an attribute as a number.
     pub fn number<T: std::str::FromStr>(&self, name: &str) -> Option<T> {
         self.raw_attribute(name)?.value.trim().parse().ok()
     }

@@ -12,7 +12,7 @@ mod steps;
 use std::path::Path;
 
 use sandtable::draw::list::{DepthLayer, DrawItem, FeatureId};
-use sandtable::export::png;
+use sandtable::export::encode_png;
 use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::render::RenderBackend;
@@ -55,7 +55,7 @@ fn run_once() -> Run {
     let view = scene.view(None).expect("a scene has a camera").clone();
     let finished = picture(&scene, &view, &steps);
     steps.begin("encoding");
-    let png_bytes = png::encode(&finished.pixels).len();
+    let png_bytes = encode_png(&finished.pixels).len();
     Run { scene, view, finished, steps: steps.finish(), png_bytes }
 }
 

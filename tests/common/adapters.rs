@@ -1,4 +1,4 @@
-//! The GPU adapters of this machine, or a loud word that there are none.
+//! The GPU adapters of this machine; a test without one is reported as skipped.
 
 use std::sync::LazyLock;
 
@@ -6,7 +6,7 @@ use sandtable::render::gpu::adapter::{Gpu, GpuApi};
 
 /// One device for each interface that offers one; opening takes a while, so all tests share them.
 ///
-/// Where an interface offers none, this says so; with `SANDTABLE_REQUIRE_GPU` set it fails instead.
+/// An interface without an adapter is reported as skipped; with `SANDTABLE_REQUIRE_GPU` set it fails the test.
 pub fn gpus() -> &'static [Gpu] {
     static GPUS: LazyLock<Vec<Gpu>> =
         LazyLock::new(|| [GpuApi::Vulkan, GpuApi::Gl].into_iter().filter_map(open).collect());

@@ -63,7 +63,7 @@ fn placements(count: usize, models: usize) -> Vec<Placement> {
                 model: index % models,
                 at: plan * (SIDE_M - 20.0) + 10.0,
                 clamp: Clamp::Ground,
-                height_m: 0.0,
+                height: 0.0,
                 heading_rad: share(index, 0.618_033_988_749_895) * std::f32::consts::TAU,
                 scale: 0.7 + 0.8 * share(index, 0.414_213_562_373_095),
                 feature: sandtable::draw::list::FeatureId(2 + index as u32),

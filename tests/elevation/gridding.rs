@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use sandtable::dem::cell_grid::CellGrid;
+use sandtable::dem::error::DemErrorKind;
 use sandtable::dem::gridding::{BeyondHull, GridError, Gridded, GriddingMethod, grid};
 use sandtable::dem::points::{PointCloud, PointHints, PointsError, read};
 use sandtable::geom::rect::Rect;
@@ -272,7 +273,7 @@ fn points_on_a_line_are_refused_or_taken_by_the_nearest() {
     let frame = square(10.0, 1.0);
     for method in ALL {
         let refused = grid(&cloud(points.clone()), &frame, method, BeyondHull::NoData);
-        assert!(matches!(refused, Err(GridError::Collinear { sites: 9 })), "{method:?}");
+        assert!(matches!(refused, Err(GridError::Collinear(9))), "{method:?}");
     }
     assert!(grid(&cloud(points), &frame, GriddingMethod::Nearest, BeyondHull::Nearest).is_ok());
     let wrong = GriddingMethod::InverseDistance { k: 3, power: f64::NAN };
@@ -433,7 +434,7 @@ fn a_forged_length_of_a_layer_is_refused_before_it_is_allocated() {
     bytes[lengths..lengths + 4].fill(0xff);
     let refused = read(&bytes, &PointHints::default());
     assert!(
-        matches!(&refused, Err(PointsError::Broken { reason, .. }) if reason.contains("layers")),
+        matches!(&refused, Err(PointsError::File(DemErrorKind::Broken { reason, .. })) if reason.contains("layers")),
         "{refused:?}"
     );
 }
@@ -487,6 +488,9 @@ fn forged_counts_are_refused_before_anything_is_allocated() {
     outside[points_at..points_at + 8].copy_from_slice(&i64::MAX.to_le_bytes());
     for (what, forged) in [("chunks", chunks), ("points", count), ("a table outside", outside)] {
         let refused = read(&forged, &PointHints::default());
-        assert!(matches!(refused, Err(PointsError::Broken { .. })), "{what}: {refused:?}");
+        assert!(
+            matches!(refused, Err(PointsError::File(DemErrorKind::Broken { .. }))),
+            "{what}: {refused:?}"
+        );
     }
 }

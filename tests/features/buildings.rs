@@ -133,7 +133,7 @@ proptest! {
         let ground = FullResolution { lattice: scene.terrain.displayed() };
         for standing in &scene.uprights {
             let DrapedSolid::Footing(footing) = &standing.upright else { continue };
-            let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground });
+            let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground: &ground });
             let foot = mesh.vertices.iter().map(|vertex| vertex.position[2]).fold(footing.foot_z, f32::min);
             let lowest = lowest_along(&footing.rings[0], &displayed);
             prop_assert!(f64::from(foot) <= lowest + 1e-3, "foot at {foot}, ground at {lowest}");

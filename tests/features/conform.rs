@@ -5,11 +5,11 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable::description::parse::parse_bytes;
+use sandtable::earthworks::alignment::Support;
 use sandtable::scene::Scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::report::ConformedRoadRow;
-use sandtable::scene::roads::centerline::Support;
 use sandtable::scene::roads::profiles::RoadProfile;
 use sandtable::terrain::query::{Interpolation, ground_height};
 
@@ -133,7 +133,7 @@ fn a_ravine_is_bridged_and_a_ridge_tunneled_by_rule() {
     let row = conformed(&scene);
     assert_eq!((row.bridges, row.tunnels), (1, 1));
     assert!(row.highest_fill <= 8.0 && row.deepest_cut <= 10.0);
-    let carried: Vec<Support> = scene.profiles[0].carried.clone();
+    let carried: Vec<Support> = scene.profiles[0].supports.clone();
     let mut order = carried.clone();
     order.dedup();
     let expected = [Support::Ground, Support::Bridge, Support::Ground, Support::Tunnel, Support::Ground];

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::DepthLayer;
+use sandtable::earthworks::alignment::Width;
 use sandtable::earthworks::channel;
 use sandtable::earthworks::channel::flow;
 use sandtable::earthworks::channel::flow::Flow;
@@ -60,8 +61,7 @@ fn channels(lattice: &Lattice, network: &[(Polyline, f64)]) -> Vec<Channel> {
     let flows = flow::directions(lattice, &lines);
     let channel = |((line, width_m), flow): (&(Polyline, f64), Flow)| {
         let line = if flow == Flow::AsDrawn { line.clone() } else { line.reversed() };
-        let widths_m = vec![*width_m; line.points().len()];
-        Channel { line, widths_m, bank_m: width_m / 3.0, max_cut_m: f64::INFINITY }
+        Channel { line, width: Width::Constant(*width_m), bank_m: width_m / 3.0, max_cut_m: f64::INFINITY }
     };
     network.iter().zip(flows).map(channel).collect()
 }
@@ -149,7 +149,7 @@ fn ridge(height_m: f64) -> Lattice {
 
 fn across_the_ridge() -> [Channel; 1] {
     let line = Polyline::new([(20.0, 233.0), (450.0, 236.0)].map(DVec2::from), 0.0).expect("a line");
-    [Channel { line, widths_m: vec![6.0; 2], bank_m: 2.0, max_cut_m: 10.0 }]
+    [Channel { line, width: Width::Constant(6.0), bank_m: 2.0, max_cut_m: 10.0 }]
 }
 
 #[test]
@@ -215,8 +215,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
     let zigzag = (0..20_000)
         .map(|index| DVec2::new(200.0 + f64::from(index % 2) * 90.0, 230.0 + f64::from(index) * 1e-3));
     let line = Polyline::new(zigzag, 0.0).expect("a line");
-    let widths_m = vec![9000.0; line.points().len()];
-    let channel = Channel { line, widths_m, bank_m: 1000.0, max_cut_m: 10.0 };
+    let channel = Channel { line, width: Width::Constant(9000.0), bank_m: 1000.0, max_cut_m: 10.0 };
     let before = lattice.heights().to_vec();
     assert!(channel::cut(&mut lattice, &[channel]).is_err());
     assert_eq!(lattice.heights(), before);

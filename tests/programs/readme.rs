@@ -22,8 +22,14 @@ use crate::serve::client::Server;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The pages whose links are followed.
-const PAGES: [&str; 5] =
-    ["README.md", "CHANGELOG.md", "assets/README.md", "src/ARCHITECTURE.md", "tests/bench/README.md"];
+const PAGES: [&str; 6] = [
+    "README.md",
+    "CHANGELOG.md",
+    "assets/README.md",
+    "scenes/README.md",
+    "src/ARCHITECTURE.md",
+    "tests/bench/README.md",
+];
 
 fn page(name: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))

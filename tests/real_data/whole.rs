@@ -1,7 +1,7 @@
 //! Five places whole: every road, bridge, building, stream, tree and patch of land that their files hold.
 
+use sandtable::earthworks::alignment::Support;
 use sandtable::ribbon::partition::overlap_m2;
-use sandtable::scene::roads::centerline::Support;
 use sandtable::scene::{FeatureKind, Scene};
 
 use crate::common::places::text_of;
@@ -13,7 +13,7 @@ fn built(place: &str) -> Option<Scene> {
     let (text, allowed) = text_of(place)?;
     let scratch = Scratch::new();
     let scene = crate::scene(&scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
-    scene.terrain.errors().check(&scene.terrain.layout).expect("errors grow upward");
+    scene.terrain.errors().check(&scene.terrain.layout);
     let plans: Vec<_> = scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect();
     let area: f64 = plans.iter().map(|plan| plan.area_m2()).sum();
     let overlap = overlap_m2(plans.iter().copied());
@@ -44,7 +44,7 @@ fn swellendam_has_all_its_roads_and_buildings() {
     let conformed = scene.report.conformed_roads.len();
     assert!(conformed >= 100 && scene.profiles.len() == conformed, "{conformed}");
     let steepest = scene.profiles.iter().flat_map(|profile| {
-        let on_ground = profile.stations_m.windows(2).zip(profile.design_m.windows(2)).zip(&profile.carried);
+        let on_ground = profile.stations_m.windows(2).zip(profile.design_m.windows(2)).zip(&profile.supports);
         on_ground
             .filter(|((stations, _), carried)| **carried == Support::Ground && stations[1] > stations[0])
             .map(|((stations, design), _)| (design[1] - design[0]).abs() / (stations[1] - stations[0]))

@@ -1,6 +1,7 @@
 //! Scene files as users write them: complete, and broken in every way that has a message of its own.
 
 mod layers;
+mod reference;
 mod schema;
 
 use proptest::prelude::{ProptestConfig, any};
@@ -396,7 +397,7 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[[label]]\ntext = \"a\"\nat = [0, 0]\nkind = \"peak\"\n",
         &["hill.toml:6:8:", "it may be `summit`, `place`, `water` or `point`"],
     ),
-    ("[style]\nramp = \"gray\"\n", &["hill.toml:4:8:", "did you mean `gray`?"]),
+    ("[style]\nramp = \"grey\"\n", &["hill.toml:4:8:", "did you mean `gray`?"]),
     ("[style]\nramp = [[0, \"#fff\"]]\n", &["hill.toml:4:8:", "from 2 to 256 stops, but this has 1"]),
     (
         "[style]\nramp = [[9, \"#fff\"], [3, \"#000\"]]\n",
@@ -528,7 +529,7 @@ fn a_byte_order_mark_and_windows_line_ends_are_welcome() {
     let text = format!("\u{feff}{}", COMPLETE.replace('\n', "\r\n"));
     read(&text).unwrap_or_else(|errors| panic!("{errors}"));
     let shown = messages("\u{feff}color = 1\r\n[terrain]\r\ndem = \"a\"\r\n");
-    assert!(shown.contains("hill.toml:1:1:") && shown.contains("1 | color = 1\n  | ^^^^^^"), "{shown}");
+    assert!(shown.contains("hill.toml:1:1:") && shown.contains("1 | color = 1\n  | ^^^^^"), "{shown}");
 }
 
 #[test]

@@ -21,8 +21,7 @@ use crate::dem::raster::{Raster, SampleFloat, Samples, north_up};
 use crate::dem::read::DemFile;
 use crate::dem::write::{WriteError, WrittenDem};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI ASCII grid",
     extensions: &["asc"],
     shared_extensions: &[],
@@ -37,21 +36,9 @@ const DEFAULT_NODATA: f64 = -9999.0;
 /// Written for no data, in the order of preference; the raster's own value comes first.
 const NODATA_VALUES: [f64; 3] = [DEFAULT_NODATA, -32768.0, -99999.0];
 
-const KEYS: [&str; 10] = [
-    "ncols",
-    "nrows",
-    "xllcorner",
-    "yllcorner",
-    "xllcenter",
-    "yllcenter",
-    "cellsize",
-    "dx",
-    "dy",
-    "nodata_value",
-];
-
 fn is_key(word: &[u8]) -> bool {
-    KEYS.iter().any(|key| key.as_bytes().eq_ignore_ascii_case(word))
+    const KEYS: &str = "ncols nrows xllcorner yllcorner xllcenter yllcenter cellsize dx dy nodata_value";
+    KEYS.split(' ').any(|key| key.as_bytes().eq_ignore_ascii_case(word))
 }
 
 fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
@@ -111,7 +98,6 @@ fn cell(header: &HeaderFields) -> Result<DVec2, DemErrorKind> {
     Err(header.broken(format!("the cells are {} by {}, not of a positive size", cell.x, cell.y)))
 }
 
-/// The samples of the text.
 struct AsciiValues {
     values: Vec<f32>,
     /// Whether any of them is no data.

@@ -36,8 +36,7 @@ use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::dem::write::{WriteError, WrittenDem};
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "BT terrain",
     extensions: &["bt"],
     shared_extensions: &[],
@@ -215,8 +214,7 @@ fn system(file: &DemFile, header: &BtHeader) -> Result<BtSystem, DemErrorKind> {
     Ok(BtSystem { crs: Some(Crs::from_epsg_in(code, unit)?), meters_per_unit: 1.0 })
 }
 
-/// The geographic system of a datum: EPSG's number less 2000, one of the old USGS numbers, or WGS 84 where it
-/// is unknown (negative), as GDAL takes it.
+/// The geographic system of a datum by EPSG's number less 2000 or an old USGS number; WGS 84, as in GDAL, if negative.
 fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
     match datum {
         ..=-1 | 23 => Ok(4326),
@@ -240,7 +238,7 @@ fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
         return Err(WriteError::NoDataTaken { format: FORMAT.name, value: NODATA });
     }
     let mut notes = Vec::new();
-    let sample = match StoredSamples::of(raster).sample {
+    let sample = match StoredSamples::new(raster).sample {
         kept @ (SampleType::I16 | SampleType::I32) => kept,
         other => {
             if other.is_wide() {

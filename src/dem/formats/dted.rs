@@ -23,8 +23,7 @@ use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "DTED",
     extensions: &["dt0", "dt1", "dt2"],
     shared_extensions: &[],

@@ -17,8 +17,7 @@ use crate::dem::raster::{Raster, north_up, north_up_nodes};
 use crate::dem::read::DemFile;
 use crate::dem::sample_type::{NumberKind, SampleType};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI binary grid",
     extensions: &["bil", "flt"],
     shared_extensions: &["bip", "bsq"],
@@ -37,7 +36,7 @@ fn is_header(header: &[u8]) -> bool {
 
 /// Reads the first band.
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
-    let header = file.header().ok_or(DemErrorKind::NoHeader { format: FORMAT.name })?;
+    let header = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = HeaderFields::from_lines(FORMAT.name, &header, MOST_LINES);
     let nodata = header.first_number(["nodata", "nodata_value"])?;
     let sample = sample_type(&header, nodata, &file.extension())?;

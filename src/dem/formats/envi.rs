@@ -17,8 +17,7 @@ use crate::dem::read::DemFile;
 use crate::dem::sample_type::SampleType;
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ENVI raster",
     extensions: &[],
     shared_extensions: &[],
@@ -29,7 +28,7 @@ pub static FORMAT: DemFormat = DemFormat {
 
 /// Reads the first band.
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
-    let text = file.header().ok_or(DemErrorKind::NoHeader { format: FORMAT.name })?;
+    let text = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = header(&String::from_utf8_lossy(&text));
     let nodata = header.number("data ignore value")?;
     let raster = layout(&header)?.read(FORMAT.name, file.bytes, NoData::Value(nodata))?;

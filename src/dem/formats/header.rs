@@ -12,7 +12,6 @@ pub(crate) struct HeaderFields {
 }
 
 impl HeaderFields {
-    /// A header of `format` without fields.
     pub fn new(format: &'static str) -> Self {
         Self { format, fields: Vec::new() }
     }
@@ -30,7 +29,6 @@ impl HeaderFields {
         header
     }
 
-    /// Appends a field.
     pub fn push(&mut self, key: &str, value: &str) {
         self.fields.push((key.trim().to_ascii_lowercase(), value.trim().to_owned()));
     }
@@ -40,7 +38,6 @@ impl HeaderFields {
         self.fields.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
 
-    /// The number that `key` states.
     pub fn number(&self, key: &str) -> Result<Option<f64>, DemErrorKind> {
         self.get(key).map(|text| self.parse(key, text)).transpose()
     }
@@ -52,7 +49,6 @@ impl HeaderFields {
             .ok_or_else(|| self.broken(format!("{key} in its header is '{shown}', not a number")))
     }
 
-    /// The number of the first of `keys` that is stated.
     pub fn first_number(&self, keys: [&str; 2]) -> Result<Option<f64>, DemErrorKind> {
         Ok(self.number(keys[0])?.or(self.number(keys[1])?))
     }
@@ -72,8 +68,7 @@ impl HeaderFields {
         self.whole(key)?.ok_or_else(|| self.broken(format!("its header does not state {key}")))
     }
 
-    /// The outer south-west corner of a grid of `cell`, by Esri's keys for the corner or the center of its
-    /// south-west sample; `None` where either axis is not stated.
+    /// The outer south-west corner of a grid of `cell`, by Esri's keys; `None` where either axis is not stated.
     pub fn south_west(&self, cell: DVec2) -> Result<Option<DVec2>, DemErrorKind> {
         let edge = |corner: &str, center: &str, cell: f64| -> Result<Option<f64>, DemErrorKind> {
             Ok(self.number(corner)?.or(self.number(center)?.map(|center| center - cell * 0.5)))
@@ -82,7 +77,6 @@ impl HeaderFields {
         Ok(x.zip(edge("yllcorner", "yllcenter", cell.y)?).map(DVec2::from))
     }
 
-    /// An error about this header.
     pub fn broken(&self, reason: impl Into<String>) -> DemErrorKind {
         DemErrorKind::Broken { format: self.format, reason: reason.into() }
     }

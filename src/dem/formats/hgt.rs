@@ -15,8 +15,7 @@ use crate::dem::sample_type::SampleType;
 use crate::dem::write::{WriteError, WrittenDem};
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "SRTM tile",
     extensions: &["hgt"],
     shared_extensions: &[],
@@ -76,7 +75,6 @@ fn corner(stem: &str) -> Option<DVec2> {
         .then_some(DVec2::new(longitude, latitude))
 }
 
-/// The name of the tile with a south-west corner.
 fn name(corner: DVec2) -> String {
     let letter = |value: f64, plus: char, minus: char| if value < 0.0 { minus } else { plus };
     let (north, east) = (letter(corner.y, 'N', 'S'), letter(corner.x, 'E', 'W'));
@@ -104,7 +102,7 @@ fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
     }
     let wanted = name(corner);
     if !stem.to_ascii_uppercase().starts_with(&wanted) {
-        return Err(WriteError::Name { wanted });
+        return Err(WriteError::Name(wanted));
     }
     let (least, greatest) = (f64::from(VOID) + 1.0, f64::from(i16::MAX));
     if let Some(found) = raster.samples.valid().find(|value| !(least..=greatest).contains(&value.round())) {

@@ -3,22 +3,22 @@
 //! A new format is a file with a `FORMAT` and its line in [`FORMATS`]: recognition, reading, writing, the extensions of
 //! tiles in folders and archives, and the formats that messages list all come from that declaration.
 
-pub mod ascii;
-pub mod bt;
-pub mod dted;
-pub mod ehdr;
-pub mod envi;
+mod ascii;
+mod bt;
+mod dted;
+mod ehdr;
+mod envi;
 mod header;
 pub mod height_encoding;
-pub mod hgt;
-pub mod png;
+mod hgt;
+mod png;
 pub mod raw;
 mod sample_layout;
-pub mod surfer;
-pub mod terragen;
-pub mod text;
-pub mod usgs;
-pub mod xyz;
+mod surfer;
+mod terragen;
+pub(crate) mod text;
+mod usgs;
+mod xyz;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
@@ -48,14 +48,11 @@ pub static FORMATS: [&DemFormat; 13] = [
 pub struct DemFormat {
     /// Its name in messages.
     pub name: &'static str,
-    /// Extensions that belong to it alone, in lower case and without the dot: files of such a name are tiles in folders
-    /// and archives.
+    /// Extensions of this format alone, in lower case, without the dot: such files are tiles in folders and archives.
     pub extensions: &'static [&'static str],
     /// Extensions that pictures and tables have as well.
     pub shared_extensions: &'static [&'static str],
-    /// How files of it are recognized.
     pub(crate) recognition: Recognition,
-    /// Reads a file of it.
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<fn(&Raster, &str) -> Result<WrittenDem, WriteError>>,
@@ -66,16 +63,13 @@ pub struct DemFormat {
 pub(crate) enum Recognition {
     /// By their first bytes.
     Content {
-        /// Whether content is of the format.
         matches: fn(&[u8]) -> bool,
         /// The first bytes in words, for messages.
         start: &'static str,
     },
-    /// By their extension.
     Extension,
     /// By a text header in a file beside them.
     HeaderFile {
-        /// Whether a header is of the format.
         matches: fn(&[u8]) -> bool,
     },
     /// By a statement of the caller.
@@ -83,8 +77,7 @@ pub(crate) enum Recognition {
 }
 
 impl DemFormat {
-    /// The format that files with an extension are written in; `None` where there is none. The extension has no dot and
-    /// may be in any case.
+    /// The format that files with an extension, in any case and without the dot, are written in; `None` where none is.
     pub fn to_write(extension: &str) -> Option<&'static Self> {
         let lower = extension.to_ascii_lowercase();
         FORMATS.into_iter().find(|format| format.writer.is_some() && format.has_extension(&lower))
@@ -95,17 +88,6 @@ impl DemFormat {
         self.extensions.contains(&extension) || self.shared_extensions.contains(&extension)
     }
 
-    /// Whether content is recognized as this format's.
-    pub(crate) fn recognizes_content(&self, bytes: &[u8]) -> bool {
-        matches!(self.recognition, Recognition::Content { matches, .. } if matches(bytes))
-    }
-
-    /// Whether the header beside a file is recognized as this format's.
-    pub(crate) fn recognizes_header(&self, header: &[u8]) -> bool {
-        matches!(self.recognition, Recognition::HeaderFile { matches } if matches(header))
-    }
-
-    /// A broken file of this format.
     pub(crate) fn broken(&self, reason: impl Into<String>) -> DemErrorKind {
         DemErrorKind::Broken { format: self.name, reason: reason.into() }
     }
@@ -115,7 +97,6 @@ impl DemFormat {
         DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
     }
 
-    /// A part of this format that is not read.
     pub(crate) fn unsupported(&self, what: impl Into<String>, remedy: &'static str) -> DemErrorKind {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
@@ -123,8 +104,8 @@ impl DemFormat {
     /// Checks that a raster has north up and a georeference, for formats that hold no other.
     pub(crate) fn check_place(&self, raster: &Raster) -> Result<(), WriteError> {
         match (raster.georeferenced, raster.is_north_up()) {
-            (false, _) => Err(WriteError::NoPlace { format: self.name }),
-            (_, false) => Err(WriteError::NotNorthUp { format: self.name }),
+            (false, _) => Err(WriteError::NoPlace(self.name)),
+            (_, false) => Err(WriteError::NotNorthUp(self.name)),
             _ => Ok(()),
         }
     }

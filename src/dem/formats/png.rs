@@ -19,8 +19,7 @@ use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
 use crate::dem::write::{WriteError, WrittenDem};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "PNG",
     extensions: &[],
     shared_extensions: &["png"],
@@ -35,8 +34,7 @@ pub static FORMAT: DemFormat = DemFormat {
 /// Deflate turns one byte into at most 1032; filters add one byte a row.
 const EXPANSION: u64 = 1032;
 
-/// Steps from the lowest height to the highest that is written: the 65,534 between the gray values for heights, less
-/// one for an offset on a multiple of the step.
+/// Steps from the lowest to the highest height written: 65,534 gray values, less one for an offset on a whole step.
 const STEPS: f64 = 65533.0;
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
@@ -68,7 +66,6 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     })
 }
 
-/// The meaning of pixels.
 enum PngHeights {
     /// Gray values: meters per value, and the height of value 0.
     Gray {
@@ -114,7 +111,6 @@ struct Pixels {
     sample: usize,
     /// Samples of a pixel.
     channels: usize,
-    /// The gray value that is transparent.
     transparent_gray: Option<f64>,
 }
 

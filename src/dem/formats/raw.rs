@@ -14,8 +14,7 @@ use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::sample_type::{NumberKind, SampleType};
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "RAW with a stated size",
     extensions: &[],
     shared_extensions: &["raw", "r16"],

@@ -14,13 +14,9 @@ use crate::dem::sample_type::SampleType;
 /// Places of the samples of one band in a file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampleLayout {
-    /// Samples per row.
     pub width: u64,
-    /// Rows.
     pub height: u64,
-    /// The type of a sample.
     pub sample: SampleType,
-    /// Its byte order.
     pub order: ByteOrder,
     /// The first byte of the first sample.
     pub start: u64,
@@ -28,16 +24,13 @@ pub(crate) struct SampleLayout {
     pub column_step: u64,
     /// Bytes from a row to the next.
     pub row_step: u64,
-    /// The row that comes first in the file.
     pub first_row: FirstRow,
 }
 
 /// The row that comes first in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FirstRow {
-    /// The first row of the raster.
     North,
-    /// The last row of the raster.
     South,
 }
 

@@ -24,8 +24,7 @@ use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
 use crate::dem::sample_type::SampleType;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Surfer grid",
     extensions: &["grd"],
     shared_extensions: &[],

@@ -20,8 +20,7 @@ use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::sample_type::SampleType;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Terragen terrain",
     extensions: &["ter"],
     shared_extensions: &[],

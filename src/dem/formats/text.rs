@@ -1,30 +1,26 @@
 //! Words and numbers of text formats.
 
-/// The words of a text, as bytes.
 pub(crate) struct TextWords<'a> {
-    bytes: &'a [u8],
-    at: usize,
+    rest: &'a [u8],
 }
 
 impl<'a> TextWords<'a> {
     /// The words of `bytes`; white space and NULs separate them.
     pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0 }
+        Self { rest: bytes }
     }
 
     /// The bytes that have not been read yet.
     pub fn rest(&self) -> &'a [u8] {
-        &self.bytes[self.at..]
+        self.rest
     }
 
     /// The next word, unless `is_wanted` refuses it.
     pub fn next_if(&mut self, is_wanted: impl Fn(&[u8]) -> bool) -> Option<&'a [u8]> {
-        let before = self.at;
-        let word = self.next().filter(|word| is_wanted(word));
-        if word.is_none() {
-            self.at = before;
-        }
-        word
+        let mut after = Self { rest: self.rest };
+        let word = after.next().filter(|word| is_wanted(word))?;
+        *self = after;
+        Some(word)
     }
 }
 
@@ -33,11 +29,10 @@ impl<'a> Iterator for TextWords<'a> {
 
     fn next(&mut self) -> Option<&'a [u8]> {
         let is_blank = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
-        let rest = &self.bytes[self.at..];
-        let start = self.at + rest.iter().position(|byte| !is_blank(byte))?;
-        let length = self.bytes[start..].iter().position(is_blank).unwrap_or(self.bytes.len() - start);
-        self.at = start + length;
-        Some(&self.bytes[start..self.at])
+        let word = &self.rest[self.rest.iter().position(|byte| !is_blank(byte))?..];
+        let (word, rest) = word.split_at(word.iter().position(is_blank).unwrap_or(word.len()));
+        self.rest = rest;
+        Some(word)
     }
 }
 

@@ -23,8 +23,7 @@ use crate::dem::read::DemFile;
 use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::geom::crs::Crs;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "USGS elevation model",
     extensions: &["dem"],
     shared_extensions: &[],
@@ -141,13 +140,20 @@ impl UsgsHeader {
         };
         let corners = [corner(0)?, corner(1)?, corner(2)?, corner(3)?];
         let is_in_map_units = matches!(system, 1 | 2 | -9999);
-        let first_x = text.first_profile_x(profiles_at).unwrap_or(f64::NAN);
-        let Quad { first, rows } = Quad::new(cell, corners, is_in_map_units.then_some(first_x));
+        // Corners come in the order south-west, north-west, north-east, south-east.
+        let (mut south, mut north) = (corners[0].y.min(corners[3].y), corners[1].y.max(corners[2].y));
+        let mut west = corners[0].x.min(corners[1].x);
+        if is_in_map_units {
+            // The quad lies askew: y runs over whole multiples of the resolution, x from the first profile on.
+            (south, north) = ((south / cell.y).floor() * cell.y, (north / cell.y).ceil() * cell.y);
+            west = text.first_profile_x(profiles_at).unwrap_or(f64::NAN);
+        }
+        let rows = ((north - south) / cell.y + 1.5) as u64;
         let columns = u64::try_from(text.field(858, 6).unwrap_or(0)).unwrap_or(0);
         let claim = SizeClaim { expansion: SPARSEST, ..SizeClaim::new(columns, rows, 6) };
         let size = claim.check(text.0.len())?;
         let degrees = if is_in_map_units { 1.0 } else { 1.0 / 3600.0 };
-        let first = first * degrees;
+        let first = DVec2::new(west, north) * degrees;
         if !first.is_finite() {
             return Err(FORMAT.broken("its corners are not finite"));
         }
@@ -198,28 +204,6 @@ impl UsgsHeader {
     }
 }
 
-/// The raster around a quad.
-struct Quad {
-    /// The position of the north-west height, in the file's units.
-    first: DVec2,
-    rows: u64,
-}
-
-impl Quad {
-    /// Corners come in the order south-west, north-west, north-east, south-east. In map units (`first_x` is given) the
-    /// quad lies askew: y runs over whole multiples of the resolution, x from the first profile on.
-    fn new(cell: DVec2, corners: [DVec2; 4], first_x: Option<f64>) -> Self {
-        let mut south = corners[0].y.min(corners[3].y);
-        let mut north = corners[1].y.max(corners[2].y);
-        if first_x.is_some() {
-            south = (south / cell.y).floor() * cell.y;
-            north = (north / cell.y).ceil() * cell.y;
-        }
-        let west = first_x.unwrap_or(corners[0].x.min(corners[1].x));
-        Self { first: DVec2::new(west, north), rows: ((north - south) / cell.y + 1.5) as u64 }
-    }
-}
-
 fn vertical_datum(code: Option<i64>) -> Option<&'static str> {
     match code? {
         1 => Some("local mean sea level"),
@@ -229,7 +213,6 @@ fn vertical_datum(code: Option<i64>) -> Option<&'static str> {
     }
 }
 
-/// Text of fixed widths.
 struct FixedText<'a>(&'a [u8]);
 
 impl FixedText<'_> {

@@ -13,8 +13,7 @@ use crate::dem::point_text::PointText;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(super) static FORMAT: DemFormat = DemFormat {
     name: "XYZ grid",
     extensions: &["xyz"],
     shared_extensions: &["csv", "txt", "tsv"],
@@ -90,7 +89,6 @@ struct XyzLattice {
 }
 
 impl XyzLattice {
-    /// The first pass.
     fn find(text: &PointText) -> Result<Self, DemErrorKind> {
         let (mut count, mut min, mut max) = (0u64, DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (mut x_steps, mut y_steps) = (Steps::default(), Steps::default());
@@ -137,7 +135,6 @@ struct XyzGrid {
 }
 
 impl XyzGrid {
-    /// The second pass.
     fn fill(text: &PointText, lattice: &XyzLattice) -> Result<Self, DemErrorKind> {
         let (columns, rows) = (lattice.columns as usize, lattice.rows as usize);
         let values = vec![f32::NAN; columns * rows];

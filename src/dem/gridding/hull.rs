@@ -14,7 +14,6 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// The hull of the sites.
     pub fn new(sites: &Sites) -> Self {
         let mut corners = convex::hull(&sites.at);
         if let (true, [first, .., last]) = (corners.is_empty(), &sites.at[..]) {
@@ -23,7 +22,6 @@ impl Hull {
         Self { corners }
     }
 
-    /// Whether it holds no area.
     pub fn is_flat(&self) -> bool {
         self.corners.len() < 3
     }

@@ -3,10 +3,11 @@
 //!
 //! A grid of buckets is as fast where points lie evenly. Surveys do not: a bucket sized for the mean holds half the
 //! points of a dense patch, and a lake is a desert of empty ones. The tree's leaves follow the points, and a search
-//! costs about the same everywhere.
+//! costs about the same everywhere. (Neither `rstar` nor `kiddo` searches by quadrant, and both return sites that are
+//! equally far in an order of their own.)
 //!
 //! Each level halves its sites at their median along the longer side, so that ranges need no storage: a subtree is a
-//! range of `at` and its planes a range of `planes`, its own first, the left half's next, then the right half's.
+//! slice of `sites` and its planes a slice of `planes`, its own first, the left half's next, then the right half's.
 
 use std::cmp::Ordering;
 
@@ -27,18 +28,14 @@ struct SplitLine {
 
 /// Sites in the order of a tree.
 pub(super) struct KdTree {
-    at: Vec<DVec2>,
-    sites: Vec<u32>,
+    sites: Vec<(DVec2, u32)>,
     planes: Vec<SplitLine>,
-    depth: u32,
 }
 
 /// A site and its squared distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Near {
-    /// From the position of the search.
     pub distance2: f64,
-    /// The site.
     pub site: u32,
 }
 
@@ -49,13 +46,10 @@ impl Near {
     }
 }
 
-/// A search of the tree.
 trait Search {
-    /// Whether it needs sites of a box whose offset from the position is `offset` along each axis; 0 along an axis where
-    /// the box is not known to lie on one side.
+    /// Whether it needs sites of a box `offset` away along each axis; 0 where it is not known to lie on one side.
     fn needs(&self, offset: DVec2) -> bool;
 
-    /// Takes a site.
     fn take(&mut self, at: DVec2, site: u32);
 }
 
@@ -63,8 +57,9 @@ trait Search {
 /// costs more than the search; a search that starts with a good bound never drops any before its end.
 const SPARE: usize = 32;
 
-/// The nearest sites of a search.
+/// The sites nearest to `q`.
 pub(super) struct NearestSites {
+    q: DVec2,
     near: Vec<Near>,
     wanted: usize,
     /// Nothing farther is needed.
@@ -74,7 +69,7 @@ pub(super) struct NearestSites {
 impl NearestSites {
     /// For searches of the `wanted` nearest, at least 1.
     pub fn new(wanted: usize) -> Self {
-        Self { near: Vec::new(), wanted, limit2: 0.0 }
+        Self { q: DVec2::ZERO, near: Vec::new(), wanted, limit2: 0.0 }
     }
 
     /// The result of the last search, nearest first.
@@ -84,8 +79,7 @@ impl NearestSites {
 
     /// Searches a list of sites instead of a tree; `limit2` as for [`KdTree::nearest_k`].
     pub fn choose(&mut self, q: DVec2, limit2: f64, candidates: &[(DVec2, u32)]) {
-        self.near.clear();
-        self.limit2 = limit2;
+        self.start(q, limit2);
         for &(at, site) in candidates {
             self.offer(Near { distance2: (at - q).length_squared(), site });
         }
@@ -104,26 +98,25 @@ impl NearestSites {
         }
     }
 
+    fn start(&mut self, q: DVec2, limit2: f64) {
+        (self.q, self.limit2) = (q, limit2);
+        self.near.clear();
+    }
+
     fn finish(&mut self) {
         self.near.sort_unstable_by(Near::order);
         self.near.truncate(self.wanted);
     }
 }
 
-/// A search of the nearest sites to `q`.
-struct NearestSearch<'a> {
-    q: DVec2,
-    found: &'a mut NearestSites,
-}
-
-impl Search for NearestSearch<'_> {
+impl Search for NearestSites {
     fn needs(&self, offset: DVec2) -> bool {
         // Rounding only ever lowers it: each step is rounded as a site's own distance is, from a smaller number.
-        offset.length_squared() <= self.found.limit2
+        offset.length_squared() <= self.limit2
     }
 
     fn take(&mut self, at: DVec2, site: u32) {
-        self.found.offer(Near { distance2: (at - self.q).length_squared(), site });
+        self.offer(Near { distance2: (at - self.q).length_squared(), site });
     }
 }
 
@@ -151,7 +144,6 @@ impl Search for RangeSearch<'_> {
 /// north-east, one due north as north-east, one due west as north-west and one due south as south-east.
 pub(super) type Quadrants = [Option<Near>; 4];
 
-/// A search of the nearest site of each quadrant around `q`.
 struct QuadrantSearch {
     q: DVec2,
     found: Quadrants,
@@ -181,41 +173,16 @@ impl Search for QuadrantSearch {
     }
 }
 
-/// Part of the tree while it is searched.
-#[derive(Clone, Copy)]
-struct Subtree {
-    start: usize,
-    end: usize,
-    plane: usize,
-    depth: u32,
-}
-
-impl Subtree {
-    fn halves(self) -> [Self; 2] {
-        let middle = middle(self.start, self.end);
-        let depth = self.depth - 1;
-        let left = Self { end: middle, plane: self.plane + 1, depth, ..self };
-        let right = Self { start: middle, plane: self.plane + (1 << depth), depth, ..self };
-        [left, right]
-    }
-}
-
-fn middle(start: usize, end: usize) -> usize {
-    start + (end - start) / 2
-}
-
 impl KdTree {
     /// The tree of positions, which are sites by their index.
     pub fn new(at: &[DVec2]) -> Self {
-        let depth = at.len().div_ceil(LEAF).next_power_of_two().ilog2();
-        let mut order: Vec<(DVec2, u32)> = at.iter().zip(0..).map(|(&at, site)| (at, site)).collect();
-        let mut planes = vec![SplitLine::default(); (1 << depth) - 1];
-        build(&mut order, &mut planes);
-        let (at, sites) = order.into_iter().unzip();
-        Self { at, sites, planes, depth }
+        let leaves = at.len().div_ceil(LEAF).next_power_of_two();
+        let mut sites: Vec<(DVec2, u32)> = at.iter().zip(0..).map(|(&at, site)| (at, site)).collect();
+        let mut planes = vec![SplitLine::default(); leaves - 1];
+        build(&mut sites, &mut planes);
+        Self { sites, planes }
     }
 
-    /// The site nearest to `q`; `None` where there is none at all.
     pub fn nearest(&self, q: DVec2) -> Option<u32> {
         let mut found = NearestSites::new(1);
         self.nearest_k(q, f64::INFINITY, &mut found);
@@ -227,68 +194,66 @@ impl KdTree {
     /// `limit2` is a squared distance inside which, or at which, so many are known to lie; infinite where nothing is
     /// known.
     pub fn nearest_k(&self, q: DVec2, limit2: f64, found: &mut NearestSites) {
-        found.near.clear();
-        found.limit2 = limit2;
-        self.search(q, &mut NearestSearch { q, found });
+        found.start(q, limit2);
+        visit(&self.sites, &self.planes, q, DVec2::ZERO, found);
         found.finish();
     }
 
     /// Puts all sites at most as far from `q` as the root of `limit2` into `gathered`, or more than `most`.
     pub fn gather(&self, q: DVec2, limit2: f64, most: usize, gathered: &mut Vec<(DVec2, u32)>) {
         gathered.clear();
-        self.search(q, &mut RangeSearch { q, limit2, most, gathered });
+        let mut search = RangeSearch { q, limit2, most, gathered };
+        visit(&self.sites, &self.planes, q, DVec2::ZERO, &mut search);
     }
 
-    /// The nearest site of each quadrant around `q`.
     pub fn quadrants(&self, q: DVec2) -> Quadrants {
         let mut search = QuadrantSearch { q, found: [None; 4] };
-        self.search(q, &mut search);
+        visit(&self.sites, &self.planes, q, DVec2::ZERO, &mut search);
         search.found
-    }
-
-    fn search(&self, q: DVec2, search: &mut impl Search) {
-        let root = Subtree { start: 0, end: self.at.len(), plane: 0, depth: self.depth };
-        self.visit(root, q, DVec2::ZERO, search);
-    }
-
-    /// `offset` is that of the subtree's box from `q` along each axis, as far as the planes above tell.
-    fn visit(&self, part: Subtree, q: DVec2, mut offset: DVec2, search: &mut impl Search) {
-        if part.depth == 0 {
-            for (&at, &site) in self.at[part.start..part.end].iter().zip(&self.sites[part.start..part.end]) {
-                search.take(at, site);
-            }
-            return;
-        }
-        let plane = self.planes[part.plane];
-        let to_plane = q[plane.axis] - plane.at;
-        let [left, right] = part.halves();
-        let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
-        self.visit(near, q, offset, search);
-        offset[plane.axis] = to_plane;
-        if search.needs(offset) {
-            self.visit(far, q, offset, search);
-        }
     }
 }
 
-fn build(order: &mut [(DVec2, u32)], planes: &mut [SplitLine]) {
+/// Searches a subtree. `offset` is that of its box from `q` along each axis, as far as the planes above tell.
+fn visit(
+    sites: &[(DVec2, u32)],
+    planes: &[SplitLine],
+    q: DVec2,
+    mut offset: DVec2,
+    search: &mut impl Search,
+) {
+    let Some((plane, below)) = planes.split_first() else {
+        return sites.iter().for_each(|&(at, site)| search.take(at, site));
+    };
+    let (left, right) = sites.split_at(sites.len() / 2);
+    let (left_planes, right_planes) = below.split_at(below.len() / 2);
+    let (left, right) = ((left, left_planes), (right, right_planes));
+    let to_plane = q[plane.axis] - plane.at;
+    let (near, far) = if to_plane < 0.0 { (left, right) } else { (right, left) };
+    visit(near.0, near.1, q, offset, search);
+    offset[plane.axis] = to_plane;
+    if search.needs(offset) {
+        visit(far.0, far.1, q, offset, search);
+    }
+}
+
+fn build(sites: &mut [(DVec2, u32)], planes: &mut [SplitLine]) {
     let Some((plane, below)) = planes.split_first_mut() else { return };
-    let (low, high) = order
+    let (low, high) = sites
         .iter()
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (at, _)| (low.min(*at), high.max(*at)));
     let axis = usize::from(high.y - low.y > high.x - low.x);
-    let middle = middle(0, order.len());
+    let middle = sites.len() / 2;
     let (left_planes, right_planes) = below.split_at_mut(below.len() / 2);
     if middle == 0 {
         // No site lies left of the plane: it is at the only one, or there is none.
-        *plane = SplitLine { axis, at: order.first().map_or(0.0, |(at, _)| at[axis]) };
+        *plane = SplitLine { axis, at: sites.first().map_or(0.0, |(at, _)| at[axis]) };
     } else {
         let by_axis =
             |a: &(DVec2, u32), b: &(DVec2, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));
-        let (_, (at, _), _) = order.select_nth_unstable_by(middle, by_axis);
+        let (_, (at, _), _) = sites.select_nth_unstable_by(middle, by_axis);
         *plane = SplitLine { axis, at: at[axis] };
     }
-    let (left, right) = order.split_at_mut(middle);
+    let (left, right) = sites.split_at_mut(middle);
     if left.len() > PARALLEL {
         rayon::join(|| build(left, left_planes), || build(right, right_planes));
     } else {

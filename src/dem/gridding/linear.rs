@@ -34,7 +34,6 @@ pub(super) struct CellCenters {
 }
 
 impl CellCenters {
-    /// The centers of a grid's cells.
     pub fn new(grid: &CellGrid, origin: DVec2) -> Self {
         let corner = grid.corner() - origin;
         let cell = grid.cell();
@@ -43,7 +42,6 @@ impl CellCenters {
         Self { x: x.collect(), y: y.collect(), per_cell: cell.recip() }
     }
 
-    /// The number of cells.
     pub fn len(&self) -> usize {
         self.x.len() * self.y.len()
     }

@@ -88,8 +88,7 @@ pub struct Gridded {
 pub struct GriddingReport {
     /// Points, without the vertices of breaklines.
     pub points: usize,
-    /// Points and vertices of breaklines with the x and y of an earlier one; each position takes the mean of its
-    /// heights.
+    /// Points and vertices of breaklines with the x and y of an earlier one; a position takes the mean height.
     pub duplicates: usize,
     /// Breaklines.
     pub breaklines: usize,
@@ -116,23 +115,13 @@ pub enum GridError {
         wanted: &'static str,
     },
     /// A point or a vertex of a breakline is not finite or too large.
-    #[error("a point at {x}, {y} has the height {z}: all three must be finite and below 1e60")]
-    Unplaceable {
-        /// Its x.
-        x: f64,
-        /// Its y.
-        y: f64,
-        /// Its height.
-        z: f64,
-    },
-    /// All points lie on one line.
+    #[error("a point at {}, {} has the height {}: all three must be finite and below 1e60", .0.x, .0.y, .0.z)]
+    Unplaceable(DVec3),
+    /// All points, at this number of positions, lie on one line.
     #[error(
-        "all {sites} positions lie on one line and no cell between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
+        "all {0} positions lie on one line and no cell between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
     )]
-    Collinear {
-        /// The number of different positions.
-        sites: usize,
-    },
+    Collinear(usize),
 }
 
 /// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and datum.
@@ -213,7 +202,7 @@ fn heights(
         | GriddingMethod::Nearest => {
             let hull = Hull::new(&sites);
             if hull.is_flat() && beyond == BeyondHull::NoData {
-                return Err(GridError::Collinear { sites: sites.len() });
+                return Err(GridError::Collinear(sites.len()));
             }
             WeightedSites::new(&sites, method).fill(&hull, &cells, &mut out);
         }

@@ -31,14 +31,12 @@ use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
 /// edge, the walk to it decides on which side it is taken.
 const BAND_ROWS: usize = 16;
 
-/// A center nearer to a site than this part of the extent takes its height: nearer, circles through the site do not
-/// differ from circles through the center.
+/// A center nearer to a site than this part of the extent takes its height: circles through either are then the same.
 const SNAP: f64 = 1e-11;
 
 /// A center nearer to a side of the hull than this part of the side's length lies on it.
 const ON_SIDE: f64 = 1e-12;
 
-/// A triangle as a search needs it.
 struct SearchTriangle {
     circumcenter: DVec2,
     radius2: f64,
@@ -47,7 +45,6 @@ struct SearchTriangle {
     neighbors: [u32; 3],
 }
 
-/// Sites with their triangulation.
 pub(super) struct Naturals {
     at: Vec<DVec2>,
     z: Vec<f64>,
@@ -55,15 +52,10 @@ pub(super) struct Naturals {
     snap2: f64,
 }
 
-/// Buffers that a task reuses for every center.
-#[derive(Default)]
-struct NeighborScratch {
-    /// Sides yet to be crossed: the triangle and the side, the next in counter-clockwise order on top.
-    sides: Vec<(u32, u8)>,
-}
+/// Sides yet to be crossed: the triangle and the side, the next in counter-clockwise order on top. A task reuses it.
+type OpenSides = Vec<(u32, u8)>;
 
 impl Naturals {
-    /// Triangulates the sites.
     pub fn new(sites: &Sites) -> Result<Self, GridError> {
         let web = delaunay(sites)?;
         let (tin, neighbors) = rayon::join(|| Tin::from_web(&web), || neighbors(&web));
@@ -88,7 +80,7 @@ impl Naturals {
         let columns = hull.columns(cells);
         let bands = out.par_chunks_mut(BAND_ROWS * width).zip(cells.y.par_chunks(BAND_ROWS));
         let bands = bands.zip(columns.par_chunks(BAND_ROWS));
-        bands.for_each_init(NeighborScratch::default, |scratch, ((out, y), columns)| {
+        bands.for_each_init(OpenSides::new, |open, ((out, y), columns)| {
             let mut row_start = 0;
             for ((row, &y), columns) in out.chunks_mut(width).zip(y).zip(columns) {
                 let mut around = row_start;
@@ -98,14 +90,13 @@ impl Naturals {
                     if index == 0 {
                         row_start = around;
                     }
-                    row[column] = self.height(q, around, scratch);
+                    row[column] = self.height(q, around, open);
                 }
             }
         });
     }
 
-    /// The triangle around `q`, found by walking from another toward it; where rounding puts `q` outside of all, the
-    /// triangle at the border where the walk ends.
+    /// The triangle around `q`, or at the border nearest to it, found by walking from another toward it.
     fn locate(&self, q: DVec2, from: u32) -> u32 {
         let mut at = from;
         // But for rounding, a walk meets no triangle twice (Devillers, Pion and Teillaud 2002).
@@ -125,14 +116,14 @@ impl Naturals {
     }
 
     /// The height at `q`, which lies in the triangle `around`.
-    fn height(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> f64 {
+    fn height(&self, q: DVec2, around: u32, sides: &mut OpenSides) -> f64 {
         let corners = self.cells[around as usize].corners;
         for corner in corners {
             if self.at[corner as usize].distance_squared(q) <= self.snap2 {
                 return self.z[corner as usize];
             }
         }
-        let sums = self.gather(q, around, scratch);
+        let sums = self.gather(q, around, sides);
         let height = sums.zero + sums.heights / sums.area;
         match sums.on_side {
             Some(height) => height,
@@ -142,8 +133,7 @@ impl Naturals {
     }
 
     /// Sums over the triangles that a site at `q` would make vanish.
-    fn gather(&self, q: DVec2, around: u32, scratch: &mut NeighborScratch) -> AreaSums {
-        let sides = &mut scratch.sides;
+    fn gather(&self, q: DVec2, around: u32, sides: &mut OpenSides) -> AreaSums {
         sides.clear();
         sides.extend([(around, 2), (around, 1), (around, 0)]);
         let mut sums = AreaSums::new(self.z[self.cells[around as usize].corners[0] as usize]);
@@ -213,6 +203,7 @@ fn circumcenter(a: DVec2, b: DVec2) -> DVec2 {
 }
 
 /// The sums over the sides of all areas taken.
+#[derive(Default)]
 struct AreaSums {
     /// Heights are summed as differences from this one.
     zero: f64,
@@ -230,16 +221,7 @@ struct AreaSums {
 
 impl AreaSums {
     fn new(zero: f64) -> Self {
-        Self {
-            zero,
-            heights: 0.0,
-            area: 0.0,
-            first: None,
-            last: DVec2::ZERO,
-            lowest: f64::INFINITY,
-            highest: f64::NEG_INFINITY,
-            on_side: None,
-        }
+        Self { zero, lowest: f64::INFINITY, highest: f64::NEG_INFINITY, ..Self::default() }
     }
 
     /// Adds a side between the areas taken from a and from b, `rise` = z_b − z_a.

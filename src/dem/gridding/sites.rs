@@ -25,11 +25,10 @@ pub(super) struct Sites {
 }
 
 impl Sites {
-    /// The sites of points and of vertices of breaklines.
     pub fn new(points: &[DVec3], vertices: &[DVec3]) -> Result<Self, GridError> {
         let is_sound = |point: &DVec3| point.abs().cmplt(DVec3::splat(LARGEST)).all();
         if let Some(point) = points.iter().chain(vertices).find(|point| !is_sound(point)) {
-            return Err(GridError::Unplaceable { x: point.x, y: point.y, z: point.z });
+            return Err(GridError::Unplaceable(*point));
         }
         let low = points.iter().chain(vertices).fold(DVec2::INFINITY, |low, point| low.min(point.truncate()));
         let origin = if low.is_finite() { low.floor() } else { DVec2::ZERO };
@@ -53,7 +52,6 @@ impl Sites {
         Ok(sites)
     }
 
-    /// The number of sites.
     pub fn len(&self) -> usize {
         self.at.len()
     }
@@ -93,7 +91,7 @@ mod tests {
         for wrong in
             [DVec3::new(f64::NAN, 0.0, 0.0), DVec3::new(0.0, 1e80, 0.0), DVec3::new(0.0, 0.0, f64::INFINITY)]
         {
-            assert!(matches!(Sites::new(&[wrong], &[]), Err(GridError::Unplaceable { .. })), "{wrong}");
+            assert!(matches!(Sites::new(&[wrong], &[]), Err(GridError::Unplaceable(_))), "{wrong}");
         }
     }
 }

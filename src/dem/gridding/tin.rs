@@ -20,7 +20,6 @@ pub(super) const OUTSIDE: u32 = u32::MAX;
 pub(super) struct TinVertex {
     /// From the sites' origin.
     pub at: DVec2,
-    /// Its height.
     pub z: f64,
     /// The index of its site; `None` for a vertex where breaklines cross.
     pub site: Option<u32>,
@@ -34,10 +33,8 @@ impl HasPosition for TinVertex {
     }
 }
 
-/// A triangulation that keeps edges.
 pub(super) type Constrained = ConstrainedDelaunayTriangulation<TinVertex>;
 
-/// Triangles over vertices.
 pub(super) struct Tin {
     /// Position (from the sites' origin) and height of every vertex.
     pub vertices: Vec<DVec3>,
@@ -64,14 +61,12 @@ impl Tin {
         Self { vertices, triangles: triangles.collect() }
     }
 
-    /// The corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
     }
 }
 
-/// The neighbors of every triangle, in the order of [`Tin::from_web`]: for each side from corner i to corner i + 1 the
-/// triangle beyond, or [`OUTSIDE`].
+/// For each triangle of [`Tin::from_web`], the triangle beyond each side from corner i to i + 1, or [`OUTSIDE`].
 pub(super) fn neighbors(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]> {
     // Face 0 is the outside of the hull; the inner faces follow.
     let beyond = |index: usize| index.checked_sub(1).map_or(OUTSIDE, |index| index as u32);
@@ -80,7 +75,6 @@ pub(super) fn neighbors(web: &DelaunayTriangulation<TinVertex>) -> Vec<[u32; 3]>
         .collect()
 }
 
-/// The Delaunay triangulation of the sites.
 pub(super) fn delaunay(sites: &Sites) -> Result<DelaunayTriangulation<TinVertex>, GridError> {
     load(sites)
 }
@@ -94,12 +88,11 @@ fn load<T: Triangulation<Vertex = TinVertex>>(sites: &Sites) -> Result<T, GridEr
         // the points themselves are that close to zero.
         let is_tiny = |at: &DVec2| at.abs().cmplt(DVec2::splat(1e-60)).any() && *at != DVec2::ZERO;
         let index = sites.at.iter().position(is_tiny).unwrap_or(0);
-        let at = sites.at[index] + sites.origin;
-        GridError::Unplaceable { x: at.x, y: at.y, z: sites.z[index] }
+        GridError::Unplaceable((sites.at[index] + sites.origin).extend(sites.z[index]))
     };
     let web = T::bulk_load(vertices).map_err(unplaceable)?;
     if web.num_inner_faces() == 0 {
-        return Err(GridError::Collinear { sites: sites.len() });
+        return Err(GridError::Collinear(sites.len()));
     }
     Ok(web)
 }

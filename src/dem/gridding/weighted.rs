@@ -25,7 +25,6 @@ const LEAST_CANDIDATES: usize = 64;
 /// The factor that widens a bound on distances, against rounding.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// Cells that share a search.
 struct Tile<'a> {
     /// The first column.
     left: usize,
@@ -58,13 +57,6 @@ struct SearchScratch {
     candidates: Vec<(DVec2, u32)>,
 }
 
-impl SearchScratch {
-    fn new(wanted: usize) -> Self {
-        Self { found: NearestSites::new(wanted), candidates: Vec::new() }
-    }
-}
-
-/// Sites that are searched by distance.
 pub(super) struct WeightedSites<'a> {
     sites: &'a Sites,
     tree: KdTree,
@@ -92,7 +84,7 @@ impl<'a> WeightedSites<'a> {
         let bands =
             out.par_chunks_mut(TILE * width).zip(cells.y.par_chunks(TILE)).zip(columns.par_chunks(TILE));
         bands.for_each_init(
-            || SearchScratch::new(self.wanted()),
+            || SearchScratch { found: NearestSites::new(self.wanted()), candidates: Vec::new() },
             |scratch, ((out, y), columns)| {
                 for left in (0..width).step_by(TILE) {
                     let x = &cells.x[left..(left + TILE).min(width)];
@@ -147,8 +139,7 @@ impl<'a> WeightedSites<'a> {
         }
     }
 
-    /// The squared distance from `q` to the farthest of the sites found for the previous cell: as many as are wanted lie
-    /// within it.
+    /// The squared distance from `q` to the farthest of the sites found: as many as are wanted lie within it.
     fn farthest2(&self, found: &NearestSites, q: DVec2) -> f64 {
         let distances2 =
             found.near().iter().map(|near| (self.sites.at[near.site as usize] - q).length_squared());

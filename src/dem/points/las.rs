@@ -33,7 +33,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
         points.take(&bytes[header.points_at..][..header.count as usize * header.point_bytes]);
     }
     let mut notes = system.notes;
-    let points = points.of_classes(hints.classes, &mut notes)?;
+    let points = points.select_classes(hints.classes, &mut notes)?;
     Ok(PointCloud {
         crs: system.crs,
         meters_per_z: system.meters_per_z,
@@ -43,7 +43,6 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
     })
 }
 
-/// Points with their classes.
 struct LasPoints<'a> {
     header: &'a LasHeader,
     points: Vec<DVec3>,
@@ -77,15 +76,14 @@ impl<'a> LasPoints<'a> {
         }
     }
 
-    /// The points of the wanted classes.
-    fn of_classes(self, wanted: &[u8], notes: &mut Vec<String>) -> Result<Vec<DVec3>, PointsError> {
+    fn select_classes(self, wanted: &[u8], notes: &mut Vec<String>) -> Result<Vec<DVec3>, PointsError> {
         if self.withheld > 0 {
             notes.push(format!("{} withheld points were left out", self.withheld));
         }
         let all = self.points.len();
         if wanted.is_empty() && !self.classes.contains(&GROUND) {
             notes.push(format!("no point is classified as ground: all {all} were taken, whatever they hit"));
-            return if all > 0 { Ok(self.points) } else { Err(PointsError::Empty { without_height: 0 }) };
+            return if all > 0 { Ok(self.points) } else { Err(PointsError::Empty(0)) };
         }
         let wanted = if wanted.is_empty() { &[GROUND] } else { wanted };
         let with_classes = self.points.iter().zip(&self.classes);

@@ -3,7 +3,6 @@
 //! Heights are in the vertical unit that is stated, else in the unit of x and y, as ASPRS LAS 1.4 R15 has it of a
 //! system that states one unit only. That heights were taken for feet is noted: so much depends on it.
 
-use crate::dem::error::DemErrorKind;
 use crate::dem::points::PointsError;
 use crate::dem::points::las_header::{LasHeader, Record};
 use crate::dem::tiff::geokeys::GeoKeys;
@@ -16,7 +15,6 @@ const DOUBLES: u16 = 34736;
 const TEXTS: u16 = 34737;
 const WKT: u16 = 2112;
 
-/// The coordinate system of a file.
 pub(super) struct LasCrs {
     /// Of x and y.
     pub crs: Option<Crs>,
@@ -42,13 +40,15 @@ impl LasCrs {
         let wkt = wkt.filter(|_| header.says_wkt || keys.is_none());
         let (own, unit) = match (&wkt, &keys, stated) {
             (Some(wkt), ..) => (None, vertical_unit(wkt)),
-            (None, Some(keys), None) => (keys.crs()?, keys.meters_per_z()?),
+            (None, Some(keys), None) => {
+                (keys.crs().map_err(PointsError::Crs)?, keys.meters_per_z().map_err(PointsError::Crs)?)
+            }
             (None, Some(keys), Some(_)) => (None, keys.meters_per_z().ok().flatten()),
             (None, None, _) => (None, None),
         };
         let crs = match (stated, &wkt) {
             (Some(stated), _) => Some(stated.clone()),
-            (None, Some(wkt)) => Some(Crs::parse(wkt).map_err(DemErrorKind::Crs)?),
+            (None, Some(wkt)) => Some(Crs::parse(wkt).map_err(|error| PointsError::Crs(error.into()))?),
             (None, None) => own,
         };
         let mut notes = Vec::new();

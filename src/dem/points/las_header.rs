@@ -7,6 +7,7 @@ use glam::DVec3;
 use las::raw::header::Header;
 
 use crate::dem::bytes::ByteFields;
+use crate::dem::error::DemErrorKind;
 use crate::dem::points::{MOST_POINTS, PointsError};
 
 /// Set in the format of a compressed file.
@@ -17,52 +18,42 @@ const COMPRESSED: u8 = 0x80;
 pub(super) struct LasHeader {
     /// Where variable length records start.
     size: usize,
-    /// Where points start.
     pub points_at: usize,
     /// The format of a point, 0 to 10.
     pub format: u8,
-    /// Whether points are compressed.
     pub is_compressed: bool,
-    /// Bytes of a point.
     pub point_bytes: usize,
     /// Bytes of a point that its writer added to the format.
     pub extra_bytes: u16,
-    /// The number of points.
     pub count: u64,
     /// The factor of stored coordinates.
     pub scale: DVec3,
     /// What is added then.
     pub offset: DVec3,
-    /// Whether the system is stated as WKT.
     pub says_wkt: bool,
-    /// The number of variable length records.
     records: u32,
     /// Where extended records start, and their number.
     extended: (u64, u32),
 }
 
-/// A variable length record.
 pub(super) struct Record<'a> {
-    /// Its owner.
     pub owner: &'a [u8],
     /// Its number among those of the same owner.
     pub id: u16,
-    /// Its content.
     pub content: &'a [u8],
 }
 
 impl LasHeader {
-    /// Reads and checks a header.
     pub fn read(bytes: &[u8]) -> Result<Self, PointsError> {
-        let raw = Header::read_from(bytes)
-            .map_err(|error| PointsError::Undecodable { format: "LAS", source: Box::new(error) })?;
+        let undecodable = |error| DemErrorKind::Undecodable { format: "LAS file", source: Box::new(error) };
+        let raw = Header::read_from(bytes).map_err(undecodable)?;
         if raw.version.major != 1 || raw.version.minor > 4 {
-            return Err(unsupported(format!("is of version {} (1.0 to 1.4 are known)", raw.version)));
+            return Err(unsupported(format!("version {} (1.0 to 1.4 are known)", raw.version)));
         }
         let format = raw.point_data_record_format & !COMPRESSED;
         let known = las::point::Format::new(format);
         let known =
-            known.map_err(|_| unsupported(format!("has points of format {format} (0 to 10 are known)")))?;
+            known.map_err(|_| unsupported(format!("points of format {format} (0 to 10 are known)")))?;
         let (stated, needed) = (raw.point_data_record_length, known.len());
         let extra_bytes = stated
             .checked_sub(needed)
@@ -94,7 +85,7 @@ impl LasHeader {
             )));
         }
         if count > MOST_POINTS {
-            return Err(PointsError::TooMany { count });
+            return Err(PointsError::TooMany(count));
         }
         let most = ((file_bytes - points_at) / self.point_bytes) as u64;
         if !self.is_compressed && count > most {
@@ -132,8 +123,7 @@ impl LasHeader {
 }
 
 impl<'a> Record<'a> {
-    /// The record at `at`, which moves behind it. `header` are the bytes before its content, whose length is a field of
-    /// it; `None` where it does not lie within `bytes`.
+    /// The record at `at`, which moves behind it; `None` beyond the end. `header` bytes before its content state its length.
     fn read(
         bytes: &'a [u8],
         at: &mut usize,
@@ -150,10 +140,12 @@ impl<'a> Record<'a> {
     }
 }
 
-fn unsupported(what: String) -> PointsError {
-    PointsError::Unsupported { format: "LAS", what }
+/// A part of LAS and LAZ that is not read.
+pub(super) fn unsupported(what: String) -> PointsError {
+    let remedy = "write it again with another program, for example: pdal translate IN OUT.las";
+    DemErrorKind::Unsupported { format: "LAS file", what, remedy }.into()
 }
 
-fn broken(reason: String) -> PointsError {
-    PointsError::Broken { format: "LAS", reason }
+pub(super) fn broken(reason: impl Into<String>) -> PointsError {
+    DemErrorKind::Broken { format: "LAS file", reason: reason.into() }.into()
 }

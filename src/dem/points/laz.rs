@@ -15,10 +15,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use laz::{LasZipDecompressor, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
 
 use crate::dem::bytes::{ByteFields, bytes_at};
+use crate::dem::error::DemErrorKind;
 use crate::dem::points::PointsError;
-use crate::dem::points::las_header::LasHeader;
+use crate::dem::points::las_header::{LasHeader, broken, unsupported};
 
-/// Points that are unpacked at once.
 const BATCH: u64 = 1 << 16;
 
 /// Unpacks all points and passes their records on, batch by batch.
@@ -84,8 +84,7 @@ fn check_items(laszip: &[u8], vlr: &LazVlr, header: &LasHeader) -> Result<(), Po
     let found = compressor(laszip).unwrap_or_default();
     let has_arithmetic_coder = ByteFields::little_endian(laszip).u16(2) == Some(0);
     if !compressors.contains(&found) || !has_arithmetic_coder {
-        let what = format!("is packed by compressor {found}, for points of format {format}");
-        return Err(PointsError::Unsupported { format: "LAZ", what });
+        return Err(unsupported(format!("compressor {found} for points of format {format}")));
     }
     let wanted =
         LazItemRecordBuilder::default_for_point_format_id(format, header.extra_bytes).map_err(undecodable)?;
@@ -158,9 +157,5 @@ fn layers(item: LazItemType) -> usize {
 }
 
 fn undecodable(error: laz::LasZipError) -> PointsError {
-    PointsError::Undecodable { format: "LAZ", source: Box::new(error) }
-}
-
-fn broken(reason: impl Into<String>) -> PointsError {
-    PointsError::Broken { format: "LAZ", reason: reason.into() }
+    DemErrorKind::Undecodable { format: "LAZ file", source: Box::new(error) }.into()
 }

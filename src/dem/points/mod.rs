@@ -15,7 +15,6 @@ pub mod table;
 
 use glam::DVec3;
 
-#[cfg(feature = "las")]
 use crate::dem::error::DemErrorKind;
 use crate::geom::crs::Crs;
 
@@ -27,8 +26,7 @@ pub const MOST_POINTS: u64 = 1 << 26;
 pub struct PointCloud {
     /// Easting (or longitude), northing (or latitude) and height; finite.
     pub points: Vec<DVec3>,
-    /// Lines along which the ground breaks, each of at least two vertices; the ground follows them between their
-    /// vertices.
+    /// Lines along which the ground breaks and which it follows, each of at least two vertices.
     pub breaklines: Vec<Vec<DVec3>>,
     /// The system of x and y; `None` where the file names none.
     pub crs: Option<Crs>,
@@ -76,18 +74,12 @@ pub enum PointsError {
         /// Its text, cut where it is long.
         found: String,
     },
-    /// The bytes are no text.
-    #[error("byte {at} is not UTF-8 text; points are read from text (.xyz, .csv, .txt), LAS and LAZ")]
-    NotText {
-        /// Where the text ends.
-        at: usize,
-    },
-    /// The file holds no points with a height.
-    #[error("it holds no points{}", if *.without_height > 0 { " that have a height" } else { "" })]
-    Empty {
-        /// Points without a height.
-        without_height: usize,
-    },
+    /// The bytes are no text from this one on.
+    #[error("byte {0} is not UTF-8 text; points are read from text (.xyz, .csv, .txt), LAS and LAZ")]
+    NotText(usize),
+    /// The file holds no points with a height, and this number of points without one.
+    #[error("it holds no points{}", if *.0 > 0 { " that have a height" } else { "" })]
+    Empty(usize),
     /// The file holds no points of the wanted classes.
     #[error("it holds no points of class {wanted}; it has {found}")]
     NoClass {
@@ -97,37 +89,11 @@ pub enum PointsError {
         found: String,
     },
     /// The file holds more points than are read.
-    #[error("{count} points are more than the {MOST_POINTS} that are read; thin or cut the file")]
-    TooMany {
-        /// Points as stated or found.
-        count: u64,
-    },
-    /// The file contradicts itself or ends too early.
-    #[error("the {format} file is broken: {reason}; fetch or export it again")]
-    Broken {
-        /// `LAS` or `LAZ`.
-        format: &'static str,
-        /// Where and what.
-        reason: String,
-    },
-    /// A decoder refuses the file.
-    #[error("the {format} file is broken: {source}; fetch or export it again")]
-    Undecodable {
-        /// `LAS` or `LAZ`.
-        format: &'static str,
-        /// The decoder's error.
-        source: Box<dyn std::error::Error + Send + Sync>,
-    },
-    /// The file is of a kind that is not read.
-    #[error(
-        "this {format} file {what}, which is not read; write it again with another program, for example: pdal translate IN OUT.las"
-    )]
-    Unsupported {
-        /// `LAS` or `LAZ`.
-        format: &'static str,
-        /// The kind.
-        what: String,
-    },
+    #[error("{0} points are more than the {MOST_POINTS} that are read; thin or cut the file")]
+    TooMany(u64),
+    /// The LAS or LAZ file is broken, or of a kind that is not read.
+    #[error(transparent)]
+    File(#[from] DemErrorKind),
     /// The program was built without the readers of LAS and LAZ.
     #[error(
         "this is a LAS or LAZ file, and this program was built without the feature `las`: build it with --features las, or convert the points to text"
@@ -135,17 +101,9 @@ pub enum PointsError {
     WithoutLas,
     /// The file's coordinate system is not understood.
     #[error("{0}; or state the right one with --crs")]
-    Crs(#[source] Box<dyn std::error::Error + Send + Sync>),
+    Crs(#[source] DemErrorKind),
 }
 
-#[cfg(feature = "las")]
-impl From<DemErrorKind> for PointsError {
-    fn from(error: DemErrorKind) -> Self {
-        Self::Crs(Box::new(error))
-    }
-}
-
-/// Whether the content is that of a LAS or LAZ file.
 fn is_las(bytes: &[u8]) -> bool {
     bytes.starts_with(b"LASF")
 }

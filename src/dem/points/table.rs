@@ -11,8 +11,7 @@ use crate::dem::points::{MOST_POINTS, PointCloud, PointHints, PointsError};
 /// # Errors
 /// [`PointsError`] for the first line that is no point, a header without x, y or z, or no point at all.
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
-    let text =
-        std::str::from_utf8(bytes).map_err(|error| PointsError::NotText { at: error.valid_up_to() })?;
+    let text = std::str::from_utf8(bytes).map_err(|error| PointsError::NotText(error.valid_up_to()))?;
     let text = PointText::new(text);
     let columns = match (text.columns, text.header) {
         ([Some(x), Some(y), Some(z)], _) => [x, y, z],
@@ -30,11 +29,11 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
             _ => return Err(PointsError::Line { line: line.number, found: line.quote() }),
         }
         if points.len() as u64 > MOST_POINTS {
-            return Err(PointsError::TooMany { count: points.len() as u64 });
+            return Err(PointsError::TooMany(points.len() as u64));
         }
     }
     if points.is_empty() {
-        return Err(PointsError::Empty { without_height });
+        return Err(PointsError::Empty(without_height));
     }
     let left_out = format!("{without_height} points without a height were left out");
     let notes = if without_height > 0 { vec![left_out] } else { Vec::new() };

@@ -19,8 +19,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Samples;
-use crate::dem::tiff::rows::{Elevation, RowDecoder, RowWords};
+use crate::dem::raster::{SampleFloat, Samples};
+use crate::dem::tiff::rows::{RowDecoder, RowWords};
 use crate::dem::tiff::storage::{Storage, TiffBlock};
 use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
 
@@ -36,7 +36,7 @@ pub(crate) fn decode(bytes: &[u8], storage: &Storage, nodata: Option<f64>) -> Re
     }
 }
 
-fn elevations<E: Elevation>(
+fn elevations<E: SampleFloat>(
     bytes: &[u8],
     storage: &Storage,
     nodata: Option<f64>,
@@ -68,7 +68,7 @@ fn elevations<E: Elevation>(
 }
 
 /// Fills the rows of the raster that rows `down` of blocks hold.
-fn fill<E: Elevation>(
+fn fill<E: SampleFloat>(
     mut bytes: &[u8],
     storage: &Storage,
     nodata: Option<f64>,
@@ -80,7 +80,7 @@ fn fill<E: Elevation>(
     let first_row = down.start as usize * storage.block_height as usize;
     let mut decoder = BlockDecoder::new(storage, nodata)?;
     for block in down.flat_map(|y| (0..across).map(move |x| storage.block(x, y))) {
-        let start = (block.row as usize - first_row) * width + block.column as usize;
+        let start = (block.window.row as usize - first_row) * width + block.window.column as usize;
         decoder.decode(&mut bytes, block, &mut rows[start..], width)?;
     }
     Ok(())
@@ -100,14 +100,14 @@ pub(crate) fn block(
     }
 }
 
-fn block_elevations<E: Elevation>(
+fn block_elevations<E: SampleFloat>(
     file: &mut impl BlockBytes,
     storage: &Storage,
     nodata: Option<f64>,
     block: TiffBlock,
 ) -> Result<Samples, DemErrorKind> {
-    let mut values = vec![E::default(); block.width as usize * block.height as usize];
-    BlockDecoder::new(storage, nodata)?.decode(file, block, &mut values, block.width as usize)?;
+    let mut values = vec![E::default(); block.window.samples()];
+    BlockDecoder::new(storage, nodata)?.decode(file, block, &mut values, block.window.width as usize)?;
     Ok(E::into_samples(values))
 }
 
@@ -134,15 +134,15 @@ impl<'a> BlockDecoder<'a> {
     }
 
     /// Decodes a block to `out`, which is zeros; its rows lie `stride` apart and start where the block's do.
-    fn decode<E: Elevation>(
+    fn decode<E: SampleFloat>(
         &mut self,
         file: &mut impl BlockBytes,
         block: TiffBlock,
         out: &mut [E],
         stride: usize,
     ) -> Result<(), DemErrorKind> {
-        let rows = out.chunks_mut(stride).take(block.height as usize);
-        let rows = rows.map(|row| &mut row[..block.width as usize]);
+        let rows = out.chunks_mut(stride).take(block.window.height as usize);
+        let rows = rows.map(|row| &mut row[..block.window.width as usize]);
         if !self.storage.is_written(block.index) {
             // As in GDAL, what was never written is no data where the file states a value for that, else 0.
             rows.filter(|_| self.nodata.is_some()).for_each(|row| row.fill(E::NODATA));
@@ -150,7 +150,7 @@ impl<'a> BlockDecoder<'a> {
         }
         self.unpacker.unpack(file, block, &mut self.unpacked)?;
         for (packed, row) in self.unpacked.chunks_exact(self.storage.row_bytes().max(1)).zip(rows) {
-            E::decode(&self.rows, packed, &mut self.words, row);
+            self.rows.decode(packed, &mut self.words, row);
         }
         Ok(())
     }

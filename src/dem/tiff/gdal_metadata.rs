@@ -4,7 +4,6 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::units::length_of_name;
 
-/// The number of the tag.
 pub(crate) const GDAL_METADATA: u16 = 42112;
 
 /// Scale, offset and unit of a band; 1, 0 and `None` where not stated.
@@ -19,9 +18,8 @@ pub(crate) struct BandMetadata {
 }
 
 impl BandMetadata {
-    /// Reads the first band's items of a flat list of `<Item name="…" sample="0" role="scale">…</Item>`; everything
-    /// else is ignored.
-    pub fn of_first_band(xml: &str) -> Result<Self, DemErrorKind> {
+    /// Reads the first band's items, `<Item name="…" sample="0" role="scale">…</Item>`; all else is ignored.
+    pub fn first_band(xml: &str) -> Result<Self, DemErrorKind> {
         let mut band = Self { scale: 1.0, offset: 0.0, meters_per_z: None };
         for item in xml.split("<Item").skip(1) {
             let Some((head, rest)) = item.split_once('>') else { continue };
@@ -67,14 +65,14 @@ mod tests {
             <Item name="SCALE" sample="1" role="scale">99</Item>
             <Item name="UNITTYPE" sample="0" role="unittype">ft</Item>
             <Item name="scale">7</Item></GDALMetadata>"#;
-        let band = BandMetadata::of_first_band(xml).expect("plain");
+        let band = BandMetadata::first_band(xml).expect("plain");
         assert_eq!(band, BandMetadata { scale: 0.25, offset: -10.0, meters_per_z: Some(0.3048) });
     }
 
     #[test]
     fn a_unit_that_is_no_length_is_refused_by_name() {
         let xml = r#"<Item name="U" sample="0" role="unittype">kelvin</Item>"#;
-        assert!(BandMetadata::of_first_band(xml).expect_err("no length").to_string().contains("kelvin"));
-        assert!(BandMetadata::of_first_band("<Item <Item").is_ok());
+        assert!(BandMetadata::first_band(xml).expect_err("no length").to_string().contains("kelvin"));
+        assert!(BandMetadata::first_band("<Item <Item").is_ok());
     }
 }

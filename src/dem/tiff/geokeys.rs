@@ -1,61 +1,53 @@
 //! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::geokey_codes::{
-    ANGULAR_UNIT_SIZE, ANGULAR_UNITS, CITATION, EASTINGS, GEODETIC_DATUM, GEOGRAPHIC_TYPE, IN_DOUBLES,
-    IN_TEXT, INVERSE_FLATTENING, LATITUDES, LINEAR_UNIT_SIZE, LINEAR_UNITS, LONGITUDES, MODEL_TYPE,
-    NORTHINGS, PARALLEL_1, PARALLEL_2, PRIME_MERIDIAN, PROJECTED_TYPE, PROJECTION, PROJECTIONS, RASTER_TYPE,
-    SCALES, SEMI_MAJOR, SEMI_MINOR, TO_WGS84, TRANSFORMATION, USER_DEFINED, VERTICAL_CITATION,
-    VERTICAL_DATUM, VERTICAL_TYPE, VERTICAL_UNITS,
-};
+use crate::dem::tiff::geokey_codes as key;
 use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
 use crate::dem::vertical;
 use crate::geom::crs::Crs;
 use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
-/// The keys of a file.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct GeoKeys {
-    codes: Vec<(u16, u16)>,
-    numbers: Vec<(u16, Vec<f64>)>,
-    texts: Vec<(u16, String)>,
+/// The value of a key.
+#[derive(Clone, Debug)]
+pub(super) enum GeoKeyValue {
+    Code(u16),
+    Numbers(Vec<f64>),
+    Text(String),
 }
+
+/// The keys of a file.
+#[derive(Clone, Debug)]
+pub(crate) struct GeoKeys(Vec<(u16, GeoKeyValue)>);
 
 impl GeoKeys {
     /// Keys from a directory and the doubles and the text it points into; keys that point outside are left out.
     pub fn new(directory: &[u16], doubles: &[f64], text: &str) -> Self {
-        let mut keys = Self::default();
         let entries = directory.get(4..).unwrap_or_default().chunks_exact(4);
-        for entry in entries.take(directory.get(3).copied().unwrap_or(0).into()) {
-            let (key, place, count, value) = (entry[0], entry[1], usize::from(entry[2]), entry[3]);
+        let entries = entries.take(directory.get(3).copied().unwrap_or(0).into());
+        let value = |entry: &[u16]| {
+            let (place, at) = (entry[1], usize::from(entry[3]));
+            let range = at..at + usize::from(entry[2]);
             match place {
-                0 => keys.codes.push((key, value)),
-                IN_DOUBLES => {
-                    let at = usize::from(value);
-                    if let Some(values) = doubles.get(at..at + count) {
-                        keys.numbers.push((key, values.to_vec()));
-                    }
+                0 => Some(GeoKeyValue::Code(entry[3])),
+                key::IN_DOUBLES => doubles.get(range).map(|numbers| GeoKeyValue::Numbers(numbers.to_vec())),
+                key::IN_TEXT => {
+                    let trimmed = text.get(range)?.trim_end_matches(['|', '\0', ' ']);
+                    Some(GeoKeyValue::Text(trimmed.to_owned()))
                 }
-                IN_TEXT => {
-                    let at = usize::from(value);
-                    if let Some(words) = text.get(at..at + count) {
-                        keys.texts.push((key, words.trim_end_matches(['|', '\0', ' ']).to_owned()));
-                    }
-                }
-                _ => {}
+                _ => None,
             }
-        }
-        keys
+        };
+        Self(entries.filter_map(|entry| Some((entry[0], value(entry)?))).collect())
     }
 
     /// Whether stated positions are those of samples' centers.
     pub fn is_point(&self) -> bool {
-        self.code(RASTER_TYPE) == Some(2)
+        self.code(key::RASTER_TYPE) == Some(2)
     }
 
     /// Meters in the unit of the elevations; `None` where not stated.
     pub fn meters_per_z(&self) -> Result<Option<f64>, DemErrorKind> {
-        match (self.real_code(VERTICAL_UNITS), self.code(VERTICAL_TYPE)) {
+        match (self.real_code(key::VERTICAL_UNITS), self.code(key::VERTICAL_TYPE)) {
             (Some(unit), _) => length(unit).map(Some),
             // NAVD88 in US survey feet and in feet.
             (_, Some(6360)) => Ok(Some(US_SURVEY_FOOT_M)),
@@ -64,25 +56,24 @@ impl GeoKeys {
         }
     }
 
-    /// The vertical datum: by the code of the vertical system or of its datum, else by the citation; `None` where not
-    /// stated.
+    /// The vertical datum by the code of the system or of the datum, else by the citation; `None` where not stated.
     pub fn vertical_datum(&self) -> Option<String> {
-        let cited = || self.text(VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
-        let code = self.real_code(VERTICAL_TYPE).or_else(|| self.real_code(VERTICAL_DATUM));
+        let cited = || self.text(key::VERTICAL_CITATION).filter(|words| !words.is_empty()).map(str::to_owned);
+        let code = self.real_code(key::VERTICAL_TYPE).or_else(|| self.real_code(key::VERTICAL_DATUM));
         code.map(vertical::name).or_else(cited)
     }
 
     /// The coordinate system; `None` where the keys state none.
     pub fn crs(&self) -> Result<Option<Crs>, DemErrorKind> {
-        let projected = self.code(PROJECTED_TYPE).is_some() || self.code(TRANSFORMATION).is_some();
-        match self.code(MODEL_TYPE) {
+        let projected = self.code(key::PROJECTED_TYPE).is_some() || self.code(key::TRANSFORMATION).is_some();
+        match self.code(key::MODEL_TYPE) {
             Some(1) => self.projected().map(Some),
             Some(2) => self.geographic().map(Some),
-            None | Some(0 | USER_DEFINED) if projected => self.projected().map(Some),
-            None | Some(0 | USER_DEFINED) if self.code(GEOGRAPHIC_TYPE).is_some() => {
+            None | Some(0 | key::USER_DEFINED) if projected => self.projected().map(Some),
+            None | Some(0 | key::USER_DEFINED) if self.code(key::GEOGRAPHIC_TYPE).is_some() => {
                 self.geographic().map(Some)
             }
-            None | Some(0 | USER_DEFINED) => Ok(None),
+            None | Some(0 | key::USER_DEFINED) => Ok(None),
             Some(3) => Err(unusable("geocentric coordinates do not lie on a map")),
             Some(other) => Err(unusable(&format!("model type {other} does not exist"))),
         }
@@ -90,12 +81,12 @@ impl GeoKeys {
 
     /// The system whose proj string is the citation: this program writes systems without a code so.
     fn cited(&self) -> Option<Crs> {
-        Crs::parse(self.text(CITATION).filter(|words| words.starts_with("+proj="))?).ok()
+        Crs::parse(self.text(key::CITATION).filter(|words| words.starts_with("+proj="))?).ok()
     }
 
     fn geographic(&self) -> Result<Crs, DemErrorKind> {
         self.check_degrees()?;
-        Ok(match (self.real_code(GEOGRAPHIC_TYPE), self.cited()) {
+        Ok(match (self.real_code(key::GEOGRAPHIC_TYPE), self.cited()) {
             (Some(code), _) => Crs::from_epsg(code.into())?,
             (None, Some(crs)) => crs,
             (None, None) => Crs::from_definition(&self.base())?,
@@ -104,7 +95,7 @@ impl GeoKeys {
 
     fn projected(&self) -> Result<Crs, DemErrorKind> {
         let unit = self.linear_unit()?;
-        if let Some(code) = self.real_code(PROJECTED_TYPE) {
+        if let Some(code) = self.real_code(key::PROJECTED_TYPE) {
             return Ok(match unit {
                 Some(meters) => Crs::from_epsg_in(code.into(), meters)?,
                 None => Crs::from_epsg(code.into())?,
@@ -114,7 +105,7 @@ impl GeoKeys {
             return Ok(crs);
         }
         self.check_degrees()?;
-        let definition = match self.code(PROJECTION) {
+        let definition = match self.code(key::PROJECTION) {
             Some(code @ (16001..=16060 | 16101..=16160)) => self.utm(code, unit.unwrap_or(1.0)),
             _ => self.by_parameters(unit.unwrap_or(1.0))?,
         };
@@ -136,24 +127,26 @@ impl GeoKeys {
     }
 
     fn by_parameters(&self, meters_per_unit: f64) -> Result<Definition, DemErrorKind> {
-        let code = self.code(TRANSFORMATION);
+        let code = self.code(key::TRANSFORMATION);
         let code = code.ok_or_else(|| unusable("it is user-defined without a coordinate transformation"))?;
-        let method = PROJECTIONS.iter().find(|keys| keys.code == code).map(|keys| keys.method);
+        let method = key::PROJECTIONS.iter().find(|keys| keys.code == code).map(|keys| keys.method);
         let method =
             method.ok_or_else(|| unusable(&format!("coordinate transformation {code} is not read")))?;
         let at = |keys: &[u16]| keys.iter().find_map(|&key| self.number(key));
-        let latitude = at(&LATITUDES);
+        let latitude = at(&key::LATITUDES);
         let is_polar = method == MapProjection::PolarStereographic;
         Ok(Definition {
             method,
             latitude_deg: latitude.unwrap_or(0.0),
-            longitude_deg: at(&LONGITUDES).unwrap_or(0.0),
+            longitude_deg: at(&key::LONGITUDES).unwrap_or(0.0),
             // A pole's "origin" away from the pole is its parallel of true scale.
-            parallel_1_deg: self.number(PARALLEL_1).or(latitude.filter(|lat| is_polar && lat.abs() < 90.0)),
-            parallel_2_deg: self.number(PARALLEL_2),
-            scale: at(&SCALES).unwrap_or(1.0),
-            false_easting_m: at(&EASTINGS).unwrap_or(0.0) * meters_per_unit,
-            false_northing_m: at(&NORTHINGS).unwrap_or(0.0) * meters_per_unit,
+            parallel_1_deg: self
+                .number(key::PARALLEL_1)
+                .or(latitude.filter(|lat| is_polar && lat.abs() < 90.0)),
+            parallel_2_deg: self.number(key::PARALLEL_2),
+            scale: at(&key::SCALES).unwrap_or(1.0),
+            false_easting_m: at(&key::EASTINGS).unwrap_or(0.0) * meters_per_unit,
+            false_northing_m: at(&key::NORTHINGS).unwrap_or(0.0) * meters_per_unit,
             meters_per_unit,
             ..self.base()
         })
@@ -161,21 +154,20 @@ impl GeoKeys {
 
     /// The ellipsoid and its datum.
     fn base(&self) -> Definition {
-        let by_datum = self.real_code(GEODETIC_DATUM).and_then(|code| code.checked_sub(2000));
-        let major = self.number(SEMI_MAJOR);
-        let inverse = self.number(INVERSE_FLATTENING).or_else(|| {
-            let (major, minor) = (major?, self.number(SEMI_MINOR)?);
+        let by_datum = self.real_code(key::GEODETIC_DATUM).and_then(|code| code.checked_sub(2000));
+        let major = self.number(key::SEMI_MAJOR);
+        let inverse = self.number(key::INVERSE_FLATTENING).or_else(|| {
+            let (major, minor) = (major?, self.number(key::SEMI_MINOR)?);
             Some(if major == minor { 0.0 } else { major / (major - minor) })
         });
         let ellipsoid =
             major.zip(inverse).map(|(major_m, inverse_flattening)| Ellipsoid { major_m, inverse_flattening });
-        let shift = self.numbers.iter().find(|(key, _)| *key == TO_WGS84).map(|(_, values)| values.clone());
-        let datum = match (self.real_code(GEOGRAPHIC_TYPE).or(by_datum), shift) {
+        let datum = match (self.real_code(key::GEOGRAPHIC_TYPE).or(by_datum), self.numbers(key::TO_WGS84)) {
             (Some(code), _) => Datum::OfEpsg(code.into()),
-            (None, Some(values)) => Datum::ToWgs84(values),
+            (None, Some(shift)) => Datum::ToWgs84(shift.to_vec()),
             (None, None) => Datum::Unstated,
         };
-        let prime_meridian_deg = self.number(PRIME_MERIDIAN).unwrap_or(0.0);
+        let prime_meridian_deg = self.number(key::PRIME_MERIDIAN).unwrap_or(0.0);
         Definition {
             prime_meridian_deg,
             ..Definition::geographic("a user-defined system".into(), ellipsoid, datum)
@@ -184,36 +176,47 @@ impl GeoKeys {
 
     fn check_degrees(&self) -> Result<(), DemErrorKind> {
         let is_degree = |size: f64| (size - 1f64.to_radians()).abs() < 1e-9;
-        match self.code(ANGULAR_UNITS) {
+        match self.code(key::ANGULAR_UNITS) {
             None | Some(0 | 9102) => Ok(()),
-            Some(USER_DEFINED) if self.number(ANGULAR_UNIT_SIZE).is_some_and(is_degree) => Ok(()),
+            Some(key::USER_DEFINED) if self.number(key::ANGULAR_UNIT_SIZE).is_some_and(is_degree) => Ok(()),
             Some(other) => Err(unusable(&format!("angular unit {other} is not the degree"))),
         }
     }
 
     fn linear_unit(&self) -> Result<Option<f64>, DemErrorKind> {
-        match self.code(LINEAR_UNITS) {
+        match self.code(key::LINEAR_UNITS) {
             None | Some(0) => Ok(None),
-            Some(USER_DEFINED) => Ok(self.number(LINEAR_UNIT_SIZE)),
+            Some(key::USER_DEFINED) => Ok(self.number(key::LINEAR_UNIT_SIZE)),
             Some(code) => length(code).map(Some),
         }
     }
 
     /// The code of a key that is neither 0 nor "user-defined".
     fn real_code(&self, key: u16) -> Option<u16> {
-        self.code(key).filter(|&code| code != USER_DEFINED && code != 0)
+        self.code(key).filter(|&code| code != key::USER_DEFINED && code != 0)
     }
 
     fn code(&self, key: u16) -> Option<u16> {
-        self.codes.iter().find(|(known, _)| *known == key).map(|(_, value)| *value)
+        self.values(key)
+            .find_map(|value| if let GeoKeyValue::Code(code) = value { Some(*code) } else { None })
     }
 
     fn text(&self, key: u16) -> Option<&str> {
-        self.texts.iter().find(|(known, _)| *known == key).map(|(_, words)| words.as_str())
+        self.values(key)
+            .find_map(|value| if let GeoKeyValue::Text(text) = value { Some(&text[..]) } else { None })
+    }
+
+    fn numbers(&self, key: u16) -> Option<&[f64]> {
+        self.values(key)
+            .find_map(|value| if let GeoKeyValue::Numbers(all) = value { Some(&all[..]) } else { None })
     }
 
     fn number(&self, key: u16) -> Option<f64> {
-        self.numbers.iter().find(|(known, _)| *known == key)?.1.first().copied()
+        self.numbers(key)?.first().copied()
+    }
+
+    fn values(&self, key: u16) -> impl Iterator<Item = &GeoKeyValue> {
+        self.0.iter().filter(move |(known, _)| *known == key).map(|(_, value)| value)
     }
 }
 

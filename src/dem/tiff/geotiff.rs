@@ -25,8 +25,7 @@ use crate::dem::tiff::place::PlaceTags;
 use crate::dem::tiff::storage::{Storage, decode_error};
 use crate::dem::tiff::write::write;
 
-/// The declaration of this format.
-pub static FORMAT: DemFormat = DemFormat {
+pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "GeoTIFF",
     extensions: &["tif", "tiff"],
     shared_extensions: &[],
@@ -101,7 +100,7 @@ impl GeoTiffHeader {
             is_point: keys.is_point(),
         };
         let nodata = text(decoder, Tag::GdalNodata).trim().trim_start_matches('+').parse().ok();
-        let band = BandMetadata::of_first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
+        let band = BandMetadata::first_band(&text(decoder, Tag::Unknown(GDAL_METADATA)))?;
         let raster = Raster {
             driver: "GTiff",
             data_type: storage.sample.map_or("Byte", |sample| sample.gdal_name()),

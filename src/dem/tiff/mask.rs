@@ -10,9 +10,10 @@ use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::Samples;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff::{FORMAT, LARGEST_BLOCK, limits};
-use crate::dem::tiff::storage::{Predictor, Storage, TiffBlock, decode_error};
+use crate::dem::tiff::storage::{Predictor, Storage, decode_error};
 use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
 use crate::dem::tiff::{MOST_IMAGES, image_kind};
+use crate::dem::windows::RasterWindow;
 
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;
@@ -38,8 +39,7 @@ pub(crate) fn apply_beside(
         .broken(format!("the mask beside it has {} x {} samples, not {width} x {height}", found.0, found.1)))
 }
 
-/// Makes NaN of what a mask of the same size hides, where there is one among the images after the decoder's current one;
-/// returns whether there is.
+/// Makes NaN of what a mask of the same size among the later images hides; returns whether there is one.
 pub(crate) fn apply_within(
     decoder: &mut Decoder<Cursor<&[u8]>>,
     bytes: &[u8],
@@ -65,15 +65,9 @@ fn hide<R: Read + Seek>(
 ) -> Result<(), DemErrorKind> {
     let storage = Storage::read(decoder, bytes.len(), MOST_SAMPLES)?;
     check(&storage)?;
-    let mut unpacker = Unpacker::new(&storage);
-    for at in storage.blocks() {
-        let block = block(&mut unpacker, &mut bytes, &storage, at)?;
-        for (x, y) in block.hidden() {
-            let index = (at.row as usize + y) * storage.width as usize + at.column as usize + x;
-            samples.set(index, f64::NAN);
-        }
-    }
-    Ok(())
+    let (width, height) = (storage.width, storage.height);
+    let window = RasterWindow { column: 0, row: 0, width, height };
+    each_hidden(&mut bytes, &storage, window, |index| samples.set(index, f64::NAN))
 }
 
 /// Checks that a mask is stored in a way that is read.
@@ -88,40 +82,34 @@ pub(crate) fn check(storage: &Storage) -> Result<(), DemErrorKind> {
     Ok(())
 }
 
-/// One block of a mask.
-pub(crate) struct MaskBlock {
-    rows: Vec<u8>,
-    row_bytes: usize,
-    width: usize,
-    height: usize,
-    bits: usize,
-}
-
-/// Unpacks a block of a mask.
-pub(crate) fn block(
-    unpacker: &mut Unpacker,
+/// Calls `hide` with the index in `window` of each of its samples that a mask hides.
+pub(crate) fn each_hidden(
     file: &mut impl BlockBytes,
-    storage: &Storage,
-    block: TiffBlock,
-) -> Result<MaskBlock, DemErrorKind> {
-    let mut rows = Vec::new();
-    // What was never written hides what lies under it.
-    if storage.is_written(block.index) {
-        unpacker.unpack(file, block, &mut rows)?;
+    mask: &Storage,
+    window: RasterWindow,
+    mut hide: impl FnMut(usize),
+) -> Result<(), DemErrorKind> {
+    let (mut unpacker, mut packed) = (Unpacker::new(mask), Vec::new());
+    for block in mask.blocks_meeting(window) {
+        packed.clear();
+        // What was never written hides what lies under it.
+        if mask.is_written(block.index) {
+            unpacker.unpack(file, block, &mut packed)?;
+        }
+        let shows = |column: usize, row: usize| {
+            let byte = packed
+                .get(row * mask.row_bytes() + column * usize::from(mask.bits) / 8)
+                .copied()
+                .unwrap_or(0);
+            if mask.bits == 8 { byte != 0 } else { byte & (0x80 >> (column % 8)) != 0 }
+        };
+        let width = block.window.width as usize;
+        for (in_block, in_window) in block.window.shared_rows(window) {
+            in_block
+                .zip(in_window)
+                .filter(|(at, _)| !shows(at % width, at / width))
+                .for_each(|(_, at)| hide(at));
+        }
     }
-    let (width, height) = (block.width as usize, block.height as usize);
-    Ok(MaskBlock { rows, row_bytes: storage.row_bytes(), width, height, bits: storage.bits.into() })
-}
-
-impl MaskBlock {
-    /// The columns and rows within the block that it hides.
-    pub fn hidden(&self) -> impl Iterator<Item = (usize, usize)> {
-        let places = (0..self.height).flat_map(move |y| (0..self.width).map(move |x| (x, y)));
-        places.filter(|&(x, y)| !self.shows(x, y))
-    }
-
-    fn shows(&self, x: usize, y: usize) -> bool {
-        let byte = self.rows.get(y * self.row_bytes + x * self.bits / 8).copied().unwrap_or(0);
-        if self.bits == 8 { byte != 0 } else { byte & (0x80 >> (x % 8)) != 0 }
-    }
+    Ok(())
 }

@@ -4,7 +4,7 @@ mod blocks;
 mod gdal_metadata;
 mod geokey_codes;
 pub mod geokeys;
-pub mod geotiff;
+pub(crate) mod geotiff;
 mod mask;
 mod place;
 mod rows;

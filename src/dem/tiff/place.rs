@@ -44,7 +44,6 @@ impl PlaceTags {
     }
 }
 
-/// A grid position and its map position.
 #[derive(Clone, Copy)]
 struct Tie {
     grid: DVec2,

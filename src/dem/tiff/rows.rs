@@ -20,7 +20,6 @@ use crate::dem::raster::SampleFloat;
 use crate::dem::sample_type::SampleType;
 use crate::dem::tiff::storage::{Predictor, Storage};
 
-/// How rows of an image become elevations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowDecoder {
     sample: SampleType,
@@ -43,66 +42,55 @@ impl RowDecoder {
             nodata: sample.comparable(nodata),
         })
     }
-}
 
-/// A float type that rows are decoded to.
-pub(crate) trait Elevation: SampleFloat {
     /// Decodes a row's first samples, as many as `out` holds. `row` is a whole row of a block.
-    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]);
+    pub fn decode<T: SampleFloat>(&self, row: &[u8], words: &mut RowWords, out: &mut [T]) {
+        // No sample equals a value that its type cannot hold.
+        let nodata = T::from_f64(self.nodata);
+        let nodata = if nodata.into() == self.nodata { nodata } else { T::NODATA };
+        let known = |value: f64| {
+            let narrow = T::from_f64(value);
+            if narrow == nodata || !value.is_finite() { T::NODATA } else { narrow }
+        };
+        match self.sample {
+            SampleType::U8 => self.convert(row, &mut words.bits_8, out, |w| known(w.into())),
+            SampleType::I8 => self.convert(row, &mut words.bits_8, out, |w| known((w as i8).into())),
+            SampleType::U16 => self.convert(row, &mut words.bits_16, out, |w| known(w.into())),
+            SampleType::I16 => self.convert(row, &mut words.bits_16, out, |w| known((w as i16).into())),
+            SampleType::F16 => {
+                self.convert(row, &mut words.bits_16, out, |w| known(half::f16::from_bits(w).to_f64()));
+            }
+            SampleType::U32 => self.convert(row, &mut words.bits_32, out, |w| known(w.into())),
+            SampleType::I32 => self.convert(row, &mut words.bits_32, out, |w| known((w as i32).into())),
+            SampleType::F32 => {
+                self.convert(row, &mut words.bits_32, out, |w| known(f32::from_bits(w).into()));
+            }
+            SampleType::U64 => self.convert(row, &mut words.bits_64, out, |w| known(w as f64)),
+            SampleType::I64 => self.convert(row, &mut words.bits_64, out, |w| known(w as i64 as f64)),
+            SampleType::F64 => self.convert(row, &mut words.bits_64, out, |w| known(f64::from_bits(w))),
+        }
+    }
+
+    fn convert<W: SampleWord, T>(
+        &self,
+        row: &[u8],
+        words: &mut Vec<W>,
+        out: &mut [T],
+        value: impl Fn(W) -> T,
+    ) {
+        for (out, &word) in out.iter_mut().zip(words_of(self, row, words)) {
+            *out = value(word);
+        }
+    }
 }
 
 /// The words of one row, reused.
 #[derive(Debug, Default)]
 pub(crate) struct RowWords {
-    of_8: Vec<u8>,
-    of_16: Vec<u16>,
-    of_32: Vec<u32>,
-    of_64: Vec<u64>,
-}
-
-impl Elevation for f32 {
-    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
-        // No sample of 32 bits equals a value that 32 bits cannot hold.
-        let nodata =
-            if f64::from(rows.nodata as Self) == rows.nodata { rows.nodata as Self } else { Self::NAN };
-        let known = |value: Self| if value == nodata || !value.is_finite() { Self::NAN } else { value };
-        match rows.sample {
-            SampleType::U8 => convert(words_of(rows, row, &mut words.of_8), out, |w| known(w.into())),
-            SampleType::I8 => convert(words_of(rows, row, &mut words.of_8), out, |w| known((w as i8).into())),
-            SampleType::U16 => convert(words_of(rows, row, &mut words.of_16), out, |w| known(w.into())),
-            SampleType::I16 => {
-                convert(words_of(rows, row, &mut words.of_16), out, |w| known((w as i16).into()));
-            }
-            SampleType::F16 => {
-                let value = |w| known(half::f16::from_bits(w).to_f32());
-                convert(words_of(rows, row, &mut words.of_16), out, value);
-            }
-            _ => convert(words_of(rows, row, &mut words.of_32), out, |w| known(Self::from_bits(w))),
-        }
-    }
-}
-
-impl Elevation for f64 {
-    fn decode(rows: &RowDecoder, row: &[u8], words: &mut RowWords, out: &mut [Self]) {
-        let known = |value: Self| if value == rows.nodata || !value.is_finite() { Self::NAN } else { value };
-        match rows.sample {
-            SampleType::U32 => convert(words_of(rows, row, &mut words.of_32), out, |w| known(w.into())),
-            SampleType::I32 => {
-                convert(words_of(rows, row, &mut words.of_32), out, |w| known((w as i32).into()));
-            }
-            SampleType::U64 => convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as Self)),
-            SampleType::I64 => {
-                convert(words_of(rows, row, &mut words.of_64), out, |w| known(w as i64 as Self));
-            }
-            _ => convert(words_of(rows, row, &mut words.of_64), out, |w| known(Self::from_bits(w))),
-        }
-    }
-}
-
-fn convert<W: Copy, E>(words: &[W], out: &mut [E], elevation: impl Fn(W) -> E) {
-    for (out, &word) in out.iter_mut().zip(words) {
-        *out = elevation(word);
-    }
+    bits_8: Vec<u8>,
+    bits_16: Vec<u16>,
+    bits_32: Vec<u32>,
+    bits_64: Vec<u64>,
 }
 
 /// The bits of a sample as one number.
@@ -205,10 +193,10 @@ mod tests {
         let mut out = [0f32; 3];
         let rows_of = |order| rows(SampleType::I16, Predictor::Differences, order, 2);
         let little = [5u8, 0, 9, 9, 0xff, 0xff, 9, 9, 0xfb, 0xff, 9, 9];
-        f32::decode(&rows_of(ByteOrder::Little), &little, &mut RowWords::default(), &mut out);
+        rows_of(ByteOrder::Little).decode(&little, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
         let big: Vec<u8> = little.chunks_exact(2).flat_map(|pair| [pair[1], pair[0]]).collect();
-        f32::decode(&rows_of(ByteOrder::Big), &big, &mut RowWords::default(), &mut out);
+        rows_of(ByteOrder::Big).decode(&big, &mut RowWords::default(), &mut out);
         assert_eq!(out, [5.0, 4.0, -1.0]);
     }
 
@@ -217,10 +205,10 @@ mod tests {
         let row = [7f32, -9999.0, f32::INFINITY, 8.0].map(f32::to_le_bytes).concat();
         let mut out = [0f32; 4];
         let plain = rows(SampleType::F32, Predictor::Plain, ByteOrder::Little, 1);
-        f32::decode(&RowDecoder { nodata: -9999.0, ..plain }, &row, &mut RowWords::default(), &mut out);
+        RowDecoder { nodata: -9999.0, ..plain }.decode(&row, &mut RowWords::default(), &mut out);
         assert!(out[0] == 7.0 && out[1].is_nan() && out[2].is_nan() && out[3] == 8.0);
         // 0.1 is no float: no sample of 32 bits equals it.
-        f32::decode(&RowDecoder { nodata: 0.1, ..plain }, &row, &mut RowWords::default(), &mut out);
+        RowDecoder { nodata: 0.1, ..plain }.decode(&row, &mut RowWords::default(), &mut out);
         assert_eq!(out[1], -9999.0);
     }
 

@@ -21,27 +21,21 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::limits::SizeClaim;
 use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::tiff::geotiff::FORMAT;
+use crate::dem::windows::RasterWindow;
 
 /// What to do about a packing that is not read.
 pub(crate) const TO_DEFLATE: &str =
     "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
 
-/// How an image is stored.
 #[derive(Clone, Debug)]
 pub(crate) struct Storage {
-    /// Samples per row.
     pub width: u32,
-    /// Rows.
     pub height: u32,
-    /// Bits of one sample.
     pub bits: u16,
     /// The type of samples; `None` where they are not read as elevation, or not alike in all bands.
     pub sample: Option<SampleType>,
-    /// How blocks are packed.
     pub packing: Packing,
-    /// How rows were transformed before they were packed.
     pub predictor: Predictor,
-    /// The order of a sample's bytes.
     pub order: ByteOrder,
     /// Bands that lie side by side in one block.
     pub bands_per_block: u16,
@@ -60,7 +54,6 @@ pub(crate) struct Storage {
 /// How blocks are packed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Packing {
-    /// Not at all.
     Plain,
     /// A zlib stream (RFC 1950).
     Deflate,
@@ -75,7 +68,6 @@ pub(crate) enum Packing {
 /// How rows were transformed before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Predictor {
-    /// Not at all.
     Plain,
     /// Samples are differences to their neighbors on the left.
     Differences,
@@ -88,14 +80,8 @@ pub(crate) enum Predictor {
 pub(crate) struct TiffBlock {
     /// Its number among the first band's.
     pub index: u32,
-    /// The image's column that it starts at.
-    pub column: u32,
-    /// The image's row that it starts at.
-    pub row: u32,
-    /// Its columns within the image.
-    pub width: u32,
-    /// Its rows within the image.
-    pub height: u32,
+    /// The part within the image.
+    pub window: RasterWindow,
 }
 
 impl Storage {
@@ -176,7 +162,6 @@ impl Storage {
         (samples * u64::from(self.bits) * u64::from(self.bands_per_block)).div_ceil(8)
     }
 
-    /// Bytes that one row of a block decodes to.
     pub fn row_bytes(&self) -> usize {
         self.decoded_bytes(self.block_width.into()) as usize
     }
@@ -201,22 +186,22 @@ impl Storage {
     pub fn block(&self, across: u32, down: u32) -> TiffBlock {
         let (column, row) = (across * self.block_width, down * self.block_height);
         let blocks_across = u64::from(self.width.div_ceil(self.block_width));
+        let (width, height) =
+            (self.block_width.min(self.width - column), self.block_height.min(self.height - row));
         TiffBlock {
             index: (u64::from(down) * blocks_across + u64::from(across)) as u32,
-            column,
-            row,
-            width: self.block_width.min(self.width - column),
-            height: self.block_height.min(self.height - row),
+            window: RasterWindow { column, row, width, height },
         }
     }
 
-    /// All blocks of the first band, in the order of their numbers.
-    pub fn blocks(&self) -> impl Iterator<Item = TiffBlock> + '_ {
-        let (across, down) = self.blocks_across_and_down();
-        (0..down).flat_map(move |y| (0..across).map(move |x| self.block(x, y)))
+    /// The blocks of the first band that meet a window, row by row.
+    pub fn blocks_meeting(&self, window: RasterWindow) -> impl Iterator<Item = TiffBlock> + '_ {
+        let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
+        let columns = span(window.column, window.width, self.block_width);
+        span(window.row, window.height, self.block_height)
+            .flat_map(move |down| columns.clone().map(move |across| self.block(across, down)))
     }
 
-    /// Whether a block was written at all.
     pub fn is_written(&self, index: u32) -> bool {
         self.block_bytes.get(index as usize).is_none_or(|&bytes| bytes > 0)
     }

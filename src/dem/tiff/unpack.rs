@@ -25,7 +25,6 @@ const SLACK: usize = 1 << 10;
 
 /// A file that blocks are read from.
 pub(crate) trait BlockBytes {
-    /// The number of bytes in the file.
     fn length(&self) -> usize;
 
     /// The bytes in a range within the file; fewer where the file has shrunk.
@@ -42,7 +41,6 @@ impl BlockBytes for &[u8] {
     }
 }
 
-/// What unpacks the blocks of an image, one after the other.
 pub(crate) struct Unpacker<'a> {
     storage: &'a Storage,
     decompressor: Decompressor,
@@ -57,7 +55,6 @@ enum Decompressor {
 }
 
 impl<'a> Unpacker<'a> {
-    /// For the blocks of an image.
     pub fn new(storage: &'a Storage) -> Self {
         let decompressor = match storage.packing {
             Packing::Plain => Decompressor::Plain,
@@ -79,7 +76,7 @@ impl<'a> Unpacker<'a> {
         block: TiffBlock,
         rows: &mut Vec<u8>,
     ) -> Result<(), DemErrorKind> {
-        let needed = self.storage.row_bytes() * block.height as usize;
+        let needed = self.storage.row_bytes() * block.window.height as usize;
         let range = self.range(block, needed, file.length())?;
         let packed = file.bytes(range).map_err(|error| FORMAT.undecodable(error))?;
         rows.resize(needed, 0);

@@ -29,7 +29,7 @@ use crate::dem::tiff::blocks;
 use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
 use crate::dem::tiff::mask::{self, IS_MASK};
 use crate::dem::tiff::storage::{Storage, TiffBlock, decode_error};
-use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
+use crate::dem::tiff::unpack::BlockBytes;
 use crate::dem::tiff::{MOST_IMAGES, image_kind};
 use crate::dem::windows::{RasterWindow, Windows};
 
@@ -42,9 +42,6 @@ const MOST_BLOCK_SAMPLES: u64 = 1 << 22;
 
 /// The most bytes that one block decodes to: the largest with 64-bit samples.
 const LARGEST_BLOCK: usize = 32 << 20;
-
-/// Bytes of decoded blocks that suit terrain patches: two rows of 256² tiles over 16,384 samples.
-pub const DEFAULT_CACHE: usize = 32 << 20;
 
 /// NewSubfileType's bit for "reduced version of another image".
 const IS_REDUCED: u32 = 1;
@@ -59,13 +56,19 @@ pub struct Overview {
     image: usize,
 }
 
+/// The overviews and the masks among the images after the first.
+#[derive(Clone, Debug, Default)]
+struct LaterImages {
+    overviews: Vec<Overview>,
+    masks: Vec<Overview>,
+}
+
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
     name: String,
     file: SharedFile<R>,
     header: GeoTiffHeader,
-    overviews: Vec<Overview>,
-    masks: Vec<Overview>,
+    images: LaterImages,
     heights: Storage,
     mask: Option<Storage>,
     blocks: LruCache<u32, Arc<[f32]>>,
@@ -100,26 +103,29 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
                 "take the mask into it: gdal_translate --config GDAL_TIFF_INTERNAL_MASK YES FILE out.tif",
             ));
         }
-        let (overviews, masks) = file.reduced_images_and_masks();
-        let (mask, blocks) = (None, LruCache::new(cache_bytes));
-        let name = name.to_owned();
-        Self { name, file, header, overviews, masks, heights, mask, blocks, cache_bytes }.with_mask()
+        let images = file.later_images();
+        Self::new(name, file, header, heights, images, cache_bytes)
     }
 
-    /// Looks for a mask of this image's size.
-    fn with_mask(mut self) -> Result<Self, DemErrorKind> {
-        let mut masks = self.masks.iter();
-        if let Some(mask) = masks.find(|mask| (mask.width, mask.height) == self.size()) {
-            let mask = self.file.storage(mask.image)?;
-            mask::check(&mask)?;
-            self.mask = Some(mask);
-        }
-        Ok(self)
+    /// Looks for a mask of the image's size.
+    fn new(
+        name: &str,
+        file: SharedFile<R>,
+        header: GeoTiffHeader,
+        heights: Storage,
+        images: LaterImages,
+        cache_bytes: usize,
+    ) -> Result<Self, DemErrorKind> {
+        let is_of_size = |mask: &&Overview| (mask.width, mask.height) == (heights.width, heights.height);
+        let mask = images.masks.iter().find(is_of_size).map(|mask| file.storage(mask.image)).transpose()?;
+        mask.iter().try_for_each(mask::check)?;
+        let (name, blocks) = (name.to_owned(), LruCache::new(cache_bytes));
+        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes })
     }
 
     /// The reduced images of this one, as the file lists them: mostly from the finest to the coarsest.
     pub fn overviews(&self) -> &[Overview] {
-        &self.overviews
+        &self.images.overviews
     }
 
     /// Opens a reduced image from [`GeoTiffWindows::overviews`]: the same ground, samples further apart.
@@ -137,18 +143,9 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         let times = self.header.raster.grid_size() / DVec2::new(width.into(), height.into());
         let map_from_grid = self.header.raster.map_from_grid * DAffine2::from_scale(times);
         let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
-        let overview = Self {
-            name: self.name.clone(),
-            file: self.file.clone(),
-            header: GeoTiffHeader { raster, ..self.header },
-            overviews: Vec::new(),
-            masks: self.masks.clone(),
-            heights,
-            mask: None,
-            blocks: LruCache::new(self.cache_bytes),
-            cache_bytes: self.cache_bytes,
-        };
-        overview.with_mask()
+        let header = GeoTiffHeader { raster, ..self.header };
+        let images = LaterImages { masks: self.images.masks.clone(), ..LaterImages::default() };
+        Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)
     }
 
     /// Bytes of decoded blocks that are kept now.
@@ -161,13 +158,13 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         if let Some(block) = self.blocks.get(at.index) {
             return Ok(Arc::clone(block));
         }
-        self.blocks.make_room(at.width as usize * at.height as usize * 4);
+        self.blocks.make_room(at.window.samples() * 4);
         let GeoTiffHeader { raster, scale, offset } = &self.header;
         let stored = blocks::block(&mut self.file, &self.heights, raster.nodata, at)?;
         let meters = |stored: f64| scaled(scaled(stored, *scale, *offset), raster.meters_per_z, 0.0) as f32;
         let mut heights: Vec<f32> = stored.iter().map(meters).collect();
         if let Some(mask) = &self.mask {
-            hide(&mut self.file, mask, window_of(at), &mut heights)?;
+            mask::each_hidden(&mut self.file, mask, at.window, |index| heights[index] = f32::NAN)?;
         }
         let block: Arc<[f32]> = heights.into();
         self.blocks.put(at.index, Arc::clone(&block), block.len() * 4);
@@ -184,63 +181,15 @@ impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
         window.assert_within(self.size());
         out.clear();
         out.resize(window.samples(), f32::NAN);
-        for at in blocks_meeting(&self.heights, window) {
+        let blocks: Vec<TiffBlock> = self.heights.blocks_meeting(window).collect();
+        for at in blocks {
             let block = self.block(at)?;
-            for (from, to) in shared_rows(window_of(at), window) {
+            for (from, to) in at.window.shared_rows(window) {
                 out[to].copy_from_slice(&block[from]);
             }
         }
         Ok(())
     }
-}
-
-fn window_of(block: TiffBlock) -> RasterWindow {
-    let TiffBlock { column, row, width, height, .. } = block;
-    RasterWindow { column, row, width, height }
-}
-
-/// The index ranges, in two windows' samples, of the rows they share.
-fn shared_rows(from: RasterWindow, to: RasterWindow) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
-    let first = from.column.max(to.column);
-    let last = (from.column + from.width).min(to.column + to.width).max(first);
-    let rows = from.row.max(to.row)..(from.row + from.height).min(to.row + to.height);
-    let range = move |window: RasterWindow, row: u32| {
-        let start = (row - window.row) as usize * window.width as usize + (first - window.column) as usize;
-        start..start + (last - first) as usize
-    };
-    rows.map(move |row| (range(from, row), range(to, row)))
-}
-
-/// The blocks that a window meets.
-fn blocks_meeting(storage: &Storage, window: RasterWindow) -> Vec<TiffBlock> {
-    let span = |first: u32, count: u32, block: u32| first / block..(first + count).div_ceil(block);
-    let columns = span(window.column, window.width, storage.block_width);
-    span(window.row, window.height, storage.block_height)
-        .flat_map(|down| columns.clone().map(move |across| storage.block(across, down)))
-        .collect()
-}
-
-/// Makes NaN of the heights of `window` that a mask hides.
-fn hide(
-    file: &mut impl BlockBytes,
-    mask: &Storage,
-    window: RasterWindow,
-    heights: &mut [f32],
-) -> Result<(), DemErrorKind> {
-    let mut unpacker = Unpacker::new(mask);
-    for at in blocks_meeting(mask, window) {
-        for (x, y) in mask::block(&mut unpacker, file, mask, at)?.hidden() {
-            let x = (at.column as usize + x).checked_sub(window.column as usize);
-            let y = (at.row as usize + y).checked_sub(window.row as usize);
-            if let (Some(x), Some(y)) = (x, y)
-                && x < window.width as usize
-                && y < window.height as usize
-            {
-                heights[y * window.width as usize + x] = f32::NAN;
-            }
-        }
-    }
-    Ok(())
 }
 
 /// A file that a raster shares with its overviews.
@@ -296,11 +245,10 @@ impl<R: Read + Seek> SharedFile<R> {
         Ok(storage)
     }
 
-    /// The overviews and the masks among the images after the first.
-    fn reduced_images_and_masks(&self) -> (Vec<Overview>, Vec<Overview>) {
-        let (mut overviews, mut masks) = (Vec::new(), Vec::new());
+    fn later_images(&self) -> LaterImages {
+        let mut images = LaterImages::default();
         let mut file = self.lock();
-        let Ok(mut decoder) = self.decoder(&mut file) else { return (overviews, masks) };
+        let Ok(mut decoder) = self.decoder(&mut file) else { return images };
         let size = decoder.dimensions().unwrap_or_default();
         for image in 1..=MOST_IMAGES {
             // A broken overview or page is no reason to refuse the images before it.
@@ -311,12 +259,12 @@ impl<R: Read + Seek> SharedFile<R> {
             let Ok((width, height)) = decoder.dimensions() else { continue };
             let found = Overview { width, height, image };
             if kind & IS_MASK != 0 {
-                masks.push(found);
+                images.masks.push(found);
             } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
-                overviews.push(found);
+                images.overviews.push(found);
             }
         }
-        (overviews, masks)
+        images
     }
 }
 

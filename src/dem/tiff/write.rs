@@ -31,7 +31,7 @@ const TILE: u32 = 256;
 pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     let is_named = name_of_length(raster.meters_per_z).is_some();
     let raster = if is_named { Cow::Borrowed(raster) } else { raster.in_meters() };
-    let stored = StoredSamples::of(&raster);
+    let stored = StoredSamples::new(&raster);
     let across = raster.width.div_ceil(TILE);
     let tiles: Vec<Vec<u8>> = (0..across * raster.height.div_ceil(TILE))
         .into_par_iter()
@@ -87,31 +87,34 @@ fn float_bytes(line: &[u8], size: usize) -> Vec<u8> {
 }
 
 /// The value of a tag.
-enum TiffField {
-    Shorts(Vec<u16>),
-    Longs(Vec<u32>),
-    Doubles(Vec<f64>),
-    Text(String),
+struct TiffField {
+    /// TIFF's number of the type.
+    kind: u16,
+    /// The number of values.
+    count: u32,
+    bytes: Vec<u8>,
 }
 
 impl TiffField {
-    /// TIFF's number of the type, and the bytes of one value.
-    fn kind(&self) -> (u16, usize) {
-        match self {
-            Self::Text(_) => (2, 1),
-            Self::Shorts(_) => (3, 2),
-            Self::Longs(_) => (4, 4),
-            Self::Doubles(_) => (12, 8),
-        }
+    fn new<T: Copy, const N: usize>(kind: u16, values: &[T], bytes: fn(T) -> [u8; N]) -> Self {
+        let bytes = values.iter().flat_map(|value| bytes(*value)).collect();
+        Self { kind, count: values.len() as u32, bytes }
     }
 
-    fn bytes(&self) -> Vec<u8> {
-        match self {
-            Self::Text(text) => [text.as_bytes(), &[0]].concat(),
-            Self::Shorts(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Longs(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Self::Doubles(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-        }
+    fn text(text: &str) -> Self {
+        Self::new(2, &[text.as_bytes(), &[0]].concat(), u8::to_le_bytes)
+    }
+
+    fn shorts(values: &[u16]) -> Self {
+        Self::new(3, values, u16::to_le_bytes)
+    }
+
+    fn longs(values: &[u32]) -> Self {
+        Self::new(4, values, u32::to_le_bytes)
+    }
+
+    fn doubles(values: &[f64]) -> Self {
+        Self::new(12, values, f64::to_le_bytes)
     }
 }
 
@@ -123,10 +126,10 @@ fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
         NumberKind::Signed => 2,
         NumberKind::Float => 3,
     };
-    let short = |value: u16| TiffField::Shorts(vec![value]);
+    let short = |value: u16| TiffField::shorts(&[value]);
     let mut tags = vec![
-        (256, TiffField::Longs(vec![raster.width])),
-        (257, TiffField::Longs(vec![raster.height])),
+        (256, TiffField::longs(&[raster.width])),
+        (257, TiffField::longs(&[raster.height])),
         (258, short(sample.bytes() as u16 * 8)),
         (259, short(8)),
         (262, short(1)),
@@ -139,21 +142,22 @@ fn tags(raster: &Raster, stored: StoredSamples) -> Vec<(u16, TiffField)> {
     ];
     tags.extend(place(raster));
     let keys = GeoKeyTags::new(raster);
-    tags.push((34735, TiffField::Shorts(keys.directory)));
+    tags.push((34735, TiffField::shorts(&keys.directory)));
     if !keys.doubles.is_empty() {
-        tags.push((34736, TiffField::Doubles(keys.doubles)));
+        tags.push((34736, TiffField::doubles(&keys.doubles)));
     }
     if !keys.text.is_empty() {
-        tags.push((34737, TiffField::Text(keys.text)));
+        tags.push((34737, TiffField::text(&keys.text)));
     }
     if let Some(unit) = name_of_length(raster.meters_per_z).filter(|unit| *unit != "m") {
         let xml = format!(
             "<GDALMetadata>\n  <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>\n</GDALMetadata>\n"
         );
-        tags.push((GDAL_METADATA, TiffField::Text(xml)));
+        tags.push((GDAL_METADATA, TiffField::text(&xml)));
     }
     if let Some(nodata) = stored.nodata {
-        tags.push((42113, TiffField::Text(if nodata.is_nan() { "nan".into() } else { nodata.to_string() })));
+        let text = if nodata.is_nan() { "nan".into() } else { nodata.to_string() };
+        tags.push((42113, TiffField::text(&text)));
     }
     tags
 }
@@ -165,30 +169,29 @@ fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
         Vec::new()
     } else if raster.is_north_up() {
         vec![
-            (33550, TiffField::Doubles(vec![x_per_column, -y_per_row, 0.0])),
-            (33922, TiffField::Doubles(vec![0.0, 0.0, 0.0, x, y, 0.0])),
+            (33550, TiffField::doubles(&[x_per_column, -y_per_row, 0.0])),
+            (33922, TiffField::doubles(&[0.0, 0.0, 0.0, x, y, 0.0])),
         ]
     } else {
         let rows = [[x_per_column, x_per_row, 0.0, x], [y_per_column, y_per_row, 0.0, y]];
         let matrix = [rows[0], rows[1], [0.0; 4], [0.0, 0.0, 0.0, 1.0]].concat();
-        vec![(34264, TiffField::Doubles(matrix))]
+        vec![(34264, TiffField::doubles(&matrix))]
     }
 }
 
-/// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes, they stay within the 4 GiB that a
-/// classic TIFF can point into.
+/// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes fit the 4 GiB of a classic TIFF.
 fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
-    tags.push((324, TiffField::Longs(vec![0; tiles.len()])));
-    tags.push((325, TiffField::Longs(lengths.clone())));
+    tags.push((324, TiffField::longs(&lengths)));
+    tags.push((325, TiffField::longs(&lengths)));
     tags.sort_by_key(|(tag, _)| *tag);
-    let mut tile_start = 8 + directory(&tags, 8).len() as u32;
-    if let Some((_, TiffField::Longs(starts))) = tags.iter_mut().find(|(tag, _)| *tag == 324) {
-        for (start, length) in starts.iter_mut().zip(lengths) {
-            *start = tile_start;
-            tile_start += length;
-        }
-    }
+    let first_tile = 8 + directory(&tags, 8).len() as u32;
+    let next = |start: &mut u32, length: &u32| {
+        *start += length;
+        Some(*start - length)
+    };
+    let starts: Vec<u32> = lengths.iter().scan(first_tile, next).collect();
+    tags.iter_mut().filter(|(tag, _)| *tag == 324).for_each(|(_, field)| *field = TiffField::longs(&starts));
     let mut bytes = b"II*\0\x08\0\0\0".to_vec();
     bytes.extend(directory(&tags, 8));
     for tile in tiles {
@@ -203,8 +206,7 @@ fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
     let mut long = Vec::new();
     let long_start = start + 2 + tags.len() * 12 + 4;
     for (tag, field) in tags {
-        let ((kind, size), mut value) = (field.kind(), field.bytes());
-        let count = (value.len() / size) as u32;
+        let mut value = field.bytes.clone();
         if value.len() > 4 {
             let at = (long_start + long.len()) as u32;
             // Values start at even places.
@@ -214,8 +216,8 @@ fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
         }
         value.resize(4, 0);
         entries.extend(tag.to_le_bytes());
-        entries.extend(kind.to_le_bytes());
-        entries.extend(count.to_le_bytes());
+        entries.extend(field.kind.to_le_bytes());
+        entries.extend(field.count.to_le_bytes());
         entries.extend(value);
     }
     entries.extend([0; 4]);

@@ -6,12 +6,8 @@
 
 use crate::dem::georef::crs_on_earth;
 use crate::dem::raster::Raster;
-use crate::dem::tiff::geokey_codes::{
-    ANGULAR_UNITS, CITATION, ELLIPSOID, GEODETIC_DATUM, GEOGRAPHIC_TYPE, IN_DOUBLES, IN_TEXT,
-    INVERSE_FLATTENING, LINEAR_UNIT_SIZE, LINEAR_UNITS, MODEL_TYPE, PARALLEL_1, PARALLEL_2, PRIME_MERIDIAN,
-    PROJECTED_TYPE, PROJECTION, PROJECTIONS, RASTER_TYPE, SCALE, SEMI_MAJOR, TO_WGS84, TRANSFORMATION,
-    USER_DEFINED, VERTICAL_CITATION, VERTICAL_TYPE, VERTICAL_UNITS,
-};
+use crate::dem::tiff::geokey_codes as key;
+use crate::dem::tiff::geokeys::GeoKeyValue;
 use crate::dem::units::code_of_length;
 use crate::dem::vertical;
 use crate::geom::crs::Crs;
@@ -29,34 +25,26 @@ pub(crate) struct GeoKeyTags {
 }
 
 impl GeoKeyTags {
-    /// The keys of a raster.
     pub fn new(raster: &Raster) -> Self {
         let mut keys = GeoKeyList::default();
-        keys.code(RASTER_TYPE, 1);
+        keys.code(key::RASTER_TYPE, 1);
         if let Some(crs) = crs_on_earth(raster) {
             keys.system(crs);
         }
         if let Some(name) = &raster.vertical_datum {
             match vertical::code(name) {
-                Some(code) => keys.code(VERTICAL_TYPE, code),
+                Some(code) => keys.code(key::VERTICAL_TYPE, code),
                 None => {
-                    keys.code(VERTICAL_TYPE, USER_DEFINED);
-                    keys.text(VERTICAL_CITATION, name);
+                    keys.code(key::VERTICAL_TYPE, key::USER_DEFINED);
+                    keys.text(key::VERTICAL_CITATION, name);
                 }
             }
             if let Some(unit) = code_of_length(raster.meters_per_z) {
-                keys.code(VERTICAL_UNITS, unit);
+                keys.code(key::VERTICAL_UNITS, unit);
             }
         }
         keys.into_tags()
     }
-}
-
-/// The value of a key.
-enum GeoKeyValue {
-    Code(u16),
-    Numbers(Vec<f64>),
-    Text(String),
 }
 
 #[derive(Default)]
@@ -77,8 +65,9 @@ impl GeoKeyList {
     }
 
     fn system(&mut self, crs: &Crs) {
-        let (model, type_key) = if crs.is_geographic() { (2, GEOGRAPHIC_TYPE) } else { (1, PROJECTED_TYPE) };
-        self.code(MODEL_TYPE, model);
+        let (model, type_key) =
+            if crs.is_geographic() { (2, key::GEOGRAPHIC_TYPE) } else { (1, key::PROJECTED_TYPE) };
+        self.code(key::MODEL_TYPE, model);
         if let Some((code, unit)) = epsg_and_unit(crs) {
             self.code(type_key, code);
             if let Some(meters) = unit {
@@ -86,33 +75,35 @@ impl GeoKeyList {
             }
             return;
         }
-        self.text(CITATION, crs.proj_text());
+        self.text(key::CITATION, crs.proj_text());
         match crs.definition() {
             Some(definition) => self.parameters(&definition),
-            None => self.code(type_key, USER_DEFINED),
+            None => self.code(type_key, key::USER_DEFINED),
         }
     }
 
     fn parameters(&mut self, definition: &Definition) {
         self.geographic_system(definition);
-        let Some(keys) = PROJECTIONS.iter().find(|keys| keys.method == definition.method) else { return };
+        let Some(keys) = key::PROJECTIONS.iter().find(|keys| keys.method == definition.method) else {
+            return;
+        };
         let [latitude, longitude, easting, northing] = keys.origin;
-        self.code(PROJECTED_TYPE, USER_DEFINED);
-        self.code(PROJECTION, USER_DEFINED);
-        self.code(TRANSFORMATION, keys.code);
+        self.code(key::PROJECTED_TYPE, key::USER_DEFINED);
+        self.code(key::PROJECTION, key::USER_DEFINED);
+        self.code(key::TRANSFORMATION, keys.code);
         self.linear_unit(definition.meters_per_unit);
         let is_polar = definition.method == MapProjection::PolarStereographic;
         let true_scale = definition.parallel_1_deg.filter(|_| is_polar);
         self.number(latitude, true_scale.unwrap_or(definition.latitude_deg));
         self.number(longitude, definition.longitude_deg);
         for (key, parallel) in
-            [(PARALLEL_1, definition.parallel_1_deg), (PARALLEL_2, definition.parallel_2_deg)]
+            [(key::PARALLEL_1, definition.parallel_1_deg), (key::PARALLEL_2, definition.parallel_2_deg)]
         {
             if let Some(parallel) = parallel.filter(|_| !is_polar) {
                 self.number(key, parallel);
             }
         }
-        self.number(SCALE, definition.scale);
+        self.number(key::SCALE, definition.scale);
         self.number(easting, definition.false_easting_m / definition.meters_per_unit);
         self.number(northing, definition.false_northing_m / definition.meters_per_unit);
     }
@@ -122,29 +113,29 @@ impl GeoKeyList {
         if let Datum::OfEpsg(code) = definition.datum
             && let Ok(code) = u16::try_from(code)
         {
-            self.code(GEOGRAPHIC_TYPE, code);
+            self.code(key::GEOGRAPHIC_TYPE, code);
             return;
         }
-        self.code(GEOGRAPHIC_TYPE, USER_DEFINED);
-        self.code(GEODETIC_DATUM, USER_DEFINED);
-        self.code(ANGULAR_UNITS, 9102);
-        self.code(ELLIPSOID, USER_DEFINED);
+        self.code(key::GEOGRAPHIC_TYPE, key::USER_DEFINED);
+        self.code(key::GEODETIC_DATUM, key::USER_DEFINED);
+        self.code(key::ANGULAR_UNITS, 9102);
+        self.code(key::ELLIPSOID, key::USER_DEFINED);
         if let Some(ellipsoid) = definition.ellipsoid {
-            self.number(SEMI_MAJOR, ellipsoid.major_m);
-            self.number(INVERSE_FLATTENING, ellipsoid.inverse_flattening);
+            self.number(key::SEMI_MAJOR, ellipsoid.major_m);
+            self.number(key::INVERSE_FLATTENING, ellipsoid.inverse_flattening);
         }
-        self.number(PRIME_MERIDIAN, definition.prime_meridian_deg);
+        self.number(key::PRIME_MERIDIAN, definition.prime_meridian_deg);
         if let Datum::ToWgs84(numbers) = &definition.datum {
-            self.0.push((TO_WGS84, GeoKeyValue::Numbers(numbers.clone())));
+            self.0.push((key::TO_WGS84, GeoKeyValue::Numbers(numbers.clone())));
         }
     }
 
     fn linear_unit(&mut self, meters: f64) {
         match code_of_length(meters) {
-            Some(code) => self.code(LINEAR_UNITS, code),
+            Some(code) => self.code(key::LINEAR_UNITS, code),
             None => {
-                self.code(LINEAR_UNITS, USER_DEFINED);
-                self.number(LINEAR_UNIT_SIZE, meters);
+                self.code(key::LINEAR_UNITS, key::USER_DEFINED);
+                self.number(key::LINEAR_UNIT_SIZE, meters);
             }
         }
     }
@@ -158,13 +149,13 @@ impl GeoKeyList {
                 GeoKeyValue::Numbers(numbers) => {
                     let at = tags.doubles.len() as u16;
                     tags.doubles.extend(&numbers);
-                    [key, IN_DOUBLES, numbers.len() as u16, at]
+                    [key, key::IN_DOUBLES, numbers.len() as u16, at]
                 }
                 GeoKeyValue::Text(text) => {
                     let at = tags.text.len() as u16;
                     tags.text += &text;
                     tags.text.push('|');
-                    [key, IN_TEXT, text.len() as u16 + 1, at]
+                    [key, key::IN_TEXT, text.len() as u16 + 1, at]
                 }
             };
             tags.directory.extend(entry);

@@ -17,7 +17,6 @@ pub(super) struct CrsTransform<'a> {
 }
 
 impl<'a> CrsTransform<'a> {
-    /// From the raster's system `from` to `to`.
     pub fn new(raster: &Raster, from: Option<&'a Crs>, to: Option<&'a Crs>) -> Self {
         let is_in_degrees = |crs: &&Crs| crs.is_geographic();
         let from_center = from.filter(is_in_degrees).map(|_| raster.center().x);
@@ -60,11 +59,7 @@ impl<'a> CrsTransform<'a> {
             let is_within = |at: DVec2| at.cmpge(DVec2::ZERO).all() && at.cmple(raster.grid_size()).all();
             pole.is_ok_and(|at| is_within(at) && leads_back(at))
         };
-        if contains(90.0) || contains(-90.0) {
-            Err(WarpError::Pole { system: to.name().into() })
-        } else {
-            Ok(())
-        }
+        if contains(90.0) || contains(-90.0) { Err(WarpError::Pole(to.name().into())) } else { Ok(()) }
     }
 }
 

@@ -5,8 +5,7 @@ use glam::DVec2;
 use crate::dem::raster::Raster;
 use crate::geom::rect::Rect;
 
-/// Points along one side of a raster whose extent is projected: the sides bend so little that a few hundred miss less
-/// than a thousandth of a cell.
+/// Points along a side of a raster whose extent is projected: so many miss less than a thousandth of a cell.
 const SIDE_POINTS: u32 = 400;
 
 /// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.

@@ -8,7 +8,7 @@ mod row_positions;
 
 use std::borrow::Cow;
 
-use glam::DVec2;
+use glam::{DVec2, U64Vec2};
 
 use crate::dem::raster::{Raster, Samples, north_up};
 use crate::dem::warp::crs_transform::CrsTransform;
@@ -17,8 +17,7 @@ use crate::dem::warp::resample::Resampler;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
-/// How far from its central meridian a UTM zone is used where no system is chosen. At 9° lengths are off by up
-/// to 1.2 %.
+/// How far from its meridian a UTM zone is used where no system is chosen; at 9° lengths are off by up to 1.2 %.
 const UTM_REACH_DEG: f64 = 9.0;
 
 /// UTM ends at 84° north and 80° south.
@@ -49,14 +48,11 @@ pub enum WarpError {
     /// The raster holds no data.
     #[error("the elevation file holds no valid sample: all of them are no data; check its no-data value")]
     Empty,
-    /// The wanted system is not in meters.
+    /// The wanted system, by name, is not in meters.
     #[error(
-        "a scene needs a projected system in meters, and {name} is not one; choose a UTM zone, for example EPSG:32616"
+        "a scene needs a projected system in meters, and {0} is not one; choose a UTM zone, for example EPSG:32616"
     )]
-    TargetNotMetric {
-        /// The wanted system.
-        name: String,
-    },
+    TargetNotMetric(String),
     /// No UTM zone suits the raster.
     #[error(
         "the elevation file reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or state a projected system in meters as crs of the scene"
@@ -73,24 +69,20 @@ pub enum WarpError {
     },
     /// The result would be too large.
     #[error(
-        "in {system} the elevation file would need {width} x {height} samples; choose a system that suits its place, or larger cells"
+        "in {system} the elevation file would need {} x {} samples; choose a system that suits its place, or larger cells",
+        .size.x, .size.y
     )]
     TooLarge {
         /// The wanted system.
         system: String,
-        /// Samples per row.
-        width: u64,
-        /// Rows.
-        height: u64,
+        /// Samples per row and rows.
+        size: U64Vec2,
     },
-    /// The raster covers a pole, where one in degrees has no border.
+    /// The raster covers a pole, where one in the wanted system, in degrees, has no border.
     #[error(
-        "the elevation file covers a pole, which a raster in degrees ({system}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
+        "the elevation file covers a pole, which a raster in degrees ({0}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
     )]
-    Pole {
-        /// The wanted system.
-        system: String,
-    },
+    Pole(String),
     /// A coordinate cannot be transformed from one system to the other.
     #[error(transparent)]
     Crs(#[from] CrsError),
@@ -122,7 +114,7 @@ pub enum WarpError {
 pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a, Raster>, WarpError> {
     check_source(raster)?;
     if let Some(target) = target.filter(|target| !target.is_metric()) {
-        return Err(WarpError::TargetNotMetric { name: target.name().into() });
+        return Err(WarpError::TargetNotMetric(target.name().into()));
     }
     let system = match (&raster.crs, target) {
         (_, Some(target)) => Some(target.clone()),
@@ -151,7 +143,7 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
 pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     check_source(raster)?;
     match &raster.crs {
-        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric { name: crs.name().into() }),
+        Some(crs) if !crs.is_metric() => Err(WarpError::TargetNotMetric(crs.name().into())),
         _ => Ok(()),
     }
 }

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
+use glam::{DVec2, U64Vec2};
 use rayon::prelude::*;
 
 use crate::dem::cell_grid::{CellGrid, CellGridError};
@@ -20,8 +20,7 @@ use crate::dem::warp::row_positions::positions;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 
-/// Where the cell is not chosen the output may have this many times the samples of the source: a raster turned by 45°
-/// needs 2.
+/// Without a stated cell, the samples of the output per sample of the source: a raster turned by 45° needs 2.
 const GROWTH: u64 = 8;
 
 /// Positions that are computed before their samples are summed: some megabytes.
@@ -35,8 +34,7 @@ pub(super) struct Resampler<'a> {
 }
 
 impl<'a> Resampler<'a> {
-    /// To cells around the valid samples, on multiples of the cell; without a `cell`, of the size of the source's cells
-    /// at the center.
+    /// To cells around the valid samples, on multiples of the cell; by default as large as the source's at the center.
     pub fn around(
         source: &'a Raster,
         transform: &'a CrsTransform<'a>,
@@ -67,7 +65,7 @@ impl<'a> Resampler<'a> {
     ) -> Result<Self, WarpError> {
         let too_large = |width, height| {
             let system = transform.to.map_or("north up", Crs::name).into();
-            WarpError::TooLarge { system, width, height }
+            WarpError::TooLarge { system, size: U64Vec2::new(width, height) }
         };
         let cells = cells.map_err(|error| match error {
             CellGridError::TooMany { columns, rows, .. } => too_large(columns as u64, rows as u64),
@@ -81,7 +79,6 @@ impl<'a> Resampler<'a> {
         }
     }
 
-    /// The side of a cell.
     pub fn cell(&self) -> f64 {
         self.cells.cell()
     }

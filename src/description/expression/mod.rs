@@ -59,11 +59,10 @@ mod parser;
 mod syntax;
 mod token;
 
-use std::fmt;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use crate::description::expression::evaluate::{Evaluation, any};
-use crate::description::expression::parser::ExpressionParser;
 use crate::description::expression::syntax::ExpressionNode;
 use crate::description::scalar::Scalar;
 
@@ -75,7 +74,7 @@ pub const MAX_DEPTH: usize = 200;
 /// Gives the value of a feature's property by its name; `None` where the feature has none.
 pub type PropertyLookup<'a> = &'a dyn Fn(&str) -> Option<Scalar>;
 
-/// A computation over a feature's properties. Shown, it is a text that reads as the same expression.
+/// A computation over a feature's properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     root: ExpressionNode,
@@ -110,7 +109,7 @@ impl Expression {
     /// # Errors
     /// See [`ExpressionError`].
     pub fn parse_among(text: &str, words: &[&str]) -> Result<Self, ExpressionError> {
-        ExpressionParser::new(text, words)?.whole().map(|root| Self { root })
+        parser::parse(text, words).map(|root| Self { root })
     }
 
     /// Whether `text` can only be meant as an expression, not as a word: it holds more than letters, digits, `_` and
@@ -121,15 +120,9 @@ impl Expression {
 
     /// The properties that it looks at, in alphabetical order, each once.
     pub fn properties(&self) -> Vec<&str> {
-        let mut names = Vec::new();
-        self.root.visit(&mut |node| {
-            if let ExpressionNode::Property(name) = node {
-                names.push(name.as_str());
-            }
-        });
-        names.sort_unstable();
-        names.dedup();
-        names
+        let mut names = BTreeSet::new();
+        self.root.add_properties(&mut names);
+        names.into_iter().collect()
     }
 
     /// Its value for a feature; `None` where a property that it needs is missing or of another kind.
@@ -150,12 +143,6 @@ impl Expression {
     /// `no`, `false` or `0`.
     pub fn holds(&self, properties: PropertyLookup<'_>) -> bool {
         self.value(properties).is_some_and(|value| value.holds())
-    }
-}
-
-impl fmt::Display for Expression {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.root.fmt(out)
     }
 }
 

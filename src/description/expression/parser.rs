@@ -1,8 +1,9 @@
 //! Text to tree, by recursive descent: one function for each line of the grammar.
 
+use std::iter;
 use std::ops::Range;
 
-use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, RESERVED};
+use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, OPERATORS, RESERVED};
 use crate::description::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
 use crate::description::expression::{ExpressionError, MAX_DEPTH};
 use crate::description::scalar::Scalar;
@@ -15,8 +16,29 @@ type Parsed = Result<Deep, ExpressionError>;
 /// How deep brackets may be nested: each costs the stack a dozen calls.
 const MAX_BRACKETS: usize = 32;
 
+/// The expression that `text` writes, which gives one of `words`, or anything where they are none.
+///
+/// # Errors
+/// The text is no expression, or one that cannot give one of the words.
+pub(super) fn parse(text: &str, words: &[&str]) -> Result<ExpressionNode, ExpressionError> {
+    let mut parser = ExpressionParser { text, tokens: tokens(text)?, next: 0, brackets: 0, words };
+    let (root, _) = parser.expression()?;
+    if parser.next < parser.tokens.len() {
+        let help = "join two parts with an operator such as `and`, `*` or `??`";
+        return Err(parser.unexpected("the end or an operator", help));
+    }
+    let stray = root.results().into_iter().find(|text| !words.contains(text));
+    match stray.filter(|_| !words.is_empty()) {
+        Some(stray) => {
+            let message = format!("this cannot be \"{}\"", quoted(stray));
+            Err(parser.wrong(parser.place_of(stray), message, remedy(stray, words, "it may be")))
+        }
+        None => Ok(root),
+    }
+}
+
 /// The text while it is read.
-pub(super) struct ExpressionParser<'t> {
+struct ExpressionParser<'t> {
     text: &'t str,
     tokens: Vec<SpannedToken>,
     next: usize,
@@ -25,140 +47,81 @@ pub(super) struct ExpressionParser<'t> {
     words: &'t [&'t str],
 }
 
-impl<'t> ExpressionParser<'t> {
-    /// A parser of `text`, which gives one of `words`, or anything where they are none.
-    ///
-    /// # Errors
-    /// The text is not made of the language's tokens.
-    pub fn new(text: &'t str, words: &'t [&'t str]) -> Result<Self, ExpressionError> {
-        Ok(Self { text, tokens: tokens(text)?, next: 0, brackets: 0, words })
-    }
+/// Rows of [`OPERATORS`].
+const OR: usize = 0;
+const AND: usize = 1;
+const COMPARISON: usize = 2;
+const FALLBACK: usize = 3;
+const SUM: usize = 4;
+const PRODUCT: usize = 5;
 
-    /// The whole text.
-    ///
-    /// # Errors
-    /// It is no expression, or one that cannot give one of the words.
-    pub fn whole(mut self) -> Result<ExpressionNode, ExpressionError> {
-        let (root, _) = self.expression()?;
-        if self.next < self.tokens.len() {
-            let help = "join two parts with an operator such as `and`, `*` or `??`";
-            return Err(self.unexpected("the end or an operator", help));
-        }
-        let stray = root.results().into_iter().find(|text| !self.words.contains(text));
-        match stray.filter(|_| !self.words.is_empty()) {
-            Some(stray) => {
-                let message = format!("this cannot be \"{}\"", quoted(stray));
-                Err(self.wrong(self.place_of(stray), message, remedy(stray, self.words, "it may be")))
-            }
-            None => Ok(root),
-        }
-    }
-
+impl ExpressionParser<'_> {
     fn expression(&mut self) -> Parsed {
-        self.chain(&[Binary::Or], Self::conjunction)
-    }
-
-    fn conjunction(&mut self) -> Parsed {
-        self.chain(&[Binary::And], Self::negation)
+        self.chain(OR, |parser| parser.chain(AND, Self::negation))
     }
 
     fn negation(&mut self) -> Parsed {
-        let mut count = 0;
-        while self.take_name("not") {
-            count += 1;
-        }
-        let mut parsed = self.comparison()?;
-        for _ in 0..count {
-            parsed = self.over(parsed, |of| ExpressionNode::Not(Box::new(of)))?;
-        }
-        Ok(parsed)
+        let count = self.take_all("not");
+        let part = self.comparison()?;
+        self.prefixed(count, part, ExpressionNode::Not)
     }
 
     fn comparison(&mut self) -> Parsed {
-        const COMPARISONS: [Binary; 6] = [
-            Binary::Equal,
-            Binary::Unequal,
-            Binary::LessOrEqual,
-            Binary::Less,
-            Binary::GreaterOrEqual,
-            Binary::Greater,
-        ];
         let left = self.fallback()?;
-        let negated = self.peek_name("not", 0) && self.peek_name("in", 1);
-        self.next += usize::from(negated);
-        if self.take_name("in") {
+        let is_negated = self.written(0) == "not" && self.written(1) == "in";
+        self.next += usize::from(is_negated);
+        if self.take("in") {
             let (list, deep) = self.list()?;
-            let (of, deep) = (left.0, left.1.max(deep));
-            let within = self.over((of, deep), |of| ExpressionNode::In(Box::new(of), list))?;
-            return if negated {
-                self.over(within, |of| ExpressionNode::Not(Box::new(of)))
-            } else {
-                Ok(within)
-            };
+            let deep = self.deepened(left.1.max(deep))?;
+            let within = (ExpressionNode::In(Box::new(left.0), list), deep);
+            return self.prefixed(usize::from(is_negated), within, ExpressionNode::Not);
         }
-        let Some(binary) = self.take_operator(&COMPARISONS) else { return Ok(left) };
+        let Some(binary) = self.take_operator(COMPARISON) else { return Ok(left) };
         let right = self.fallback()?;
         let whole = self.join(binary, left, right)?;
-        if self.peek_operator(&COMPARISONS).is_some() {
-            let message = "comparisons cannot be chained";
-            return Err(self.wrong(self.place(), message, "write a < b and b < c"));
+        let place = self.place();
+        match self.take_operator(COMPARISON) {
+            Some(_) => Err(self.wrong(place, "comparisons cannot be chained", "write a < b and b < c")),
+            None => Ok(whole),
         }
-        Ok(whole)
     }
 
     fn fallback(&mut self) -> Parsed {
-        self.chain(&[Binary::Fallback], Self::sum)
-    }
-
-    fn sum(&mut self) -> Parsed {
-        self.chain(&[Binary::Plus, Binary::Minus], Self::product)
-    }
-
-    fn product(&mut self) -> Parsed {
-        self.chain(&[Binary::Times, Binary::Over], Self::factor)
+        self.chain(FALLBACK, |parser| parser.chain(SUM, |parser| parser.chain(PRODUCT, Self::factor)))
     }
 
     fn factor(&mut self) -> Parsed {
-        let mut count = 0;
-        while self.take_mark("-") {
-            count += 1;
-        }
-        let mut parsed = self.primary()?;
-        for _ in 0..count {
-            parsed = self.over(parsed, |of| ExpressionNode::Negative(Box::new(of)))?;
-        }
-        Ok(parsed)
+        let count = self.take_all("-");
+        let part = self.primary()?;
+        self.prefixed(count, part, ExpressionNode::Negative)
     }
 
     fn primary(&mut self) -> Parsed {
         let place = self.place();
-        let leaf = |node| Ok((node, 1));
-        match self.tokens.get(self.next).map(|(token, _)| token.clone()) {
-            Some(ExpressionToken::Number(number)) => {
-                self.after(leaf(ExpressionNode::Literal(Scalar::Number(number))))
-            }
-            Some(ExpressionToken::Text(text)) => {
-                self.after(leaf(ExpressionNode::Literal(Scalar::Text(text))))
-            }
-            Some(ExpressionToken::Property(name)) => self.after(leaf(ExpressionNode::Property(name))),
+        let node = match self.tokens.get(self.next).map(|(token, _)| token.clone()) {
+            Some(ExpressionToken::Number(number)) => ExpressionNode::Literal(Scalar::Number(number)),
+            Some(ExpressionToken::Text(text)) => ExpressionNode::Literal(Scalar::Text(text)),
+            Some(ExpressionToken::Property(name)) => ExpressionNode::Property(name),
             Some(ExpressionToken::Name(name)) if name == "true" || name == "false" => {
-                self.after(leaf(ExpressionNode::Literal(Scalar::Bool(name == "true"))))
+                ExpressionNode::Literal(Scalar::Bool(name == "true"))
             }
             Some(ExpressionToken::Name(name)) if !RESERVED.contains(&name.as_str()) => {
                 self.next += 1;
-                if self.peek_mark("(") { self.call(&name, place) } else { self.bare(name, place) }
+                return if self.written(0) == "(" { self.call(&name, place) } else { self.bare(name, place) };
             }
             Some(ExpressionToken::Mark("(")) => {
                 self.open()?;
                 let inner = self.expression()?;
                 self.close()?;
-                Ok(inner)
+                return Ok(inner);
             }
-            _ => Err(self.unexpected(
-                "a number, a text or a property",
-                "write a property as its name, a text as 'text'",
-            )),
-        }
+            _ => {
+                let help = "write a property as its name, a text as 'text'";
+                return Err(self.unexpected("a number, a text or a property", help));
+            }
+        };
+        self.next += 1;
+        Ok((node, 1))
     }
 
     /// A name without quotes and brackets: a property, unless it is a text that misses its quotes.
@@ -211,7 +174,7 @@ impl<'t> ExpressionParser<'t> {
         self.open()?;
         let (first, mut deepest) = self.expression()?;
         let mut list = vec![first];
-        while self.take_mark(",") {
+        while self.take(",") {
             let (next, deep) = self.expression()?;
             deepest = deepest.max(deep);
             list.push(next);
@@ -220,10 +183,10 @@ impl<'t> ExpressionParser<'t> {
         Ok((list, deepest))
     }
 
-    /// `part { operator part }`, the left ones taken together first.
-    fn chain(&mut self, operators: &[Binary], part: fn(&mut Self) -> Parsed) -> Parsed {
+    /// `part { operator part }` with the operators of a row, the left ones taken together first.
+    fn chain(&mut self, row: usize, part: fn(&mut Self) -> Parsed) -> Parsed {
         let mut left = part(self)?;
-        while let Some(binary) = self.take_operator(operators) {
+        while let Some(binary) = self.take_operator(row) {
             let right = part(self)?;
             left = self.join(binary, left, right)?;
         }
@@ -235,8 +198,13 @@ impl<'t> ExpressionParser<'t> {
         Ok((ExpressionNode::Binary(binary, Box::new(left.0), Box::new(right.0)), deep))
     }
 
-    fn over(&self, (node, deep): Deep, wrap: impl FnOnce(ExpressionNode) -> ExpressionNode) -> Parsed {
-        Ok((wrap(node), self.deepened(deep)?))
+    fn prefixed(
+        &self,
+        count: usize,
+        part: Deep,
+        prefix: fn(Box<ExpressionNode>) -> ExpressionNode,
+    ) -> Parsed {
+        (0..count).try_fold(part, |(node, deep), _| Ok((prefix(Box::new(node)), self.deepened(deep)?)))
     }
 
     fn deepened(&self, deep: usize) -> Result<usize, ExpressionError> {
@@ -260,47 +228,32 @@ impl<'t> ExpressionParser<'t> {
     }
 
     fn expect(&mut self, mark: &'static str, help: &str) -> Result<(), ExpressionError> {
-        if self.take_mark(mark) { Ok(()) } else { Err(self.unexpected(&format!("`{mark}`"), help)) }
+        if self.take(mark) { Ok(()) } else { Err(self.unexpected(&format!("`{mark}`"), help)) }
     }
 
-    fn after(&mut self, parsed: Parsed) -> Parsed {
+    /// The mark or the bare name `ahead` of the next token; empty for another token.
+    fn written(&self, ahead: usize) -> &str {
+        match self.tokens.get(self.next + ahead) {
+            Some((ExpressionToken::Mark(mark), _)) => mark,
+            Some((ExpressionToken::Name(name), _)) => name,
+            _ => "",
+        }
+    }
+
+    fn take(&mut self, written: &str) -> bool {
+        let is_next = self.written(0) == written;
+        self.next += usize::from(is_next);
+        is_next
+    }
+
+    fn take_all(&mut self, written: &str) -> usize {
+        iter::from_fn(|| self.take(written).then_some(())).count()
+    }
+
+    fn take_operator(&mut self, row: usize) -> Option<Binary> {
+        let (_, binary) = OPERATORS[row].iter().find(|(written, _)| *written == self.written(0))?;
         self.next += 1;
-        parsed
-    }
-
-    fn peek_mark(&self, mark: &str) -> bool {
-        matches!(self.tokens.get(self.next), Some((ExpressionToken::Mark(found), _)) if *found == mark)
-    }
-
-    fn take_mark(&mut self, mark: &str) -> bool {
-        let found = self.peek_mark(mark);
-        self.next += usize::from(found);
-        found
-    }
-
-    fn peek_name(&self, name: &str, ahead: usize) -> bool {
-        matches!(self.tokens.get(self.next + ahead), Some((ExpressionToken::Name(found), _)) if found == name)
-    }
-
-    fn take_name(&mut self, name: &str) -> bool {
-        let found = self.peek_name(name, 0);
-        self.next += usize::from(found);
-        found
-    }
-
-    fn peek_operator(&self, operators: &[Binary]) -> Option<Binary> {
-        let written = match &self.tokens.get(self.next)?.0 {
-            ExpressionToken::Mark(mark) => mark,
-            ExpressionToken::Name(name) => name.as_str(),
-            _ => return None,
-        };
-        operators.iter().copied().find(|operator| operator.written() == written)
-    }
-
-    fn take_operator(&mut self, operators: &[Binary]) -> Option<Binary> {
-        let found = self.peek_operator(operators);
-        self.next += usize::from(found.is_some());
-        found
+        Some(*binary)
     }
 
     /// The bytes of the next token; past the last one the end of the text.

@@ -4,7 +4,8 @@ use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 
 use super::*;
 use crate::description::bounds::Bounds;
-use crate::description::expression::syntax::{Binary, FUNCTIONS, Function};
+use crate::description::expression::syntax::{Binary, FUNCTIONS, Function, OPERATORS, RESERVED};
+use crate::description::expression::token::{continues_name, starts_name};
 use crate::description::feature_value::{FeatureValue, FromScalar};
 use crate::description::words::RoadSurface;
 
@@ -231,6 +232,59 @@ fn the_properties_that_it_looks_at_are_known() {
     assert_eq!(expression.properties(), ["a b", "lanes", "x", "y"]);
 }
 
+/// How tightly comparisons and negations bind, as operators by their row in [`OPERATORS`], and all that is taken as one.
+const NEGATION: usize = 2;
+const COMPARISON: usize = 3;
+const NEGATIVE: usize = 7;
+const SINGLE: usize = 8;
+
+/// How tightly a node binds: the row of its operator, past negations.
+fn strength(node: &ExpressionNode) -> usize {
+    match node {
+        ExpressionNode::Literal(_) | ExpressionNode::Property(_) | ExpressionNode::Call(..) => SINGLE,
+        ExpressionNode::Negative(_) => NEGATIVE,
+        ExpressionNode::Not(_) => NEGATION,
+        ExpressionNode::In(..) => COMPARISON,
+        ExpressionNode::Binary(binary, ..) => {
+            let row = OPERATORS.iter().position(|row| row.iter().any(|operator| operator.1 == *binary));
+            row.map_or(SINGLE, |row| row + usize::from(row > 1))
+        }
+    }
+}
+
+/// A text that reads as `node`, in brackets where it binds less than `least`.
+fn written(node: &ExpressionNode, least: usize) -> String {
+    let list = |list: &[ExpressionNode]| {
+        format!("({})", list.iter().map(|part| written(part, 0)).collect::<Vec<_>>().join(", "))
+    };
+    let is_bare = |name: &str| {
+        let mut letters = name.chars();
+        letters.next().is_some_and(starts_name) && letters.all(continues_name) && !RESERVED.contains(&name)
+    };
+    let text = match node {
+        ExpressionNode::Literal(Scalar::Bool(value)) => value.to_string(),
+        ExpressionNode::Literal(Scalar::Number(number)) => number.to_string(),
+        ExpressionNode::Literal(Scalar::Text(text)) => format!("'{}'", text.replace('\'', "''")),
+        ExpressionNode::Property(name) if is_bare(name) => name.clone(),
+        ExpressionNode::Property(name) => format!("`{}`", name.replace('`', "``")),
+        ExpressionNode::Negative(of) => format!("-{}", written(of, NEGATIVE)),
+        ExpressionNode::Not(of) => format!("not {}", written(of, NEGATION)),
+        ExpressionNode::Binary(binary, left, right) => {
+            let (sign, _) =
+                OPERATORS.iter().copied().flatten().find(|known| known.1 == *binary).expect("listed");
+            let own = strength(node);
+            let left_least = if own == COMPARISON { own + 1 } else { own };
+            format!("{} {sign} {}", written(left, left_least), written(right, own + 1))
+        }
+        ExpressionNode::In(of, of_these) => format!("{} in {}", written(of, COMPARISON + 1), list(of_these)),
+        ExpressionNode::Call(function, parts) => {
+            let (name, ..) = FUNCTIONS.iter().find(|known| known.1 == *function).expect("listed");
+            format!("{name}{}", list(parts))
+        }
+    };
+    if strength(node) < least { format!("({text})") } else { text }
+}
+
 /// Any tree that the grammar can write.
 fn trees() -> impl Strategy<Value = ExpressionNode> {
     let leaf = prop_oneof![
@@ -240,24 +294,10 @@ fn trees() -> impl Strategy<Value = ExpressionNode> {
         "[a-z:_ `\"'é-]{1,6}".prop_map(ExpressionNode::Property),
         Just(ExpressionNode::Property("and".into())),
     ];
-    let binaries = [
-        Binary::Or,
-        Binary::And,
-        Binary::Equal,
-        Binary::Unequal,
-        Binary::Less,
-        Binary::LessOrEqual,
-        Binary::Greater,
-        Binary::GreaterOrEqual,
-        Binary::Fallback,
-        Binary::Plus,
-        Binary::Minus,
-        Binary::Times,
-        Binary::Over,
-    ];
+    let binaries: Vec<Binary> = OPERATORS.iter().copied().flatten().map(|operator| operator.1).collect();
     leaf.prop_recursive(4, 40, 4, move |inner| {
         let some = proptest::collection::vec(inner.clone(), 1..4);
-        let pair = (proptest::sample::select(binaries.to_vec()), inner.clone(), inner.clone());
+        let pair = (proptest::sample::select(binaries.clone()), inner.clone(), inner.clone());
         let functions: Vec<Function> = FUNCTIONS.iter().map(|known| known.1).collect();
         let calls = (proptest::sample::select(functions), proptest::collection::vec(inner.clone(), 3..6));
         prop_oneof![
@@ -284,7 +324,7 @@ proptest::proptest! {
     #[test]
     fn what_is_written_reads_as_the_same(root in trees()) {
         let expression = Expression { root };
-        let text = expression.to_string();
+        let text = written(&expression.root, 0);
         let again = Expression::parse(&text);
         proptest::prop_assert_eq!(again.as_ref(), Ok(&expression), "{}", text);
     }
@@ -316,7 +356,7 @@ proptest::proptest! {
             if let Some(Scalar::Number(number)) = value {
                 proptest::prop_assert!(number.is_finite());
             }
-            let again = Expression::parse(&expression.to_string());
+            let again = Expression::parse(&written(&expression.root, 0));
             proptest::prop_assert_eq!(again, Ok(expression));
         }
     }

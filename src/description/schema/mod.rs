@@ -11,8 +11,8 @@ use crate::description::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::description::document::Document;
 use crate::description::expression::MAX_TEXT_BYTES;
 use crate::description::styles::STYLE_KEY;
-use crate::description::value::{COORDINATES, MAX_TEXT};
-use crate::description::words::WordDeclaration;
+use crate::description::value::{COORDINATES, MAX_LIST, MAX_POINTS, MAX_TEXT};
+use crate::description::words::{RampName, Word, WordDeclaration};
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
@@ -154,30 +154,30 @@ fn shared_definitions() -> [(String, Value); 5] {
 fn shape(key: &KeyDeclaration) -> Value {
     match key.kind {
         KeyKind::Number(range) => number(range),
-        KeyKind::Integer { least, most } => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        KeyKind::Integer(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         KeyKind::FeatureNumber(range) => json!({ "anyOf": [number(range), reference("expression")] }),
         KeyKind::Switch => json!({ "type": "boolean" }),
         KeyKind::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
         KeyKind::FilledText => text(),
-        KeyKind::TextList { most } => json!({ "anyOf": [text(), list(text(), 1, most)] }),
-        KeyKind::TextTable { most } => {
-            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": most })
+        KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, MAX_LIST)] }),
+        KeyKind::TextTable => {
+            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": MAX_LIST })
         }
         KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
         KeyKind::Word(words) => one_of(words),
         KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(words), reference("computed")] }),
         KeyKind::Color => json!({ "allOf": [reference("color")] }),
         KeyKind::Point => json!({ "allOf": [reference("point")] }),
-        KeyKind::Points { least, most } => list(reference("point"), least, most),
+        KeyKind::Points(least) => list(reference("point"), least, MAX_POINTS),
         KeyKind::NumberRange(range) => list(number(range), 2, 2),
-        KeyKind::Numbers { range, most } => list(number(range), 0, most),
-        KeyKind::Ramp { words, most } => {
+        KeyKind::Numbers(range) => list(number(range), 0, MAX_POINTS),
+        KeyKind::Ramp => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [one_of(words), list(stop, 2, most)] })
+            json!({ "anyOf": [one_of(RampName::DECLARATIONS), list(stop, 2, MAX_LIST)] })
         }
-        KeyKind::Selection { most } => {
-            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, most)] });
+        KeyKind::Selection => {
+            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, MAX_LIST)] });
             let table = json!({ "type": "object", "additionalProperties": values, "minProperties": 1 });
             json!({ "anyOf": [table, reference("expression")] })
         }

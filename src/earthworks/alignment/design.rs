@@ -4,11 +4,12 @@
 //! fitted to all ground first; ground that a bridge then passes over, or a tunnel under, no longer pulls at the road,
 //! and the network is fitted again. What was let go of once stays so, which makes the rounds end.
 
-use crate::earthworks::alignment::chain::{Direction, SectionChain, SectionLink, chains};
-use crate::earthworks::alignment::ease::eased;
+use crate::earthworks::alignment::chain::{ChainLink, Direction, SectionChain};
 use crate::earthworks::alignment::fit;
 use crate::earthworks::alignment::network::{SectionNetwork, StationLevels};
-use crate::earthworks::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind, spans};
+use crate::earthworks::alignment::spans::{EarthworkLimits, spans};
+use crate::earthworks::alignment::{Support, SupportSpan};
+use crate::geom::profile::Profile;
 
 /// How often at most the network is fitted. The second time moves roads by meters, the third by decimeters; the spans
 /// always are those of the last levels.
@@ -19,8 +20,8 @@ const ROUNDS: usize = 4;
 pub struct SectionGround {
     /// The ground at its stations in meters; NaN where there is none.
     pub ground_m: Vec<f64>,
-    /// What it is stated to be carried by, from end to end; `None` where the ground carries it unless it cannot.
-    pub stated: Option<SpanKind>,
+    /// What is stated to carry it from end to end; the ground carries it unless it cannot.
+    pub stated: Support,
     /// What an embankment and a cutting may be.
     pub limits: EarthworkLimits,
 }
@@ -31,16 +32,16 @@ pub struct Design {
     /// The road's level at each station in meters; NaN in a part of the network without any ground.
     pub levels_m: StationLevels,
     /// For each section the spans along it in order, in its own stations.
-    pub spans: Vec<Vec<DesignSpan>>,
+    pub spans: Vec<Vec<SupportSpan>>,
 }
 
 /// Designs a network: a course a section, a level a node that roads should pass through or NaN, and the length of
 /// vertical curves in meters.
 pub fn design(network: &SectionNetwork, courses: &[SectionGround], pins: &[f64], curve_m: f64) -> Design {
-    let chains = chains(network);
+    let chains = SectionChain::all(network);
     let mut targets: StationLevels = courses.iter().map(|course| course.ground_m.clone()).collect();
     for (course, targets) in courses.iter().zip(&mut targets) {
-        if course.stated.is_some() {
+        if course.stated != Support::Ground {
             targets.fill(f64::NAN);
         }
     }
@@ -75,7 +76,9 @@ fn shape(
     }
     let stations = chain.stations(network);
     straighten(&stations, &chain.gather(targets), &mut along);
-    chain.scatter(&eased(&stations, &along, curve_m), levels);
+    if let Some(profile) = Profile::new(stations, along) {
+        chain.scatter(profile.smoothed(curve_m).values(), levels);
+    }
 }
 
 /// Straightens every run of stations without a target between its neighbors with one, or the chain's ends.
@@ -102,18 +105,18 @@ fn find(
     chain: &SectionChain,
     courses: &[SectionGround],
     levels: &StationLevels,
-    found: &mut [Vec<DesignSpan>],
+    found: &mut [Vec<SupportSpan>],
 ) {
-    for links in chain.links.split(|link| courses[link.section].stated.is_some()) {
+    for links in chain.links.split(|link| courses[link.line].stated != Support::Ground) {
         let part = SectionChain { links: links.to_vec() };
         let needs: StationLevels =
-            part.links.iter().map(|link| needs(&courses[link.section], &levels[link.section])).collect();
+            part.links.iter().map(|link| needs(&courses[link.line], &levels[link.line])).collect();
         // The part's own sections in the order of its links.
-        let own = |index: usize| SectionLink { section: index, ..part.links[index] };
+        let own = |index: usize| ChainLink { line: index, ..part.links[index] };
         let local = SectionChain { links: (0..part.links.len()).map(own).collect() };
         let spans = spans(&part.stations(network), &local.gather(&needs));
         for link in &part.links {
-            let length_m = network.sections[link.section].length_m();
+            let length_m = network.sections[link.line].length_m();
             let within = spans.iter().filter_map(|span| {
                 let from = (span.from_m - link.start_m).max(0.0);
                 let to = (span.to_m - link.start_m).min(length_m);
@@ -121,11 +124,11 @@ fn find(
                     Direction::Forward => (from, to),
                     Direction::Backward => (length_m - to, length_m - from),
                 };
-                (to > from).then_some(DesignSpan { kind: span.kind, from_m, to_m })
+                (to > from).then_some(SupportSpan { support: span.support, from_m, to_m })
             });
-            found[link.section] = within.collect();
+            found[link.line] = within.collect();
             if link.direction == Direction::Backward {
-                found[link.section].reverse();
+                found[link.line].reverse();
             }
         }
     }
@@ -140,12 +143,12 @@ fn needs(course: &SectionGround, levels: &[f64]) -> Vec<f64> {
 fn release(
     network: &SectionNetwork,
     courses: &[SectionGround],
-    found: &[Vec<DesignSpan>],
+    found: &[Vec<SupportSpan>],
     targets: &mut StationLevels,
 ) -> usize {
     let mut released = 0;
     for (index, section) in network.sections.iter().enumerate() {
-        if courses[index].stated.is_some() {
+        if courses[index].stated != Support::Ground {
             continue;
         }
         for span in &found[index] {
@@ -161,10 +164,11 @@ fn release(
 }
 
 /// Adds what is stated from end to end.
-fn state(network: &SectionNetwork, courses: &[SectionGround], found: &mut [Vec<DesignSpan>]) {
+fn state(network: &SectionNetwork, courses: &[SectionGround], found: &mut [Vec<SupportSpan>]) {
     for (index, course) in courses.iter().enumerate() {
-        if let Some(kind) = course.stated {
-            found[index] = vec![DesignSpan { kind, from_m: 0.0, to_m: network.sections[index].length_m() }];
+        if course.stated != Support::Ground {
+            let to_m = network.sections[index].length_m();
+            found[index] = vec![SupportSpan { support: course.stated, from_m: 0.0, to_m }];
         }
     }
 }
@@ -187,7 +191,8 @@ mod tests {
             stations_m: (0..ground.len()).map(|at| at as f64 * 10.0).collect(),
             max_grade,
         };
-        let course = |ground: &Vec<f64>| SectionGround { ground_m: ground.clone(), stated: None, limits };
+        let course =
+            |ground: &Vec<f64>| SectionGround { ground_m: ground.clone(), stated: Support::Ground, limits };
         let sections = (0..).zip(grounds).map(section).collect();
         (SectionNetwork { nodes: grounds.len() + 1, sections }, grounds.iter().map(course).collect())
     }
@@ -204,8 +209,8 @@ mod tests {
         let design = design(&network, &courses, &[100.0, 100.0], 50.0);
         assert_eq!(network.check(&design.levels_m, 1e-9), Ok(()));
         assert_eq!(design.spans[0].len(), 1);
-        let DesignSpan { kind, from_m, to_m } = design.spans[0][0];
-        assert_eq!(kind, SpanKind::Bridge);
+        let SupportSpan { support, from_m, to_m } = design.spans[0][0];
+        assert_eq!(support, Support::Bridge);
         assert!(from_m > 285.0 && to_m < 505.0, "{from_m}..{to_m}");
         assert!(design.levels_m[0].iter().all(|level| (level - 100.0).abs() < 1e-6), "{:?}", design.levels_m);
     }
@@ -228,7 +233,7 @@ mod tests {
         let (network, courses) = road(std::slice::from_ref(&ridge), 0.05, limits);
         let design = design(&network, &courses, &[80.0, 80.0], 50.0);
         assert_eq!(design.spans[0].len(), 1);
-        assert_eq!(design.spans[0][0].kind, SpanKind::Tunnel);
+        assert_eq!(design.spans[0][0].support, Support::Tunnel);
         for ((&station, &level), ground) in
             network.sections[0].stations_m.iter().zip(&design.levels_m[0]).zip(ridge)
         {
@@ -242,9 +247,9 @@ mod tests {
     fn a_stated_bridge_runs_straight_whatever_lies_under_it() {
         let grounds = [vec![10.0; 11], vec![10.0, 2.0, 30.0, 2.0, 14.0], vec![14.0; 11]];
         let (network, mut courses) = road(&grounds, 0.2, ANY);
-        courses[1].stated = Some(SpanKind::Bridge);
+        courses[1].stated = Support::Bridge;
         let design = design(&network, &courses, &[10.0, f64::NAN, f64::NAN, 14.0], 0.0);
-        assert_eq!(design.spans[1], [DesignSpan { kind: SpanKind::Bridge, from_m: 0.0, to_m: 40.0 }]);
+        assert_eq!(design.spans[1], [SupportSpan { support: Support::Bridge, from_m: 0.0, to_m: 40.0 }]);
         for (level, straight) in design.levels_m[1].iter().zip([10.0, 11.0, 12.0, 13.0, 14.0]) {
             assert!((level - straight).abs() < 1e-9, "{:?}", design.levels_m[1]);
         }

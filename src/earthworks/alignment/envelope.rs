@@ -83,9 +83,9 @@ fn spread(network: &SectionNetwork, nodes: &mut [f64]) {
         if level_m > nodes[node] {
             continue;
         }
-        for &(section, end) in &arms[node] {
-            let section = &network.sections[section];
-            let other = section.ends[1 - end].index();
+        for arm in &arms[node] {
+            let section = &network.sections[arm.line];
+            let other = section.ends[arm.opposite().end].index();
             let cone = level_m + section.length_m() * section.max_grade;
             if cone < nodes[other] {
                 nodes[other] = cone;

@@ -1,5 +1,7 @@
 //! Roads as a graph: sections between the nodes where roads end or meet.
 
+use crate::earthworks::alignment::chain::LineEnd;
+
 /// A place where roads end or meet, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub u32);
@@ -42,12 +44,12 @@ pub struct SectionNetwork {
 }
 
 impl SectionNetwork {
-    /// Where sections end at each node: section and end, 0 or 1, in order.
-    pub fn arms(&self) -> Vec<Vec<(usize, usize)>> {
+    /// The ends of sections at each node, in order.
+    pub fn arms(&self) -> Vec<Vec<LineEnd>> {
         let mut arms = vec![Vec::new(); self.nodes];
         for (index, section) in self.sections.iter().enumerate() {
             for (end, node) in section.ends.into_iter().enumerate() {
-                arms[node.index()].push((index, end));
+                arms[node.index()].push(LineEnd { line: index, end });
             }
         }
         arms

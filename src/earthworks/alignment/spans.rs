@@ -13,6 +13,8 @@
 //!                      ╲____________╱                 below: fill > max_fill
 //! ```
 
+use crate::earthworks::alignment::{Support, SupportSpan};
+
 /// The share of the highest embankment, or deepest cutting, at which a bridge's abutment or a tunnel's portal stands.
 /// Nearer to 1 spans are shorter and follow the limit's every waver; nearer to 0 they are long, and costly.
 pub const ABUTMENT: f64 = 0.5;
@@ -22,26 +24,6 @@ const SHORTEST_M: f64 = 12.0;
 
 /// Two of one kind with less than this between are one, in meters: nobody builds two abutments back to back.
 const NEAREST_M: f64 = 30.0;
-
-/// What carries a road where the ground does not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SpanKind {
-    /// A bridge over the ground.
-    Bridge,
-    /// A tunnel under it.
-    Tunnel,
-}
-
-/// A stretch that the ground does not carry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DesignSpan {
-    /// What carries it.
-    pub kind: SpanKind,
-    /// The station where it begins, in meters.
-    pub from_m: f64,
-    /// The station where it ends, above that.
-    pub to_m: f64,
-}
 
 /// How high embankments and how deep cuttings may be, in meters; infinite for any.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,12 +49,12 @@ impl EarthworkLimits {
 }
 
 /// The spans of a road with this [need](EarthworkLimits::need) at its stations, in order and apart from each other.
-pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<DesignSpan> {
+pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<SupportSpan> {
     let (Some(&start), Some(&end)) = (stations_m.first(), stations_m.last()) else { return Vec::new() };
-    let fills = exceeding(stations_m, needs, SpanKind::Bridge);
+    let fills = exceeding(stations_m, needs, Support::Bridge);
     let cuts: Vec<f64> = needs.iter().map(|need| -need).collect();
     let mut all = merged(fills);
-    all.extend(merged(exceeding(stations_m, &cuts, SpanKind::Tunnel)));
+    all.extend(merged(exceeding(stations_m, &cuts, Support::Tunnel)));
     all.sort_by(|a, b| a.from_m.total_cmp(&b.from_m));
     for span in &mut all {
         let lacks = (SHORTEST_M - (span.to_m - span.from_m)).max(0.0) / 2.0;
@@ -87,7 +69,7 @@ pub fn spans(stations_m: &[f64], needs: &[f64]) -> Vec<DesignSpan> {
 }
 
 /// Where the need is above [`ABUTMENT`], for as long as it somewhere exceeds 1.
-fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<DesignSpan> {
+fn exceeding(stations_m: &[f64], needs: &[f64], support: Support) -> Vec<SupportSpan> {
     let mut found = Vec::new();
     let (mut from_m, mut highest) = (None, 0.0_f64);
     for index in 0..needs.len() {
@@ -104,7 +86,7 @@ fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<DesignSpa
             (Some(_), true) => highest = highest.max(need),
             (Some(from), false) => {
                 if highest > 1.0 {
-                    found.push(DesignSpan { kind, from_m: from, to_m: crossing(index - 1) });
+                    found.push(SupportSpan { support, from_m: from, to_m: crossing(index - 1) });
                 }
                 from_m = None;
             }
@@ -114,14 +96,14 @@ fn exceeding(stations_m: &[f64], needs: &[f64], kind: SpanKind) -> Vec<DesignSpa
     if let (Some(from_m), Some(&to_m)) = (from_m, stations_m.last())
         && highest > 1.0
     {
-        found.push(DesignSpan { kind, from_m, to_m });
+        found.push(SupportSpan { support, from_m, to_m });
     }
     found
 }
 
 /// Spans of one kind in order, those with little between made one.
-fn merged(spans: Vec<DesignSpan>) -> Vec<DesignSpan> {
-    let mut all: Vec<DesignSpan> = Vec::with_capacity(spans.len());
+fn merged(spans: Vec<SupportSpan>) -> Vec<SupportSpan> {
+    let mut all: Vec<SupportSpan> = Vec::with_capacity(spans.len());
     for span in spans {
         match all.last_mut() {
             Some(last) if span.from_m - last.to_m < NEAREST_M => last.to_m = span.to_m,
@@ -135,15 +117,15 @@ fn merged(spans: Vec<DesignSpan>) -> Vec<DesignSpan> {
 mod tests {
     use super::*;
 
-    fn spans_of(needs: &[f64]) -> Vec<(SpanKind, f64, f64)> {
+    fn spans_of(needs: &[f64]) -> Vec<(Support, f64, f64)> {
         let stations: Vec<f64> = (0..needs.len()).map(|index| index as f64 * 20.0).collect();
-        spans(&stations, needs).into_iter().map(|span| (span.kind, span.from_m, span.to_m)).collect()
+        spans(&stations, needs).into_iter().map(|span| (span.support, span.from_m, span.to_m)).collect()
     }
 
     #[test]
     fn a_bridge_reaches_from_abutment_to_abutment_and_not_only_where_the_fill_is_too_high() {
         let needs = [0.0, 0.0, 1.0, 1.5, 1.5, 1.0, 0.0, 0.0];
-        assert_eq!(spans_of(&needs), [(SpanKind::Bridge, 30.0, 110.0)]);
+        assert_eq!(spans_of(&needs), [(Support::Bridge, 30.0, 110.0)]);
     }
 
     #[test]
@@ -155,7 +137,7 @@ mod tests {
     #[test]
     fn a_deep_cut_becomes_a_tunnel_and_two_near_ones_are_one() {
         let needs = [0.0, -2.0, -2.0, 0.2, -2.0, -2.0, 0.0, 0.0, 0.0];
-        assert_eq!(spans_of(&needs), [(SpanKind::Tunnel, 5.0, 115.0)]);
+        assert_eq!(spans_of(&needs), [(Support::Tunnel, 5.0, 115.0)]);
     }
 
     #[test]

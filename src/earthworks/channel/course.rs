@@ -77,8 +77,8 @@ impl ChannelCourse {
         let mut course = Self { stations: Vec::new(), bank_m: channel.bank_m, max_cut_m: channel.max_cut_m };
         for (index, pair) in points.windows(2).enumerate() {
             let across = (pair[1] - pair[0]).normalize_or_zero().perp();
-            let (start_m, end_m) = (channel.line.stations()[index], channel.line.stations()[index + 1]);
-            let halves = [channel.widths_m[index] / 2.0, channel.widths_m[index + 1] / 2.0];
+            let [start_m, end_m] = [index, index + 1].map(|vertex| channel.line.stations()[vertex]);
+            let halves = [start_m, end_m].map(|station_m| channel.width.at(station_m) / 2.0);
             let mut add = |part: f64, grid: DVec2, vertex: Option<usize>| {
                 let place = StationPoint {
                     station_m: start_m + (end_m - start_m) * part,

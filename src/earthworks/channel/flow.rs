@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::geom::polyline::Polyline;
+use crate::geom::polyline::{Polyline, VertexKey, vertex_key};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -26,9 +26,6 @@ const AGREEMENT: f64 = 0.5;
 /// The most steps in which a line is walked to find its fall: a step a cell, and wider on lines that would need more.
 const MOST_STEPS: f64 = 100_000.0;
 
-/// Vertices nearer to each other than this are one, in meters.
-const SAME_M: f64 = 0.01;
-
 /// Which way water flows along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
@@ -36,13 +33,6 @@ pub enum Flow {
     AsDrawn,
     /// From its last to its first.
     Against,
-}
-
-/// A vertex's place in centimeters: lines that mean one point write the same numbers, up to the rounding of a change of
-/// system.
-pub(super) fn node(at: DVec2) -> (i64, i64) {
-    let place = (at / SAME_M).round();
-    (place.x as i64, place.y as i64)
 }
 
 /// The way water flows along each of `lines`, in world coordinates; as drawn where the ground does not say.
@@ -93,10 +83,10 @@ fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
 /// A number for each line, the same for lines that hang together by shared vertices.
 fn networks(lines: &[&Polyline]) -> Vec<usize> {
     let mut parents: Vec<usize> = (0..lines.len()).collect();
-    let mut first_at: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    let mut first_at: BTreeMap<VertexKey, usize> = BTreeMap::new();
     for (index, line) in lines.iter().enumerate() {
         for &at in line.points() {
-            let other = *first_at.entry(node(at)).or_insert(index);
+            let other = *first_at.entry(vertex_key(at)).or_insert(index);
             let (a, b) = (root(&mut parents, index), root(&mut parents, other));
             parents[a.max(b)] = a.min(b);
         }

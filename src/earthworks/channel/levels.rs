@@ -12,10 +12,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::earthworks::channel::flow::node;
 use crate::earthworks::channel::reaches::{Sill, reaches};
 use crate::earthworks::channel::{Channel, Climb, Cut};
 use crate::earthworks::falling_levels::{WeightedLevel, fit_falling};
+use crate::geom::polyline::{VertexKey, vertex_key};
 
 /// The least that a station weighs in meters: two on one spot still count.
 const LEAST_WEIGHT_M: f64 = 1e-3;
@@ -93,14 +93,14 @@ fn fit_reach(course: &mut ChannelCourse, reach: &[usize], sills: &[Sill]) {
 
 impl Nodes {
     fn shared(courses: &[ChannelCourse], channels: &[Channel]) -> Self {
-        let mut at: BTreeMap<(i64, i64), BTreeSet<usize>> = BTreeMap::new();
+        let mut at: BTreeMap<VertexKey, BTreeSet<usize>> = BTreeMap::new();
         for (index, channel) in channels.iter().enumerate() {
             for &point in channel.line.points() {
-                at.entry(node(point)).or_default().insert(index);
+                at.entry(vertex_key(point)).or_default().insert(index);
             }
         }
         at.retain(|_, courses| courses.len() > 1);
-        let places: BTreeMap<(i64, i64), usize> = at.keys().copied().zip(0..).collect();
+        let places: BTreeMap<VertexKey, usize> = at.keys().copied().zip(0..).collect();
         let nodes = at.into_values().map(|courses| ChannelNode {
             courses,
             cap_m: f64::INFINITY,
@@ -109,7 +109,7 @@ impl Nodes {
         let stations_of = |(course, channel): (&ChannelCourse, &Channel)| {
             let points = channel.line.points();
             let node_of = |station: &CourseStation| {
-                station.vertex.and_then(|vertex| places.get(&node(points[vertex])).copied())
+                station.vertex.and_then(|vertex| places.get(&vertex_key(points[vertex])).copied())
             };
             let stations = course.stations.iter().enumerate();
             stations.filter_map(|(at, station)| node_of(station).map(|node| (at, node))).collect()

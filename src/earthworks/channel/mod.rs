@@ -25,6 +25,7 @@ pub mod flow;
 mod levels;
 mod reaches;
 
+use crate::earthworks::alignment::Width;
 use crate::earthworks::channel::bed::ChannelBed;
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::ChannelCourse;
@@ -37,8 +38,8 @@ use crate::terrain::volumes::Volumes;
 pub struct Channel {
     /// The centerline in world coordinates, downstream.
     pub line: Polyline,
-    /// The water's width at each vertex in meters, above 0.
-    pub widths_m: Vec<f64>,
+    /// The water's width.
+    pub width: Width,
     /// How far beyond the bed the ground is blended, in meters, at least 0.
     pub bank_m: f64,
     /// How deep the ground may be cut, and how high it may be filled before a lake, in meters, above 0; infinite for any

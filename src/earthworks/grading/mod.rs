@@ -69,11 +69,13 @@ impl GradingWorks<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Support;
     use crate::earthworks::alignment::design::{SectionGround, design};
     use crate::earthworks::alignment::network::{NodeId, RoadSection, SectionNetwork};
     use crate::earthworks::alignment::spans::EarthworkLimits;
     use crate::earthworks::grading::strip::StripEnd;
     use crate::earthworks::grading::strip::tests::{FLAT, strip};
+    use crate::geom::profile::Profile;
     use crate::terrain::profile::profile;
     use crate::terrain::query::{Interpolation, ground_height};
     use glam::DVec2;
@@ -248,9 +250,14 @@ mod tests {
             sections: vec![RoadSection { ends, stations_m: stations_m.clone(), max_grade }],
         };
         let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
-        let design =
-            design(&network, &[SectionGround { ground_m, stated: None, limits }], &[f64::NAN; 2], 50.0);
+        let design = design(
+            &network,
+            &[SectionGround { ground_m, stated: Support::Ground, limits }],
+            &[f64::NAN; 2],
+            50.0,
+        );
         let flat = strip(points, [0.0; 2], FLAT);
-        GradingStrip { stations_m, levels_m: design.levels_m[0].clone(), ..flat }
+        let level = Profile::new(stations_m, design.levels_m[0].clone()).expect("stations rise");
+        GradingStrip { level, ..flat }
     }
 }

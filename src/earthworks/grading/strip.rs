@@ -14,7 +14,9 @@
 
 use glam::DVec2;
 
+use crate::geom::offset::LineBend;
 use crate::geom::polyline::Polyline;
+use crate::geom::profile::Profile;
 
 /// The steepest line between two legs, meters along for each meter aside: that of a square turn. Further, legs are
 /// nearly opposite, and hardly any of the ground beside them belongs to both.
@@ -55,10 +57,8 @@ pub enum StripEnd {
 pub struct GradingStrip {
     /// Its centerline in world coordinates.
     pub line: Polyline,
-    /// Stations along `line` in meters, from 0, rising, at least two.
-    pub stations_m: Vec<f64>,
-    /// The road's level on the centerline at each of them, in meters.
-    pub levels_m: Vec<f64>,
+    /// The road's level on the centerline in meters, over stations along `line`.
+    pub level: Profile,
     /// Across.
     pub section: CrossSection,
     /// What stands at its ends.
@@ -131,18 +131,16 @@ impl GradingStrip {
         if vertex == 0 || vertex + 1 == points.len() {
             return 0.0;
         }
-        let way = |leg: usize| (points[leg + 1] - points[leg]).normalize_or_zero();
-        let (own, between) = (way(leg), way(vertex - 1).perp() + way(vertex).perp());
+        let own = (points[leg + 1] - points[leg]).normalize_or_zero();
+        let bend = LineBend { points: [points[vertex - 1], points[vertex], points[vertex + 1]], half: 0.0 };
+        let between = bend.bisector();
         let (along, left) = (own.dot(between), own.perp_dot(between));
         if left > 1e-9 { (along / left).clamp(-STEEPEST_LEAN, STEEPEST_LEAN) } else { 0.0 }
     }
 
     /// The road's level on the centerline.
     pub fn level(&self, station_m: f64) -> f64 {
-        let after = self.stations_m.partition_point(|&at| at < station_m).clamp(1, self.stations_m.len() - 1);
-        let (from, to) = (self.stations_m[after - 1], self.stations_m[after]);
-        let part = if to > from { ((station_m - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        self.levels_m[after - 1] + (self.levels_m[after] - self.levels_m[after - 1]) * part
+        self.level.at(station_m)
     }
 
     /// The level of the formation at a place beside the strip.
@@ -180,7 +178,8 @@ pub(in crate::earthworks::grading) mod tests {
         let stations_m = line.stations().to_vec();
         let level = |station: &f64| first + (last - first) * station / line.length();
         let levels_m = stations_m.iter().map(level).collect();
-        GradingStrip { line, stations_m, levels_m, section, ends: [StripEnd::Open; 2] }
+        let level = Profile::new(stations_m, levels_m).expect("stations rise");
+        GradingStrip { line, level, section, ends: [StripEnd::Open; 2] }
     }
 
     #[test]

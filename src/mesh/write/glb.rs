@@ -184,7 +184,6 @@ impl<'a> GlbScene<'a> {
         self.meshes.iter().map(mesh).collect()
     }
 
-    /// The root and its children.
     fn nodes(&self) -> Vec<Value> {
         let mut root = json!({"name": "world", "matrix": GLTF_FROM_WORLD});
         // The format forbids an empty list of children.
@@ -205,7 +204,6 @@ impl<'a> GlbScene<'a> {
     }
 }
 
-/// The binary chunk, and the views and accessors into it.
 #[derive(Default)]
 struct GlbData<'s> {
     chunks: Vec<Cow<'s, [u8]>>,

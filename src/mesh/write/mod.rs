@@ -93,9 +93,6 @@ pub fn write(format: MeshFormat, mesh: &TriMesh, remarks: &Remarks, out: &mut im
 }
 
 /// `count` as the 32 bits that a format has for it.
-///
-/// # Errors
-/// [`MeshWriteError::TooLarge`].
 fn count_u32(count: usize, what: &'static str) -> Result<u32, MeshWriteError> {
     u32::try_from(count).map_err(|_| MeshWriteError::TooLarge { count, what })
 }

@@ -13,7 +13,6 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::built_in::colored_vertex;
 use crate::model::built_in::trunk::Trunk;
 
-/// Boughs of a skirt.
 const BOUGHS: usize = 5;
 
 /// A skirt: the heights of its rim and its tip, and the reach of its boughs, in meters.
@@ -54,7 +53,6 @@ pub(super) fn mesh() -> DrawMesh {
     mesh
 }
 
-/// Adds a skirt rotated by `turn` boughs.
 fn add_skirt(mesh: &mut DrawMesh, skirt: &Skirt, turn: f32) {
     let count = 2 * BOUGHS;
     let rim = |index: usize| {

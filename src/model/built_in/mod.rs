@@ -14,11 +14,9 @@
 //!
 //! The numbers are the same on every machine: all arithmetic is that of f32 and `libm`.
 
-mod broadleaf;
 mod conifer;
 mod lump;
-mod rock;
-mod shrub;
+mod lumpy;
 mod trunk;
 
 use glam::Vec3;
@@ -35,9 +33,9 @@ pub const NAMES: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
 pub fn by_name(name: &str) -> Option<Model> {
     let mesh = match name {
         "conifer" => conifer::mesh(),
-        "broadleaf" => broadleaf::mesh(),
-        "shrub" => shrub::mesh(),
-        "rock" => rock::mesh(),
+        "broadleaf" => lumpy::broadleaf(),
+        "shrub" => lumpy::shrub(),
+        "rock" => lumpy::rock(),
         _ => return None,
     };
     Some(model(name, mesh))
@@ -48,7 +46,6 @@ fn colored_vertex(position: Vec3, normal: Vec3, color: Srgba) -> DrawVertex {
     DrawVertex { position: position.to_array(), normal: normal.to_array(), uv: [0.0; 2], color }
 }
 
-/// A model of one mesh with vertex colors.
 fn model(name: &str, mesh: DrawMesh) -> Model {
     let census =
         Census { meshes: 1, vertices: mesh.vertices.len(), faces: mesh.triangles.len(), materials: 1 };

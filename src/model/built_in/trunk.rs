@@ -20,7 +20,6 @@ pub(super) struct Trunk {
 }
 
 impl Trunk {
-    /// Adds the trunk, from below the ground to its height.
     pub(super) fn add_to(&self, mesh: &mut DrawMesh) {
         let mut ring = |z: f32, end: usize| -> Vec<VertexId> {
             let vertex = |side: usize| {

@@ -13,7 +13,6 @@ use super::data::{BufferView, GltfBuffers};
 /// The most elements read from all accessors of a model, instances included; bounds time and memory.
 const MAX_ELEMENTS: usize = 1 << 25;
 
-/// Reads accessors of one document.
 pub(super) struct AccessorReader<'a> {
     buffers: &'a GltfBuffers,
     elements_read: Cell<usize>,
@@ -46,25 +45,19 @@ impl Component {
 /// Where the elements of an accessor are in a view.
 #[derive(Clone, Copy)]
 struct ElementLayout {
-    /// The accessor, for messages.
     accessor: usize,
     count: usize,
-    /// Bytes of one element.
     size: usize,
     /// Bytes before the first.
     offset: usize,
 }
 
 impl<'a> AccessorReader<'a> {
-    /// A reader that has read nothing yet.
     pub(super) fn new(buffers: &'a GltfBuffers) -> Self {
         Self { buffers, elements_read: Cell::new(0) }
     }
 
     /// Vectors of `N` components; integers become floats as the format says.
-    ///
-    /// # Errors
-    /// [`ModelError`] where the accessor has another type or does not hold what it states.
     pub(super) fn vectors<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -75,10 +68,6 @@ impl<'a> AccessorReader<'a> {
         })
     }
 
-    /// Indices of vertices.
-    ///
-    /// # Errors
-    /// As [`AccessorReader::vectors`].
     pub(super) fn indices(&self, accessor: &Accessor<'_>) -> Result<Vec<u32>, ModelError> {
         self.elements(accessor, 1, |component, bytes| match component.kind {
             DataType::U8 | DataType::U16 | DataType::U32 => unsigned(&bytes[..component.kind.size()]),
@@ -86,10 +75,6 @@ impl<'a> AccessorReader<'a> {
         })
     }
 
-    /// Counts `elements` against the limit of a model.
-    ///
-    /// # Errors
-    /// [`ModelError::TooLarge`].
     pub(super) fn charge(&self, elements: usize) -> Result<(), ModelError> {
         let total = self.elements_read.get().saturating_add(elements);
         self.elements_read.set(total);
@@ -134,7 +119,6 @@ impl<'a> AccessorReader<'a> {
         Ok(elements)
     }
 
-    /// Replaces the elements that `sparse` names.
     fn replace_sparse<T>(
         &self,
         elements: &mut [T],

@@ -13,7 +13,6 @@ const SUPPORTED: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "K
 /// The start of extensions that refine how a material looks; it is drawn without them.
 const REFINEMENTS: &str = "KHR_materials_";
 
-/// The content of a glTF or GLB file.
 pub(super) struct GltfFile<'a> {
     pub document: Document,
     /// The binary chunk of a GLB file.
@@ -21,10 +20,6 @@ pub(super) struct GltfFile<'a> {
 }
 
 impl<'a> GltfFile<'a> {
-    /// Parses and checks a file.
-    ///
-    /// # Errors
-    /// [`ModelError::Gltf`] and [`ModelError::GltfJson`].
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, ModelError> {
         let (json, binary) = if bytes.starts_with(b"glTF") { split(bytes)? } else { (bytes, None) };
         let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
@@ -39,7 +34,6 @@ impl<'a> GltfFile<'a> {
     }
 }
 
-/// The JSON and binary chunks of a GLB file.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
     const JSON: usize = u32::from_le_bytes(*b"JSON") as usize;
     const BINARY: usize = u32::from_le_bytes(*b"BIN\0") as usize;

@@ -15,7 +15,6 @@ pub(super) struct GltfBuffers {
     buffers: Vec<Result<Arc<[u8]>, Arc<GltfDataError>>>,
 }
 
-/// A part of a buffer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BufferView<'a> {
     pub bytes: &'a [u8],
@@ -46,10 +45,6 @@ impl GltfBuffers {
         Self { buffers }
     }
 
-    /// The bytes of `view`.
-    ///
-    /// # Errors
-    /// [`ModelError::GltfBuffer`], or [`ModelError::Gltf`] where the view reaches past its buffer.
     pub(super) fn view(&self, view: &View<'_>) -> Result<BufferView<'_>, ModelError> {
         let index = view.buffer().index();
         let buffer = self.buffers[index].as_ref();
@@ -72,18 +67,11 @@ fn load_uri(uri: &str, companions: &dyn Companions) -> Result<Vec<u8>, GltfDataE
 }
 
 /// The bytes in a data URI (RFC 2397).
-///
-/// # Errors
-/// [`GltfDataError::NoComma`] and [`GltfDataError::NotBase64`].
 pub(super) fn decode_data_uri(uri: &str) -> Result<Vec<u8>, GltfDataError> {
     let (kind, body) = uri.split_once(',').ok_or(GltfDataError::NoComma)?;
     if kind.ends_with(";base64") { base64(body) } else { Ok(percent_decode_str(body).collect()) }
 }
 
-/// The relative file name in a URI.
-///
-/// # Errors
-/// [`GltfDataError::NotRelative`] and [`GltfDataError::NotUtf8`].
 pub(super) fn file_name(uri: &str) -> Result<String, GltfDataError> {
     let is_scheme =
         |text: &str| text.chars().all(|each| each.is_ascii_alphanumeric() || "+-.".contains(each));

@@ -7,12 +7,11 @@ use glam::{Mat2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::material::{AlphaMode, Material, TextureId};
-use crate::model::error::GltfDataError;
+use crate::model::error::{CompanionError, GltfDataError};
 use crate::model::texture::Textures;
 
 use super::data::{GltfBuffers, decode_data_uri, file_name};
 
-/// A material and the texture coordinates it reads.
 pub(super) struct GltfMaterial {
     pub material: Material,
     pub uv: GltfUvTransform,
@@ -107,19 +106,13 @@ fn load_image(
     let stored = &document.as_json().images[image.index()];
     let name = image.name().map_or_else(|| format!("image {}", image.index()), Into::into);
     let view = stored.buffer_view.and_then(|view| document.views().nth(view.value()));
-    match (view, &stored.uri) {
-        (Some(view), _) => match buffers.view(&view) {
-            Ok(view) => textures.decode(&name, view.bytes),
-            Err(error) => textures.unusable(&name, &error),
-        },
-        (None, Some(uri)) if uri.starts_with("data:") => match decode_data_uri(uri) {
-            Ok(bytes) => textures.decode(&name, &bytes),
-            Err(error) => textures.unusable(&name, &error),
-        },
-        (None, Some(uri)) => match file_name(uri) {
-            Ok(file) => textures.load(&file),
-            Err(error) => textures.unusable(&name, &error),
-        },
-        (None, None) => textures.unusable(&name, &GltfDataError::NoSource),
-    }
+    let load = |textures: &mut Textures<'_>| -> Result<Option<TextureId>, CompanionError> {
+        Ok(match (view, &stored.uri) {
+            (Some(view), _) => textures.decode(&name, buffers.view(&view)?.bytes),
+            (None, Some(uri)) if uri.starts_with("data:") => textures.decode(&name, &decode_data_uri(uri)?),
+            (None, Some(uri)) => textures.load(&file_name(uri)?),
+            (None, None) => return Err(GltfDataError::NoSource.into()),
+        })
+    };
+    load(textures).unwrap_or_else(|error| textures.unusable(&name, &*error))
 }

@@ -62,10 +62,10 @@ pub fn read(bytes: &[u8], companions: &dyn Companions) -> Result<Model, ModelErr
         let mut parts = PartBuilder::new(node.name().or(mesh.name()).unwrap_or_default());
         let counts = reader.add_mesh(&mesh, &pose, &mut parts)?;
         model.parts.extend(parts.finish());
-        model.census.meshes += counts.primitives;
+        model.census.meshes += counts.meshes;
         if !std::mem::replace(&mut is_counted[mesh.index()], true) {
             model.census.vertices += counts.vertices;
-            model.census.faces += counts.triangles;
+            model.census.faces += counts.faces;
         }
     }
     model.census.materials = document.materials().len();

@@ -6,7 +6,6 @@ use glam::{Mat4, Quat, Vec3};
 
 use crate::model::error::ModelError;
 
-/// The nodes of the scene and their transforms.
 pub(super) struct SceneNodes {
     /// Nodes of the scene, parents before children.
     pub order: Vec<usize>,
@@ -16,9 +15,6 @@ pub(super) struct SceneNodes {
 
 impl SceneNodes {
     /// Walks the default scene; where none is named the first, and without scenes every node that has no parent.
-    ///
-    /// # Errors
-    /// [`ModelError::Gltf`] where nodes do not form trees.
     pub(super) fn new(document: &Document) -> Result<Self, ModelError> {
         let nodes: Vec<Node<'_>> = document.nodes().collect();
         let parents = checked_parents(&nodes)?;

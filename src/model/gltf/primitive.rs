@@ -6,6 +6,7 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 
 use crate::draw::color::{Srgba, srgb_from_linear};
 use crate::draw::list::MaterialId;
+use crate::model::Census;
 use crate::model::error::ModelError;
 use crate::model::normals::{Smoothing, corner_normals};
 use crate::model::part::{ModelCorner, PartBuilder, TriangleBudget};
@@ -14,21 +15,12 @@ use super::accessor::AccessorReader;
 use super::material::{GltfMaterial, GltfUvTransform};
 use super::skin::MeshPose;
 
-/// Reads the meshes of one document.
 pub(super) struct MeshReader<'a> {
     pub accessors: AccessorReader<'a>,
     /// The last is for primitives without a material.
     pub materials: Vec<GltfMaterial>,
     budget: TriangleBudget,
     pub notes: Vec<String>,
-}
-
-/// How much a mesh has, as stored.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct MeshCounts {
-    pub primitives: usize,
-    pub vertices: usize,
-    pub triangles: usize,
 }
 
 /// The vertices of a primitive in the world, Z up.
@@ -42,25 +34,20 @@ struct PrimitiveVertices {
 }
 
 impl<'a> MeshReader<'a> {
-    /// A reader with the document's materials.
     pub(super) fn new(accessors: AccessorReader<'a>, materials: Vec<GltfMaterial>) -> Self {
         Self { accessors, materials, budget: TriangleBudget::default(), notes: Vec::new() }
     }
 
-    /// Adds `mesh` in `pose` to `parts`.
-    ///
-    /// # Errors
-    /// [`ModelError`].
     pub(super) fn add_mesh(
         &mut self,
         mesh: &Mesh<'_>,
         pose: &MeshPose,
         parts: &mut PartBuilder,
-    ) -> Result<MeshCounts, ModelError> {
-        let mut counts = MeshCounts::default();
+    ) -> Result<Census, ModelError> {
+        let mut counts = Census::default();
         for primitive in mesh.primitives() {
             let place = format!("meshes[{}].primitives[{}]", mesh.index(), primitive.index());
-            counts.primitives += 1;
+            counts.meshes += 1;
             if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
                 self.notes.push(format!("{place} has points or lines, which are not drawn"));
                 continue;
@@ -78,12 +65,11 @@ impl<'a> MeshReader<'a> {
                 self.notes.push(format!("{place} has {dropped} triangles that are not finite"));
             }
             counts.vertices += vertices.positions.len();
-            counts.triangles += triangles.len();
+            counts.faces += triangles.len();
         }
         Ok(counts)
     }
 
-    /// The triangles of a primitive, in range.
     fn triangles(
         &mut self,
         primitive: &Primitive<'_>,

@@ -10,17 +10,12 @@ use super::accessor::AccessorReader;
 
 /// From a mesh to the world, Z up.
 pub(super) enum MeshPose {
-    /// One transform for all vertices.
     Rigid(Mat4),
     /// A transform for each joint.
     Skinned(Vec<Mat4>),
 }
 
 impl MeshPose {
-    /// The rest pose of `skin`.
-    ///
-    /// # Errors
-    /// [`ModelError`] where its matrices cannot be read.
     pub(super) fn new(
         skin: &Skin<'_>,
         accessors: &AccessorReader<'_>,

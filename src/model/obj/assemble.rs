@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::color::Srgba;
 use crate::draw::list::MaterialId;
 use crate::model::error::{CompanionError, ModelError, error_chain};
 use crate::model::material::{MappedMaterial, unnamed_material};
@@ -14,11 +13,10 @@ use crate::model::texture::{Textures, load_any};
 use crate::model::triangulate::triangulate;
 use crate::model::{Census, Companions, Model};
 
-use super::mtl::{self, MtlMaterial};
-use super::parse::{FaceGroup, ObjCorner, ObjFace, ObjFile, color_from_channels};
+use super::mtl;
+use super::parse::{FaceGroup, ObjCorner, ObjFace, ObjFile};
 use super::text;
 
-/// The model of a parsed file.
 pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Model, ModelError> {
     let mut model = Model::default();
     let defined = load_libraries(file, companions, &mut model.notes);
@@ -50,7 +48,11 @@ pub(super) fn assemble(file: &ObjFile, companions: &dyn Companions) -> Result<Mo
 }
 
 /// The materials of all libraries; the first of a name counts.
-fn load_libraries(file: &ObjFile, companions: &dyn Companions, notes: &mut Vec<String>) -> Vec<MtlMaterial> {
+fn load_libraries(
+    file: &ObjFile,
+    companions: &dyn Companions,
+    notes: &mut Vec<String>,
+) -> Vec<MappedMaterial> {
     let mut names = BTreeSet::new();
     let mut materials = Vec::new();
     for library in &file.libraries {
@@ -76,7 +78,6 @@ fn load_library(library: &str, companions: &dyn Companions) -> Result<Vec<Vec<u8
     })
 }
 
-/// The materials of a file's faces.
 struct FaceMaterials {
     /// Those of [`ObjFile::materials`].
     named: Vec<MaterialId>,
@@ -85,10 +86,14 @@ struct FaceMaterials {
 }
 
 impl FaceMaterials {
-    /// Fills the model's materials and textures.
-    fn new(file: &ObjFile, defined: &[MtlMaterial], companions: &dyn Companions, model: &mut Model) -> Self {
+    fn new(
+        file: &ObjFile,
+        defined: &[MappedMaterial],
+        companions: &dyn Companions,
+        model: &mut Model,
+    ) -> Self {
         let mut textures = Textures::new(companions);
-        model.materials = defined.iter().map(|material| translate(material, &mut textures)).collect();
+        model.materials = defined.iter().map(|material| material.load(&mut textures)).collect();
         textures.move_to(model);
         let by_name: BTreeMap<&str, usize> =
             defined.iter().enumerate().map(|(index, material)| (material.name.as_str(), index)).collect();
@@ -114,24 +119,6 @@ impl FaceMaterials {
     }
 }
 
-fn translate(material: &MtlMaterial, textures: &mut Textures<'_>) -> crate::draw::material::Material {
-    let diffuse = color_from_channels(material.diffuse);
-    // Exporters write black under a texture, which would blacken it.
-    let is_black = material.diffuse.iter().all(|&channel| channel <= 0.0);
-    let mapped = MappedMaterial {
-        name: &material.name,
-        color: diffuse,
-        color_under_map: if is_black { Srgba::WHITE } else { diffuse },
-        alpha: (material.opacity * 255.0 + 0.5) as u8,
-        map: material.map.as_deref(),
-        opacity_map: material.opacity_map.as_deref(),
-        // The format has no sides, and its files are modeled for viewers that draw both.
-        two_sided: true,
-    };
-    mapped.load(textures)
-}
-
-/// The triangles of an object.
 struct ObjTriangles<'a> {
     file: &'a ObjFile,
     /// Triples of indices into [`ObjFile::corners`], with the face.
@@ -202,6 +189,7 @@ fn downward(uv: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::color::Srgba;
     use crate::draw::material::AlphaMode;
     use crate::model::obj::read;
 

@@ -1,33 +1,26 @@
 //! Material libraries: names, diffuse colors, opacities and the maps of both.
 
+use crate::draw::color::Srgba;
+use crate::model::material::MappedMaterial;
+
+use super::parse::color_from_channels;
 use super::text::{logical_lines, number, split_keyword};
 
-/// A material as stored.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct MtlMaterial {
-    pub name: String,
-    /// The diffuse color: sRGB in 0..=1.
-    pub diffuse: [f32; 3],
-    /// 1 is opaque.
-    pub opacity: f32,
-    /// The file of the diffuse map.
-    pub map: Option<String>,
-    /// The file of the opacity map; often the diffuse map's.
-    pub opacity_map: Option<String>,
-}
-
 /// The materials of a library, in order. Unknown statements are ignored.
-pub(super) fn parse(text: &str) -> Vec<MtlMaterial> {
-    let mut materials: Vec<MtlMaterial> = Vec::new();
+pub(super) fn parse(text: &str) -> Vec<MappedMaterial> {
+    let mut materials: Vec<MappedMaterial> = Vec::new();
     for (_, line) in logical_lines(text) {
         let (keyword, rest) = split_keyword(&line);
         if keyword == "newmtl" {
-            materials.push(MtlMaterial {
+            materials.push(MappedMaterial {
                 name: rest.into(),
-                diffuse: [0.8; 3],
-                opacity: 1.0,
+                color: color_from_channels([0.8; 3]),
+                color_under_map: color_from_channels([0.8; 3]),
+                alpha: 255,
                 map: None,
                 opacity_map: None,
+                // The format has no sides, and its files are modeled for viewers that draw both.
+                two_sided: true,
             });
         } else if let Some(material) = materials.last_mut() {
             set(material, keyword, rest);
@@ -36,13 +29,20 @@ pub(super) fn parse(text: &str) -> Vec<MtlMaterial> {
     materials
 }
 
-fn set(material: &mut MtlMaterial, keyword: &str, rest: &str) {
+fn set(material: &mut MappedMaterial, keyword: &str, rest: &str) {
     let first = || rest.split_whitespace().next().map(number).filter(|value| value.is_finite());
     let file = || Some(without_options(rest)).filter(|file| !file.is_empty());
+    let alpha = |opacity: f32| (opacity * 255.0 + 0.5) as u8;
     match keyword {
-        "Kd" => material.diffuse = color(rest).unwrap_or(material.diffuse),
-        "d" => material.opacity = first().unwrap_or(1.0).clamp(0.0, 1.0),
-        "Tr" => material.opacity = 1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0),
+        "Kd" => {
+            let Some(channels) = color(rest) else { return };
+            material.color = color_from_channels(channels);
+            // Exporters write black under a texture, which would blacken it.
+            let is_black = channels.iter().all(|&channel| channel <= 0.0);
+            material.color_under_map = if is_black { Srgba::WHITE } else { material.color };
+        }
+        "d" => material.alpha = alpha(first().unwrap_or(1.0).clamp(0.0, 1.0)),
+        "Tr" => material.alpha = alpha(1.0 - first().unwrap_or(0.0).clamp(0.0, 1.0)),
         "map_Kd" => material.map = file(),
         "map_d" => material.opacity_map = file(),
         _ => {}
@@ -108,9 +108,9 @@ mod tests {
         let materials = parse(text);
         assert_eq!(materials.len(), 2);
         assert_eq!(
-            (materials[0].name.as_str(), materials[0].diffuse, materials[0].opacity),
-            ("a b", [0.5; 3], 0.25)
+            (materials[0].name.as_str(), materials[0].color, materials[0].alpha),
+            ("a b", Srgba::opaque(128, 128, 128), 64)
         );
-        assert_eq!((materials[1].opacity, &materials[1].map), (0.75, &None));
+        assert_eq!((materials[1].alpha, &materials[1].map), (191, &None));
     }
 }

@@ -20,7 +20,6 @@ pub(super) struct ObjFile {
     /// V upward.
     pub uvs: Vec<Vec2>,
     pub normals: Vec<Vec3>,
-    /// Corners of all faces.
     pub corners: Vec<ObjCorner>,
     /// Objects and groups, in order; some have no faces.
     pub objects: Vec<FaceGroup>,
@@ -28,13 +27,10 @@ pub(super) struct ObjFile {
     pub materials: Vec<String>,
     /// The arguments of each `mtllib`.
     pub libraries: Vec<String>,
-    /// Whether the file names smoothing groups.
     pub has_smoothing: bool,
-    /// The number of point and line statements.
     pub points_and_lines: usize,
 }
 
-/// The faces of an object or a group.
 #[derive(Debug, Default)]
 pub(super) struct FaceGroup {
     /// Empty for faces before the first name.
@@ -63,10 +59,6 @@ pub(super) struct ObjCorner {
     pub normal: Option<usize>,
 }
 
-/// Parses `text`.
-///
-/// # Errors
-/// [`ModelError::Obj`] and [`ModelError::TooLarge`].
 pub(super) fn parse(text: &str) -> Result<ObjFile, ModelError> {
     let mut parser = ObjParser::default();
     parser.file.objects.push(FaceGroup::default());

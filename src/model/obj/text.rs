@@ -2,20 +2,14 @@
 
 use std::borrow::Cow;
 
+use encoding_rs::Encoding;
+use encoding_rs::mem::decode_latin1;
+
 /// The text in `bytes`: UTF-8 with or without a byte order mark, UTF-16 with one, otherwise Latin-1.
-pub(super) fn decode(bytes: &[u8]) -> String {
-    let utf16 = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
-        let units: Vec<u16> = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
-        String::from_utf16_lossy(&units)
-    };
-    match bytes {
-        [0xFE, 0xFF, rest @ ..] => utf16(rest, u16::from_be_bytes),
-        [0xFF, 0xFE, rest @ ..] => utf16(rest, u16::from_le_bytes),
-        [0xEF, 0xBB, 0xBF, rest @ ..] => String::from_utf8_lossy(rest).into_owned(),
-        _ => match std::str::from_utf8(bytes) {
-            Ok(text) => text.into(),
-            Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
-        },
+pub(super) fn decode(bytes: &[u8]) -> Cow<'_, str> {
+    match Encoding::for_bom(bytes) {
+        Some((encoding, _)) => encoding.decode(bytes).0,
+        None => std::str::from_utf8(bytes).map_or_else(|_| decode_latin1(bytes), Cow::Borrowed),
     }
 }
 
@@ -38,7 +32,6 @@ pub(super) fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, 
     })
 }
 
-/// The keyword of a statement and the rest, both trimmed.
 pub(super) fn split_keyword(line: &str) -> (&str, &str) {
     let line = line.trim();
     let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));

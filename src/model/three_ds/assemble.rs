@@ -23,7 +23,6 @@ use super::keyframer::world_from_nodes;
 use super::material::{MapChunk, MaterialChunk};
 use super::mesh::TriObject;
 
-/// How a map changes texture coordinates.
 #[derive(Clone, Copy, Debug)]
 struct MapUvTransform {
     scale: Vec2,
@@ -50,14 +49,12 @@ impl MapUvTransform {
     }
 }
 
-/// The file's materials, for faces.
 #[derive(Debug, Default)]
 struct Palette<'a> {
     by_name: BTreeMap<&'a str, usize>,
     uv_transforms: Vec<MapUvTransform>,
 }
 
-/// The model of a parsed file.
 pub(super) fn assemble(file: &ThreeDsFile, companions: &dyn Companions) -> Result<Model, ModelError> {
     let mut textures = Textures::new(companions);
     let mut model = Model { census: census(file), ..Model::default() };
@@ -91,22 +88,20 @@ fn census(file: &ThreeDsFile) -> Census {
 }
 
 fn translate(stored: &MaterialChunk, textures: &mut Textures<'_>) -> Material {
-    let file = |map: &'_ Option<MapChunk>| map.as_ref().map(|map| map.file.clone());
-    let (map, opacity_map) = (file(&stored.map), file(&stored.opacity_map));
+    let file = |map: &Option<MapChunk>| map.as_ref().map(|map| map.file.clone());
     let mapped = MappedMaterial {
-        name: &stored.name,
+        name: stored.name.clone(),
         color: stored.diffuse,
         // 3D Studio paints the map over the diffuse color.
         color_under_map: Srgba::WHITE,
         alpha: 255 - (stored.transparency * 255.0 + 0.5) as u8,
-        map: map.as_deref(),
-        opacity_map: opacity_map.as_deref(),
+        map: file(&stored.map),
+        opacity_map: file(&stored.opacity_map),
         two_sided: stored.two_sided,
     };
     mapped.load(textures)
 }
 
-/// An object in one of its places.
 struct PlacedObject<'a> {
     object: &'a TriObject,
     world_from_stored: Mat4,

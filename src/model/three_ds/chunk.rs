@@ -12,12 +12,10 @@ const HEADER: usize = 6;
 pub(super) struct Chunk<'a> {
     pub id: u16,
     body: &'a [u8],
-    /// The offset of the body in the file.
     offset: usize,
 }
 
 impl<'a> Chunk<'a> {
-    /// The chunk at the start of a file.
     pub(super) fn first(bytes: &'a [u8]) -> Result<Self, ModelError> {
         ChunkCursor { bytes, offset: 0 }
             .chunk()?
@@ -29,13 +27,11 @@ impl<'a> Chunk<'a> {
         self.read().chunks()
     }
 
-    /// A cursor at the start of the body.
     pub(super) fn read(&self) -> ChunkCursor<'a> {
         ChunkCursor { bytes: self.body, offset: self.offset }
     }
 }
 
-/// Reads a chunk's body from front to back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChunkCursor<'a> {
     bytes: &'a [u8],

@@ -11,7 +11,6 @@ use super::chunk::{Chunk, ChunkCursor};
 /// The id that means no parent.
 const NO_PARENT: u16 = 0xFFFF;
 
-/// An object node as stored.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct KeyframeNode {
     id: u16,

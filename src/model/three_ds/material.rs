@@ -7,7 +7,6 @@ use crate::model::error::ModelError;
 
 use super::chunk::Chunk;
 
-/// A material as stored.
 #[derive(Clone, Debug)]
 pub(super) struct MaterialChunk {
     pub name: String,
@@ -20,7 +19,6 @@ pub(super) struct MaterialChunk {
     pub opacity_map: Option<MapChunk>,
 }
 
-/// A picture mapped on a surface.
 #[derive(Clone, Debug)]
 pub(super) struct MapChunk {
     pub file: String,
@@ -30,7 +28,6 @@ pub(super) struct MapChunk {
     pub rotation_rad: f32,
 }
 
-/// The material in a material chunk.
 pub(super) fn parse(chunk: &Chunk<'_>) -> Result<MaterialChunk, ModelError> {
     const NAME: u16 = 0xA000;
     const DIFFUSE: u16 = 0xA020;

@@ -6,7 +6,6 @@ use crate::model::error::ModelError;
 
 use super::chunk::{Chunk, ChunkCursor};
 
-/// A triangle mesh as stored.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TriObject {
     pub name: String,
@@ -23,7 +22,6 @@ pub(super) struct TriObject {
     pub world_from_object: Mat4,
 }
 
-/// The faces of one material.
 #[derive(Clone, Debug)]
 pub(super) struct MaterialGroup {
     pub material: String,
@@ -76,7 +74,6 @@ fn tri_object(name: String, chunk: &Chunk<'_>) -> Result<TriObject, ModelError> 
     Ok(mesh)
 }
 
-/// Faces, then chunks with their attributes.
 fn faces(mesh: &mut TriObject, mut cursor: ChunkCursor<'_>) -> Result<(), ModelError> {
     const MATERIAL_GROUP: u16 = 0x4130;
     const SMOOTHING: u16 = 0x4150;

@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2};
 use crate::pipeline::lod::method::LodMethod;
 use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::frames::LastFrame;
-use crate::roam::measure::{HeightDifference, height_difference_seen};
+use crate::roam::measure::{HeightDifference, height_difference};
 use crate::roam::shown::PatchList;
 use crate::terrain::lattice::Post;
 use crate::view::camera::Camera;
@@ -101,7 +101,7 @@ impl FlightPlan<'_> {
             let shown = camera.project(at.extend(shown_m as f32));
             Some(shown.map_or(0.0, |shown| f64::from(shown.pixel.distance(pixel))))
         };
-        height_difference_seen(lattice, &self.ground.layout, shown, error_px)
+        height_difference(lattice, &self.ground.layout, shown, error_px)
     }
 }
 

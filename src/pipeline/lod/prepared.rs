@@ -9,7 +9,6 @@ use crate::roam::criterion::block::BlockRelief;
 use crate::roam::criterion::midpoint::Midpoint;
 use crate::roam::criterion::screen::ScreenError;
 use crate::roam::criterion::spheres::Spheres;
-use crate::roam::criterion::variance::Variance;
 use crate::roam::culling::PatchHeights;
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::errors::ErrorMap;
@@ -128,7 +127,7 @@ impl PreparedGround {
                 with.call(&ScreenError::new(ground, self.exact(), &self.heights, camera, tolerance_px))
             }
             CriterionKind::Variance => {
-                with.call(&Variance::new(ground, self.midpoint(), camera, tolerance_px))
+                with.call(&Midpoint::by_land_width(ground, self.midpoint(), camera, tolerance_px))
             }
             CriterionKind::Roughness => {
                 with.call(&Midpoint::new(ground, self.midpoint(), camera, tolerance_px))

@@ -10,14 +10,12 @@ use glam::Vec2;
 
 use crate::draw::pixels::Pixels;
 
-/// The alpha of a texture and its mip levels.
 #[derive(Debug)]
 pub struct AlphaMask {
     /// The largest first; none where the texture is opaque or empty.
     levels: Vec<AlphaLevel>,
 }
 
-/// Level and taps of the mask readings for one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaskFootprint {
     level: usize,
@@ -32,7 +30,6 @@ struct AlphaLevel {
 }
 
 impl AlphaMask {
-    /// The alpha of `base` and of its `smaller` levels.
     pub fn new(base: &Pixels, smaller: &[Pixels]) -> Self {
         let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
         let levels = std::iter::once(base).chain(smaller).map(|level| AlphaLevel {
@@ -80,7 +77,6 @@ fn nearest_level(area: f32) -> usize {
 }
 
 impl AlphaLevel {
-    /// The alpha around `uv`, 0..=1.
     fn bilinear(&self, uv: Vec2) -> f32 {
         let [width, height] = self.size;
         let [x, y] = (Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5).to_array();
@@ -102,10 +98,8 @@ impl AlphaLevel {
 }
 
 /// The two texels around a repeating coordinate and its distance from the first toward the second, in texels. `size`
-/// must not be 0.
-///
-/// Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN to 0:
-/// coordinates that are not finite give some texel too.
+/// must not be 0. Rounds by casting, which is much cheaper than `floor` and `rem_euclid`. Casts saturate and turn NaN
+/// to 0: coordinates that are not finite give some texel too.
 pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
     let part = coordinate - coordinate as i64 as f32;
     let repeated = if part < 0.0 { part + 1.0 } else { part }.clamp(0.0, 1.0);

@@ -13,14 +13,10 @@ use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::tile::{TileContext, TileScratch, draw_tile};
 use crate::render::cpu::visibility::TILE;
 
-/// The rows of a picture that a band writes.
 #[derive(Debug)]
 pub struct BandRows<'a> {
-    /// Colors.
     pub colors: &'a mut [Srgba],
-    /// Depths.
     pub depths_m: &'a mut [f32],
-    /// Features.
     pub features: &'a mut [FeatureId],
 }
 

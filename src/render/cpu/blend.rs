@@ -17,38 +17,29 @@ use crate::render::picture::LEAST_VISIBLE_ALPHA;
 /// Transparent fragments that a pixel keeps; of more, the farthest is dropped. Bounds memory to 2 MiB per tile.
 const MOST_LAYERS: usize = 32;
 
-/// No fragment.
-const END: u32 = u32::MAX;
-
-/// A transparent face in one pixel.
 #[derive(Clone, Copy, Debug)]
 struct Fragment {
     face: FaceId,
-    next: u32,
     inverse_depth: f32,
     mask: SampleMask,
 }
 
-/// The transparent fragments of one tile: a linked list per pixel.
+/// The transparent fragments of one tile, the nearest of each pixel first.
 #[derive(Debug)]
 pub struct Blend {
     window: PixelWindow,
-    heads: Vec<u32>,
-    fragments: Vec<Fragment>,
+    pixels: Vec<Vec<Fragment>>,
 }
 
 impl Blend {
-    /// Without fragments.
     pub fn new() -> Self {
-        let heads = vec![END; (TILE * TILE) as usize];
-        Self { window: PixelWindow::EMPTY, heads, fragments: Vec::new() }
+        Self { window: PixelWindow::EMPTY, pixels: vec![Vec::new(); (TILE * TILE) as usize] }
     }
 
     /// Removes all fragments and moves the tile to `window`.
     pub fn clear(&mut self, window: PixelWindow) {
         self.window = window;
-        self.fragments.clear();
-        self.heads.fill(END);
+        self.pixels.iter_mut().for_each(Vec::clear);
     }
 
     fn index(&self, x: u32, y: u32) -> usize {
@@ -80,41 +71,14 @@ impl Blend {
             }
             if seen != 0 {
                 let inverse_depth = face.inverse_depth(frame.pattern.centroid_in(x, y, seen));
-                let fragment = Fragment { face: piece.face, next: END, inverse_depth, mask: seen };
-                self.insert(self.index(x, y), fragment, face);
+                let index = self.index(x, y);
+                insert(
+                    &mut self.pixels[index],
+                    Fragment { face: piece.face, inverse_depth, mask: seen },
+                    face,
+                );
             }
         });
-    }
-
-    /// Inserts a fragment before the first of its pixel that does not lie in front of it.
-    fn insert(&mut self, pixel: usize, mut fragment: Fragment, face: &ScreenFace) {
-        let (mut before, mut here, mut count) = (END, self.heads[pixel], 0);
-        while here != END && self.fragments[here as usize].inverse_depth > fragment.inverse_depth * face.reach
-        {
-            (before, here, count) = (here, self.fragments[here as usize].next, count + 1);
-        }
-        if count == MOST_LAYERS {
-            return;
-        }
-        fragment.next = here;
-        let new = self.fragments.len() as u32;
-        self.fragments.push(fragment);
-        match before {
-            END => self.heads[pixel] = new,
-            before => self.fragments[before as usize].next = new,
-        }
-        self.drop_farthest(new, count);
-    }
-
-    /// Ends a pixel's list after [`MOST_LAYERS`] fragments; `count` fragments precede `at`.
-    fn drop_farthest(&mut self, mut at: u32, mut count: usize) {
-        while at != END {
-            count += 1;
-            if count == MOST_LAYERS {
-                self.fragments[at as usize].next = END;
-            }
-            at = self.fragments[at as usize].next;
-        }
     }
 
     /// Blends a pixel's fragments over the `colors` of its samples. Returns the transparent face that the depth and
@@ -125,18 +89,8 @@ impl Blend {
         (x, y): (u32, u32),
         colors: &mut [Vec3; N],
     ) -> Option<FaceId> {
-        if self.fragments.is_empty() {
-            return None;
-        }
-        let mut nearest_first = [END; MOST_LAYERS];
-        let (mut count, mut at) = (0, self.heads[self.index(x, y)]);
-        while at != END {
-            nearest_first[count] = at;
-            (count, at) = (count + 1, self.fragments[at as usize].next);
-        }
         let mut seen = None;
-        for &index in nearest_first[..count].iter().rev() {
-            let fragment = &self.fragments[index as usize];
+        for fragment in self.pixels[self.index(x, y)].iter().rev() {
             let at = frame.pattern.centroid_in(x, y, fragment.mask);
             let shaded = frame.shader.shade(frame.geometry.face(fragment.face), at);
             for (sample, color) in colors.iter_mut().enumerate() {
@@ -152,10 +106,18 @@ impl Blend {
     }
 }
 
-/// Whether a transparent face at inverse depth `depth` shows before an opaque face.
-///
-/// In the same plane a drape shows over the ground and over drapes that come before it in the list; drapes that come
-/// after it cover it.
+/// Inserts a fragment of `face` before the first of a pixel's fragments that does not lie in front of it.
+fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, face: &ScreenFace) {
+    let in_front = |other: &Fragment| other.inverse_depth > fragment.inverse_depth * face.reach;
+    let place = pixel.iter().position(|other| !in_front(other)).unwrap_or(pixel.len());
+    if place < MOST_LAYERS {
+        pixel.insert(place, fragment);
+        pixel.truncate(MOST_LAYERS);
+    }
+}
+
+/// Whether a transparent face at inverse depth `depth` shows before an opaque face. In the same plane a drape shows
+/// over the ground and over drapes that come before it in the list; drapes that come after it cover it.
 fn is_before<const N: usize>(
     frame: &TileContext<N>,
     face: &ScreenFace,

@@ -9,16 +9,14 @@ use glam::DVec3;
 
 use crate::render::cpu::screen::Screen;
 
-/// How far outside the picture corners may lie, in pixels.
-///
-/// Wide, so that few triangles are cut; narrow enough that corners of a 16384-pixel picture fit an i32 at
-/// [`crate::render::cpu::raster::SUBPIXEL_BITS`] and their products an i64.
+/// How far outside the picture corners may lie, in pixels. Wide, so that few triangles are cut; narrow enough that
+/// corners of a 16384-pixel picture fit an i32 at [`crate::render::cpu::raster::SUBPIXEL_BITS`] and their products an
+/// i64.
 const GUARD_PX: f64 = 8192.0;
 
 /// A triangle cut at five planes has at most this many corners.
 const MOST_CORNERS: usize = 8;
 
-/// A convex outline in homogeneous pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
     corners: [DVec3; MOST_CORNERS],
@@ -64,7 +62,6 @@ fn crossing(inner: DVec3, d_inner: f64, outer: DVec3, d_outer: f64) -> DVec3 {
 }
 
 /// The part of the triangle before the near plane and inside the guard band, or `None` where it is off the picture.
-///
 /// Corners are homogeneous pixels and must be finite.
 pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
     let [width, height] = screen.size.map(f64::from);

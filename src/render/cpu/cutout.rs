@@ -15,16 +15,13 @@ use crate::render::cpu::texture::Texture;
 /// eight samples per pixel.
 const SAMPLE_SIDE: f32 = 0.354;
 
-/// A face with its mask.
 #[derive(Clone, Copy, Debug)]
 pub struct Cutout<'a> {
-    /// The face.
     pub face: &'a ScreenFace,
     /// Alpha below this is a hole.
     pub cutoff: f32,
     /// The alpha at the face's corners, without the texture's.
     pub alphas: [f32; 3],
-    /// The texture and the corners' coordinates in it.
     pub texture: Option<(&'a Texture<'a>, [[f32; 2]; 3])>,
     /// The most readings of the texture along a pixel.
     pub most_taps: u32,
@@ -44,7 +41,7 @@ impl Cutout<'_> {
             return if alpha < self.cutoff { 0 } else { samples };
         };
         let [uv, across, along] = weights.blend_uv(corners);
-        let mask = texture.alpha();
+        let mask = &texture.alpha;
         let footprint = mask.footprint(across * SAMPLE_SIDE, along * SAMPLE_SIDE, self.most_taps);
         let center = Vec2::from(pattern.centroid(samples));
         let mut solid = 0;

@@ -32,12 +32,9 @@ impl FaceId {
     pub const NONE: Self = Self(u32::MAX);
 }
 
-/// A triangle of the list that may be seen.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenFace {
-    /// The item's index in the list.
     pub item: u32,
-    /// The triangle's index in its mesh.
     pub triangle: u32,
     /// Depth and corner weights over the picture.
     pub planes: TrianglePlanes,
@@ -48,39 +45,20 @@ pub struct ScreenFace {
 }
 
 impl ScreenFace {
-    /// Whether it belongs to a draped item.
-    pub fn is_draped(&self) -> bool {
-        self.reach > 1.0
-    }
-
     /// The inverse depth at a pixel position, clamped to the range of the face's corners.
     pub fn inverse_depth(&self, at: [f32; 2]) -> f32 {
         (self.planes.inverse_depth.at(at) as f32).max(self.range[0]).min(self.range[1])
     }
 }
 
-/// How a piece enters the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RasterPass {
-    /// Hides what is behind it.
-    Opaque,
-    /// Hides what is behind it where its alpha reaches the cut-off.
-    Mask,
-    /// Lets through a part of what is behind it.
-    Blend,
-}
-
-/// A triangular part of a face's outline.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePiece {
     /// Sub-pixel corners with a positive area.
     pub corners: [SubpixelPoint; 3],
     /// The pixels it may touch; never empty.
     pub window: PixelWindow,
-    /// Its face.
     pub face: FaceId,
-    /// How it is drawn.
-    pub pass: RasterPass,
+    pub alpha: AlphaMode,
 }
 
 /// The faces of up to [`CHUNK`] consecutive triangles of the list.
@@ -90,27 +68,24 @@ struct FaceChunk {
     pieces: Vec<FacePiece>,
 }
 
-/// All faces and pieces of a list as one camera sees them.
 #[derive(Debug)]
 pub struct ScreenGeometry {
     chunks: Vec<FaceChunk>,
 }
 
-/// What the triangles of one item have in common.
 struct ItemSetup<'a> {
     screen: &'a Screen,
     mesh: &'a DrawMesh,
     item: &'a DrawItem,
     index: u32,
-    projection: Projection,
-    pass: RasterPass,
+    projection: Projection<'a>,
+    alpha: AlphaMode,
     two_sided: bool,
 }
 
 impl ScreenGeometry {
-    /// The faces of a checked `list` that `screen` may see, in the list's order.
-    ///
-    /// `None` where the list draws more triangles than ids can number (2^32).
+    /// The faces of a checked `list` that `screen` may see, in the list's order. `None` where the list draws more
+    /// triangles than ids can number (2^32).
     pub fn new(list: &DrawList, screen: &Screen) -> Option<Self> {
         let mut total = 0;
         let ends = list.items.iter().map(|item| {
@@ -132,7 +107,6 @@ impl ScreenGeometry {
         &self.chunks[(id / CHUNK) as usize].faces[(id % CHUNK) as usize]
     }
 
-    /// All pieces in the list's order.
     pub fn pieces(&self) -> impl Iterator<Item = &FacePiece> {
         self.chunks.iter().flat_map(|chunk| &chunk.pieces)
     }
@@ -168,16 +142,11 @@ impl<'a> ItemSetup<'a> {
             item,
             index: index as u32,
             projection: screen.projection(&item.world_from_mesh),
-            pass: match material.alpha {
-                AlphaMode::Opaque => RasterPass::Opaque,
-                AlphaMode::Mask(_) => RasterPass::Mask,
-                AlphaMode::Blend => RasterPass::Blend,
-            },
+            alpha: material.alpha,
             two_sided: material.two_sided,
         }
     }
 
-    /// Adds the triangle's face and pieces, if it can be seen.
     fn add_triangle(&self, chunk: &mut FaceChunk, triangle: u32, id: FaceId) {
         let corners =
             self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id.index()].position);
@@ -197,7 +166,7 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let tolerance = match self.item.layer {
-            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen.eye()),
+            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen.eye),
             DepthLayer::Ground | DepthLayer::Solid => 0.0,
         };
         let range = inverse_depth_range(&outline, self.screen.near);
@@ -215,26 +184,23 @@ impl<'a> ItemSetup<'a> {
             let corners = if faces_eye { [a, c, b] } else { [a, b, c] };
             let window = PixelWindow::around(&corners, self.screen.size);
             if doubled_area(&corners) > 0 && !window.is_empty() {
-                pieces.push(FacePiece { corners, window, face, pass: self.pass });
+                pieces.push(FacePiece { corners, window, face, alpha: self.alpha });
             }
         }
     }
 }
 
-/// The least and greatest `1 / w` among the corners.
-///
-/// Cutting a triangle of astronomic size can leave a corner slightly before the near plane, or even behind the eye: both
-/// are clamped to what a camera sees.
+/// The least and greatest `1 / w` among the corners. Cutting a triangle of astronomic size can leave a corner slightly
+/// before the near plane, or even behind the eye: both are clamped to what a camera sees.
 fn inverse_depth_range(outline: &Outline, near: f64) -> [f32; 2] {
     let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
     inverses.fold([f32::MAX, 0.0], |[least, most], inverse| [least.min(inverse), most.max(inverse)])
 }
 
-/// The part of a depth by which a draped triangle may lie behind the ground it was cut from.
-///
-/// At least [`DRAPE_TOLERANCE`]. A corner rounded to f32 leaves the ground's plane by up to one step of its largest
-/// coordinate. Seen from an eye at distance `e` from that plane, this changes depths by that step over `e`: close above
-/// a road far from the origin this is the larger of the two.
+/// The part of a depth by which a draped triangle may lie behind the ground it was cut from. At least
+/// [`DRAPE_TOLERANCE`]. A corner rounded to f32 leaves the ground's plane by up to one step of its largest coordinate.
+/// Seen from an eye at distance `e` from that plane, this changes depths by that step over `e`: close above a road far
+/// from the origin this is the larger of the two.
 fn drape_tolerance(offsets: &[DVec3; 3], eye: DVec3) -> f64 {
     let [a, b, c] = *offsets;
     let normal = (b - a).cross(c - a);

@@ -10,7 +10,6 @@ use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
 use crate::render::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 
-/// A ground map with its coarser levels.
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
@@ -18,7 +17,6 @@ pub struct GroundShader<'a> {
     coarser: Vec<GroundLevel>,
 }
 
-/// The ground over one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GroundPoint {
     /// Height, slopes and light.
@@ -28,12 +26,10 @@ pub struct GroundPoint {
 }
 
 impl<'a> GroundShader<'a> {
-    /// A checked `map` with all coarser levels.
     pub fn new(map: &'a GroundMap) -> Self {
         Self { map, posts_per_meter: map.cell.recip(), coarser: coarser_levels(map).collect() }
     }
 
-    /// The ground beneath a hit, over the pixel's footprint.
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
         let [right, down] = [hit.right.truncate(), hit.down.truncate()];
         let footprint = TexelFootprint::new(right, down, self.posts_per_meter, most_taps);
@@ -88,7 +84,6 @@ impl<'a> GroundShader<'a> {
     }
 }
 
-/// The cell of a grid coordinate among `count` posts, and the position within it.
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
     let cell = (coordinate as usize).min(count.saturating_sub(2));
     (cell, coordinate - cell as f32)

@@ -5,10 +5,8 @@ use glam::{Vec2, Vec3};
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::screen::Screen;
 
-/// A point of a face and its change from pixel to pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {
-    /// In world space.
     pub world: Vec3,
     /// Meters from the eye.
     pub distance_m: f32,
@@ -27,19 +25,17 @@ pub struct Barycentric {
 }
 
 impl FacePoint {
-    /// The point of `face` seen at pixel position `at`.
     pub fn new(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
         let plane = &face.planes.inverse_depth;
         let depth_m = 1.0 / face.inverse_depth(at);
         let ray = screen.ray_at(at);
-        let [ray_right, ray_down] = screen.ray_steps();
         // p = eye + ray · depth and depth = 1 / plane, hence dp = depth · (dray − ray · depth · dplane).
         let change = |step: Vec3, slope: f64| (step - ray * (slope as f32 * depth_m)) * depth_m;
         Self {
-            world: screen.eye().as_vec3() + ray * depth_m,
+            world: screen.eye.as_vec3() + ray * depth_m,
             distance_m: ray.length() * depth_m,
-            right: change(ray_right, plane.right),
-            down: change(ray_down, plane.down),
+            right: change(screen.ray_right, plane.right),
+            down: change(screen.ray_down, plane.down),
         }
     }
 }
@@ -62,12 +58,10 @@ impl Barycentric {
         }
     }
 
-    /// The blend of the corners' vectors.
     pub fn blend(&self, [a, b, c]: [Vec3; 3]) -> Vec3 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }
 
-    /// The blend of the corners' numbers.
     pub fn blend_number(&self, [a, b, c]: [f32; 3]) -> f32 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }

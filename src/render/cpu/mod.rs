@@ -15,24 +15,16 @@
 //! are drawn in parallel on the current `rayon` pool. Within a tile ground and drapes keep the list's order. Solids
 //! are drawn from the nearest on, and hidden ones are skipped; the picture does not depend on their order.
 //!
-//! # Surfaces
-//! Ground and solids hide what is behind them. Draped faces follow [`crate::draw::list::DepthLayer`]; the tolerance is
-//! widened where f32 corners far from the origin round by more than it (see `geometry::drape_tolerance`). Masked
-//! surfaces are tested at each sample that nothing nearer covers, usually by one reading of their alpha. Transparent
-//! surfaces are sorted per pixel, up to 32 deep, and blended over each sample in linear light; depth and feature
-//! buffers show them from alpha ½ on, and what lies behind them below that.
+//! Draped faces follow [`crate::draw::list::DepthLayer`], with a tolerance widened where f32 corners far from the
+//! origin round by more than it. Masked surfaces are tested at each sample that nothing nearer covers. Transparent
+//! surfaces are sorted per pixel, up to 32 deep, and blended over each sample in linear light.
 //!
 //! # Cost
-//! Time is a sum of pixels × the surfaces seen in each (shading, two thirds and more), triangles (three corners
-//! projected and three planes each), and covered samples (one depth test each). Against one sample per pixel, four take
-//! about a quarter more time and eight a third. A landscape of 180,000 triangles, 1920×1080, eight samples, takes about
-//! half a second of processor time, shared evenly by the threads. A forest of 100,000 trees, most of them pictures on
-//! masked quads, takes about three.
-//!
-//! Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12
-//! bytes per pixel and 48 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces;
-//! a third of each texture and of the ground map for their coarser levels, and as much again of a texture with holes
-//! for its alpha.
+//! Shading takes two thirds of the time and more; the rest is triangles (three corners projected, three planes) and one
+//! depth test per covered sample. Eight samples per pixel take a third more time than one. Memory: 12 bytes per pixel
+//! for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12 bytes per pixel and 52 per
+//! triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces; a third of each texture and
+//! of the ground map for their coarser levels, and as much again of a texture with holes for its alpha.
 
 mod alpha;
 mod band;
@@ -124,7 +116,6 @@ pub fn render(list: &DrawList, camera: &Camera, quality: &RenderQuality) -> Resu
     })
 }
 
-/// All bands of the picture.
 fn draw<const N: usize>(
     screen: &Screen,
     geometry: &ScreenGeometry,

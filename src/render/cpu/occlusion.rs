@@ -10,10 +10,8 @@ use std::ops::Range;
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::visibility::TILE;
 
-/// Pixels along the side of a block.
 const BLOCK: u32 = 8;
 
-/// Blocks along the side of a tile.
 const BLOCKS: usize = (TILE / BLOCK) as usize;
 
 /// Pieces drawn into a block after which its farthest depth is computed again.
@@ -22,24 +20,20 @@ const STALE: u8 = 16;
 /// Pieces over more blocks than these are not tested: hardly any of them is hidden entirely.
 const MOST_BLOCKS: usize = 4;
 
-/// The farthest depths of the blocks of one tile.
 #[derive(Debug)]
 pub struct Occlusion {
-    /// The least inverse depth of each block.
     farthest: [[f32; BLOCKS]; BLOCKS],
     /// Pieces drawn since, [`STALE`] at most.
     drawn: [[u8; BLOCKS]; BLOCKS],
 }
 
 impl Occlusion {
-    /// Nothing known of any block.
     pub fn new() -> Self {
         Self { farthest: [[0.0; BLOCKS]; BLOCKS], drawn: [[STALE; BLOCKS]; BLOCKS] }
     }
 
-    /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`.
-    ///
-    /// `depths` are those of the tile's samples, row by row, [`TILE`] pixels per row.
+    /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`. `depths` are those
+    /// of the tile's samples, row by row, [`TILE`] pixels per row.
     pub fn hides<const N: usize>(&mut self, window: PixelWindow, nearest: f32, depths: &[[f32; N]]) -> bool {
         let [columns, rows] = blocks(window);
         if columns.len() * rows.len() > MOST_BLOCKS {
@@ -56,7 +50,6 @@ impl Occlusion {
         })
     }
 
-    /// Counts a piece drawn in `window`, in pixels of the tile.
     pub fn count_piece(&mut self, window: PixelWindow) {
         let [columns, rows] = blocks(window);
         for row in rows {
@@ -67,12 +60,10 @@ impl Occlusion {
     }
 }
 
-/// The columns and rows of blocks that a window touches.
 fn blocks(window: PixelWindow) -> [Range<usize>; 2] {
     [0, 1].map(|axis| (window.from[axis] / BLOCK) as usize..window.to[axis].div_ceil(BLOCK) as usize)
 }
 
-/// The least inverse depth of a block.
 fn farthest<const N: usize>(depths: &[[f32; N]], column: usize, row: usize) -> f32 {
     let (side, block) = (TILE as usize, BLOCK as usize);
     let lines = depths[row * block * side..][..block * side].chunks_exact(side);

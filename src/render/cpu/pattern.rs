@@ -7,9 +7,8 @@
 /// A set of a pixel's samples: bit `s` is sample `s`.
 pub type SampleMask = u8;
 
-/// `N` sample positions, at most 8.
-///
-/// The first sample is the one nearest to the pixel's center; the mean of all is the center.
+/// `N` sample positions, at most 8. The first sample is the one nearest to the pixel's center; the mean of all is the
+/// center.
 #[derive(Debug)]
 pub struct SamplePattern<const N: usize> {
     /// Offsets from the pixel's center in sixteenths of a pixel, X right and Y down.
@@ -27,18 +26,15 @@ pub const EIGHT: SamplePattern<8> =
     SamplePattern { sixteenths: [[1, -3], [-1, 3], [5, 1], [-3, -5], [-5, 5], [-7, -1], [3, 7], [7, -7]] };
 
 impl<const N: usize> SamplePattern<N> {
-    /// Every sample.
     pub const FULL: SampleMask = ((1u16 << N) - 1) as SampleMask;
 
-    /// The offset of `sample` from the pixel's center, in pixels.
     pub fn offset(&self, sample: usize) -> [f32; 2] {
         self.sixteenths[sample].map(|sixteenths| sixteenths as f32 / 16.0)
     }
 
-    /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none.
-    ///
-    /// A triangle is convex, so that the mean of the samples it covers lies inside it: attributes taken there never
-    /// reach beyond its border.
+    /// The mean offset of the samples in `mask` from the pixel's center, in pixels; zero for none. A triangle is
+    /// convex, so that the mean of the samples it covers lies inside it: attributes taken there never reach beyond its
+    /// border.
     pub fn centroid(&self, mask: SampleMask) -> [f32; 2] {
         if mask == Self::FULL || mask == 0 {
             return [0.0; 2];

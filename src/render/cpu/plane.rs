@@ -5,11 +5,8 @@ use glam::DVec3;
 /// `x·right + y·down + start` at pixel position `(x, y)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScreenPlane {
-    /// The change over one pixel to the right.
     pub right: f64,
-    /// The change over one pixel down.
     pub down: f64,
-    /// The value at the picture's upper left corner.
     pub start: f64,
 }
 
@@ -19,13 +16,11 @@ impl ScreenPlane {
         vector.is_finite().then_some(Self { right: vector.x, down: vector.y, start: vector.z })
     }
 
-    /// The value at a pixel position.
     pub fn at(&self, position: [f32; 2]) -> f64 {
         self.right * f64::from(position[0]) + self.down * f64::from(position[1]) + self.start
     }
 }
 
-/// Depth and corner weights of a triangle over the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePlanes {
     /// `1 / w`, `w` being meters along the viewing direction.
@@ -39,10 +34,9 @@ pub struct TrianglePlanes {
 }
 
 impl TrianglePlanes {
-    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not finite.
-    ///
-    /// A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ · p`
-    /// with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
+    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not
+    /// finite. A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ
+    /// · p` with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
     /// distant triangle is small beside its distance.
     pub fn from_corners([a, b, c]: [DVec3; 3]) -> Option<Self> {
         let (ab, ac) = (b - a, c - a);

@@ -8,14 +8,11 @@
 
 use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 
-/// Corners are snapped to `2^-SUBPIXEL_BITS` pixels.
-///
-/// Fine enough that the outline of a draped surface leaves its ground triangle's by no more than the depth tolerance
-/// covers, a few pixels from the horizon; coarse enough that edge functions over 32,768 pixels (the largest picture and
-/// its guard band) stay below 2^61.
+/// Corners are snapped to `2^-SUBPIXEL_BITS` pixels. Fine enough that the outline of a draped surface leaves its ground
+/// triangle's by no more than the depth tolerance covers, a few pixels from the horizon; coarse enough that edge
+/// functions over 32,768 pixels (the largest picture and its guard band) stay below 2^61.
 pub const SUBPIXEL_BITS: u32 = 14;
 
-/// Pixels along the side of a block.
 const BLOCK: u32 = 8;
 
 const ONE_PIXEL: i64 = 1 << SUBPIXEL_BITS;
@@ -26,23 +23,18 @@ pub type SubpixelPoint = [i32; 2];
 /// The pixels `from[0]..to[0]` × `from[1]..to[1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelWindow {
-    /// First column and row.
     pub from: [u32; 2],
-    /// Past the last column and row.
     pub to: [u32; 2],
 }
 
 impl PixelWindow {
-    /// No pixel.
     pub const EMPTY: Self = Self { from: [0; 2], to: [0; 2] };
 
-    /// The pixels in both.
     pub fn intersection(self, other: Self) -> Self {
         let from = [self.from[0].max(other.from[0]), self.from[1].max(other.from[1])];
         Self { from, to: [self.to[0].min(other.to[0]), self.to[1].min(other.to[1])] }
     }
 
-    /// Whether there is no pixel.
     pub fn is_empty(&self) -> bool {
         self.from[0] >= self.to[0] || self.from[1] >= self.to[1]
     }
@@ -83,7 +75,6 @@ struct EdgeFunction<const N: usize> {
     step: [i64; 2],
     /// The change from a pixel's center to its samples.
     samples: [i64; N],
-    /// The extremes of `samples`.
     least: i64,
     most: i64,
 }
@@ -117,10 +108,9 @@ impl<const N: usize> EdgeFunction<N> {
     }
 }
 
-/// Calls `visit(column, row, mask)` for every pixel in `window` of which the triangle covers samples.
-///
-/// The corners run clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at most once, and
-/// never with an empty mask; blocks come row by row.
+/// Calls `visit(column, row, mask)` for every pixel in `window` of which the triangle covers samples. The corners run
+/// clockwise as seen, that is, with a positive [`doubled_area`]. Each pixel is visited at most once, and never with an
+/// empty mask; blocks come row by row.
 pub fn cover<const N: usize>(
     corners: &[SubpixelPoint; 3],
     pattern: &SamplePattern<N>,

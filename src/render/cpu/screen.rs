@@ -10,32 +10,31 @@ use glam::{DMat4, DVec3, Mat4, Vec3};
 
 use crate::view::camera::Camera;
 
-/// A camera prepared for projecting many points.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
-    /// Columns and rows of pixels.
     pub size: [u32; 2],
     /// The near distance in meters.
     pub near: f64,
     /// The far distance in meters.
     pub far: f64,
-    eye: DVec3,
+    /// The eye in world space.
+    pub eye: DVec3,
     rows: [DVec3; 3],
     ray_corner: Vec3,
-    ray_right: Vec3,
-    ray_down: Vec3,
+    /// The change of [`Screen::ray_at`] over one pixel to the right.
+    pub ray_right: Vec3,
+    /// The change of [`Screen::ray_at`] over one pixel down.
+    pub ray_down: Vec3,
 }
 
 /// Mesh space to the homogeneous pixels of one [`Screen`].
 #[derive(Clone, Copy, Debug)]
-pub struct Projection {
+pub struct Projection<'a> {
     world_from_mesh: DMat4,
-    eye: DVec3,
-    rows: [DVec3; 3],
+    screen: &'a Screen,
 }
 
 impl Screen {
-    /// The screen of `camera`.
     pub fn new(camera: &Camera) -> Self {
         let (width, height) = camera.size();
         let tan = camera.tan_half_fov();
@@ -59,37 +58,26 @@ impl Screen {
         }
     }
 
-    /// The eye in world space.
-    pub fn eye(&self) -> DVec3 {
-        self.eye
-    }
-
     /// The direction from the eye through a pixel position, one meter long along the viewing direction.
     pub fn ray_at(&self, at: [f32; 2]) -> Vec3 {
         self.ray_corner + self.ray_right * at[0] + self.ray_down * at[1]
     }
 
-    /// The change of [`Screen::ray_at`] over one pixel to the right and one down.
-    pub fn ray_steps(&self) -> [Vec3; 2] {
-        [self.ray_right, self.ray_down]
-    }
-
-    /// The projection from a mesh's space to this screen.
-    pub fn projection(&self, world_from_mesh: &Mat4) -> Projection {
-        Projection { world_from_mesh: world_from_mesh.as_dmat4(), eye: self.eye, rows: self.rows }
+    pub fn projection(&self, world_from_mesh: &Mat4) -> Projection<'_> {
+        Projection { world_from_mesh: world_from_mesh.as_dmat4(), screen: self }
     }
 }
 
-impl Projection {
+impl Projection<'_> {
     /// `position` of a mesh, in meters from the eye along the world's axes.
     pub fn eye_from_mesh(&self, position: [f32; 3]) -> DVec3 {
         let position = DVec3::from(position.map(f64::from));
-        self.world_from_mesh.transform_point3(position) - self.eye
+        self.world_from_mesh.transform_point3(position) - self.screen.eye
     }
 
     /// An eye-centered position as homogeneous pixels `(x·w, y·w, w)`.
     pub fn pixels_from_eye(&self, offset: DVec3) -> DVec3 {
-        DVec3::from(self.rows.map(|row| row.dot(offset)))
+        DVec3::from(self.screen.rows.map(|row| row.dot(offset)))
     }
 }
 

@@ -14,7 +14,6 @@ use crate::render::cpu::hit::{Barycentric, FacePoint};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
-/// A draw list with everything that is computed once per frame for shading.
 #[derive(Debug)]
 pub struct Shader<'a> {
     list: &'a DrawList,
@@ -24,13 +23,11 @@ pub struct Shader<'a> {
     most_taps: u32,
 }
 
-/// A face's vertices and their weights at a point.
 struct FaceVertices<'a> {
     corners: [&'a DrawVertex; 3],
     weights: Barycentric,
 }
 
-/// The color of a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaded {
     /// Lit and seen through the haze; linear, in 0..=1.
@@ -51,7 +48,6 @@ impl<'a> Shader<'a> {
         }
     }
 
-    /// The item a face belongs to.
     pub fn item(&self, face: &ScreenFace) -> &'a DrawItem {
         &self.list.items[face.item as usize]
     }
@@ -62,12 +58,10 @@ impl<'a> Shader<'a> {
         material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
     }
 
-    /// The color of the sky at pixel position `at`.
     pub fn sky(&self, at: [f32; 2]) -> Vec3 {
         self.list.lighting.sky_color(self.screen.ray_at(at))
     }
 
-    /// The color of `face` at pixel position `at`.
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {
         let item = self.item(face);
         let material = self.material(item);

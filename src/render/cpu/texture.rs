@@ -10,12 +10,12 @@ use crate::draw::pixels::Pixels;
 use crate::render::cpu::alpha::{AlphaMask, neighbors};
 use crate::render::mip_levels::smaller_levels;
 
-/// A texture with its mip levels.
 #[derive(Debug)]
 pub struct Texture<'a> {
     base: &'a Pixels,
     smaller: Vec<Pixels>,
-    alpha: AlphaMask,
+    /// For masks.
+    pub alpha: AlphaMask,
     linear: [f32; 256],
 }
 
@@ -28,7 +28,6 @@ pub enum Weighting {
     ByAlpha,
 }
 
-/// A filtered color.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texel {
     /// In linear light.
@@ -38,7 +37,6 @@ pub struct Texel {
 }
 
 impl Texel {
-    /// Opaque white.
     pub const WHITE: Self = Self { color: Vec3::ONE, alpha: 1.0 };
 }
 
@@ -54,10 +52,9 @@ pub struct TexelFootprint {
 }
 
 impl TexelFootprint {
-    /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit.
-    ///
-    /// At most `most_taps` readings are taken; where that is too few, the level rises instead. Sides that are not finite
-    /// read the coarsest level once.
+    /// The footprint of a pixel whose sides span `right` and `down`, measured in cells of `scale` per unit. At most
+    /// `most_taps` readings are taken; where that is too few, the level rises instead. Sides that are not finite read
+    /// the coarsest level once.
     pub fn new(right: Vec2, down: Vec2, scale: Vec2, most_taps: u32) -> Self {
         let (across, along) = ((right * scale).length_squared(), (down * scale).length_squared());
         if across.max(along) <= 1.0 {
@@ -73,7 +70,6 @@ impl TexelFootprint {
         Self { axis, taps: taps as u32, level: level.max(0.0) }
     }
 
-    /// The offsets of the readings from the pixel's position.
     pub fn offsets(&self) -> impl Iterator<Item = Vec2> + use<> {
         let (axis, taps) = (self.axis, self.taps);
         (0..taps).map(move |tap| axis * ((tap as f32 + 0.5) / taps as f32 - 0.5))
@@ -88,19 +84,12 @@ impl<'a> Texture<'a> {
         Self { base, smaller, alpha, linear: std::array::from_fn(|channel| linear_from_srgb(channel as u8)) }
     }
 
-    /// Columns and rows of the first level.
     pub fn size(&self) -> Vec2 {
         Vec2::new(self.base.width() as f32, self.base.height() as f32)
     }
 
-    /// Its alpha, for masks.
-    pub fn alpha(&self) -> &AlphaMask {
-        &self.alpha
-    }
-
-    /// The color over a footprint around `uv`, trilinear.
-    ///
-    /// (0, 0) is the upper left corner, (1, 1) the lower right; the picture repeats in both directions.
+    /// The color over a footprint around `uv`, trilinear. (0, 0) is the upper left corner, (1, 1) the lower right; the
+    /// picture repeats in both directions.
     pub fn sample(&self, uv: Vec2, footprint: &TexelFootprint, weighting: Weighting) -> Texel {
         if self.base.data().is_empty() {
             return Texel::WHITE;
@@ -135,7 +124,6 @@ impl<'a> Texture<'a> {
     }
 }
 
-/// A weighted sum of colors.
 struct TexelSum {
     weighting: Weighting,
     color: Vec3,

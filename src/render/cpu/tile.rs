@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, FeatureId};
+use crate::draw::material::AlphaMode;
 use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{FaceId, FacePiece, RasterPass, ScreenFace, ScreenGeometry};
+use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
 use crate::render::cpu::pattern::{SampleMask, SamplePattern};
 use crate::render::cpu::raster::PixelWindow;
 use crate::render::cpu::screen::Screen;
@@ -16,31 +17,22 @@ use crate::render::cpu::visibility::{Visibility, samples_of};
 /// depths differ by more; along a slope they differ by less, except close to the horizon.
 const SAME_SLOPE: f32 = 0.01;
 
-/// Everything the tiles of a frame share.
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {
-    /// Pixels and rays.
     pub screen: &'a Screen,
-    /// What may be seen.
     pub geometry: &'a ScreenGeometry,
-    /// Its colors.
     pub shader: &'a Shader<'a>,
-    /// The samples of a pixel.
     pub pattern: &'a SamplePattern<N>,
 }
 
-/// One pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct ResolvedPixel {
-    /// Its color.
     pub color: Srgba,
     /// Meters along the viewing direction.
     pub depth_m: f32,
-    /// The feature at its center.
     pub feature: FeatureId,
 }
 
-/// Buffers reused from tile to tile.
 #[derive(Debug)]
 pub struct TileScratch<const N: usize> {
     visibility: Visibility<N>,
@@ -48,7 +40,6 @@ pub struct TileScratch<const N: usize> {
 }
 
 impl<const N: usize> TileScratch<N> {
-    /// Buffers for one tile.
     pub fn new() -> Self {
         Self { visibility: Visibility::new(), blend: Blend::new() }
     }
@@ -65,7 +56,7 @@ pub fn draw_tile<const N: usize>(
     scratch.blend.clear(window);
     let touches_tile = |piece: &&FacePiece| !piece.window.intersection(window).is_empty();
     let (transparent, others): (Vec<&FacePiece>, Vec<&FacePiece>) =
-        pieces.iter().filter(touches_tile).partition(|piece| piece.pass == RasterPass::Blend);
+        pieces.iter().filter(touches_tile).partition(|piece| piece.alpha == AlphaMode::Blend);
     let mut solids = Vec::new();
     for piece in others {
         let face = frame.geometry.face(piece.face);
@@ -106,7 +97,7 @@ fn draw_piece<const N: usize>(
     face: &ScreenFace,
     visibility: &mut Visibility<N>,
 ) {
-    if piece.pass == RasterPass::Mask {
+    if matches!(piece.alpha, AlphaMode::Mask(_)) {
         let cutout = frame.shader.cutout(face);
         visibility.draw(piece, face, frame.pattern, |at, samples| cutout.solid(at, samples, frame.pattern));
     } else {
@@ -143,9 +134,8 @@ fn resolve<const N: usize>(
 }
 
 /// The samples of a pixel that are shaded with sample `first`: those of its face and, on ground colored and lit by the
-/// map, those of neighbors on the same slope.
-///
-/// Ground triangles are often no larger than a few pixels: this saves about a sixth of a frame's time.
+/// map, those of neighbors on the same slope. Ground triangles are often no larger than a few pixels: this saves about
+/// a sixth of a frame's time.
 fn samples_alike<const N: usize>(
     frame: &TileContext<N>,
     visibility: &Visibility<N>,
@@ -169,7 +159,6 @@ fn samples_alike<const N: usize>(
     mask
 }
 
-/// The depth and feature of a face at a pixel's center.
 fn depth_and_feature<const N: usize>(
     frame: &TileContext<N>,
     id: FaceId,

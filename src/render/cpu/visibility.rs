@@ -14,7 +14,6 @@ use crate::render::cpu::raster::{PixelWindow, cover};
 /// common processors.
 pub const TILE: u32 = 64;
 
-/// The faces seen in one tile and their inverse depths.
 #[derive(Debug)]
 pub struct Visibility<const N: usize> {
     window: PixelWindow,
@@ -24,7 +23,6 @@ pub struct Visibility<const N: usize> {
 }
 
 impl<const N: usize> Visibility<N> {
-    /// Buffers for one tile.
     pub fn new() -> Self {
         let pixels = (TILE * TILE) as usize;
         Self {
@@ -44,12 +42,10 @@ impl<const N: usize> Visibility<N> {
         self.depths.fill([(1.0 / farthest_m) as f32; N]);
     }
 
-    /// The faces that the samples of a pixel see.
     pub fn faces(&self, x: u32, y: u32) -> &[FaceId; N] {
         &self.faces[self.index(x, y)]
     }
 
-    /// The inverse depths at the samples of a pixel.
     pub fn depths(&self, x: u32, y: u32) -> &[f32; N] {
         &self.depths[self.index(x, y)]
     }
@@ -58,9 +54,8 @@ impl<const N: usize> Visibility<N> {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn.
-    ///
-    /// Must be called for solids only, after everything else is drawn.
+    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn. Must be called for
+    /// solids only, after everything else is drawn.
     pub fn may_show(&mut self, piece: &FacePiece, face: &ScreenFace) -> bool {
         let visible = piece.window.intersection(self.window);
         let [left, top] = self.window.from;
@@ -74,10 +69,9 @@ impl<const N: usize> Visibility<N> {
     }
 
     /// Draws a piece where it is seen: of a draped face where it is behind what is there by no more than the face's
-    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a hole
-    /// of the face.
-    ///
-    /// The nearer of both depths is kept, so that drapes laid over each other do not sink step by step.
+    /// reach, of another face where it is nearer. `solid` returns those of a pixel's seen samples that are not in a
+    /// hole of the face. The nearer of both depths is kept, so that drapes laid over each other do not sink step by
+    /// step.
     pub fn draw(
         &mut self,
         piece: &FacePiece,
@@ -93,7 +87,7 @@ impl<const N: usize> Visibility<N> {
             let mut in_front = 0;
             for sample in 0..N {
                 let there = depths[sample];
-                let is_seen = if face.is_draped() {
+                let is_seen = if face.reach > 1.0 {
                     new[sample] * face.reach >= there
                 } else {
                     new[sample] > there || (new[sample] == there && piece.face.0 < faces[sample].0)
@@ -120,7 +114,6 @@ pub struct SampleDepths<const N: usize> {
 }
 
 impl<const N: usize> SampleDepths<N> {
-    /// The differences for one face.
     pub fn new(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
         let plane = &face.planes.inverse_depth;
         let change = |[x, y]: [i32; 2]| (plane.right * f64::from(x) + plane.down * f64::from(y)) / 16.0;
@@ -135,7 +128,6 @@ impl<const N: usize> SampleDepths<N> {
     }
 }
 
-/// The samples of `faces` that see `face`.
 pub fn samples_of<const N: usize>(faces: &[FaceId; N], face: FaceId) -> SampleMask {
     let bits = faces.iter().enumerate().map(|(sample, &seen)| SampleMask::from(seen == face) << sample);
     bits.fold(0, |mask, bit| mask | bit)

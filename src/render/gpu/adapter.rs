@@ -88,7 +88,6 @@ impl Gpu {
         }
     }
 
-    /// What the driver reported while `doing` something.
     pub(super) fn driver_error(&self, doing: &'static str, source: impl Into<DriverError>) -> GpuError {
         GpuError::Driver { doing, adapter: self.name.clone(), source: Arc::new(source.into()) }
     }

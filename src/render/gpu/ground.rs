@@ -31,21 +31,17 @@ pub const MOST_LEVELS: usize = 24;
 /// Posts are sent in portions of about this many bytes, so that a large map is never held three times.
 const PORTION_BYTES: usize = 16 << 20;
 
-/// A level and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlacedLevel {
-    /// The number of posts.
     pub size: PostCount,
     /// Its first column in the texture that holds it.
     pub first: u32,
 }
 
-/// The textures of a ground map.
 #[derive(Debug)]
 pub struct GroundTextures {
     /// Level 0.
     pub posts: wgpu::Texture,
-    /// All further levels.
     pub coarse: wgpu::Texture,
 }
 
@@ -60,9 +56,6 @@ pub fn levels(size: PostCount) -> Vec<PlacedLevel> {
 
 impl GroundTextures {
     /// Sends a checked map to the device; without a map, one texel that nothing reads.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`].
     pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
         let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
         let one = PostCount { columns: 1, rows: 1 };

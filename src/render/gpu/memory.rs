@@ -5,9 +5,6 @@ use crate::render::gpu::error::GpuError;
 
 impl Gpu {
     /// A buffer of `bytes` bytes, which must be a multiple of four.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`], naming `what`.
     pub(super) fn buffer(
         &self,
         what: impl FnOnce() -> String,
@@ -25,9 +22,6 @@ impl Gpu {
     }
 
     /// A buffer that holds `contents`, whose length is a multiple of four.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`], naming `what`.
     pub(super) fn filled_buffer(
         &self,
         what: impl FnOnce() -> String,
@@ -40,9 +34,6 @@ impl Gpu {
     }
 
     /// Checks that one buffer can hold `bytes` bytes.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`], naming `what`.
     pub(super) fn check_size(&self, what: impl FnOnce() -> String, bytes: u64) -> Result<(), GpuError> {
         // Offsets into buffers are 32 bits wide, however large a buffer may be.
         let limit = self.limits.max_buffer_size.min(u64::from(u32::MAX));
@@ -51,9 +42,6 @@ impl Gpu {
     }
 
     /// Checks that one texture can be `sides` texels wide and high.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`], naming `what`.
     pub(super) fn check_sides(&self, what: impl FnOnce() -> String, sides: [u32; 2]) -> Result<(), GpuError> {
         let limit = self.limits.max_texture_dimension_2d;
         if sides.into_iter().all(|side| side <= limit) {
@@ -89,7 +77,6 @@ pub fn texture(width: u32, height: u32, format: wgpu::TextureFormat) -> wgpu::Te
     }
 }
 
-/// The whole of `texture`.
 pub fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
 }

@@ -14,7 +14,6 @@ pub mod adapter;
 pub mod error;
 mod ground;
 mod memory;
-mod mips;
 mod passes;
 mod pipelines;
 mod plan;

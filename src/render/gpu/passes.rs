@@ -7,12 +7,11 @@ use crate::draw::list::DrawList;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::memory::view;
 use crate::render::gpu::pipelines::{GpuPass, Pipelines};
-use crate::render::gpu::plan::{DrawCall, Plan};
+use crate::render::gpu::plan::{DrawCall, PipelineKey, Plan};
 use crate::render::gpu::readback::Targets;
 use crate::render::gpu::uniforms::Instance;
 use crate::render::gpu::upload::Resources;
 
-/// Everything that recording reads.
 pub struct Recording<'a> {
     pub gpu: &'a Gpu,
     pub list: &'a DrawList,
@@ -23,7 +22,6 @@ pub struct Recording<'a> {
 }
 
 impl Recording<'_> {
-    /// Records both passes.
     pub fn record(&self) -> wgpu::CommandEncoder {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.colors(&mut encoder);
@@ -44,8 +42,10 @@ impl Recording<'_> {
             },
         };
         let mut pass = self.begin(encoder, attachment, &self.targets.sample_depth);
-        pass.set_pipeline(&self.pipelines.sky);
-        pass.draw(0..3, 0..1);
+        if let Some(sky) = self.pipelines.get(GpuPass::Color, PipelineKey::SKY) {
+            pass.set_pipeline(sky);
+            pass.draw(0..3, 0..1);
+        }
         self.draw(&mut pass, GpuPass::Color, &self.plan.color);
     }
 
@@ -88,7 +88,7 @@ impl Recording<'_> {
         for call in calls {
             let item = &self.list.items[call.items.start];
             let (Some(pipeline), Some(mesh)) =
-                (self.pipelines.get(which, call), &self.resources.meshes[item.mesh.0 as usize])
+                (self.pipelines.get(which, call.key), &self.resources.meshes[item.mesh.0 as usize])
             else {
                 continue;
             };

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::draw::list::{DRAPE_TOLERANCE, DrawVertex};
 use crate::render::gpu::adapter::{Gpu, GpuApi};
-use crate::render::gpu::plan::{DepthRule, DrawCall, PipelineKey, Plan};
+use crate::render::gpu::plan::{DepthRule, PipelineKey, Plan};
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
 
-/// The format of colors, as drawn and as read back.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -23,7 +22,24 @@ const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
 const SHADER: &str = concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
 
-/// The layouts of what shaders read.
+/// Vertices and instances.
+const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<DrawVertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4,
+        ],
+    }),
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<Instance>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![
+            4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
+        ],
+    }),
+];
+
 #[derive(Debug)]
 pub struct Layouts {
     /// Group 0: constants, ground posts, ramp.
@@ -34,7 +50,6 @@ pub struct Layouts {
     pub texture: wgpu::BindGroupLayout,
 }
 
-/// The two passes of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum GpuPass {
     /// Colors, several samples per pixel.
@@ -43,16 +58,12 @@ pub enum GpuPass {
     Feature,
 }
 
-/// Every pipeline that a plan needs.
 #[derive(Debug)]
 pub struct Pipelines {
-    /// Draws the sky behind everything.
-    pub sky: wgpu::RenderPipeline,
     by_key: BTreeMap<(GpuPass, PipelineKey), wgpu::RenderPipeline>,
 }
 
 impl Layouts {
-    /// The layouts that all pipelines share.
     pub fn new(gpu: &Gpu) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let fragment = wgpu::ShaderStages::FRAGMENT;
@@ -94,7 +105,6 @@ impl Layouts {
 }
 
 impl Pipelines {
-    /// The pipelines for all draw calls of `plan`.
     pub fn new(gpu: &Gpu, layouts: &Layouts, plan: &Plan) -> Self {
         let shader = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("sandtable"),
@@ -107,18 +117,22 @@ impl Pipelines {
             gpu.device.create_pipeline_layout(&descriptor)
         };
         let items = layout(&[Some(&layouts.frame), Some(&layouts.surface), Some(&layouts.texture)]);
+        let sky = layout(&[Some(&layouts.frame)]);
+        let mut by_key = BTreeMap::new();
+        by_key.insert(
+            (GpuPass::Color, PipelineKey::SKY),
+            pipeline(gpu, &sky, &shader, GpuPass::Color, PipelineKey::SKY),
+        );
         let color = plan.color.iter().map(|call| (GpuPass::Color, call.key));
         let features = plan.features.iter().map(|call| (GpuPass::Feature, call.key));
-        let mut by_key = BTreeMap::new();
         for (pass, key) in color.chain(features) {
             by_key.entry((pass, key)).or_insert_with(|| pipeline(gpu, &items, &shader, pass, key));
         }
-        Self { sky: sky(gpu, &layout(&[Some(&layouts.frame)]), &shader), by_key }
+        Self { by_key }
     }
 
-    /// The pipeline for a draw call of the plan these were made for.
-    pub fn get(&self, pass: GpuPass, call: &DrawCall) -> Option<&wgpu::RenderPipeline> {
-        self.by_key.get(&(pass, call.key))
+    pub fn get(&self, pass: GpuPass, key: PipelineKey) -> Option<&wgpu::RenderPipeline> {
+        self.by_key.get(&(pass, key))
     }
 }
 
@@ -133,7 +147,9 @@ fn pipeline(
         if key.rule.is_drape_color() { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
     let vertex_constants = [("nearer", nearer)];
     let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
+    let is_sky = key.rule == DepthRule::Sky;
     let entry_point = match (pass, gpu.api()) {
+        _ if is_sky => "sky_color",
         (GpuPass::Feature, _) => "feature",
         (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
         (GpuPass::Color, GpuApi::Vulkan) if key.masked && gpu.samples == 4 => "masked_color",
@@ -144,35 +160,23 @@ fn pipeline(
         layout: Some(layout),
         vertex: wgpu::VertexState {
             module: shader,
-            entry_point: Some("vertex"),
-            compilation_options: options(&vertex_constants),
-            buffers: &[
-                Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<DrawVertex>() as u64,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &wgpu::vertex_attr_array![
-                        0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4,
-                    ],
-                }),
-                Some(wgpu::VertexBufferLayout {
-                    array_stride: size_of::<Instance>() as u64,
-                    step_mode: wgpu::VertexStepMode::Instance,
-                    attributes: &wgpu::vertex_attr_array![
-                        4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
-                    ],
-                }),
-            ],
+            entry_point: Some(if is_sky { "sky_vertex" } else { "vertex" }),
+            compilation_options: options(if is_sky { &[] } else { &vertex_constants }),
+            buffers: if is_sky { &[] } else { &VERTEX_BUFFERS },
         },
         primitive: wgpu::PrimitiveState {
             cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
             ..Default::default()
         },
         depth_stencil: Some(depth_state(key.rule)),
-        multisample: multisample(gpu, pass),
+        multisample: wgpu::MultisampleState {
+            count: if pass == GpuPass::Color { gpu.samples } else { 1 },
+            ..Default::default()
+        },
         fragment: Some(wgpu::FragmentState {
             module: shader,
             entry_point: Some(entry_point),
-            compilation_options: options(&fragment_constants),
+            compilation_options: options(if is_sky { &[] } else { &fragment_constants }),
             targets: &target(pass, key.rule),
         }),
         multiview_mask: None,
@@ -187,6 +191,7 @@ fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOpti
 /// Depth is reversed: greater is nearer.
 fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
     let (writes, compare) = match rule {
+        DepthRule::Sky => (false, wgpu::CompareFunction::Always),
         DepthRule::Solid => (true, wgpu::CompareFunction::Greater),
         DepthRule::Blend => (false, wgpu::CompareFunction::Greater),
         DepthRule::Drape | DepthRule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
@@ -215,41 +220,6 @@ fn target(pass: GpuPass, rule: DepthRule) -> [Option<wgpu::ColorTargetState>; 1]
         GpuPass::Feature => FEATURE,
     };
     [Some(wgpu::ColorTargetState { format, blend, write_mask })]
-}
-
-fn multisample(gpu: &Gpu, pass: GpuPass) -> wgpu::MultisampleState {
-    let count = match pass {
-        GpuPass::Color => gpu.samples,
-        GpuPass::Feature => 1,
-    };
-    wgpu::MultisampleState { count, ..Default::default() }
-}
-
-fn sky(gpu: &Gpu, layout: &wgpu::PipelineLayout, shader: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("sky"),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module: shader,
-            entry_point: Some("sky_vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            depth_compare: Some(wgpu::CompareFunction::Always),
-            ..depth_state(DepthRule::Blend)
-        }),
-        multisample: multisample(gpu, GpuPass::Color),
-        fragment: Some(wgpu::FragmentState {
-            module: shader,
-            entry_point: Some("sky_color"),
-            compilation_options: Default::default(),
-            targets: &target(GpuPass::Color, DepthRule::Solid),
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 #[cfg(test)]

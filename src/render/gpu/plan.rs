@@ -17,7 +17,6 @@ use crate::draw::list::{DepthLayer, DrawItem, DrawList};
 use crate::draw::material::AlphaMode;
 use crate::view::camera::Camera;
 
-/// How an item meets the depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DepthRule {
     /// Drawn where nearer; writes its depth.
@@ -30,6 +29,8 @@ pub enum DepthRule {
     DrapeBlend,
     /// Not drawn; writes its depth where not farther.
     DrapeDepth,
+    /// Drawn everywhere; writes no depth.
+    Sky,
 }
 
 impl DepthRule {
@@ -39,33 +40,30 @@ impl DepthRule {
     }
 }
 
-/// One draw call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DrawCall {
     /// Indices into the draw list's items: part of a run, so that they differ in placement and feature only.
     pub items: Range<usize>,
-    /// Its pipeline.
     pub key: PipelineKey,
 }
 
-/// What distinguishes the pipelines of a pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PipelineKey {
-    /// How it meets the depth buffer.
     pub rule: DepthRule,
-    /// Whether backs are drawn too.
     pub two_sided: bool,
     /// Whether alpha cuts holes.
     pub masked: bool,
 }
 
-/// The draw calls of both passes.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Plan {
-    /// For the colors.
     pub color: Vec<DrawCall>,
     /// For the feature and depth buffers: the same items, transparent ones like solid ones.
     pub features: Vec<DrawCall>,
+}
+
+impl PipelineKey {
+    pub const SKY: Self = Self { rule: DepthRule::Sky, two_sided: true, masked: false };
 }
 
 impl Plan {

@@ -19,22 +19,18 @@ use crate::render::picture::Picture;
 /// triangles; ten minutes allow for a far slower machine.
 const TIMEOUT: Duration = Duration::from_secs(600);
 
-/// The textures of one picture.
 #[derive(Debug)]
 pub struct Targets {
     /// Several samples per pixel; drawn to and resolved where the adapter can, else unused.
     pub samples: wgpu::Texture,
-    /// The depth of those samples.
     pub sample_depth: wgpu::Texture,
     /// One color per pixel.
     pub color: wgpu::Texture,
     /// One feature per pixel and the bits of its depth in meters; both zero where there is nothing.
     pub feature: wgpu::Texture,
-    /// The depth buffer of features.
     pub depth: wgpu::Texture,
 }
 
-/// A copy of one texture that the processor can read.
 struct TextureCopy {
     buffer: wgpu::Buffer,
     /// Bytes from row to row, with padding.
@@ -44,10 +40,6 @@ struct TextureCopy {
 }
 
 impl Targets {
-    /// Textures for a picture of `width` × `height` pixels.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`].
     pub fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Result<Self, GpuError> {
         gpu.check_sides(|| format!("the {width}×{height} pixels of the picture"), [width, height])?;
         let create = |format, sample_count, usage| {
@@ -67,10 +59,6 @@ impl Targets {
         })
     }
 
-    /// Submits `encoder`, waits for the device and reads the picture.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`] where a copy does not fit a buffer, [`GpuError::Driver`] where the device fails.
     pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Picture, GpuError> {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;

@@ -62,7 +62,6 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    /// The constants of `list` as `camera` sees it.
     pub fn new(list: &DrawList, camera: &Camera) -> Self {
         let tan = camera.tan_half_fov();
         let (near, far) = camera.planes();
@@ -105,14 +104,12 @@ impl FrameUniforms {
 }
 
 impl Instance {
-    /// The placement and feature of `item`.
     pub fn new(item: &DrawItem) -> Self {
         Self { world_from_mesh: item.world_from_mesh.to_cols_array_2d(), feature: item.feature.0 }
     }
 }
 
 impl SurfaceConstants {
-    /// The constants of `material`.
     pub fn new(material: &Material) -> Self {
         let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
         let albedo = if material.albedo == Albedo::GroundMap { FROM_GROUND_ALBEDO } else { 0 };

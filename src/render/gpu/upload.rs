@@ -13,49 +13,39 @@ use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::ground::GroundTextures;
 use crate::render::gpu::memory::{texture, view};
-use crate::render::gpu::mips::{levels, premultiplied};
 use crate::render::gpu::pipelines::Layouts;
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, RAMP_COLUMNS, SurfaceConstants};
+use crate::render::mip_levels::smaller_levels;
 use crate::view::camera::Camera;
 
-/// A mesh on the device.
 #[derive(Debug)]
 pub struct MeshBuffers {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
 }
 
-/// A draw list on the device.
 #[derive(Debug)]
 pub struct Resources {
     /// One per mesh; `None` for one that no item draws.
     pub meshes: Vec<Option<MeshBuffers>>,
-    /// Camera, light and ground.
     pub frame: wgpu::BindGroup,
-    /// Placement and feature of every item.
     pub instances: wgpu::Buffer,
     /// The constants of all materials, to be bound at a material's offset.
     pub surfaces: wgpu::BindGroup,
     /// Bytes from one material's constants to the next.
     pub surface_stride: u32,
-    textures: Vec<TextureForms>,
+    /// Each texture as stored, for opaque materials, and with colors multiplied by alpha, for all others: filtering
+    /// must not mix in transparent colors.
+    textures: Vec<[Option<wgpu::BindGroup>; 2]>,
     white: wgpu::BindGroup,
 }
 
-/// A texture in the forms that items show it in; an empty one has none.
-#[derive(Debug, Default)]
-struct TextureForms {
-    /// As it is, for opaque materials.
-    straight: Option<wgpu::BindGroup>,
-    /// Colors multiplied by alpha, for all others: filtering must not mix in transparent colors.
-    premultiplied: Option<wgpu::BindGroup>,
+/// Which form of a texture `material` shows.
+fn form(material: &Material) -> usize {
+    usize::from(material.alpha != AlphaMode::Opaque)
 }
 
 impl Resources {
-    /// Sends a checked `list` to the device.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`].
     pub fn upload(gpu: &Gpu, layouts: &Layouts, list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
         let mut mesh_used = vec![false; list.meshes.len()];
         for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
@@ -80,12 +70,8 @@ impl Resources {
 
     /// The texture of `material`: white where it has none.
     pub fn texture_of(&self, material: &Material) -> &wgpu::BindGroup {
-        let forms = material.texture.map(|id| &self.textures[id.0 as usize]);
-        let form = forms.and_then(|forms| match material.alpha {
-            AlphaMode::Opaque => forms.straight.as_ref(),
-            AlphaMode::Mask(_) | AlphaMode::Blend => forms.premultiplied.as_ref(),
-        });
-        form.unwrap_or(&self.white)
+        let texture = material.texture.and_then(|id| self.textures[id.0 as usize][form(material)].as_ref());
+        texture.unwrap_or(&self.white)
     }
 }
 
@@ -165,26 +151,26 @@ fn sampler(gpu: &Gpu) -> wgpu::Sampler {
     })
 }
 
-fn textures(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, list: &DrawList) -> Vec<TextureForms> {
+fn textures(
+    gpu: &Gpu,
+    layouts: &Layouts,
+    sampler: &wgpu::Sampler,
+    list: &DrawList,
+) -> Vec<[Option<wgpu::BindGroup>; 2]> {
     let mut used = vec![[false; 2]; list.textures.len()];
     for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
         let material = &list.materials[item.material.0 as usize];
         if let Some(id) = material.texture {
-            used[id.0 as usize][usize::from(material.alpha != AlphaMode::Opaque)] = true;
+            used[id.0 as usize][form(material)] = true;
         }
     }
-    let limit = gpu.limits.max_texture_dimension_2d;
     let bind = |levels: &[Pixels]| bind_texture(gpu, layouts, sampler, levels);
-    let forms = |(texture, [straight, multiplied]): (&Pixels, [bool; 2])| {
-        let levels = if straight || multiplied { levels(texture, limit) } else { Vec::new() };
-        if levels.is_empty() {
-            return TextureForms::default();
-        }
-        TextureForms {
-            straight: straight.then(|| bind(&levels)),
-            premultiplied: multiplied
-                .then(|| bind(&levels.par_iter().map(premultiplied).collect::<Vec<_>>())),
-        }
+    let forms = |(texture, [stored, multiplied]): (&Pixels, [bool; 2])| {
+        let is_used = stored || multiplied;
+        let levels = if is_used { levels(texture, gpu.limits.max_texture_dimension_2d) } else { Vec::new() };
+        let is_shown = !levels.is_empty();
+        let multiplied = (multiplied && is_shown).then(|| levels.par_iter().map(premultiplied).collect());
+        [(stored && is_shown).then(|| bind(&levels)), multiplied.map(|levels: Vec<Pixels>| bind(&levels))]
     };
     list.textures.iter().zip(used).map(forms).collect()
 }
@@ -212,4 +198,43 @@ fn bind<const N: usize>(
     let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
     let entries: Vec<_> = (0..).zip(resources).map(entry).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+}
+
+/// `texture` and every smaller level down to a single texel; none where a side is zero. Levels larger than `limit` a
+/// side are left out, so that a texture too large for the adapter is drawn coarser.
+fn levels(texture: &Pixels, limit: u32) -> Vec<Pixels> {
+    let fits = |level: &Pixels| (1..=limit).contains(&level.width()) && (1..=limit).contains(&level.height());
+    let largest = fits(texture).then(|| texture.clone());
+    largest.into_iter().chain(smaller_levels(texture).into_iter().filter(fits)).collect()
+}
+
+/// `level` with colors multiplied by alpha, in linear light.
+fn premultiplied(level: &Pixels) -> Pixels {
+    Pixels::from_fn(level.width(), level.height(), |x, y| {
+        let texel = level.at(x, y);
+        let Srgba([red, green, blue, _]) = Srgba::from_linear(texel.linear() * texel.alpha());
+        Srgba([red, green, blue, texel.0[3]])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transparent_texels_are_black_when_multiplied() {
+        let leaf = Srgba([20, 120, 30, 255]);
+        let edge = Pixels::from_fn(2, 1, |x, _| if x == 0 { leaf } else { Srgba([255, 0, 255, 0]) });
+        assert_eq!(premultiplied(&edge).data(), [leaf, Srgba([0, 0, 0, 0])]);
+    }
+
+    #[test]
+    fn a_texture_too_large_for_the_adapter_starts_at_a_smaller_level() {
+        let widths = |width, height, limit| -> Vec<u32> {
+            levels(&Pixels::filled(width, height, Srgba::WHITE), limit).iter().map(Pixels::width).collect()
+        };
+        assert_eq!(widths(64, 8, 16), [16, 8, 4, 2, 1]);
+        assert_eq!(widths(4, 4, 8192), [4, 2, 1]);
+        assert!(widths(0, 8, 16).is_empty());
+    }
 }

@@ -1,14 +1,12 @@
-//! The screen-space error that knows the viewing direction (the criterion of 001).
+//! The screen-space error with the viewing direction (restricted quadtree after Lindstrom et al. 1996).
 //!
-//! `δ_s² = λ² n² δ² [(Vx−Ex)² + (Vy−Ey)²] / [(Vx−Ex)² + (Vy−Ey)² + (Vz−Ez)²]²`: a vertical error δ at the vertex V
-//! seen from the eye E, foreshortened. Seen level it spans λδ/d as everywhere; seen from straight above, nothing.
-//! Here n is 1 and λ the pixels of a meter at a distance of one meter, so that δ_s is pixels.
+//! `δ_s² = λ² n² δ² [(Vx−Ex)² + (Vy−Ey)²] / [(Vx−Ex)² + (Vy−Ey)² + (Vz−Ez)²]²`: a vertical error δ at the vertex V seen from
+//! the eye E, foreshortened: λδ/d seen level, nothing seen from straight above. Here n is 1 and λ the pixels of a meter at a
+//! distance of one meter, so that δ_s is pixels. δ is the error of the vertex and all below it (a raised [`ErrorMap`], the
+//! midpoint error in the paper).
 //!
-//! δ is the error of the vertex and all below it (a raised [`ErrorMap`], the midpoint error in 001), so that of
-//! two vertices seen alike the one with more below it is refined first.
-//!
-//! It promises no bound: V stands for all of the triangles, and where the eye is above V but not above all of
-//! them, what is seen aslant beside it can show. Nor is it monotone; splits have to be forced.
+//! It promises no bound: V is only one point of the triangles, and where the eye is above V but not above all of them, an
+//! error beside it can show. Nor is it monotone: splits must be forced.
 
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::lens::Lens;
@@ -17,7 +15,7 @@ use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 
-/// The length of a vertical error on the picture, over the tolerance.
+/// The length of a vertical error in the picture, over the tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct Anisotropic<'a> {
     ground: PatchedGround<'a>,

@@ -1,11 +1,11 @@
-//! No view at all: an error is an error wherever it is.
+//! The object-space error, without a view.
 
 use crate::roam::criterion::Criterion;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// The object-space error over a tolerance in meters: what a mesh without a camera is made by.
+/// The error over a tolerance in meters, for meshes without a camera.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat<'a> {
     layout: &'a PatchLayout,

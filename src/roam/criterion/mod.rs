@@ -1,8 +1,7 @@
-//! When does a vertex's error show? One file per criterion.
+//! Criteria: whether a vertex's error shows in a view, one file each.
 //!
-//! A criterion is a function of a vertex and a view. It does not know how the mesh is refined, and a refiner
-//! does not know what it is asked for: any criterion goes with any refiner, except where a refiner asks for
-//! more than [`Criterion`] promises and says so in its types.
+//! A criterion is a function of a vertex and a view. Any criterion works with any refiner, except where a refiner needs
+//! more than [`Criterion`] promises and names it in its types.
 
 pub mod anisotropic;
 pub mod block;
@@ -11,15 +10,14 @@ mod lens;
 pub mod midpoint;
 pub mod screen;
 pub mod spheres;
-pub mod variance;
 
 use crate::roam::graph::Vertex;
 
-/// What is asked of every vertex.
+/// A measure of vertices.
 pub trait Criterion: Sync {
-    /// How many times the tolerance the error of `vertex`, a vertex of the layout that is no patch corner, shows
-    /// while the vertex is not active. The vertex is wanted where this is above 1; 0 where it has no error or cannot
-    /// be seen, infinite where it must be active from everywhere. Never NaN.
+    /// The error that shows while `vertex`, a vertex of the layout but no patch corner, is inactive, as a multiple of the
+    /// tolerance. The vertex is wanted above 1. 0 where it has no error or is out of view, infinite where it must be active
+    /// from everywhere; never NaN.
     fn excess(&self, vertex: Vertex) -> f32;
 
     /// Whether the vertex is wanted.

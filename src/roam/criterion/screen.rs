@@ -1,4 +1,4 @@
-//! The screen-space error whose tolerance is kept at every post of the picture.
+//! The screen-space error whose tolerance holds at every post of the picture.
 
 use glam::Vec3;
 
@@ -10,12 +10,12 @@ use crate::roam::patched_ground::PatchedGround;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
-/// The largest length that an error could span on the picture, over the tolerance.
+/// The largest length that an error could span in the picture, over the tolerance.
 ///
-/// The error is taken at the point of the triangles' box nearest to the eye, and pixels at the picture's
-/// corner where they are largest, so that `|displayed − ground|` never exceeds the tolerance on the picture
-/// where the errors are exact (distance-only form of the criterion; a vertical error seen from above shows
-/// smaller). What the camera cannot see is not wanted.
+/// The error is taken at the point of the triangles' box nearest to the eye, and pixels at the picture's corner, where they
+/// are largest, so that `|displayed − ground|` never exceeds the tolerance in the picture where the errors are exact
+/// (distance-only form of the criterion; a vertical error seen from above shows smaller). Vertices out of view are not
+/// wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenError<'a> {
     ground: PatchedGround<'a>,
@@ -46,7 +46,7 @@ impl ErrorReach {
         error_m * self.meters_per_meter
     }
 
-    /// How many times the tolerance an error of `error_m` meters inside the box `min..=max` can span.
+    /// The largest multiple of the tolerance that an error of `error_m` meters inside the box `min..=max` can span.
     fn excess(&self, error_m: f32, min: Vec3, max: Vec3) -> f32 {
         let nearest = self.eye.clamp(min, max);
         self.reach_m(error_m) / nearest.distance(self.eye)

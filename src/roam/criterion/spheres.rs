@@ -1,4 +1,4 @@
-//! The nested spheres as a criterion.
+//! Nested spheres as a criterion.
 
 use glam::Vec3;
 
@@ -16,7 +16,7 @@ pub struct Spheres<'a> {
 }
 
 impl<'a> Spheres<'a> {
-    /// The spheres of `map` as seen from `eye`, drawn world space.
+    /// The spheres of `map` seen from `eye`, world space.
     pub fn new(ground: PatchedGround<'a>, map: &'a SphereMap, eye: Vec3) -> Self {
         Self { ground, map, eye }
     }
@@ -39,7 +39,7 @@ impl Criterion for Spheres<'_> {
     }
 }
 
-/// In f64, so that neighbors agree about a vertex to the last bit and nested spheres stay nested.
+/// The distance in f64, so that neighbors agree about a vertex to the last bit and nested spheres stay nested.
 #[inline]
 pub fn distance(eye: Vec3, position: Vec3) -> f64 {
     (eye.as_dvec3() - position.as_dvec3()).length()

@@ -1,7 +1,7 @@
-//! The triangle bintree's leaves, as Duchaineau et al. (1997) draw them.
+//! The triangle bintree's leaves (Duchaineau et al. 1997).
 //!
-//! Either as triples of grid vertices, for any patch, or per patch as triples of indices into the block of its
-//! (patch + 1)² vertices: the block never changes, and the short list is all that a frame renews.
+//! Either as triples of grid vertices, for any patch, or per patch as triples of indices into the block of its (patch + 1)²
+//! vertices: the block never changes, and a frame renews the short list alone.
 
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
@@ -9,8 +9,8 @@ use crate::roam::emit::walk::{self, WalkKey};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// Calls `emit` with the leaves of the patches whose south-west corners are listed, counter-clockwise from the
-/// apex. Within a patch every leaf shares an edge with the one before.
+/// Calls `emit` with the leaves of the patches whose south-west corners are listed, counter-clockwise from the apex. Within
+/// a patch every leaf shares an edge with the one before.
 pub fn triangles(
     active: &ActiveSet,
     patches: impl IntoIterator<Item = Vertex>,
@@ -21,8 +21,8 @@ pub fn triangles(
     }
 }
 
-/// The leaves of one patch, leaving out the triangles that `enter` refuses with all below them. `enter` sees
-/// the corners of inner triangles too.
+/// The leaves of one patch, without the triangles for which `enter` returns false and those below them. `enter` is called
+/// with the corners of inner triangles too.
 pub fn triangles_where(
     active: &ActiveSet,
     corner: Vertex,
@@ -47,22 +47,22 @@ pub fn vertex(columns: i32, key: WalkKey) -> Vertex {
     Vertex::new(key.index() as i32 - y * columns, y)
 }
 
-/// The (patch + 1)² vertices of one patch, row by row from the south-west: what index lists point into.
+/// The (patch + 1)² vertices of one patch, row by row from the south-west, which index lists refer to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexBlock {
     patch: i32,
 }
 
-/// Cells along the side of the largest patch whose vertices can be told apart by 16 bits: 129² of them.
+/// Cells along the side of the largest patch whose 129² vertices have 16-bit indices.
 pub const LARGEST_BLOCK: i32 = 128;
 
 impl VertexBlock {
     /// The block of every patch of a layout; `None` where its patches are larger than [`LARGEST_BLOCK`].
-    pub fn of(layout: &PatchLayout) -> Option<Self> {
+    pub fn new(layout: &PatchLayout) -> Option<Self> {
         (layout.patch() <= LARGEST_BLOCK).then_some(Self { patch: layout.patch() })
     }
 
-    /// How many vertices the block has.
+    /// The number of vertices.
     pub fn vertex_count(self) -> usize {
         ((self.patch + 1) * (self.patch + 1)) as usize
     }
@@ -73,10 +73,15 @@ impl VertexBlock {
         corner.moved(i32::from(index) % side, i32::from(index) / side)
     }
 
-    /// Appends the leaves of one patch that `keep` keeps to `list`, counter-clockwise from the apex.
+    /// The index of a vertex of the patch with south-west corner `corner`.
+    pub fn index(self, corner: Vertex, vertex: Vertex) -> u16 {
+        ((vertex.y - corner.y) * (self.patch + 1) + vertex.x - corner.x) as u16
+    }
+
+    /// Appends the leaves of one patch for which `keep` returns true to `list`, counter-clockwise from the apex.
     ///
-    /// A patch that a border cuts or that lacks data needs a `keep` that asks
-    /// [`drawn_posts`](crate::roam::emit::world::drawn_posts); any other keeps all.
+    /// In a patch that a border cuts or that lacks data `keep` must test
+    /// [`drawn_posts`](crate::roam::emit::world::drawn_posts).
     pub fn append(
         self,
         active: &ActiveSet,
@@ -84,9 +89,8 @@ impl VertexBlock {
         mut keep: impl FnMut([u16; 3]) -> bool,
         list: &mut Vec<[u16; 3]>,
     ) {
-        let (layout, side) = (active.layout(), self.patch + 1);
-        let local = |at: Vertex| ((at.y - corner.y) * side + at.x - corner.x) as u32;
-        let key = |at: Vertex| WalkKey::new(layout.index(at) as u32, local(at));
+        let layout = active.layout();
+        let key = |at: Vertex| WalkKey::new(layout.index(at) as u32, u32::from(self.index(corner, at)));
         let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(key));
         walk::leaves(
             active,
@@ -149,7 +153,7 @@ mod tests {
         #[test]
         fn a_patch_s_short_indices_name_its_leaves((columns, rows, vertices) in activations()) {
             let active = active_set(columns, rows, 16, &vertices);
-            let block = VertexBlock::of(active.layout()).expect("small patches");
+            let block = VertexBlock::new(active.layout()).expect("small patches");
             for corner in active.layout().patches() {
                 let (mut walked, mut list) = (Vec::new(), Vec::new());
                 triangles(&active, [corner], |corners| walked.push(corners));
@@ -189,7 +193,7 @@ mod tests {
 
     #[test]
     fn the_largest_block_is_the_last_that_sixteen_bits_hold() {
-        let block = |patch| VertexBlock::of(&PatchLayout::new(300, 300, patch).expect("sound"));
+        let block = |patch| VertexBlock::new(&PatchLayout::new(300, 300, patch).expect("sound"));
         assert_eq!(block(128).map(VertexBlock::vertex_count), Some(129 * 129));
         assert_eq!(block(256), None);
     }

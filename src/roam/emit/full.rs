@@ -1,11 +1,11 @@
-//! Every post of the ground: the reference that the other meshes are measured against.
+//! Every post of the ground: the reference for the other meshes.
 
 use crate::roam::bintree::Triangle;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// Calls `emit` with the two finest triangles of every cell of the lattice in the patches whose south-west
-/// corners are listed, counter-clockwise from the right angle; row by row within a patch.
+/// Calls `emit` with the two finest triangles of every cell of the lattice in the patches whose south-west corners are
+/// listed, counter-clockwise from the right angle; row by row within a patch.
 pub fn triangles(
     layout: &PatchLayout,
     patches: impl IntoIterator<Item = Vertex>,

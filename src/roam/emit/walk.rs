@@ -1,12 +1,12 @@
-//! The way down the bintree of one patch to its leaves, on linear indices.
+//! The leaves of one patch's bintree, on linear indices.
 //!
-//! A vertex is two numbers that are both linear in its coordinates, packed into one word: its place in the
-//! layout's order, where its bit is read, and whatever the caller wants to know it by. The middle of a hypotenuse
-//! is then one addition and one shift for both, exact because the middle is a grid vertex.
+//! A vertex is two numbers, both linear in its coordinates and packed into one word: its index in the layout, which
+//! addresses its bit, and a tag of the caller's choice. The middle of a hypotenuse is one addition and one shift for both,
+//! exact because the middle is a grid vertex.
 //!
-//! The leaves come in the order of Sierpiński's curve: a triangle is entered at one end of its hypotenuse and
-//! left at the other, by way of its apex, so the halves follow each other and each leaf shares an edge with the
-//! leaf before it. Seen from above the halves run the other way round than the whole:
+//! The leaves come in the order of Sierpiński's curve: a triangle is entered at one end of its hypotenuse and left at the
+//! other, by way of its apex, so the halves follow each other and each leaf shares an edge with the leaf before it. Seen
+//! from above the halves have the opposite orientation:
 //!
 //! ```text
 //!         apex                    exit of the first, entry of the second
@@ -21,17 +21,17 @@ use crate::roam::active::ActiveSet;
 /// Twice the levels of the largest patch, 4096 cells a side, and the other root.
 const DEEPEST: usize = 26;
 
-/// A vertex: its place in the layout's order and a tag below 2³¹ that is linear in its coordinates.
+/// A vertex: its index in the layout and a tag below 2³¹ that is linear in its coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WalkKey(u64);
 
 impl WalkKey {
-    /// The key of the vertex at `index` in the layout's order.
+    /// The key of the vertex with an index in the layout.
     pub const fn new(index: u32, tag: u32) -> Self {
         Self((tag as u64) << 32 | index as u64)
     }
 
-    /// The place in the layout's order.
+    /// The index in the layout.
     pub const fn index(self) -> usize {
         self.0 as u32 as usize
     }
@@ -82,8 +82,8 @@ impl WalkTriangle {
 
 /// Calls `emit` with every leaf below `roots`, corners counter-clockwise from the apex.
 ///
-/// `roots` are the two triangles of a patch, each apex first and counter-clockwise, the second's hypotenuse the
-/// first's the other way round. A triangle that `enter` refuses is left out with all below it.
+/// `roots` are the two triangles of a patch, each apex first and counter-clockwise, the second's hypotenuse the reverse of
+/// the first's. A triangle for which `enter` returns false is left out with all below it.
 pub fn leaves(
     active: &ActiveSet,
     roots: [[WalkKey; 3]; 2],
@@ -95,23 +95,23 @@ pub fn leaves(
     let mut waiting = [WalkTriangle::default(); DEEPEST];
     waiting[0] = second;
     let mut count = 1;
-    let mut stop = first;
+    let mut here = first;
     loop {
-        let middle = stop.entry.middle(stop.exit);
-        if enter(stop.corners()) {
-            if stop.depth < finest && active.bit(middle.index()) {
-                let [next, later] = stop.halves(middle);
+        let middle = here.entry.middle(here.exit);
+        if enter(here.corners()) {
+            if here.depth < finest && active.bit(middle.index()) {
+                let [next, later] = here.halves(middle);
                 waiting[count] = later;
                 count += 1;
-                stop = next;
+                here = next;
                 continue;
             }
-            emit(stop.corners());
+            emit(here.corners());
         }
         if count == 0 {
             return;
         }
         count -= 1;
-        stop = waiting[count];
+        here = waiting[count];
     }
 }

@@ -1,4 +1,4 @@
-//! From grid vertices to world space: where a triangle's corners lie, and whether it is drawn at all.
+//! From grid vertices to world space: the positions of a triangle's corners, and whether it is drawn.
 
 use glam::Vec3;
 
@@ -7,27 +7,29 @@ use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::Post;
 
-/// The posts of a triangle of vertices of the layout; `None` where it lies beyond the border, so that it has no
-/// area, or where one of its corners has no data.
+/// The posts of a triangle of vertices of the layout; `None` where it is not drawn: it has no area, as beyond the border, or
+/// a corner without data.
 pub fn drawn_posts(ground: PatchedGround<'_>, corners: [Vertex; 3]) -> Option<[Post; 3]> {
     let posts = corners.map(|vertex| ground.layout.post(vertex));
     let has_data = posts.iter().all(|&post| !ground.lattice.height(post).is_nan());
     (has_data && doubled_area(posts) != 0).then_some(posts)
 }
 
-/// Twice a triangle's area in cells.
-fn doubled_area(posts: [Post; 3]) -> i64 {
+/// Twice a triangle's signed area in cells.
+pub(in crate::roam) fn doubled_area(posts: [Post; 3]) -> i64 {
     let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
 
-/// Where a post with data is drawn, meters.
+/// The world position of a post with data, meters.
 pub fn position(ground: PatchedGround<'_>, post: Post) -> Vec3 {
     ground.lattice.position(post).extend(ground.lattice.height(post))
 }
 
-/// What writes an emitter's triangles to `sink`, those that are drawn, with one vertex a post.
+/// A closure that writes an emitter's drawn triangles to `sink`, with one vertex a post.
 pub fn placing<'a>(ground: PatchedGround<'a>, sink: &'a mut impl MeshSink<Vec3>) -> impl FnMut([Vertex; 3]) {
+    /// No vertex yet: 0, so that fresh memory need not be written; ids are stored one higher.
+    const NOT_PLACED: u32 = 0;
     let mut ids = vec![NOT_PLACED; ground.lattice.heights().len()];
     move |corners| {
         if let Some(posts) = drawn_posts(ground, corners) {
@@ -42,9 +44,6 @@ pub fn placing<'a>(ground: PatchedGround<'a>, sink: &'a mut impl MeshSink<Vec3>)
         }
     }
 }
-
-/// No vertex yet at this post: 0, so that fresh memory need not be written; ids are stored one higher.
-const NOT_PLACED: u32 = 0;
 
 #[cfg(test)]
 mod tests {

@@ -1,19 +1,19 @@
 //! The exact errors of the vertices with the smallest steps, several at a time.
 //!
-//! Nearly all vertices of a terrain split triangles of a few posts: as rows and spans they would cost more than
-//! their posts. So the same post of several triangles is measured at once. Vertices [`PERIOD`] columns apart have
-//! triangles of the same shape; [`BlockPosts`] lays a block's posts out so that those of such vertices lie
-//! together:
+//! Nearly all vertices of a terrain split triangles of a few posts, where rows and spans would cost more than the posts. So
+//! the same post of several triangles is measured at once. Vertices [`PERIOD`] columns apart have triangles of the same
+//! shape; [`BlockPosts`] arranges a block's posts so that those of such vertices lie together:
 //!
 //! ```text
 //! column      0 1 2 … 15 16 17 18 … 31 32 33 34 …
 //! gathered   [0 16 32 48] [1 17 33 49] [2 18 34 50] … and a margin of a few columns either side
 //! ```
 //!
-//! Heights are taken relative to the vertex. One vertex on its own goes through the very same arithmetic with one
-//! lane, so that it gets the same bits.
+//! Heights are relative to the vertex. A single vertex is measured by the same arithmetic in one lane, with the same bits.
 
 use std::ops::{Add, Mul, Sub};
+
+use glam::Vec4;
 
 use crate::roam::errors::scan::larger;
 use crate::roam::graph::{Vertex, VertexKind};
@@ -21,8 +21,8 @@ use crate::roam::graph::{Vertex, VertexKind};
 /// The largest step that is treated here.
 pub const LARGEST_STEP: i32 = 4;
 
-/// Vertices this many columns apart have triangles of one shape, up to [`LARGEST_STEP`]: diagonals of that step
-/// turn every 8 columns.
+/// Vertices this many columns apart have triangles of one shape, up to [`LARGEST_STEP`]: diagonals of that step alternate
+/// every 8 columns.
 pub const PERIOD: usize = 16;
 
 /// Vertices measured at once.
@@ -34,55 +34,40 @@ pub const BLOCK_COLUMNS: usize = PERIOD * LANES;
 /// Posts around a block that its triangles reach.
 const MARGIN: usize = LARGEST_STEP as usize;
 
-/// A number for each of several vertices.
-#[derive(Clone, Copy)]
-struct Lanes<const N: usize>([f32; N]);
+/// A number for one vertex, or for each of several.
+trait Numbers: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self> {
+    const ZERO: Self;
 
-impl<const N: usize> Lanes<N> {
-    #[inline(always)]
-    fn with(self, other: Self, each: impl Fn(f32, f32) -> f32) -> Self {
-        let mut result = self.0;
-        for (one, other) in result.iter_mut().zip(other.0) {
-            *one = each(*one, other);
-        }
-        Self(result)
-    }
+    fn abs(self) -> Self;
+
+    fn or_larger(self, other: Self) -> Self;
+}
+
+impl Numbers for f32 {
+    const ZERO: Self = 0.0;
 
     #[inline(always)]
     fn abs(self) -> Self {
-        self.with(self, |number, _| number.abs())
+        self.abs()
     }
 
     #[inline(always)]
     fn or_larger(self, other: Self) -> Self {
-        self.with(other, larger)
+        larger(self, other)
     }
 }
 
-impl<const N: usize> Add for Lanes<N> {
-    type Output = Self;
+impl Numbers for Vec4 {
+    const ZERO: Self = Self::ZERO;
 
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.with(other, |one, other| one + other)
+    fn abs(self) -> Self {
+        self.abs()
     }
-}
-
-impl<const N: usize> Sub for Lanes<N> {
-    type Output = Self;
 
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(other, |one, other| one - other)
-    }
-}
-
-impl<const N: usize> Mul<f32> for Lanes<N> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, factor: f32) -> Self {
-        self.with(self, |number, _| number * factor)
+    fn or_larger(self, other: Self) -> Self {
+        self.max(other)
     }
 }
 
@@ -90,13 +75,12 @@ impl<const N: usize> Mul<f32> for Lanes<N> {
 /// their posts with data. `heights` are the lattice's, `columns` to a row.
 pub fn error(heights: &[f32], columns: usize, vertex: Vertex) -> f32 {
     let at = vertex.y as isize * columns as isize + vertex.x as isize;
-    let post = |dx: isize, dy: isize| Lanes([heights[(at + dy * columns as isize + dx) as usize]]);
-    diamond_error(vertex, post).0[0]
+    diamond_error(vertex, |dx: isize, dy: isize| heights[(at + dy * columns as isize + dx) as usize])
 }
 
 /// The posts of a block, those of equal triangles together.
 pub struct BlockPosts {
-    rows: Vec<[[f32; LANES]; PERIOD + 2 * MARGIN]>,
+    rows: Vec<[Vec4; PERIOD + 2 * MARGIN]>,
     first: Vertex,
 }
 
@@ -104,23 +88,23 @@ impl BlockPosts {
     /// The posts of the block of `rows` rows and [`BLOCK_COLUMNS`] columns from vertex `first` on, which lies on a
     /// multiple of [`PERIOD`] both ways, and those around it. Posts beyond the lattice's borders repeat those on
     /// them.
-    pub fn of(heights: &[f32], columns: usize, first: Vertex, rows: usize) -> Self {
+    pub fn new(heights: &[f32], columns: usize, first: Vertex, rows: usize) -> Self {
         let last_row = heights.len() / columns - 1;
         let (west, south) = (first.x as usize, first.y as usize);
         let inside = west >= MARGIN && west + BLOCK_COLUMNS + MARGIN <= columns;
         let gather = |row: usize| {
             let row = (south + row).saturating_sub(MARGIN).min(last_row);
             let row = &heights[row * columns..][..columns];
-            let mut gathered = [[0f32; LANES]; PERIOD + 2 * MARGIN];
+            let mut gathered = [Vec4::ZERO; PERIOD + 2 * MARGIN];
             if inside {
                 let posts = &row[west - MARGIN..][..BLOCK_COLUMNS + 2 * MARGIN];
                 for (ahead, lanes) in gathered.iter_mut().enumerate() {
-                    *lanes = std::array::from_fn(|lane| posts[ahead + lane * PERIOD]);
+                    *lanes = Vec4::from_array(std::array::from_fn(|lane| posts[ahead + lane * PERIOD]));
                 }
             } else {
                 for (ahead, lanes) in gathered.iter_mut().enumerate() {
                     let column = |lane: usize| (west + lane * PERIOD + ahead).saturating_sub(MARGIN);
-                    *lanes = std::array::from_fn(|lane| row[column(lane).min(columns - 1)]);
+                    *lanes = Vec4::from_array(std::array::from_fn(|lane| row[column(lane).min(columns - 1)]));
                 }
             }
             gathered
@@ -136,23 +120,23 @@ impl BlockPosts {
             if (vertex.x | vertex.y) & (2 * LARGEST_STEP - 1) == 0 {
                 continue;
             }
-            let found = diamond_error(vertex, |dx, dy| {
+            let errors_of_lanes = diamond_error(vertex, |dx, dy| {
                 let row = &self.rows[(row + MARGIN).wrapping_add_signed(dy)];
-                Lanes(row[(ahead + MARGIN).wrapping_add_signed(dx)])
+                row[(ahead + MARGIN).wrapping_add_signed(dx)]
             });
-            for (lane, found) in found.0.into_iter().enumerate() {
-                if let Some(error) = errors.get_mut(ahead + lane * PERIOD) {
-                    *error = found;
+            for (lane, error) in errors_of_lanes.to_array().into_iter().enumerate() {
+                if let Some(slot) = errors.get_mut(ahead + lane * PERIOD) {
+                    *slot = error;
                 }
             }
         }
     }
 }
 
-/// The errors of vertices with the step and the shape of `vertex`; `post` is their height so many columns and rows
-/// away.
+/// The errors of vertices with the step and the shape of `vertex`; `post` returns their posts at an offset in columns and
+/// rows.
 #[inline(always)]
-fn diamond_error<const N: usize>(vertex: Vertex, post: impl Fn(isize, isize) -> Lanes<N>) -> Lanes<N> {
+fn diamond_error<L: Numbers>(vertex: Vertex, post: impl Fn(isize, isize) -> L) -> L {
     let turned = |dx: isize, dy: isize| post(dy, dx);
     let mirrored = |dx: isize, dy: isize| post(-dx, dy);
     let rises = || {
@@ -164,26 +148,26 @@ fn diamond_error<const N: usize>(vertex: Vertex, post: impl Fn(isize, isize) -> 
         (1, VertexKind::NorthEdge) => off_middle(post(0, 0), post(0, -1), post(0, 1)),
         (1, VertexKind::Center) if rises() => center_of_step_one(post),
         (1, VertexKind::Center) => center_of_step_one(mirrored),
-        (2, VertexKind::EastEdge) => edge::<2, N>(post),
-        (2, VertexKind::NorthEdge) => edge::<2, N>(turned),
-        (2, VertexKind::Center) if rises() => center::<2, N>(post),
-        (2, VertexKind::Center) => center::<2, N>(mirrored),
-        (_, VertexKind::EastEdge) => edge::<4, N>(post),
-        (_, VertexKind::NorthEdge) => edge::<4, N>(turned),
-        (_, VertexKind::Center) if rises() => center::<4, N>(post),
-        (_, VertexKind::Center) => center::<4, N>(mirrored),
+        (2, VertexKind::EastEdge) => edge::<2, L>(post),
+        (2, VertexKind::NorthEdge) => edge::<2, L>(turned),
+        (2, VertexKind::Center) if rises() => center::<2, L>(post),
+        (2, VertexKind::Center) => center::<2, L>(mirrored),
+        (_, VertexKind::EastEdge) => edge::<4, L>(post),
+        (_, VertexKind::NorthEdge) => edge::<4, L>(turned),
+        (_, VertexKind::Center) if rises() => center::<4, L>(post),
+        (_, VertexKind::Center) => center::<4, L>(mirrored),
     }
 }
 
 /// How far a post is off the middle of two others: the mean of its differences to both.
 #[inline(always)]
-fn off_middle<const N: usize>(post: Lanes<N>, one: Lanes<N>, other: Lanes<N>) -> Lanes<N> {
+fn off_middle<L: Numbers>(post: L, one: L, other: L) -> L {
     (((post - one) + (post - other)) * 0.5).abs()
 }
 
 /// The hypotenuse rises from south-west to north-east; every post is the middle of two corners.
 #[inline(always)]
-fn center_of_step_one<const N: usize>(post: impl Fn(isize, isize) -> Lanes<N>) -> Lanes<N> {
+fn center_of_step_one<L: Numbers>(post: impl Fn(isize, isize) -> L) -> L {
     let [south_west, south_east, north_west, north_east] =
         [post(-1, -1), post(1, -1), post(-1, 1), post(1, 1)];
     let across = off_middle(post(0, 0), south_west, north_east);
@@ -196,7 +180,7 @@ fn center_of_step_one<const N: usize>(post: impl Fn(isize, isize) -> Lanes<N>) -
 
 /// The hypotenuse runs east.
 #[inline(always)]
-fn edge<const STEP: isize, const N: usize>(post: impl Fn(isize, isize) -> Lanes<N>) -> Lanes<N> {
+fn edge<const STEP: isize, L: Numbers>(post: impl Fn(isize, isize) -> L) -> L {
     let at = post(0, 0);
     let (west, east) = (post(-STEP, 0) - at, post(STEP, 0) - at);
     let middle = (west + east) * 0.5;
@@ -220,7 +204,7 @@ fn edge<const STEP: isize, const N: usize>(post: impl Fn(isize, isize) -> Lanes<
 
 /// The hypotenuse rises from south-west to north-east.
 #[inline(always)]
-fn center<const STEP: isize, const N: usize>(post: impl Fn(isize, isize) -> Lanes<N>) -> Lanes<N> {
+fn center<const STEP: isize, L: Numbers>(post: impl Fn(isize, isize) -> L) -> L {
     let at = post(0, 0);
     let corner = |dx: isize, dy: isize| post(dx * STEP, dy * STEP) - at;
     let (south_west, north_east) = (corner(-1, -1), corner(1, 1));
@@ -229,7 +213,7 @@ fn center<const STEP: isize, const N: usize>(post: impl Fn(isize, isize) -> Lane
     let scale = 0.5 / STEP as f32;
     let below = ((south_east - south_west) * scale, (north_east - south_east) * scale);
     let above = ((north_east - north_west) * scale, (north_west - south_west) * scale);
-    let mut worst = Lanes([0.0; N]);
+    let mut worst = L::ZERO;
     for dy in -STEP..=STEP {
         for (columns, (per_column, per_row)) in [(-STEP..dy, above), (dy..STEP + 1, below)] {
             let row = middle + per_row * dy as f32;

@@ -1,6 +1,6 @@
 //! The plane of a triangle of posts, in posts and meters.
 //!
-//! It is told from the triangle's first corner: so its rounding does not depend on where the lattice begins, and a
+//! It is measured from the triangle's first corner, so that its rounding does not depend on where the lattice begins, and a
 //! part of a terrain has the errors of the whole.
 
 use crate::terrain::lattice::{Lattice, Post};
@@ -18,7 +18,7 @@ pub struct PostPlane {
 
 impl PostPlane {
     /// The plane through three posts; `None` where they lie on a line. Posts without data make every height NaN.
-    pub fn through(lattice: &Lattice, [a, b, c]: [Post; 3]) -> Option<Self> {
+    pub fn new(lattice: &Lattice, [a, b, c]: [Post; 3]) -> Option<Self> {
         let point =
             |post: Post| (f64::from(post.column), f64::from(post.row), f64::from(lattice.height(post)));
         let ((ax, ay, az), (bx, by, bz), (cx, cy, cz)) = (point(a), point(b), point(c));
@@ -77,13 +77,13 @@ mod tests {
         heights[15] = f32::NAN;
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 4, heights).expect("sound");
         let post = |column, row| Post { column, row };
-        let plane = PostPlane::through(&lattice, [post(0, 1), post(2, 0), post(3, 2)]).expect("no line");
+        let plane = PostPlane::new(&lattice, [post(0, 1), post(2, 0), post(3, 2)]).expect("no line");
         assert!(plane.has_data());
         for post in [post(0, 1), post(2, 0), post(3, 2), post(1, 1), post(2, 1), post(0, 3)] {
             assert!((plane.height(post) - f64::from(lattice.height(post))).abs() < 1e-12, "{post:?}");
         }
-        assert!(PostPlane::through(&lattice, [post(0, 0), post(1, 1), post(2, 2)]).is_none());
-        let torn = PostPlane::through(&lattice, [post(0, 0), post(1, 0), post(3, 3)]).expect("no line");
+        assert!(PostPlane::new(&lattice, [post(0, 0), post(1, 1), post(2, 2)]).is_none());
+        let torn = PostPlane::new(&lattice, [post(0, 0), post(1, 0), post(3, 3)]).expect("no line");
         assert!(!torn.has_data());
     }
 }

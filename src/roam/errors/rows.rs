@@ -21,8 +21,8 @@ pub struct RowSpans {
 }
 
 impl RowSpans {
-    /// The rows of the triangle with these corners, whichever way they turn.
-    pub fn of(posts: [Post; 3]) -> Self {
+    /// The rows of the triangle with these corners, in either orientation.
+    pub fn new(posts: [Post; 3]) -> Self {
         let corners = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
         let rows = corners.map(|corner| corner.1);
         Self { corners, row: rows[0].min(rows[1]).min(rows[2]), last_row: rows[0].max(rows[1]).max(rows[2]) }
@@ -66,7 +66,7 @@ mod tests {
 
     fn rows(posts: [(u32, u32); 3]) -> Vec<(u32, u32, u32)> {
         let posts = posts.map(|(column, row)| Post { column, row });
-        RowSpans::of(posts).map(|span| (span.row, span.first, span.last)).collect()
+        RowSpans::new(posts).map(|span| (span.row, span.first, span.last)).collect()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Scanning the posts under a triangle of plain ground.
 //!
-//! A bintree triangle has one of three shapes; rows of posts run east, so each shape is a span of every row that
-//! grows or shrinks by whole posts, and nothing has to be clipped or divided:
+//! A bintree triangle has one of three shapes. Rows of posts run east, so each shape is a span of every row that grows or
+//! shrinks by whole posts, and nothing is clipped or divided:
 //!
 //! ```text
 //!   Corner: legs along       Upright: hypotenuse       Aslant: hypotenuse
@@ -13,9 +13,9 @@
 //!                                                        o
 //! ```
 //!
-//! Heights are taken relative to the apex A and all is f32, eight posts at a time: legs are powers of two, so
-//! gradients are exact but for one subtraction. The distances found are within one part in a million of the
-//! relief under the triangle of the true ones; constant ground has exactly 0.
+//! Heights are relative to the apex A and all is f32, eight posts at a time: legs are powers of two, so gradients are exact
+//! but for one subtraction. The distances are within one part in a million of the relief under the triangle of the true
+//! ones; constant ground has exactly 0.
 
 use std::ops::Range;
 
@@ -32,19 +32,19 @@ const COLUMNS_AHEAD: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 /// The largest distance yet of each lane.
 pub type Worst = [f32; LANES];
 
-/// Rows between two looks whether a tolerance has been exceeded.
-const ROWS_PER_LOOK: i32 = 8;
+/// Rows between two tests whether a tolerance is exceeded.
+const ROWS_PER_TEST: i32 = 8;
 
 /// Whether posts on the hypotenuse count. The second triangle of a diamond may leave them to the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hypotenuse {
     /// They count.
-    Counted,
-    /// Somebody else counts them.
-    Left,
+    Included,
+    /// They do not.
+    Excluded,
 }
 
-/// Signs tell in which direction from the apex the triangle lies.
+/// Signs give the direction from the apex to the triangle.
 #[derive(Clone, Copy, Debug)]
 enum ScanShape {
     /// Legs of `leg` cells.
@@ -110,7 +110,7 @@ impl<'a> PostTriangle<'a> {
         Some(Self { heights, columns: columns as usize, apex, apex_height, per_column, per_row, shape })
     }
 
-    /// How many rows of posts it covers, counted from the apex or, where that stands aside, from the south.
+    /// The rows of posts it covers, counted from the apex, or from the south where the hypotenuse runs north.
     pub fn rows(&self) -> i32 {
         match self.shape {
             ScanShape::Corner { leg, .. } => leg + 1,
@@ -134,7 +134,7 @@ impl<'a> PostTriangle<'a> {
     /// Whether all posts covered are plain: have data and are not pinned.
     pub fn is_plain(&self, pinned: &[bool]) -> bool {
         let mut plain = true;
-        self.spans(0..self.rows(), Hypotenuse::Counted, |row, first, length| {
+        self.spans(0..self.rows(), Hypotenuse::Included, |row, first, length| {
             let posts = self.posts(row, first, length);
             plain &= is_plain(&self.heights[posts.clone()], &pinned[posts]);
         });
@@ -149,9 +149,9 @@ impl<'a> PostTriangle<'a> {
     /// Whether any post, all of them plain, is farther off than `tolerance_m`.
     pub fn exceeds(&self, tolerance_m: f32) -> bool {
         let mut worst = Worst::default();
-        (0..self.rows()).step_by(ROWS_PER_LOOK as usize).any(|first| {
-            let rows = first..(first + ROWS_PER_LOOK).min(self.rows());
-            self.scan(rows, Hypotenuse::Counted, &mut worst);
+        (0..self.rows()).step_by(ROWS_PER_TEST as usize).any(|first| {
+            let rows = first..(first + ROWS_PER_TEST).min(self.rows());
+            self.scan(rows, Hypotenuse::Included, &mut worst);
             largest(&worst) > tolerance_m
         })
     }
@@ -160,22 +160,22 @@ impl<'a> PostTriangle<'a> {
     #[inline(always)]
     fn spans(&self, rows: Range<i32>, hypotenuse: Hypotenuse, mut visit: impl FnMut(i32, i32, i32)) {
         let (x, y) = self.apex;
-        let left = i32::from(hypotenuse == Hypotenuse::Left);
+        let excluded = i32::from(hypotenuse == Hypotenuse::Excluded);
         match self.shape {
             ScanShape::Corner { east, north, leg } => {
                 for up in rows {
-                    let reach = leg - up - left;
+                    let reach = leg - up - excluded;
                     visit(y + north * up, if east > 0 { x } else { x - reach }, reach + 1);
                 }
             }
             ScanShape::Upright { north, reach } => {
-                for up in rows.start..rows.end.min(reach + 1 - left) {
+                for up in rows.start..rows.end.min(reach + 1 - excluded) {
                     visit(y + north * up, x - up, 2 * up + 1);
                 }
             }
             ScanShape::Aslant { east, reach } => {
                 for up in rows {
-                    let (near, far) = ((up - reach).abs(), reach - left);
+                    let (near, far) = ((up - reach).abs(), reach - excluded);
                     visit(y - reach + up, if east > 0 { x + near } else { x - far }, far - near + 1);
                 }
             }
@@ -226,7 +226,7 @@ impl<'a> PostTriangle<'a> {
     }
 }
 
-/// The larger of two numbers; `f32::max` would have to think of NaN.
+/// The larger of two numbers that are not NaN, in one instruction, where `f32::max` tests for NaN.
 #[inline(always)]
 pub fn larger(one: f32, other: f32) -> f32 {
     if other > one { other } else { one }

@@ -1,17 +1,17 @@
-//! Where the ground is plain: every post has data and none is pinned.
+//! The tiles of plain ground, where every post has data and none is pinned.
 //!
-//! Plain ground can be scanned without a question at every post. The survey answers for whole tiles, so that
-//! the answer costs nothing beside the scan; it errs only one way, a region called plain is plain.
+//! Plain ground is scanned without a test at every post. The survey answers for tiles, so its answer costs little beside the
+//! scan; it errs one way only: a region that it calls plain is plain.
 
 use rayon::prelude::*;
 
+use crate::roam::errors::scan::PostTriangle;
 use crate::terrain::lattice::Lattice;
 
-/// Posts along a tile's side: the smaller, the less ground around a hole is scanned the slow way; the larger,
-/// the fewer tiles there are to ask.
+/// Posts along a tile's side: a smaller one scans less ground around a hole the slow way; a larger one makes fewer tiles.
 const TILE: usize = 32;
 
-/// Which tiles of a lattice are plain.
+/// The plain tiles of a lattice.
 #[derive(Clone, Debug)]
 pub struct TileSurvey {
     tiles_east: usize,
@@ -19,8 +19,8 @@ pub struct TileSurvey {
 }
 
 impl TileSurvey {
-    /// Looks at every post once.
-    pub fn of(lattice: &Lattice) -> Self {
+    /// Reads every post once.
+    pub fn new(lattice: &Lattice) -> Self {
         let columns = lattice.columns() as usize;
         let tiles_east = columns.div_ceil(TILE);
         let mut blemished = vec![false; tiles_east * (lattice.rows() as usize).div_ceil(TILE)];
@@ -37,8 +37,7 @@ impl TileSurvey {
         Self { tiles_east, blemished }
     }
 
-    /// Whether all posts from column and row `first` to `last`, both included and within the lattice, are known
-    /// to be plain.
+    /// Whether all posts from column and row `first` to `last`, ends included and within the lattice, are known to be plain.
     pub fn is_plain(&self, first: (i32, i32), last: (i32, i32)) -> bool {
         let tile = |at: i32| at as usize / TILE;
         (tile(first.1)..=tile(last.1)).all(|north| {
@@ -46,13 +45,19 @@ impl TileSurvey {
             !self.blemished[row + tile(first.0)..=row + tile(last.0)].contains(&true)
         })
     }
+
+    /// Whether all posts under a triangle are known to be plain.
+    pub fn covers(&self, triangle: &PostTriangle<'_>) -> bool {
+        let (first, last) = triangle.bounds();
+        self.is_plain(first, last)
+    }
 }
 
-/// Whether all these posts have data and none is pinned. Without an early way out: that costs more than it saves
-/// on the few posts of a row.
+/// Whether all these posts have data and none is pinned. It does not stop early: that would cost more than it saves on the
+/// few posts of a row.
 pub fn is_plain(heights: &[f32], pinned: &[bool]) -> bool {
-    !(heights.iter().fold(false, |found, height| found | height.is_nan())
-        | pinned.iter().fold(false, |found, &pin| found | pin))
+    !(heights.iter().fold(false, |hole, height| hole | height.is_nan())
+        | pinned.iter().fold(false, |any, &pin| any | pin))
 }
 
 #[cfg(test)]
@@ -67,7 +72,7 @@ mod tests {
         heights[40 * 100 + 70] = f32::NAN;
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 100, heights).expect("sound");
         lattice.pin(Post { column: 99, row: 69 }, 2.0);
-        let survey = TileSurvey::of(&lattice);
+        let survey = TileSurvey::new(&lattice);
         assert!(survey.is_plain((0, 0), (99, 31)) && survey.is_plain((0, 0), (63, 69)));
         assert!(!survey.is_plain((60, 30), (64, 32)) && !survey.is_plain((96, 64), (96, 64)));
         assert!(survey.is_plain((96, 32), (99, 63)));

@@ -1,8 +1,8 @@
-//! One sweep over all vertices, finest level first: what a vertex's error is depends on the measure, how it is
-//! raised to those of its children does not.
+//! One sweep over all vertices, finest level first, that computes each vertex's error by a measure and raises it to those
+//! of its children.
 //!
-//! The rows of a level are streamed from south to north through a small working set, and every level hands the
-//! next coarser one what it needs, every other post of every other row and one error a cell:
+//! The rows of a level are streamed from south to north through a small working set, and every level passes to the next
+//! coarser one every other post of every other row and one error a cell:
 //!
 //! ```text
 //! high  e───E───e───E───e    e  evens: the posts of the next coarser level
@@ -12,18 +12,19 @@
 //! low   e───E───e───E───e       the cells of the next coarser level
 //! ```
 //!
-//! So heights are read once and errors are written once, all else stays in the cache, and every loop runs over
-//! contiguous slices, written so that compilers make vector code of them for the plainest processors. A recursion over triangles visits the same vertices in an order that no cache and no
-//! vector unit follows. Bands of rows run in parallel and start a few rows early instead of waiting for each
-//! other; levels coarser than a band can see come after, on a lattice a sixty-fourth the size.
+//! Heights are read once and errors are written once, all else stays in the cache, and every loop runs over contiguous
+//! slices, written so that compilers vectorize it for any processor. A recursion over triangles would visit the same vertices
+//! in an order that neither caches nor vector units can follow. Bands of rows run in parallel and start a few rows early
+//! instead of waiting for each other; levels coarser than a band follow, on a lattice a sixty-fourth the size.
 
 use rayon::prelude::*;
 
+use crate::roam::errors::scan::larger;
 use crate::roam::layout::PatchLayout;
 
-/// What a vertex's own error is.
+/// A measure of a vertex's own error.
 pub trait OwnError {
-    /// Whether values may be NaN. Where they may not, a sweep stops at the first that is.
+    /// Whether values may be NaN. Where they may not, a sweep stops at the first NaN.
     const HOLES: bool;
 
     /// The own error of a vertex from the values at the ends of its hypotenuse and at itself.
@@ -64,7 +65,7 @@ impl<'a> SweepSource<'a> {
     /// One value a vertex of the layout.
     ///
     /// # Panics
-    /// Where there is not.
+    /// Unless there is.
     pub fn new(values: &'a [f32], layout: &PatchLayout) -> Self {
         assert_eq!(values.len(), layout.vertex_count(), "one value a vertex");
         let (columns, rows) = (layout.columns(), layout.rows());
@@ -73,7 +74,7 @@ impl<'a> SweepSource<'a> {
 
     /// Writes every vertex's error, 0 at the patch corners. In parallel, the same for any number of threads.
     ///
-    /// Whether the values were what the measure asks for; where they were not, what was written has no meaning.
+    /// Returns `false`, and leaves `out` meaningless, where a value is NaN and the measure allows none.
     #[must_use]
     pub fn sweep<M: OwnError>(&self, out: &mut [f32]) -> bool {
         let levels = self.patch.ilog2().min(BAND_LEVELS);
@@ -141,7 +142,7 @@ struct SweepBand<'a> {
     cells: &'a mut [f32],
 }
 
-/// Between the steps of a level: the last rows that came from the next finer one, and what was made of them.
+/// The working set of a level: the last rows from the next finer one, and what was computed from them.
 #[derive(Default)]
 struct SweepLevel {
     /// Source by row modulo 4.
@@ -156,7 +157,7 @@ struct SweepLevel {
     north: Vec<f32>,
     center: Vec<f32>,
     around: Vec<f32>,
-    /// What the finest level writes where coarser ones will.
+    /// Written by the finest level where coarser ones write later.
     zeros: Vec<f32>,
 }
 
@@ -187,7 +188,7 @@ struct SweepReach {
 
 impl SweepBand<'_> {
     fn sweep<M: OwnError>(&mut self, levels: u32) -> bool {
-        // What an end of the reach spoils lies within the coarsest square beside it.
+        // The ends of the reach give wrong values within the coarsest square beside them.
         let early = 1usize << levels;
         let south = self.first.saturating_sub(early);
         let north = (self.first + self.rows - 1).next_multiple_of(early) + early;
@@ -253,12 +254,12 @@ impl SweepBand<'_> {
         split(row(2 * pair + 1), mid_evens, odds);
         own_north::<M>(low_evens, mid_evens, high_evens, north);
         if raised {
-            larger(&cells[2 * pair % 4], &cells[(2 * pair + 1) % 4], around);
+            larger_of_rows(&cells[2 * pair % 4], &cells[(2 * pair + 1) % 4], around);
             raise_north(around, north);
             if pair == last {
                 cells[(2 * pair + 2) % 4].fill(0.0);
             }
-            larger(&cells[(2 * pair + 1) % 4], &cells[(2 * pair + 2) % 4], around);
+            larger_of_rows(&cells[(2 * pair + 1) % 4], &cells[(2 * pair + 2) % 4], around);
             raise_east(around, high_east);
         }
         let squares_south = reach.south >> (level + 1);
@@ -330,7 +331,7 @@ impl SweepBand<'_> {
 
 /// A row's values at even places, of which there is one more, and at odd ones.
 ///
-/// Pairs are read as one number: compilers make shuffles of that, and single loads of the obvious way.
+/// Pairs are read as one number, which compilers turn into shuffles; a plain loop becomes single loads.
 fn split(row: &[f32], evens: &mut [f32], odds: &mut [f32]) {
     let pairs = bytemuck::cast_slice::<f32, u8>(row).as_chunks::<8>().0;
     for (pair, (even, odd)) in pairs.iter().zip(evens.iter_mut().zip(odds)) {
@@ -386,30 +387,25 @@ fn own_center<M: OwnError>(near: &[f32], odds: &[f32], far: &[f32], out: &mut [f
     }
 }
 
-/// The larger of two numbers that are no NaN: one instruction, where `f32::max` must look for NaN.
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-fn larger(low: &[f32], high: &[f32], out: &mut [f32]) {
-    out.iter_mut().zip(low.iter().zip(high)).for_each(|(out, (&low, &high))| *out = max(low, high));
+fn larger_of_rows(low: &[f32], high: &[f32], out: &mut [f32]) {
+    out.iter_mut().zip(low.iter().zip(high)).for_each(|(out, (&low, &high))| *out = larger(low, high));
 }
 
 /// `around` holds the cells beside a row, with a 0 before and after.
 fn raise_east(around: &[f32], east: &mut [f32]) {
     let pairs = around[1..].as_chunks::<2>().0;
-    east.iter_mut().zip(pairs).for_each(|(east, &[a, b])| *east = max(*east, max(a, b)));
+    east.iter_mut().zip(pairs).for_each(|(east, &[a, b])| *east = larger(*east, larger(a, b)));
 }
 
 fn raise_north(around: &[f32], north: &mut [f32]) {
     let pairs = around.as_chunks::<2>().0;
-    north.iter_mut().zip(pairs).for_each(|(north, &[a, b])| *north = max(*north, max(a, b)));
+    north.iter_mut().zip(pairs).for_each(|(north, &[a, b])| *north = larger(*north, larger(a, b)));
 }
 
 fn raise_center(low_east: &[f32], high_east: &[f32], north: &[f32], center: &mut [f32]) {
-    let east = low_east.iter().zip(high_east).map(|(&low, &high)| max(low, high));
-    let west_and_east = north.iter().zip(&north[1..]).map(|(&west, &east)| max(west, east));
+    let east = low_east.iter().zip(high_east).map(|(&low, &high)| larger(low, high));
+    let west_and_east = north.iter().zip(&north[1..]).map(|(&west, &east)| larger(west, east));
     for (center, (east, north)) in center.iter_mut().zip(east.zip(west_and_east)) {
-        *center = max(*center, max(east, north));
+        *center = larger(*center, larger(east, north));
     }
 }

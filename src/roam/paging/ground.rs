@@ -1,5 +1,6 @@
-//! The source of patches: a raster read in windows, and a bounded cache of what was made of it.
+//! The source of patches: a raster read in windows, and a bounded cache of patches.
 
+use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 use std::sync::Arc;
 
@@ -20,13 +21,13 @@ use crate::roam::patched_ground::PatchedGround;
 use crate::roam::spheres::SphereMap;
 use crate::terrain::lattice::{Lattice, LatticeError};
 
-/// How terrain is paged.
+/// The parameters of paging.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PagingOptions {
     /// Cells along a patch's side: a power of two from 2 to 1024. Default [`DEFAULT_PATCH`].
     pub patch: u32,
-    /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches hold whose
-    /// spheres the eye is inside. Default 256, 8 MiB in patches of 64.
+    /// The most patches that are kept; at least 1. A walk reads hardly anything twice where all patches fit whose spheres
+    /// the eye is inside. Default 256, 8 MiB in patches of 64.
     pub capacity: usize,
 }
 
@@ -36,13 +37,13 @@ impl Default for PagingOptions {
     }
 }
 
-/// The largest patch: more posts than that would be measured for each.
+/// The largest patch; the surroundings of a larger one would be too many posts to measure for each.
 const LARGEST_PATCH: u32 = 1024;
 
 /// Why terrain cannot be paged.
 #[derive(Debug, thiserror::Error)]
 pub enum PagingError {
-    /// The raster would have to be resampled, and that is not done in pieces.
+    /// The raster would have to be resampled, which is not done in pieces.
     #[error(
         "{0}; terrain that is read in pieces is not resampled: warp the file first, for example with gdalwarp"
     )]
@@ -50,7 +51,7 @@ pub enum PagingError {
     /// The raster is no lattice.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
-    /// More patches than are taken, or sizes that make none.
+    /// Too many patches, or sizes that make none.
     #[error(
         "{columns} x {rows} posts make too many patches of {patch} cells a side, or none: at most {MOST_PATCHES} are taken, of 2 to {LARGEST_PATCH} cells, a power of two; choose larger ones, or add overviews to the file, for example with: gdaladdo FILE 2 4 8"
     )]
@@ -70,14 +71,14 @@ pub enum PagingError {
     Dem(#[from] DemError),
 }
 
-/// What a source of patches did.
+/// The work of a source of patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PagingCounts {
     /// Patches that were read and measured.
     pub loads: u64,
-    /// Patches that were asked for and still kept.
+    /// Requests for patches that were kept.
     pub hits: u64,
-    /// Patches that made room for others.
+    /// Patches that were dropped for others.
     pub evictions: u64,
     /// The most patches that were kept at any time.
     pub peak: usize,
@@ -85,13 +86,12 @@ pub struct PagingCounts {
 
 /// Terrain of which only some patches are in memory.
 ///
-/// `S` measures a ground: from a piece of the terrain, whose positions are those of the whole, to its nested spheres.
-/// What it says of a vertex may depend on the ground under the triangles which the vertex and its descendants split,
-/// on nothing further away, and not on where the piece begins; then every patch is bit for bit that of the whole
-/// terrain in memory.
+/// `S` measures a ground: from a piece of the terrain, whose positions are those of the whole, to its nested spheres. Its
+/// result for a vertex may depend on the ground under the triangles that the vertex and its descendants split alone, and not
+/// on where the piece begins; then every patch is bit for bit that of the whole terrain in memory.
 ///
-/// Memory: the cache, one region of 3 × 3 to 4 × 3 patches while a patch is read, 32 bytes a patch of the terrain,
-/// and what the windows keep. Patches that were handed out live as long as whoever holds them.
+/// Memory: the cache, one region of 3 × 3 to 4 × 3 patches while a patch is read, 32 bytes a patch of the terrain, and the
+/// buffers of the windows. Patches that were handed out live as long as they are held.
 pub struct PagedGround<W, S> {
     windows: W,
     spheres: S,
@@ -103,8 +103,7 @@ pub struct PagedGround<W, S> {
     buffer: Vec<f32>,
 }
 
-/// Measures plain nested spheres: the own radius is the exact error as drawn, times `reach` meters of distance a meter
-/// of error.
+/// Measures plain nested spheres: the own radius is the exact error times `reach` meters of distance a meter of error.
 pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     move |ground| {
         let errors = ErrorMap::exact(ground.lattice, ground.layout);
@@ -113,8 +112,8 @@ pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
     }
 }
 
-/// The finest image of `file` whose patches of `patch` cells a side are few enough: the file's own, or the first of
-/// its overviews in the order of the file that fits.
+/// The finest image of `file` whose patches of `patch` cells a side are few enough: the file's own, or the first of its
+/// overviews in the order of the file that fits.
 ///
 /// # Errors
 /// None fits, or the one that does cannot be opened.
@@ -123,10 +122,10 @@ pub fn finest_that_fits<R: Read + Seek>(
     patch: u32,
 ) -> Result<GeoTiffWindows<R>, PagingError> {
     let (columns, rows) = file.size();
-    if PatchLayout::paged(columns, rows, patch).is_some() {
+    let fits = |columns, rows| PatchLayout::paged(columns, rows, patch).is_some();
+    if fits(columns, rows) {
         return Ok(file);
     }
-    let fits = |width, height| PatchLayout::paged(width, height, patch).is_some();
     match file.overviews().iter().find(|overview| fits(overview.width, overview.height)) {
         Some(overview) => Ok(file.at_overview(overview)?),
         None => Err(PagingError::Patches { columns, rows, patch }),
@@ -137,8 +136,8 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// Reads the whole terrain once, piece by piece, for the summaries of its patches.
     ///
     /// # Errors
-    /// [`PagingError`]: the raster is not north-up or not in meters, has too many patches or no data at all, or a
-    /// piece of it cannot be read.
+    /// [`PagingError`]: the raster is not north-up or not in meters, has too many patches or no data at all, or a piece of it
+    /// cannot be read.
     pub fn open(mut windows: W, spheres: S, options: &PagingOptions) -> Result<Self, PagingError> {
         warp::check_metric(windows.metadata()).map_err(PagingError::NotMetric)?;
         let (origin, cell) = Lattice::frame(windows.metadata())?;
@@ -146,7 +145,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         let layout = PatchLayout::paged(columns, rows, patch).filter(|_| patch <= LARGEST_PATCH);
         let layout = layout.ok_or(PagingError::Patches { columns, rows, patch })?;
         let frame = PagedFrame { layout, origin, cell };
-        let summaries = summary::of_all(&mut windows, &frame, &spheres)?;
+        let summaries = summary::summaries(&mut windows, &frame, &spheres)?;
         if summaries.iter().all(|summary| summary.low > summary.high) {
             return Err(LatticeError::Empty.into());
         }
@@ -155,7 +154,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         Ok(Self { windows, spheres, frame, summaries, cache, capacity, counts, buffer: Vec::new() })
     }
 
-    /// What is always known of the patch with south-west corner `corner`.
+    /// The summary of the patch with south-west corner `corner`.
     pub fn summary(&self, corner: Vertex) -> &PatchSummary {
         &self.summaries[self.frame.layout.patch_index(corner)]
     }
@@ -168,8 +167,8 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
             .then(|| (self.plan(corner).extend(summary.low), far.extend(summary.high)))
     }
 
-    /// Whether the eye is outside all spheres of the patch with south-west corner `corner`: it is then drawn as its
-    /// two root triangles, and need not be read.
+    /// Whether the eye is outside all spheres of the patch with south-west corner `corner`: it is then drawn as its two root
+    /// triangles, without being read.
     pub fn is_far(&self, corner: Vertex, eye: Vec3) -> bool {
         let half = self.frame.layout.patch() / 2;
         self.summary(corner).is_far(self.plan(corner.moved(half, half)), eye)
@@ -177,8 +176,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
 
     /// World X and Y of a vertex, meters.
     pub fn plan(&self, vertex: Vertex) -> Vec2 {
-        let post = self.frame.layout.post(vertex);
-        (DVec2::new(f64::from(post.column), f64::from(post.row)) * self.frame.cell).as_vec2()
+        (self.frame.layout.post(vertex).grid() * self.frame.cell).as_vec2()
     }
 
     /// Map coordinates of the south-west post: the origin of world space.
@@ -191,78 +189,68 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         &self.windows
     }
 
-    /// What was done so far.
+    /// The work so far.
     pub fn counts(&self) -> PagingCounts {
         self.counts
     }
 
-    /// How many patches are kept now.
+    /// The number of patches that are kept now.
     pub fn kept(&self) -> usize {
         self.cache.weight()
     }
 
-    /// Whether the cache is in order and within its capacity, the counts add up, and patches that are kept agree
-    /// about the borders they share and with their summaries.
+    /// Checks that the cache is in order and within its capacity, that the counts add up, and that kept patches agree about
+    /// the borders they share and with their summaries.
     ///
-    /// # Errors
-    /// A sentence naming what disagrees.
-    pub fn check(&self) -> Result<(), String> {
+    /// # Panics
+    /// Where they do not.
+    pub fn check(&self) {
         self.cache.check();
         let PagingCounts { loads, evictions, peak, .. } = self.counts;
         let kept = self.cache.weight();
-        if kept > peak || peak > self.capacity || loads - evictions != kept as u64 {
-            return Err(format!("{kept} kept, {peak} at most of {}: {:?}", self.capacity, self.counts));
-        }
-        let blocks: std::collections::BTreeMap<usize, &Arc<PatchBlock>> = self.cache.iter().collect();
+        let is_sound = kept <= peak && peak <= self.capacity && loads - evictions == kept as u64;
+        assert!(is_sound, "{kept} kept, at most {peak} of {}: {:?}", self.capacity, self.counts);
+        let blocks: BTreeMap<usize, &Arc<PatchBlock>> = self.cache.iter().collect();
         for corner in self.frame.layout.patches() {
             if let Some(block) = blocks.get(&self.frame.layout.patch_index(corner)) {
-                self.check_block(corner, block, &blocks)?;
+                self.check_block(corner, block, &blocks);
             }
         }
-        Ok(())
     }
 
-    fn check_block(
-        &self,
-        corner: Vertex,
-        block: &PatchBlock,
-        blocks: &std::collections::BTreeMap<usize, &Arc<PatchBlock>>,
-    ) -> Result<(), String> {
-        let side = self.frame.layout.patch();
+    fn check_block(&self, corner: Vertex, block: &PatchBlock, blocks: &BTreeMap<usize, &Arc<PatchBlock>>) {
+        let (layout, side) = (&self.frame.layout, self.frame.layout.patch());
         let at = |x: i32, y: i32| (y * (side + 1) + x) as usize;
-        if block.radii[at(side / 2, side / 2)] != self.summary(corner).radius {
-            return Err(format!("the patch at {corner:?} and its summary differ in their largest sphere"));
-        }
+        let radius = block.radii[at(side / 2, side / 2)];
+        assert_eq!(radius, self.summary(corner).radius, "the largest sphere of the patch at {corner:?}");
         for (east, north) in [(1, 0), (0, 1)] {
             let other = corner.moved(east * side, north * side);
-            let held = Some(other).filter(|&other| self.frame.layout.contains(other.moved(side, side)));
-            let Some(other) = held.and_then(|other| blocks.get(&self.frame.layout.patch_index(other))) else {
+            let other = Some(other).filter(|&other| layout.contains(other.moved(side, side)));
+            let Some(other) = other.and_then(|other| blocks.get(&layout.patch_index(other))) else {
                 continue;
             };
             for along in 0..=side {
                 let own = at(east * side + north * along, north * side + east * along);
                 let others = at(north * along, east * along);
-                let bits = |block: &PatchBlock, at: usize| (block.z[at].to_bits(), block.radii[at].to_bits());
                 // Patch corners split nothing: their radii mean nothing.
-                let same = block.z[own].to_bits() == other.z[others].to_bits();
-                if !same || (along % side != 0 && bits(block, own) != bits(other, others)) {
-                    return Err(format!("the patch at {corner:?} and its neighbor differ at {along}"));
-                }
+                let radius = |radius: f32| if along % side == 0 { 0 } else { radius.to_bits() };
+                assert_eq!(
+                    (block.z[own].to_bits(), radius(block.radii[own])),
+                    (other.z[others].to_bits(), radius(other.radii[others])),
+                    "the patch at {corner:?} and its neighbor at {along}"
+                );
             }
         }
-        Ok(())
     }
 
     /// Reads and measures a patch.
     fn load(&mut self, corner: Vertex) -> Result<PatchBlock, BlockError> {
         let patches = Patches::one(&self.frame.layout, corner);
         let region = PagedRegion::read(&mut self.windows, &self.frame, patches, &mut self.buffer);
-        let region = region.map_err(|reason| {
-            let (column, row) = (corner.x as u32, corner.y as u32);
-            BlockError { column, row, reason }
-        })?;
+        let region =
+            region.map_err(|source| BlockError { column: corner.x as u32, row: corner.y as u32, source })?;
         let spheres = (self.spheres)(region.ground());
-        Ok(PatchBlock::cut(region.ground(), &spheres, region.own(corner)))
+        Ok(PatchBlock::new(region.ground(), &spheres, region.own(corner)))
     }
 }
 
@@ -274,13 +262,11 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> BlockSource for PagedGro
     fn root(&self, corner: Vertex) -> RootSphere {
         let half = self.frame.layout.patch() / 2;
         let summary = self.summary(corner);
-        RootSphere {
-            center: self.plan(corner.moved(half, half)).extend(summary.middle),
-            radius: summary.radius,
-        }
+        let center = self.plan(corner.moved(half, half)).extend(summary.middle);
+        RootSphere { center, radius: summary.radius }
     }
 
-    /// A patch that cannot be read is an error now and is tried again when it is next asked for; what is kept stays.
+    /// A patch that cannot be read is an error now and is read again at the next request; kept patches stay.
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
         let index = self.frame.layout.patch_index(corner);
         if let Some(block) = self.cache.get(index) {

@@ -1,10 +1,9 @@
 //! A piece of the terrain, read and measured by itself, whose inner patches are those of the whole.
 
-use std::fmt::Display;
-
 use glam::DVec2;
 
 use crate::dem::windows::{RasterWindow, Windows};
+use crate::roam::block::BlockFault;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::roam::patched_ground::PatchedGround;
@@ -39,17 +38,17 @@ impl Patches {
 
     /// These with all that their errors and spheres depend on.
     ///
-    /// The first one's diagonal runs as that of the terrain's first patch, so that the region's vertices have the
-    /// parents and children that they have in the terrain.
+    /// The first one's diagonal runs as that of the terrain's first patch, so that the region's vertices have the parents
+    /// and children that they have in the terrain.
     fn with_surroundings(self, layout: &PatchLayout) -> Self {
-        let (east, north) = ((layout.columns() as i32 - 1), (layout.rows() as i32 - 1));
-        let (east, north) = (east / layout.patch(), north / layout.patch());
+        let (east, north) = layout.patch_grid();
         let mut first = ((self.first.0 - 1).max(0), (self.first.1 - 1).max(0));
         if (first.0 + first.1) % 2 != 0 {
             // An odd sum has an odd and therefore positive part.
             if first.0 > 0 { first.0 -= 1 } else { first.1 -= 1 }
         }
-        Self { first, last: ((self.last.0 + 1).min(east - 1), (self.last.1 + 1).min(north - 1)) }
+        let last = ((self.last.0 + 1).min(east as i32 - 1), (self.last.1 + 1).min(north as i32 - 1));
+        Self { first, last }
     }
 }
 
@@ -65,13 +64,13 @@ impl PagedRegion {
     /// Reads `patches` with all that their errors and spheres depend on. `buffer` is scratch.
     ///
     /// # Errors
-    /// A sentence: the samples cannot be had, or hold a height that no ground has.
+    /// See [`BlockFault`].
     pub fn read(
         windows: &mut impl Windows,
         frame: &PagedFrame,
         patches: Patches,
         buffer: &mut Vec<f32>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, BlockFault> {
         let side = frame.layout.patch();
         let Patches { first, last } = patches.with_surroundings(&frame.layout);
         let first = Vertex::new(first.0 * side, first.1 * side);
@@ -79,18 +78,16 @@ impl PagedRegion {
         let (columns, rows) = (end.column - first.x as u32 + 1, end.row - first.y as u32 + 1);
         // Rasters are counted from the north.
         let top = windows.size().1 - 1 - end.row;
-        let window = RasterWindow { column: first.x as u32, row: top, width: columns, height: rows };
-        windows.read(window, buffer).map_err(sentence)?;
+        windows
+            .read(RasterWindow { column: first.x as u32, row: top, width: columns, height: rows }, buffer)?;
         let heights = buffer.chunks_exact(columns as usize).rev().flatten().copied().collect();
         let post = Post { column: first.x as u32, row: first.y as u32 };
-        let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights).map_err(sentence)?;
+        let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights)?;
         let layout = PatchLayout::new(columns, rows, side as u32);
-        let layout = layout.ok_or_else(|| format!("{columns} x {rows} posts are too many at once"))?;
-        Ok(Self { lattice, layout, first })
+        Ok(Self { lattice, layout: layout.ok_or(BlockFault::TooMany { columns, rows })?, first })
     }
 
-    /// The piece as a ground of its own: vertices are counted from its own south-west, their positions are those of
-    /// the whole terrain.
+    /// The piece as a ground: vertices are counted from its own south-west, their positions are those of the whole terrain.
     pub fn ground(&self) -> PatchedGround<'_> {
         PatchedGround { lattice: &self.lattice, layout: &self.layout }
     }
@@ -99,10 +96,6 @@ impl PagedRegion {
     pub fn own(&self, vertex: Vertex) -> Vertex {
         vertex.moved(-self.first.x, -self.first.y)
     }
-}
-
-fn sentence(error: impl Display) -> String {
-    error.to_string()
 }
 
 #[cfg(test)]

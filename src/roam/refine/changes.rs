@@ -1,21 +1,21 @@
-//! What an update did, and how that is kept while it goes on.
+//! What an update changed.
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// What one update changed.
+/// The changes of one update.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RefinementChanges {
     /// Vertices that became active.
     pub splits: usize,
     /// Vertices that became inactive.
     pub merges: usize,
-    /// The patches that hold a triangle of such a vertex, as places in [`PatchLayout::patches`], rising: what else
-    /// was drawn from the bits is still right.
+    /// The patches that hold a triangle of such a vertex, as places in [`PatchLayout::patches`], in ascending order. What
+    /// was drawn of the other patches is still valid.
     pub dirty: Vec<usize>,
 }
 
-/// Changes as they come.
+/// The changes of an update so far.
 #[derive(Clone, Debug)]
 pub(super) struct ChangeTally {
     changes: RefinementChanges,
@@ -29,16 +29,16 @@ impl ChangeTally {
 
     pub(super) fn split(&mut self, layout: &PatchLayout, vertex: Vertex) {
         self.changes.splits += 1;
-        self.touch(layout, vertex);
+        self.mark(layout, vertex);
     }
 
     pub(super) fn merge(&mut self, layout: &PatchLayout, vertex: Vertex) {
         self.changes.merges += 1;
-        self.touch(layout, vertex);
+        self.mark(layout, vertex);
     }
 
-    /// Forgets that a vertex was merged, once it is active again. Its patches stay marked.
-    pub(super) fn take_back_merge(&mut self) {
+    /// Uncounts a merge that was undone; its patches stay marked.
+    pub(super) fn undo_merge(&mut self) {
         self.changes.merges -= 1;
     }
 
@@ -52,11 +52,10 @@ impl ChangeTally {
         changes
     }
 
-    fn touch(&mut self, layout: &PatchLayout, vertex: Vertex) {
-        for apex in vertex.parents().into_iter().filter(|&apex| layout.contains(apex)) {
+    fn mark(&mut self, layout: &PatchLayout, vertex: Vertex) {
+        for apex in layout.parents(vertex) {
             let patch = layout.patch_holding(vertex, apex);
-            if !self.marked[patch] {
-                self.marked[patch] = true;
+            if !std::mem::replace(&mut self.marked[patch], true) {
                 self.changes.dirty.push(patch);
             }
         }

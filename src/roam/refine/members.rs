@@ -1,9 +1,9 @@
-//! Vertices that are listed once each, whatever is asked of them.
+//! A set of vertices as a list.
 
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// A list of vertices, with a bit for each of the layout that says whether it is in.
+/// A list of vertices, each once, with a membership bit for every vertex of the layout.
 #[derive(Clone, Debug)]
 pub(super) struct VertexSet {
     list: Vec<Vertex>,
@@ -15,20 +15,20 @@ impl VertexSet {
         Self { list: Vec::new(), bits: vec![0; layout.vertex_count().div_ceil(64)] }
     }
 
-    /// Whether the vertex with index `index` is in.
-    pub(super) fn holds(&self, index: usize) -> bool {
+    /// Whether the vertex with this index is a member.
+    pub(super) fn contains(&self, index: usize) -> bool {
         self.bits[index / 64] >> (index % 64) & 1 == 1
     }
 
     pub(super) fn insert(&mut self, layout: &PatchLayout, vertex: Vertex) {
         let index = layout.index(vertex);
-        if !self.holds(index) {
+        if !self.contains(index) {
             self.bits[index / 64] |= 1 << (index % 64);
             self.list.push(vertex);
         }
     }
 
-    /// Keeps those for which `keep`, told the vertex and its index, says so.
+    /// Keeps the vertices for which `keep`, called with the vertex and its index, returns true.
     pub(super) fn retain(&mut self, layout: &PatchLayout, mut keep: impl FnMut(Vertex, usize) -> bool) {
         let bits = &mut self.bits;
         self.list.retain(|&vertex| {

@@ -1,13 +1,14 @@
-//! Policies for setting the bits: one file per refiner.
+//! Refiners: policies that set the bits, one file each.
 //!
-//! Whatever the policy, the mesh for one view is the same: the closure under parents of the vertices that are
-//! wanted and have a parent that is (see [`rebuild`]), unless a budget of drawn triangles stops it earlier.
+//! For one view all of them make the same mesh, the closure under parents of the wanted vertices that have a wanted parent
+//! (see [`rebuild`]), unless a budget of drawn triangles ends refinement earlier.
 //!
-//! - `rebuild`: splits alone, from the roots, for any criterion; nothing is remembered.
-//! - `coherent`: forced splits and merges from the last mesh, for any criterion, equal to `rebuild`.
-//! - `queues`: the split and merge queues of 1997 with a budget. They take leaves as they find them, forced ones
-//!   too, so that without a budget they equal `rebuild` only where the criterion is monotone; else they are
-//!   finer by what depends on the way taken.
+//! - `rebuild`: splits from the roots, for any criterion; keeps nothing between frames.
+//! - `coherent`: forced splits and merges of the last mesh, for any criterion; equal to `rebuild`.
+//! - `queues`: the split and merge queues of Duchaineau et al. 1997 with a budget. They also split leaves that only a
+//!   forced split made, so that without a budget they equal `rebuild` only for a monotone criterion; else they are finer,
+//!   by an amount that depends on the views before.
+//! - `deferred`: nested spheres alone, each vertex examined when the eye may have reached its sphere; equal to `rebuild`.
 
 pub mod changes;
 pub mod coherent;

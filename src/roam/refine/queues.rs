@@ -1,25 +1,26 @@
-//! Two priority queues and an exact budget of drawn triangles: ROAM as Duchaineau et al. published it in 1997.
+//! Two priority queues and an exact budget of drawn triangles: ROAM as published by Duchaineau et al. 1997.
 //!
-//! The split queue holds the vertices that could be activated next, one for each leaf triangle or pair of them;
-//! the merge queue those that could go next, the diamonds. A priority is the criterion's excess. While there are
-//! too many triangles the lowest diamond is merged; while the best split promises more than the lowest diamond
-//! holds, one is traded for the other. A split is weighed with everything it forces: where lower diamonds cannot
-//! make room for all of it, nothing is changed and the next one is tried.
+//! The split queue holds the vertices that could be activated next, one for each leaf triangle or pair of leaf triangles;
+//! the merge queue those that could be deactivated next, the diamonds. A priority is the criterion's excess. While there
+//! are too many triangles, the lowest diamond is merged; while the best split has a higher priority than the lowest
+//! diamond, one is traded for the other. A split counts with all splits that it forces: where lower diamonds cannot make
+//! room for all of them, nothing is changed and the next split is tried.
 //!
-//! Priorities are asked anew each frame, as in the paper without its deferral, so a frame costs a question for
-//! every leaf and every diamond however little changes; only members of the queues are kept. Queues are binary
-//! heaps of (priority, vertex index), which settles ties the same way every time.
+//! Priorities are computed for each frame, as in the paper without its deferral, so a frame costs an evaluation of every
+//! leaf and every diamond; only the members of the queues are kept. The queues are binary heaps of (priority, vertex
+//! index), so that ties are settled the same way every time.
 //!
-//! Two ways out of the published loop's known trouble, a budget that the view cannot use: what cannot be seen or
-//! has no error is never split for the budget's sake, and what has become so is merged at once.
+//! The published loop has trouble with a budget that the view cannot use. Here a vertex that is out of view or has no error
+//! is never split for the budget's sake, and is merged at once.
 //!
-//! The budget is one of triangles that are drawn. Those over no data and beyond the border cost nothing, though
-//! what they are split into may; where no split ever draws anything, none is made for the budget's sake. A merge
-//! may then draw more than it takes away, at the edge of a hole: each trade is weighed with all its merges, down
-//! to those that have become idle, so that every trade leaves a better mesh and the loop ends.
+//! The budget counts drawn triangles. Those over no data and beyond the border cost nothing, though their descendants may;
+//! where no descendant is ever drawn, no split is made for the budget's sake. A merge at the edge of a hole may then draw
+//! more triangles than it removes: each trade counts with all its merges, down to those that have become idle, so every
+//! trade leaves a better mesh and the loop ends.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::ops::Add;
 
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
@@ -32,28 +33,28 @@ use crate::roam::refine::drawn::{Count, Drawn};
 use crate::roam::refine::listed::ListedPatches;
 use crate::roam::refine::members::VertexSet;
 
-/// So many splits in turn may find no room before an update is content. What is left over is a triangle or two
-/// of the budget; trying every other leaf for them would cost more than the whole frame.
+/// The consecutive splits that may find no room before an update ends. A triangle or two of the budget stay unused; trying
+/// every other leaf for them would cost more than the rest of the frame.
 const MOST_REFUSALS: usize = 32;
 
-/// So many leaf triangles, drawn or not, there are at most for each drawn one of the budget, the roots of listed
-/// patches not counted: the edges of holes may not take all the time, however long they are.
+/// The most leaf triangles, drawn or not, for each drawn one of the budget, without the roots of listed patches: it bounds
+/// the time spent on the edges of holes.
 pub const MOST_LEAVES: usize = 8;
 
 /// What the queues work toward.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
-    /// Every vertex that the criterion wants, however many triangles that takes. Where no vertex's excess is above
-    /// its parents', the mesh is that of [`rebuild`](crate::roam::refine::rebuild::rebuild).
+    /// Every vertex that the criterion wants, whatever the number of triangles. Where no vertex's excess is above its
+    /// parents', the mesh is that of [`rebuild`](crate::roam::refine::rebuild::rebuild).
     Tolerance,
-    /// As fine as so many drawn triangles allow, below the tolerance too.
+    /// As fine as this number of drawn triangles allows, below the tolerance too.
     Budget(usize),
-    /// Every vertex that the criterion wants, but at most so many drawn triangles.
+    /// Every vertex that the criterion wants, within this number of drawn triangles.
     ToleranceWithin(usize),
 }
 
 impl Goal {
-    /// The most triangles in so many listed patches; none where there is no limit.
+    /// The most triangles in a number of listed patches; `None` where there is no limit.
     fn most(self, patches: usize) -> Option<Count> {
         match self {
             Self::Tolerance => None,
@@ -65,32 +66,11 @@ impl Goal {
         }
     }
 
-    /// A vertex is split for its own sake only above this excess, and merged as soon as it may be at or below it.
+    /// A vertex is split for its own sake only above this excess, and is idle, and merged, at or below it.
     fn floor(self) -> f32 {
         match self {
             Self::Budget(_) => 0.0,
             Self::Tolerance | Self::ToleranceWithin(_) => 1.0,
-        }
-    }
-
-    /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves
-    /// open on which side of 1 it is, the criterion's plain answer settles it, so that this refiner wants what the
-    /// others want.
-    fn priority(
-        self,
-        drawn: &Drawn<'_>,
-        listed: &ListedPatches,
-        criterion: &impl Criterion,
-        vertex: Vertex,
-    ) -> f32 {
-        if matches!(self, Self::Budget(_)) && !drawn.shows(listed, vertex) {
-            return 0.0;
-        }
-        let excess = criterion.excess(vertex);
-        match (excess - 1.0).abs() < 1e-4 {
-            true if criterion.wants(vertex) => excess.max(1f32.next_up()),
-            true => excess.min(1.0),
-            false => excess,
         }
     }
 }
@@ -114,7 +94,7 @@ pub struct Queues<'a> {
 }
 
 impl<'a> Queues<'a> {
-    /// The roots of all patches of a ground, whose heights say what is drawn.
+    /// The roots of all patches of a ground, whose heights decide what is drawn.
     pub fn new(ground: PatchedGround<'a>, goal: Goal) -> Self {
         let layout = *ground.layout;
         Self {
@@ -134,31 +114,31 @@ impl<'a> Queues<'a> {
         }
     }
 
-    /// The bits.
+    /// The active vertices.
     pub fn active(&self) -> &ActiveSet {
         &self.active
     }
 
-    /// How many triangles of the listed patches are drawn: the leaves that have an area and data at their corners.
-    /// Never above the budget, but for the two roots of every listed patch: these are always there.
+    /// The drawn triangles of the listed patches: the leaves with an area and data at their corners. Never above the
+    /// budget, except for the two roots of every listed patch, which always exist.
     pub fn triangles(&self) -> usize {
         self.count.drawn as usize
     }
 
-    /// How many leaf triangles the listed patches have, those beyond the lattice's border or over no data included.
-    /// Never above [`MOST_LEAVES`] times the budget and two for every listed patch.
+    /// All leaf triangles of the listed patches, including those beyond the lattice's border or over no data. Never above
+    /// [`MOST_LEAVES`] times the budget and two for every listed patch.
     pub fn leaves(&self) -> usize {
         self.count.leaves as usize
     }
 
-    /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout. A vertex
-    /// that is merged and then forced to return counts both ways, and its patches are dirty.
+    /// Adjusts the mesh to a view; `patches` are the south-west corners of patches of the layout. A vertex that is merged
+    /// and then forced to return counts both ways, and its patches are dirty.
     pub fn update(&mut self, criterion: &impl Criterion, patches: &[Vertex]) -> RefinementChanges {
         let layout = *self.active.layout();
         self.listed.renew(&layout, patches);
         self.recount(&layout);
         self.gather(criterion);
-        self.merge_what_must_go(criterion);
+        self.merge_excess(criterion);
         let mut refusals = 0;
         while let Some((priority, vertex)) = self.next_split() {
             if self.trade(criterion, priority, vertex) {
@@ -172,13 +152,13 @@ impl<'a> Queues<'a> {
         self.tally.take()
     }
 
-    /// Counts the triangles of patches that came and went, and takes in the leaves of those that came.
+    /// Counts the triangles of patches that entered and left, and adds the leaves of those that entered.
     fn recount(&mut self, layout: &PatchLayout) {
-        for &corner in self.listed.left() {
-            self.count = self.count.minus(count(&self.active, &self.drawn, corner));
+        for &corner in &self.listed.left {
+            self.count = self.count - count(&self.active, &self.drawn, corner);
         }
-        for &corner in self.listed.entered() {
-            self.count = self.count.plus(count(&self.active, &self.drawn, corner));
+        for &corner in &self.listed.entered {
+            self.count = self.count + count(&self.active, &self.drawn, corner);
             for root in Triangle::roots(corner, layout.patch()) {
                 visit_leaves(&self.active, &root, &mut |leaf| {
                     if !leaf.is_finest() {
@@ -191,16 +171,17 @@ impl<'a> Queues<'a> {
 
     /// Fills both queues with this frame's priorities.
     fn gather(&mut self, criterion: &impl Criterion) {
-        let (goal, active, drawn, listed) = (self.goal, &self.active, &self.drawn, &self.listed);
+        let (goal, active, listed) = (self.goal, &self.active, &self.listed);
+        let evaluation = Evaluation { goal, drawn: &self.drawn, listed, criterion };
         let mut splits = std::mem::take(&mut self.splits).into_vec();
         splits.clear();
         self.splittable.retain(active.layout(), |vertex, index| {
-            let leaf = !active.is_active(vertex) && has_leaf(active, listed, vertex);
-            let excess = if leaf { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
+            let is_leaf = is_splittable(active, listed, vertex);
+            let excess = if is_leaf { evaluation.priority(vertex) } else { 0.0 };
             if excess > goal.floor() {
                 splits.push(entry(excess, index));
             }
-            leaf
+            is_leaf
         });
         self.splits = BinaryHeap::from(splits);
 
@@ -208,21 +189,24 @@ impl<'a> Queues<'a> {
         merges.clear();
         let capped = goal != Goal::Tolerance;
         self.mergeable.retain(active.layout(), |vertex, index| {
-            let free = active.is_mergeable(vertex);
-            if free {
-                let shown = listed_apexes(active.layout(), listed, vertex).next().is_some();
-                let excess = if shown { goal.priority(drawn, listed, criterion, vertex) } else { 0.0 };
+            let is_free = active.is_mergeable(vertex);
+            if is_free {
+                let excess = evaluation.diamond_priority(active.layout(), vertex);
                 if capped || excess <= goal.floor() {
                     merges.push(Reverse(entry(excess, index)));
                 }
             }
-            free
+            is_free
         });
         self.merges = BinaryHeap::from(merges);
     }
 
-    /// Merges what is idle, and whatever is lowest until the budget holds or only roots are left.
-    fn merge_what_must_go(&mut self, criterion: &impl Criterion) {
+    fn evaluation<'b, C>(&'b self, criterion: &'b C) -> Evaluation<'b, C> {
+        Evaluation { goal: self.goal, drawn: &self.drawn, listed: &self.listed, criterion }
+    }
+
+    /// Merges idle diamonds, and the lowest ones until the budget holds or only roots are left.
+    fn merge_excess(&mut self, criterion: &impl Criterion) {
         while let Some((priority, vertex)) = self.lowest_diamond() {
             if !self.is_idle(priority) && self.has_room(Count::default()) {
                 break;
@@ -231,54 +215,48 @@ impl<'a> Queues<'a> {
         }
     }
 
-    /// Whether a diamond of this priority goes without another's need.
     fn is_idle(&self, priority: u64) -> bool {
         excess_of(priority) <= self.goal.floor()
     }
 
-    /// Whether so many triangles more are within the budget.
+    /// Whether `more` triangles are within the budget.
     fn has_room(&self, more: Count) -> bool {
-        let after = self.count.plus(more);
+        let after = self.count + more;
         let within = |most: Count| after.drawn <= most.drawn && after.leaves <= most.leaves;
-        self.goal.most(self.listed.now().len()).is_none_or(within)
+        self.goal.most(self.listed.now.len()).is_none_or(within)
     }
 
-    /// Splits a vertex with what that forces, merging lower diamonds to make room; changes nothing and says
-    /// `false` where they make too little. What becomes idle by these merges goes with them.
+    /// Splits a vertex with the splits that it forces, merging lower diamonds and those that become idle; returns `false`
+    /// and changes nothing where these make too little room.
     fn trade(&mut self, criterion: &impl Criterion, priority: u64, vertex: Vertex) -> bool {
         self.forced.clear();
         list_forced(&self.active, vertex, &mut self.forced);
-        let layout = *self.active.layout();
         let each = self.forced.iter().map(|&vertex| self.drawn.added(&self.listed, vertex));
-        let needed = each.fold(Count::default(), Count::plus);
+        let needed = each.fold(Count::default(), Count::add);
         self.undo.clear();
-        let mut fits = true;
-        loop {
+        let fits = loop {
             let lowest = self.lowest_diamond();
             if self.has_room(needed) && !lowest.is_some_and(|(lowest, _)| self.is_idle(lowest)) {
-                break;
+                break true;
             }
             match lowest {
-                Some((lowest, _)) if excess_of(lowest) >= excess_of(priority) => fits = false,
-                Some((lowest, diamond)) if self.is_needed(diamond) => {
-                    self.merges.pop();
-                    self.aside.push(Reverse(lowest));
-                    continue;
+                Some((lowest, diamond)) if excess_of(lowest) < excess_of(priority) => {
+                    if self.is_needed(diamond) {
+                        self.merges.pop();
+                        self.aside.push(Reverse(lowest));
+                    } else {
+                        self.undo.push((diamond, lowest));
+                        self.merge_lowest(criterion, diamond);
+                    }
                 }
-                Some((lowest, diamond)) => {
-                    self.undo.push((diamond, lowest));
-                    self.merge_lowest(criterion, diamond);
-                    continue;
-                }
-                None => fits = false,
+                _ => break false,
             }
-            break;
-        }
+        };
         self.merges.extend(self.aside.drain(..));
         if fits {
             self.split_forced(criterion)
         } else {
-            self.take_back(&layout)
+            self.undo_merges()
         }
         fits
     }
@@ -288,15 +266,15 @@ impl<'a> Queues<'a> {
         self.forced.iter().any(|vertex| vertex.parents().contains(&diamond))
     }
 
-    /// Activates the vertices of the forced split, parents before their children.
+    /// Activates the vertices of the forced split, parents before children.
     fn split_forced(&mut self, criterion: &impl Criterion) {
         let layout = *self.active.layout();
         for place in 0..self.forced.len() {
             let vertex = self.forced[place];
             self.active.activate(vertex);
             self.tally.split(&layout, vertex);
-            self.count = self.count.plus(self.drawn.added(&self.listed, vertex));
-            for child in vertex.children().filter(|&child| layout.contains(child)) {
+            self.count = self.count + self.drawn.added(&self.listed, vertex);
+            for child in layout.children(vertex) {
                 self.offer_split(criterion, child);
             }
             self.offer_merge(criterion, vertex);
@@ -304,23 +282,22 @@ impl<'a> Queues<'a> {
     }
 
     /// Undoes the merges of a trade that found no room.
-    fn take_back(&mut self, layout: &PatchLayout) {
+    fn undo_merges(&mut self) {
         while let Some((vertex, priority)) = self.undo.pop() {
             self.active.activate(vertex);
-            self.tally.take_back_merge();
-            self.count = self.count.plus(self.drawn.added(&self.listed, vertex));
-            self.mergeable.insert(layout, vertex);
+            self.tally.undo_merge();
+            self.count = self.count + self.drawn.added(&self.listed, vertex);
+            self.mergeable.insert(self.active.layout(), vertex);
             self.merges.push(Reverse(priority));
         }
     }
 
-    /// Merges the diamond that [`Queues::lowest_diamond`] has just found.
+    /// Merges the diamond that [`Queues::lowest_diamond`] returned last.
     fn merge_lowest(&mut self, criterion: &impl Criterion, diamond: Vertex) {
-        let layout = *self.active.layout();
         self.merges.pop();
         self.active.merge(diamond);
-        self.tally.merge(&layout, diamond);
-        self.count = self.count.minus(self.drawn.added(&self.listed, diamond));
+        self.tally.merge(self.active.layout(), diamond);
+        self.count = self.count - self.drawn.added(&self.listed, diamond);
         self.offer_split(criterion, diamond);
         for parent in diamond.parents() {
             self.offer_merge(criterion, parent);
@@ -328,12 +305,12 @@ impl<'a> Queues<'a> {
     }
 
     fn offer_split(&mut self, criterion: &impl Criterion, vertex: Vertex) {
-        if self.active.is_active(vertex) || !has_leaf(&self.active, &self.listed, vertex) {
+        if !is_splittable(&self.active, &self.listed, vertex) {
             return;
         }
         let layout = self.active.layout();
         self.splittable.insert(layout, vertex);
-        let excess = self.goal.priority(&self.drawn, &self.listed, criterion, vertex);
+        let excess = self.evaluation(criterion).priority(vertex);
         if excess > self.goal.floor() {
             self.splits.push(entry(excess, layout.index(vertex)));
         }
@@ -345,66 +322,84 @@ impl<'a> Queues<'a> {
         }
         let layout = self.active.layout();
         self.mergeable.insert(layout, vertex);
-        let shown = listed_apexes(layout, &self.listed, vertex).next().is_some();
-        let excess =
-            if shown { self.goal.priority(&self.drawn, &self.listed, criterion, vertex) } else { 0.0 };
+        let excess = self.evaluation(criterion).diamond_priority(layout, vertex);
         self.merges.push(Reverse(entry(excess, layout.index(vertex))));
     }
 
-    /// The best split, taken off its queue.
+    /// Takes the best split off its queue.
     fn next_split(&mut self) -> Option<(u64, Vertex)> {
-        while let Some(found) = self.splits.pop() {
-            let vertex = vertex_of(self.active.layout(), found);
-            if !self.active.is_active(vertex) && has_leaf(&self.active, &self.listed, vertex) {
-                return Some((found, vertex));
+        while let Some(best) = self.splits.pop() {
+            let vertex = vertex_of(self.active.layout(), best);
+            if is_splittable(&self.active, &self.listed, vertex) {
+                return Some((best, vertex));
             }
         }
         None
     }
 
-    /// The lowest diamond, left on its queue; entries above it that no longer hold are dropped.
+    /// The lowest diamond, left on its queue; stale entries above it are dropped.
     fn lowest_diamond(&mut self) -> Option<(u64, Vertex)> {
-        while let Some(&Reverse(found)) = self.merges.peek() {
-            let vertex = vertex_of(self.active.layout(), found);
+        while let Some(&Reverse(lowest)) = self.merges.peek() {
+            let vertex = vertex_of(self.active.layout(), lowest);
             if self.active.is_mergeable(vertex) {
-                return Some((found, vertex));
+                return Some((lowest, vertex));
             }
             self.merges.pop();
         }
         None
     }
 
-    /// Whether the bits are closed under parents, the triangles are as many as counted, and both queues hold
-    /// whatever could be split or merged.
+    /// Checks that the bits are closed under parents, that the triangles are as many as counted, and that both queues hold
+    /// all vertices that could be split or merged.
     ///
-    /// # Errors
-    /// A sentence naming the first thing that is wrong.
-    pub fn check(&self) -> Result<(), String> {
-        self.active.check()?;
+    /// # Panics
+    /// Where they do not.
+    pub fn check(&self) {
+        self.active.check();
         let layout = self.active.layout();
-        let each = self.listed.now().iter().map(|&corner| count(&self.active, &self.drawn, corner));
-        let there = each.fold(Count::default(), Count::plus);
-        if there != self.count {
-            return Err(format!("{:?} is counted, {there:?} is there", self.count));
+        let each = self.listed.now.iter().map(|&corner| count(&self.active, &self.drawn, corner));
+        assert_eq!(each.fold(Count::default(), Count::add), self.count, "the triangles and their count");
+        for (index, vertex) in layout.vertices().enumerate().filter(|&(_, at)| !layout.is_corner(at)) {
+            let is_missing = self.active.is_mergeable(vertex) && !self.mergeable.contains(index);
+            assert!(!is_missing, "{vertex:?} could be merged and is not in the queue");
+            let is_missing =
+                is_splittable(&self.active, &self.listed, vertex) && !self.splittable.contains(index);
+            assert!(!is_missing, "{vertex:?} could be split and is not in the queue");
         }
-        for index in 0..layout.vertex_count() {
-            let vertex = Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32);
-            if layout.is_corner(vertex) {
-                continue;
-            }
-            if self.active.is_mergeable(vertex) && !self.mergeable.holds(index) {
-                return Err(format!("{vertex:?} could be merged and is not in the queue"));
-            }
-            let leaf = !self.active.is_active(vertex) && has_leaf(&self.active, &self.listed, vertex);
-            if leaf && !self.splittable.holds(index) {
-                return Err(format!("{vertex:?} could be split and is not in the queue"));
-            }
-        }
-        Ok(())
     }
 }
 
-/// A queue's entry: the bits of an f32 that is 0 or more order as it does; the index settles ties.
+/// What a priority depends on.
+struct Evaluation<'a, C> {
+    goal: Goal,
+    drawn: &'a Drawn<'a>,
+    listed: &'a ListedPatches,
+    criterion: &'a C,
+}
+
+impl<C: Criterion> Evaluation<'_, C> {
+    /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves open on
+    /// which side of 1 it lies, [`Criterion::wants`] decides, so that this refiner wants what the others want.
+    fn priority(&self, vertex: Vertex) -> f32 {
+        if matches!(self.goal, Goal::Budget(_)) && !self.drawn.shows(self.listed, vertex) {
+            return 0.0;
+        }
+        let excess = self.criterion.excess(vertex);
+        match (excess - 1.0).abs() < 1e-4 {
+            true if self.criterion.wants(vertex) => excess.max(1f32.next_up()),
+            true => excess.min(1.0),
+            false => excess,
+        }
+    }
+
+    /// The priority of an active vertex; 0 where none of its triangles lies in a listed patch.
+    fn diamond_priority(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
+        let is_listed = self.listed.apexes(layout, vertex).next().is_some();
+        if is_listed { self.priority(vertex) } else { 0.0 }
+    }
+}
+
+/// A queue's entry: the bits of an f32 that is not negative order as it does; the index settles ties.
 fn entry(excess: f32, index: usize) -> u64 {
     u64::from(excess.to_bits()) << 32 | index as u64
 }
@@ -414,27 +409,15 @@ fn excess_of(entry: u64) -> f32 {
 }
 
 fn vertex_of(layout: &PatchLayout, entry: u64) -> Vertex {
-    let index = entry as u32 as usize;
-    Vertex::new((index % layout.columns()) as i32, (index / layout.columns()) as i32)
+    layout.vertex(entry as u32 as usize)
 }
 
-/// The right-angled corners of the triangles that `vertex` splits in listed patches.
-fn listed_apexes(
-    layout: &PatchLayout,
-    listed: &ListedPatches,
-    vertex: Vertex,
-) -> impl Iterator<Item = Vertex> {
-    let inside =
-        move |&apex: &Vertex| layout.contains(apex) && listed.holds(layout.patch_holding(vertex, apex));
-    vertex.parents().into_iter().filter(inside)
+/// Whether `vertex` is inactive and splits a leaf of a listed patch.
+fn is_splittable(active: &ActiveSet, listed: &ListedPatches, vertex: Vertex) -> bool {
+    !active.is_active(vertex) && listed.apexes(active.layout(), vertex).any(|apex| active.is_active(apex))
 }
 
-/// Whether one of the triangles that `vertex` would split is there, in a listed patch.
-fn has_leaf(active: &ActiveSet, listed: &ListedPatches, vertex: Vertex) -> bool {
-    listed_apexes(active.layout(), listed, vertex).any(|apex| active.is_active(apex))
-}
-
-/// Lists the inactive vertices that activating `vertex` activates, parents before their children, each once.
+/// Lists the inactive vertices that activating `vertex` activates, parents before children, each once.
 fn list_forced(active: &ActiveSet, vertex: Vertex, forced: &mut Vec<Vertex>) {
     if !active.layout().contains(vertex) || active.is_active(vertex) || forced.contains(&vertex) {
         return;
@@ -447,11 +430,11 @@ fn list_forced(active: &ActiveSet, vertex: Vertex, forced: &mut Vec<Vertex>) {
 
 /// The triangles of the patch with south-west corner `corner`.
 fn count(active: &ActiveSet, drawn: &Drawn<'_>, corner: Vertex) -> Count {
-    let mut found = Count::default();
+    let mut sum = Count::default();
     for root in Triangle::roots(corner, active.layout().patch()) {
-        visit_leaves(active, &root, &mut |leaf| found = found.plus(drawn.leaf(corner, leaf)));
+        visit_leaves(active, &root, &mut |leaf| sum = sum + drawn.leaf(corner, leaf));
     }
-    found
+    sum
 }
 
 fn visit_leaves(active: &ActiveSet, triangle: &Triangle, visit: &mut impl FnMut(&Triangle)) {

@@ -1,10 +1,10 @@
-//! From the roots down: a mesh for one view, built anew by splits alone.
+//! A mesh for one view from the roots down, by splits alone.
 //!
-//! A triangle whose split vertex is wanted is split, with whatever that forces, and its halves are looked at in
-//! turn. Halves that only a neighbor forced are not looked at, so the result does not depend on the order: it
-//! is the closure under parents of the vertices that are wanted and have a parent that is.
+//! A triangle whose split vertex is wanted is split, with the splits that this forces, and its halves are examined in turn.
+//! Halves that only a forced split made are not examined, so the result does not depend on the order: it is the closure
+//! under parents of the wanted vertices that have a wanted parent.
 //!
-//! Cost: one question a triangle of the resulting tree, whatever the size of the terrain.
+//! Costs one evaluation of the criterion per triangle of the resulting tree, whatever the size of the terrain.
 
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
@@ -12,9 +12,8 @@ use crate::roam::criterion::Criterion;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 
-/// Sets the bits for one view, from the roots of the patches whose south-west corners are listed.
-///
-/// The other patches are left as coarse as their neighbors allow.
+/// The active vertices for one view, from the roots of the patches whose south-west corners are listed. Other patches stay
+/// as coarse as their neighbors allow.
 pub fn rebuild(
     layout: &PatchLayout,
     criterion: &impl Criterion,
@@ -29,7 +28,7 @@ pub fn rebuild(
     active
 }
 
-/// Splits a triangle and its halves as far as they are wanted; recursion is as deep as the patch has levels.
+/// Splits a triangle and its halves while they are wanted; the recursion is as deep as the patch has levels.
 fn split(active: &mut ActiveSet, criterion: &impl Criterion, triangle: Triangle) {
     let vertex = triangle.split_vertex();
     if criterion.wants(vertex) {

@@ -11,13 +11,13 @@ use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
 use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::models::Group;
-use crate::scene::models::library::Library;
-use crate::scene::placement::{Grounds, outline, stand};
+use crate::scene::models::PlacedModels;
+use crate::scene::placement::{outline, stand};
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{GroundFit, Placement};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::{HIGHEST_M, Lattice};
+use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::volumes::Volumes;
 
 /// How far a pad reaches out beyond the footprint, as a part of the longer side: room to walk round.
@@ -28,37 +28,35 @@ const MAX_PADS: usize = 10_000;
 /// whose models are a thousand times too large, which is a wrong unit.
 const MAX_CELLS: u64 = 10_000_000;
 
-/// Levels the ground under every model with a pad, and returns the earth moved by the placement's place among all.
+/// Levels the ground under every model on a pad, and returns the earth moved by the index of the placement.
 ///
-/// A pad lies at the height of its model's anchor; a model at a stated elevation has it at its own foot.
+/// A pad lies at the height of its model's anchor; that of a model at a stated elevation lies at the model's foot.
 ///
 /// # Errors
 /// More pads or larger footprints than there can be.
-pub fn lay(
-    document: &Document,
-    groups: &[Group<'_>],
-    placements: &[Placement],
-    (library, places): (&Library<'_>, &WorldFrame<'_>),
+pub fn level_pads(
+    placed: &PlacedModels<'_>,
+    frame: &WorldFrame<'_>,
     lattice: &mut Lattice,
 ) -> Result<BTreeMap<usize, Volumes>, Diagnostic> {
     let (mut volumes, mut cells) = (BTreeMap::new(), 0);
-    for group in groups {
+    for group in &placed.groups {
         for index in group.placements.clone() {
-            let placement = &placements[index];
-            let footprint = library.footprint(placement.model);
+            let placement = &placed.placements[index];
+            let footprint = placed.library.footprint(placement.model);
             if !placement.needs_footprint() && placement.standing.footing == Footing::None {
                 continue;
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
             cells += FullResolution { lattice }.cell_count(&reach);
             if cells > MAX_CELLS {
-                return Err(too_large(document, group.table));
+                return Err(too_large(frame.document, group.table));
             }
             if placement.standing.footing == Footing::Pad {
                 if volumes.len() == MAX_PADS {
-                    return Err(too_many(document, group.table));
+                    return Err(too_many(frame.document, group.table));
                 }
-                if let Some(moved) = level(placement, footprint, places.exaggeration, lattice) {
+                if let Some(moved) = level(placement, footprint, frame.exaggeration, lattice) {
                     volumes.insert(index, moved);
                 }
             }
@@ -75,7 +73,7 @@ fn level(
 ) -> Option<Volumes> {
     let upright = Placement { standing: GroundFit { tilt_rad: 0.0, ..placement.standing }, ..*placement };
     let finest = DrawnGround { lattice, exaggeration };
-    let found = stand(&upright, footprint, &Grounds { displayed: &finest, finest })?;
+    let found = stand(&upright, footprint, SupportSurface { displayed: &finest, ground: &finest })?;
     let level_z = match placement.clamp {
         Clamp::Absolute => f64::from(found.base(footprint)[0].z),
         Clamp::Ground | Clamp::Relative => found.anchor_z,

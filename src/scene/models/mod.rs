@@ -20,9 +20,9 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::{FeatureSource, ModelPlacement};
 use crate::description::scalar::Scalar;
-use crate::model::Model;
-use crate::scene::assets::Assets;
-use crate::scene::attributes::Attributes;
+use crate::description::words::{Clamp, Footing};
+use crate::draw::list::FeatureId;
+use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::models::library::Library;
 use crate::scene::scatter;
@@ -49,56 +49,128 @@ pub struct Group<'a> {
     pub unknown: usize,
 }
 
-/// Reads the document's models, places and strews them, and levels the pads that they ask for.
+/// The models of some tables, each in its place.
+pub struct PlacedModels<'a> {
+    /// The models.
+    pub library: Library<'a>,
+    /// The tables.
+    pub groups: Vec<Group<'a>>,
+    /// The placements of all groups, then those of scatters.
+    pub placements: Vec<Placement>,
+}
+
+/// Reads, places and scatters the document's models, and levels the ground under those on pads.
 ///
 /// # Errors
-/// A file or a source cannot be had or read, a model stands off the ground, or there are more than can be placed.
-pub fn place(
-    document: &Document,
-    (places, sources, assets): (&WorldFrame<'_>, &Sources<'_>, &Assets),
+/// A file or a source cannot be read, a model stands off the ground, or there are more than can be placed.
+pub fn place<'a>(
+    sources: &Sources<'a>,
     lattice: &mut Lattice,
     collected: &mut SceneBuilder,
-) -> Result<(Vec<Model>, Vec<Placement>), Diagnostic> {
-    let mut library = Library::new(document, assets);
-    let mut placements = Vec::new();
-    let mut groups = Vec::new();
-    for table in &document.models {
-        let first = placements.len();
+) -> Result<PlacedModels<'a>, Diagnostic> {
+    let document = sources.frame.document;
+    let mut placed = PlacedModels::new(document.models.iter(), sources, lattice, collected)?;
+    let volumes = footings::level_pads(&placed, sources.frame, lattice)?;
+    model_report::add(&placed, &volumes, sources.frame, lattice, collected);
+    scatter::strew(sources, lattice, &mut placed, collected)?;
+    Ok(placed)
+}
+
+/// Levels the ground under models on pads; no other model is read.
+///
+/// # Errors
+/// As for [`place`], for the models on pads.
+pub fn level_pads(sources: &Sources<'_>, lattice: &mut Lattice) -> Result<(), Diagnostic> {
+    let tables = sources.frame.document.models.iter().filter(|table| *table.footing == Footing::Pad);
+    let placed = PlacedModels::new(tables, sources, lattice, &mut SceneBuilder::default())?;
+    footings::level_pads(&placed, sources.frame, lattice).map(drop)
+}
+
+impl<'a> PlacedModels<'a> {
+    fn new(
+        tables: impl Iterator<Item = &'a ModelPlacement>,
+        sources: &Sources<'a>,
+        lattice: &Lattice,
+        collected: &mut SceneBuilder,
+    ) -> Result<Self, Diagnostic> {
+        let library = Library::new(sources.frame.document, sources.assets);
+        let mut placed = Self { library, groups: Vec::new(), placements: Vec::new() };
+        for table in tables {
+            placed.add_table(table, sources, lattice, collected)?;
+        }
+        Ok(placed)
+    }
+
+    fn add_table(
+        &mut self,
+        table: &'a ModelPlacement,
+        sources: &Sources<'_>,
+        lattice: &Lattice,
+        collected: &mut SceneBuilder,
+    ) -> Result<(), Diagnostic> {
+        let (first, frame) = (self.placements.len(), sources.frame);
         let (mut off, mut unknown) = (0, 0);
         if let Some(at) = &table.at {
-            let world = places.point(at, table.crs.as_ref())?;
-            places.on_ground(lattice, at, world)?;
-            let model = library.get(&table.file, table.file.span(), collected)?;
+            let world = frame.point(at, table.crs.as_ref())?;
+            frame.on_ground(lattice, at, world)?;
+            let model = self.library.get(&table.file, table.file.span(), collected)?;
             let name = table.name.clone().unwrap_or_else(|| table.file.to_string());
-            placements.push(placed(
-                table,
-                (&library, model),
-                (&Attributes::default(), world),
-                name,
-                collected,
-            ));
+            let feature = collected.add(FeatureKind::Model, name);
+            let point = Sourced { attributes: Attributes::default(), shape: world };
+            self.add(table, model, &point, feature, frame, &mut collected.default_counts);
         } else if let Some(source) = &table.instances {
             let points = sources.points(source)?;
-            within(document, source, placements.len() + points.len())?;
-            let mut choice = ModelChoice::new(table, &mut library, collected)?;
-            for Sourced { attributes, shape } in points {
-                let ground = FullResolution { lattice };
-                if ground.displayed_z(shape).is_none() {
+            within(frame.document, source, first + points.len())?;
+            let mut choice = ModelChoice::new(table, &mut self.library, collected)?;
+            for point in points {
+                if (FullResolution { lattice }).displayed_z(point.shape).is_none() {
                     off += 1;
                     continue;
                 }
-                let model = choice.of(&attributes);
-                let name = attributes.name(table.name.as_deref());
-                placements.push(placed(table, (&library, model), (&attributes, shape), name, collected));
+                let model = choice.of(&point.attributes);
+                let name = point.attributes.name(table.name.as_deref());
+                let feature = collected.add(FeatureKind::Model, name);
+                self.add(table, model, &point, feature, frame, &mut collected.default_counts);
             }
             unknown = choice.unknown;
         }
-        groups.push(Group { table, placements: first..placements.len(), off, unknown });
+        self.groups.push(Group { table, placements: first..self.placements.len(), off, unknown });
+        Ok(())
     }
-    let volumes = footings::lay(document, &groups, &placements, (&library, places), lattice)?;
-    model_report::tell(&groups, &placements, (&library, &volumes, places), lattice, collected);
-    scatter::strew(document, (places, sources), lattice, (&mut library, &mut placements), collected)?;
-    Ok((library.into_models(), placements))
+
+    fn add(
+        &mut self,
+        table: &ModelPlacement,
+        model: usize,
+        point: &Sourced<DVec2>,
+        feature: FeatureId,
+        frame: &WorldFrame<'_>,
+        counts: &mut DefaultCounts,
+    ) {
+        let attributes = &point.attributes;
+        let height_m = f64::from(attributes.number_or(table.height.as_ref(), 0.0, counts) as f32);
+        let heading_deg = attributes.number(&table.heading, counts) as f32;
+        let scale = attributes.number(&table.scale, counts) as f32;
+        let clamp = self.library.clamp(model, table.clamp);
+        self.placements.push(Placement {
+            model,
+            at: point.shape.as_vec2(),
+            clamp,
+            height: match clamp {
+                Clamp::Absolute => height_m * f64::from(frame.exaggeration),
+                Clamp::Ground | Clamp::Relative => height_m,
+            },
+            heading_rad: heading_deg.to_radians(),
+            scale,
+            standing: GroundFit {
+                anchor: table.anchor,
+                tilt_rad: (table.tilt as f32).to_radians(),
+                sink_m: table.sink as f32,
+                footing: *table.footing,
+            },
+            feature,
+        });
+    }
 }
 
 /// Refuses more models than [`MAX_MODELS`].
@@ -113,38 +185,6 @@ pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Resu
     Err(document
         .error_at(source.span(), message)
         .with_help("take fewer points or a lower density, or choose among them with `where`"))
-}
-
-fn placed(
-    table: &ModelPlacement,
-    (library, model): (&Library<'_>, usize),
-    (attributes, at): (&Attributes, DVec2),
-    name: String,
-    collected: &mut SceneBuilder,
-) -> Placement {
-    let counts = &mut collected.default_counts;
-    let height_m = attributes.number_or(table.height.as_ref(), 0.0, counts) as f32;
-    let heading_deg = attributes.number(&table.heading, counts) as f32;
-    let scale = attributes.number(&table.scale, counts) as f32;
-    Placement {
-        model,
-        at: at.as_vec2(),
-        clamp: library.clamp(model, table.clamp),
-        height_m,
-        heading_rad: heading_deg.to_radians(),
-        scale,
-        standing: standing(table),
-        feature: collected.add(FeatureKind::Model, name),
-    }
-}
-
-fn standing(table: &ModelPlacement) -> GroundFit {
-    GroundFit {
-        anchor: table.anchor,
-        tilt_rad: (table.tilt as f32).to_radians(),
-        sink_m: table.sink as f32,
-        footing: *table.footing,
-    }
 }
 
 /// Which model stands at which of a table's points.

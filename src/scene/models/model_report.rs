@@ -1,54 +1,55 @@
-//! What is told of the models: single ones corner by corner, many of one table by their extremes.
+//! The report on models: single ones corner by corner, instances of one table by their extremes.
 //!
 //! A gap is the drawn height of a corner of the model's foot above the ground under it: above 0 it floats, below 0 it is
 //! buried. Gaps are those over the finest ground; in a picture they differ by what the displayed ground is off.
 
 use std::collections::BTreeMap;
 
+use glam::Vec3;
+
 use crate::description::words::Clamp;
 use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::models::Group;
-use crate::scene::models::library::Library;
-use crate::scene::placement::{Grounds, ModelPose, stand};
+use crate::scene::models::{Group, PlacedModels};
+use crate::scene::placement::stand;
 use crate::scene::report::{InstancesRow, ModelRow};
 use crate::scene::world_frame::WorldFrame;
 use crate::terrain::lattice::Lattice;
+use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
 
-/// Adds what there is to tell of the document's models.
-pub fn tell(
-    groups: &[Group<'_>],
-    placements: &[Placement],
-    (library, volumes, places): (&Library<'_>, &BTreeMap<usize, Volumes>, &WorldFrame<'_>),
+/// Adds a row for each single model and for each table of instances. `volumes` holds the earth moved by the index of the
+/// placement.
+pub fn add(
+    placed: &PlacedModels<'_>,
+    volumes: &BTreeMap<usize, Volumes>,
+    frame: &WorldFrame<'_>,
     lattice: &Lattice,
     collected: &mut SceneBuilder,
 ) {
-    let finest = DrawnGround { lattice, exaggeration: places.exaggeration };
-    for group in groups {
-        let all: Vec<Told> = group
-            .placements
-            .clone()
-            .filter_map(|index| {
-                let placement = &placements[index];
-                Told::of(placement, library.footprint(placement.model), &finest, volumes.get(&index).copied())
-            })
-            .collect();
+    let finest = DrawnGround { lattice, exaggeration: frame.exaggeration };
+    for group in &placed.groups {
+        let stand = |index: usize| {
+            let placement = &placed.placements[index];
+            let footprint = placed.library.footprint(placement.model);
+            StandReport::new(placement, footprint, &finest, volumes.get(&index).copied())
+        };
+        let all: Vec<StandReport> = group.placements.clone().filter_map(stand).collect();
         let name = group.table.name.clone().unwrap_or_else(|| group.table.file.to_string());
         if group.table.instances.is_some() {
             note(group, &name, &mut collected.notes);
             collected.report.instances.push(instances(group, name, &all));
         } else {
-            collected.report.models.extend(all.iter().map(|told| told.row(name.clone())));
+            collected.report.models.extend(all.iter().map(|stand| stand.row(name.clone())));
         }
     }
 }
 
-/// What is told of one model.
-struct Told {
+/// How one model stands, in meters without exaggeration where a column says elevation.
+struct StandReport {
     anchor_m: Option<f64>,
     gaps_m: [Option<f64>; 4],
     tilt_deg: f64,
@@ -56,24 +57,24 @@ struct Told {
     moved: Option<Volumes>,
 }
 
-impl Told {
-    fn of(
+impl StandReport {
+    fn new(
         placement: &Placement,
         footprint: &ModelFootprint,
         finest: &DrawnGround<'_>,
         moved: Option<Volumes>,
     ) -> Option<Self> {
-        let grounds = Grounds { displayed: finest, finest: *finest };
-        let found: ModelPose = stand(placement, footprint, &grounds)?;
-        let gap = |corner: glam::Vec3| {
+        let ground = SupportSurface { displayed: finest, ground: finest };
+        let pose = stand(placement, footprint, ground)?;
+        let gap = |corner: Vec3| {
             Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?)
         };
         Some(Self {
             anchor_m: (placement.clamp != Clamp::Absolute)
-                .then_some(found.anchor_z / f64::from(finest.exaggeration)),
-            gaps_m: found.base(footprint).map(gap),
-            tilt_deg: found.tilt_rad.to_degrees(),
-            plinth_m: found.plinth_height_m(placement, footprint, &grounds),
+                .then_some(pose.anchor_z / f64::from(finest.exaggeration)),
+            gaps_m: pose.base(footprint).map(gap),
+            tilt_deg: pose.tilt_rad.to_degrees(),
+            plinth_m: pose.plinth_height_m(placement, footprint, ground),
             moved,
         })
     }
@@ -95,10 +96,10 @@ impl Told {
     }
 }
 
-fn instances(group: &Group<'_>, name: String, all: &[Told]) -> InstancesRow {
-    let gaps = || all.iter().flat_map(|told| told.gaps_m).flatten();
+fn instances(group: &Group<'_>, name: String, all: &[StandReport]) -> InstancesRow {
+    let gaps = || all.iter().flat_map(|stand| stand.gaps_m).flatten();
     let total = |of: fn(&Volumes) -> f64| {
-        let moved: Vec<f64> = all.iter().filter_map(|told| told.moved.as_ref()).map(of).collect();
+        let moved: Vec<f64> = all.iter().filter_map(|stand| stand.moved.as_ref()).map(of).collect();
         (!moved.is_empty()).then(|| moved.iter().sum())
     };
     InstancesRow {
@@ -108,8 +109,8 @@ fn instances(group: &Group<'_>, name: String, all: &[Told]) -> InstancesRow {
         of_no_variant: group.unknown,
         least_gap: gaps().min_by(f64::total_cmp),
         greatest_gap: gaps().max_by(f64::total_cmp),
-        greatest_tilt: all.iter().map(|told| told.tilt_deg).max_by(f64::total_cmp),
-        highest_plinth: all.iter().filter_map(|told| told.plinth_m).max_by(f64::total_cmp),
+        greatest_tilt: all.iter().map(|stand| stand.tilt_deg).max_by(f64::total_cmp),
+        highest_plinth: all.iter().filter_map(|stand| stand.plinth_m).max_by(f64::total_cmp),
         cut: total(|moved| moved.cut_m3),
         fill: total(|moved| moved.fill_m3),
     }

@@ -67,8 +67,11 @@ fn listed(
     viewer: Viewer<'_>,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
+    if !scene.is_lit() {
+        progress("lighting terrain");
+    }
     let mut list =
-        DrawList { ground: Some(Arc::clone(&scene.map)), lighting: scene.lighting, ..DrawList::default() };
+        DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
     let walls = ground::add(&mut list, &scene.terrain, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
@@ -81,11 +84,16 @@ fn listed(
     (list, ground_triangles)
 }
 
-/// The terrain as `camera` shows it.
+/// The terrain as `camera` shows it, off by at most the terrain's own tolerance.
 pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
+    display_within(terrain, camera, terrain.tolerance_px)
+}
+
+/// The terrain as `camera` shows it, off by at most `tolerance_px` pixels.
+pub fn display_within(terrain: &Terrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
     let (ground, heights) = (terrain.ground(), terrain.patch_heights());
     let patches = patches_in_view(ground, heights, &Frustum::new(camera));
-    let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, terrain.tolerance_px);
+    let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, tolerance_px);
     let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
     DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
 }

@@ -8,20 +8,21 @@ use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
-use crate::scene::placement::{Grounds, stand};
+use crate::scene::placement::stand;
 use crate::scene::{Placement, Scene};
+use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface, viewer: Viewer<'_>) {
     let finest = DrawnGround { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
-    let grounds = Grounds { displayed, finest };
+    let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
     let set = |placement: &Placement| -> Option<(PlacedModel, Option<DrawMesh>)> {
         let footprint = &footprints[placement.model];
-        let stand = stand(placement, footprint, &grounds)?;
+        let stand = stand(placement, footprint, ground)?;
         let Placement { model, feature, .. } = *placement;
-        let plinth = stand.plinth(placement, footprint, &grounds);
+        let plinth = stand.plinth(placement, footprint, ground);
         Some((PlacedModel { model, world_from_model: stand.world_from_model, feature }, plinth))
     };
     let (placed, plinths): (Vec<PlacedModel>, Vec<Option<DrawMesh>>) =

@@ -13,7 +13,7 @@ use crate::terrain::triangle_surface::TriangleSurface;
 /// Adds all uprights that have ground under them.
 pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
     let ground = FullResolution { lattice: scene.terrain.displayed() };
-    let under = SupportSurface { displayed, ground };
+    let under = SupportSurface { displayed, ground: &ground };
     let meshes: Vec<DrawMesh> =
         scene.uprights.par_iter().map(|standing| standing.upright.mesh(under)).collect();
     let mut material = None;

@@ -7,9 +7,11 @@ use crate::description::document::Document;
 use crate::description::features::RoadTable;
 use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
+use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::polyline::{Polyline, kept};
+use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
-use crate::ribbon::stroke::{StrokeOptions, Widths};
+use crate::ribbon::stroke::StrokeOptions;
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
@@ -20,42 +22,24 @@ use crate::scene::sources::Sources;
 /// How far from the ground a centerline may run whose road still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
 
-/// What carries a stretch of road.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
-    /// The ground.
-    Ground,
-    /// A bridge over it.
-    Bridge,
-    /// A tunnel under it.
-    Tunnel,
-}
-
-/// A road, or a stretch of one that is carried by one thing.
+/// A road, or the part of one that has one support.
 #[derive(Clone, Debug)]
 pub struct Centerline {
-    /// The centerline in world coordinates.
-    pub line: Polyline,
-    /// The road's elevation in meters at each vertex of `line`, where it has one of its own: on the ground it conforms
-    /// to, on a bridge, in a tunnel. `None` where it lies on the ground as it is.
-    pub levels_m: Option<Vec<f64>>,
-    /// Its carriageway's width and joints; the width is the mean one where it changes along the line.
+    /// Its centerline, levels and carriageway.
+    pub alignment: Alignment,
+    /// Its carriageway's joints, and the mean of its width.
     pub options: StrokeOptions,
-    /// Its carriageway's width in meters at each vertex of `line`, where it changes; `None` where it does not.
-    pub widths_m: Option<Vec<f64>>,
-    /// How wide the unpaved strip on either side is, in meters; 0 where there is none.
+    /// The width of the unpaved strip on either side in meters; 0 for none.
     pub shoulder_m: f64,
-    /// What it is paved with.
+    /// Its pavement.
     pub surface: RibbonSurface,
-    /// What carries it.
-    pub carried: Support,
     /// What passes over what: roads of different levels do not meet.
     pub level: i32,
-    /// The feature it is.
+    /// Its feature.
     pub feature: FeatureId,
-    /// Which of the document's roads it is from.
+    /// The index of its table in the document.
     pub table: usize,
-    /// What its file says of it.
+    /// Its properties in the file.
     pub attributes: Attributes,
 }
 
@@ -75,7 +59,8 @@ pub fn collect(
         let widths_m = lines.first().and_then(|line| widths_m(road, &line.shape));
         let given = (FeatureKind::Road, road.name.as_deref());
         for (attributes, line) in near::lines(lines, (extent, REACH_M), given, collected) {
-            let mut centerline = centerline((table, road), attributes, line, collected);
+            let mut centerline = centerline(road, attributes, line, collected);
+            centerline.table = table;
             if let Some(widths_m) = &widths_m {
                 centerline.vary(widths_m);
             }
@@ -86,38 +71,18 @@ pub fn collect(
 }
 
 impl Centerline {
-    /// How wide its carriageway is along its line; the mean width where there are not as many widths as vertices.
-    pub fn widths(&self) -> Widths<'_> {
-        match &self.widths_m {
-            Some(widths_m) if widths_m.len() == self.line.points().len() => Widths::PerVertex(widths_m),
-            _ => Widths::Constant(self.options.width_m),
-        }
-    }
-
-    /// The widths at the vertices of `part`, the part of its line that begins at station `from_m`; `None` where the
-    /// width does not change.
-    pub fn widths_along(&self, part: &Polyline, from_m: f64) -> Option<Vec<f64>> {
-        let widths_m = self.widths_m.as_ref()?;
-        let stations = self.line.stations();
-        let width_m = |station: f64| {
-            let after = stations.partition_point(|&reached| reached < station).clamp(1, stations.len() - 1);
-            let way = (station - stations[after - 1]) / (stations[after] - stations[after - 1]);
-            widths_m[after - 1] + (widths_m[after] - widths_m[after - 1]) * way.clamp(0.0, 1.0)
-        };
-        Some(part.stations().iter().map(|&station| width_m(from_m + station)).collect())
-    }
-
     /// Gives it a width at each vertex.
     fn vary(&mut self, widths_m: &[f64]) {
         self.options.width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
         self.options.texture_length_m = texture_length_m(self.surface, self.options.width_m);
-        self.widths_m = Some(widths_m.to_vec());
+        let widths = Profile::new(self.alignment.line.stations().to_vec(), widths_m.to_vec());
+        self.alignment.width = widths.map_or(Width::Constant(self.options.width_m), Width::Varying);
     }
 }
 
-/// One road line with all that its table says of it.
+/// A road line with what its table says of it; the first table's.
 fn centerline(
-    (table, road): (usize, &RoadTable),
+    road: &RoadTable,
     attributes: Attributes,
     line: Polyline,
     collected: &mut SceneBuilder,
@@ -131,18 +96,15 @@ fn centerline(
         miter_limit: road.miter_limit,
         texture_length_m: texture_length_m(surface, width_m),
     };
-    let carried = carried(road, &attributes);
+    let support = support(road, &attributes);
     Centerline {
-        line,
-        levels_m: None,
+        alignment: Alignment { line, level: None, width: Width::Constant(width_m), support },
         options,
-        widths_m: None,
         shoulder_m,
         surface,
-        carried,
-        level: level(road, &attributes, carried),
+        level: level(road, &attributes, support),
         feature: collected.add(FeatureKind::Road, attributes.name(road.name.as_deref())),
-        table,
+        table: 0,
         attributes,
     }
 }
@@ -169,8 +131,8 @@ fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
     }
 }
 
-/// What carries a road, by the expressions stated for it, else by its properties as OpenStreetMap has them.
-pub(in crate::scene) fn carried(road: &RoadTable, attributes: &Attributes) -> Support {
+/// The support of a road, by the expressions stated for it, else by its OpenStreetMap tags.
+pub(in crate::scene) fn support(road: &RoadTable, attributes: &Attributes) -> Support {
     let holds = |stated: &Option<_>, property| match stated {
         Some(expression) => attributes.holds(expression),
         None => attributes.affirm(property),
@@ -182,14 +144,14 @@ pub(in crate::scene) fn carried(road: &RoadTable, attributes: &Attributes) -> Su
     }
 }
 
-fn level(road: &RoadTable, attributes: &Attributes, carried: Support) -> i32 {
+fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
     let tagged = || attributes.get("layer").and_then(|layer| layer.number());
-    let by_kind = match carried {
+    let by_support = match support {
         Support::Ground => 0.0,
         Support::Bridge => 1.0,
         Support::Tunnel => -1.0,
     };
-    let level = attributes.value(road.level.as_ref()).or_else(tagged).unwrap_or(by_kind);
+    let level = attributes.value(road.level.as_ref()).or_else(tagged).unwrap_or(by_support);
     level.round().clamp(-20.0, 20.0) as i32
 }
 
@@ -199,16 +161,13 @@ pub(in crate::scene::roads) mod tests {
     use crate::description::parse::parse;
 
     /// A road along these points, six meters wide, from the document's first table.
-    pub fn road(points: &[(f64, f64)], carried: Support, level: i32) -> Centerline {
+    pub fn road(points: &[(f64, f64)], support: Support, level: i32) -> Centerline {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
         Centerline {
-            line,
-            levels_m: None,
+            alignment: Alignment { line, level: None, width: Width::Constant(6.0), support },
             options: StrokeOptions::default(),
-            widths_m: None,
             shoulder_m: 0.0,
             surface: RibbonSurface::Asphalt,
-            carried,
             level,
             feature: FeatureId(2),
             table: 0,
@@ -216,28 +175,10 @@ pub(in crate::scene::roads) mod tests {
         }
     }
 
-    fn line(points: &[(f64, f64)]) -> Polyline {
-        Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
-    }
-
     /// The road of a scene file with these keys.
     fn table(keys: &str) -> RoadTable {
         let text = format!("[terrain]\ndem = \"a\"\n[[road]]\n{keys}\n");
         parse("road.toml", &text).expect("a valid scene").roads.remove(0)
-    }
-
-    #[test]
-    fn a_part_of_a_road_is_as_wide_as_the_road_there() {
-        let mut road = centerline(
-            (0, &table("points = [[0, 0], [1, 1]]")),
-            Attributes::default(),
-            line(&[(0.0, 0.0), (10.0, 0.0), (30.0, 0.0)]),
-            &mut SceneBuilder::default(),
-        );
-        let part = line(&[(5.0, 0.0), (10.0, 0.0), (20.0, 0.0)]);
-        assert_eq!(road.widths_along(&part, 5.0), None);
-        road.vary(&[4.0, 8.0, 4.0]);
-        assert_eq!(road.widths_along(&part, 5.0), Some(vec![6.0, 8.0, 6.0]));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Roads that the ground follows.
 //!
 //! ```text
-//!  meetings ─► survey ─► terrain/alignment: design ─► denser posts ─► terrain/grading ─► report, profiles
-//!                                               └─► stretches: ground, bridges, tunnels
+//!  meetings ─► network_survey ─► earthworks/alignment: design ─► denser posts ─► earthworks/grading ─► report, profiles
+//!                                                         └─► route::cut: ground, bridges, tunnels
 //! ```
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,17 +11,16 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::earthworks::alignment::design::design;
 use crate::earthworks::alignment::network::NodeId;
+use crate::earthworks::alignment::{Support, SupportSpan};
 use crate::earthworks::grading::grade;
 use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
-use crate::geom::polyline::Polyline;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::report::ConformedRoadRow;
-use crate::scene::roads::centerline::{Centerline, Support};
+use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::meetings::{RoadMeetings, meetings};
 use crate::scene::roads::network_survey::{NetworkSurvey, Rules, conforms};
 use crate::scene::roads::profiles::RoadProfile;
-use crate::scene::roads::route::{Route, RouteStretch, points_between};
-use crate::scene::roads::stretches;
+use crate::scene::roads::route::Route;
 use crate::terrain::densify;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::volumes::Volumes;
@@ -53,8 +52,8 @@ pub fn conform(
     if rules.iter().all(Option::is_none) {
         return Ok(());
     }
-    let is_carried = |road: &Centerline| road.carried == Support::Ground;
-    let meetings = meetings(roads, |road| is_carried(road) && conforms(&document.roads[road.table]));
+    let is_on_ground = |road: &Centerline| road.alignment.support == Support::Ground;
+    let meetings = meetings(roads, |road| is_on_ground(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
         let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
         collected.notes.push(note.into());
@@ -84,7 +83,7 @@ struct Earthworks<'a> {
 }
 
 impl Earthworks<'_> {
-    /// Grades the ground for every stretch on it; the earth moved for each route.
+    /// Grades the ground for every span on it, and returns the earth moved for each route.
     fn build(&self, lattice: &mut Lattice, routes: &[Route], collected: &mut SceneBuilder) -> Vec<Volumes> {
         let strips: Vec<(usize, GradingStrip)> = routes
             .iter()
@@ -104,24 +103,23 @@ impl Earthworks<'_> {
 
     fn strips(&self, route: &Route) -> Vec<GradingStrip> {
         let Some(rules) = &self.rules[route.road] else { return Vec::new() };
-        let all = route.stretches();
-        let on_ground = all.iter().enumerate().filter(|(_, stretch)| stretch.carried == Support::Ground);
-        let strip = |(index, stretch): (usize, &RouteStretch)| {
-            let points = points_between(&self.roads[route.road].line, stretch.from_m, stretch.to_m);
-            let (stations_m, levels_m) = route.levels_along(stretch);
+        let all = route.all_spans();
+        let on_ground = all.iter().enumerate().filter(|(_, span)| span.support == Support::Ground);
+        let strip = |(index, span): (usize, &SupportSpan)| {
+            let line = self.roads[route.road].alignment.line.slice(span.from_m, span.to_m, 0.0)?;
+            let level = route.design.slice(span.from_m, span.to_m, 0.0);
             let beside = [index.checked_sub(1).and_then(|before| all.get(before)), all.get(index + 1)];
             let ends = [self.end(route, beside[0], 0), self.end(route, beside[1], usize::MAX)];
-            let line = Polyline::new(points, 0.0)?;
-            Some(GradingStrip { line, stations_m, levels_m, section: rules.section, ends })
+            Some(GradingStrip { line, level, section: rules.section, ends })
         };
         on_ground.filter_map(strip).collect()
     }
 
-    /// What stands at an end of a stretch: by the stretch beyond, or by what meets the road at its own end.
-    fn end(&self, route: &Route, beyond: Option<&RouteStretch>, stop: usize) -> StripEnd {
+    /// What stands at an end of a span: by the span beyond, or by what meets the road at its own end.
+    fn end(&self, route: &Route, beyond: Option<&SupportSpan>, stop: usize) -> StripEnd {
         let stops = &self.meetings.stops[route.road];
         let is_wall = match beyond {
-            Some(stretch) => stretch.carried != Support::Ground,
+            Some(span) => span.support != Support::Ground,
             None => self.walls.contains(&stops[stop.min(stops.len() - 1)].node),
         };
         if is_wall { StripEnd::Wall } else { StripEnd::Open }
@@ -132,15 +130,15 @@ impl Earthworks<'_> {
 fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
     let mut nodes = BTreeSet::new();
     for (road, stops) in roads.iter().zip(&meetings.stops) {
-        if road.carried != Support::Ground {
+        if road.alignment.support != Support::Ground {
             nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
         }
     }
     for route in routes {
-        let (all, stops) = (route.stretches(), &meetings.stops[route.road]);
+        let (all, stops) = (route.all_spans(), &meetings.stops[route.road]);
         let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
         nodes
-            .extend(ends.iter().filter(|(end, _)| end.carried != Support::Ground).map(|(_, stop)| stop.node));
+            .extend(ends.iter().filter(|(end, _)| end.support != Support::Ground).map(|(_, stop)| stop.node));
     }
     nodes
 }
@@ -178,26 +176,22 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
 /// Reports a road and keeps its profile.
 fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
-    let all = route.stretches();
-    let carried_at =
-        |station: f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).carried;
-    let carried: Vec<Support> = route.stations_m.iter().map(|&station| carried_at(station)).collect();
-    let rises: Vec<f64> = (0..carried.len())
-        .filter(|&index| carried[index] == Support::Ground)
-        .map(|index| route.design_m[index] - route.ground_m[index])
+    let all = route.all_spans();
+    let support_at =
+        |&station: &f64| all.iter().find(|at| station < at.to_m).unwrap_or(&all[all.len() - 1]).support;
+    let supports: Vec<Support> = route.stations_m().iter().map(support_at).collect();
+    let (ground_m, design_m) = (route.ground.values(), route.design.values());
+    let rises: Vec<f64> = (0..supports.len())
+        .filter(|&index| supports[index] == Support::Ground)
+        .map(|index| design_m[index] - ground_m[index])
         .collect();
-    let steepest =
-        route.stations_m.windows(2).zip(route.design_m.windows(2)).fold(0.0, |most: f64, (at, level)| {
-            let run = at[1] - at[0];
-            // A thinner step has rounding for a grade.
-            if run > 1e-3 { most.max((level[1] - level[0]).abs() / run) } else { most }
-        });
-    let count = |kind| all.iter().filter(|stretch| stretch.carried == kind).count();
+    let count = |support| all.iter().filter(|span| span.support == support).count();
     let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
     collected.report.conformed_roads.push(ConformedRoadRow {
         name: name.clone(),
-        length: road.line.length(),
-        highest_grade: steepest * 100.0,
+        length: road.alignment.line.length(),
+        // Over less than a millimeter a grade is rounding.
+        highest_grade: route.design.steepest(1e-3) * 100.0,
         cut: volumes.cut_m3,
         fill: volumes.fill_m3,
         highest_fill: highest(1.0),
@@ -208,10 +202,10 @@ fn tell(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut Sce
     collected.profiles.push(RoadProfile {
         feature: road.feature,
         name,
-        stations_m: route.stations_m.clone(),
-        ground_m: route.ground_m.clone(),
-        design_m: route.design_m.clone(),
-        carried,
+        stations_m: route.stations_m().to_vec(),
+        ground_m: ground_m.to_vec(),
+        design_m: design_m.to_vec(),
+        supports,
     });
 }
 
@@ -227,9 +221,9 @@ fn total(
         let (count, sum, spans) = tables.entry(roads[route.road].table).or_default();
         *count += 1;
         *sum += *moved;
-        for stretch in route.stretches() {
-            spans[0] += usize::from(stretch.carried == Support::Bridge);
-            spans[1] += usize::from(stretch.carried == Support::Tunnel);
+        for span in route.all_spans() {
+            spans[0] += usize::from(span.support == Support::Bridge);
+            spans[1] += usize::from(span.support == Support::Tunnel);
         }
     }
     for (table, (count, Volumes { cut_m3, fill_m3 }, [bridges, tunnels])) in tables {
@@ -244,10 +238,10 @@ fn total(
     }
 }
 
-/// Puts the stretches of every route in the place of its road.
+/// Replaces every designed road by its spans.
 fn replace(roads: &mut Vec<Centerline>, routes: &[Route]) {
     let mut cut: BTreeMap<usize, Vec<Centerline>> =
-        routes.iter().map(|route| (route.road, stretches::cut(&roads[route.road], route))).collect();
+        routes.iter().map(|route| (route.road, route.cut(&roads[route.road]))).collect();
     let parts = std::mem::take(roads).into_iter().enumerate();
     *roads = parts.flat_map(|(index, road)| cut.remove(&index).unwrap_or_else(|| vec![road])).collect();
 }

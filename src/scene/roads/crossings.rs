@@ -1,24 +1,15 @@
-//! What passes below bridges: where other ways' centerlines cross theirs.
-//!
-//! Lines are cut into pieces of a few segments with a box round each, the pieces below sorted by their western edge; a
-//! piece of a bridge is compared only with those whose boxes it may meet, so that the work grows with what is near each
-//! other, not with all pairs of segments.
-
-use std::ops::Range;
+//! Where bridges pass over other lines.
 
 use glam::DVec2;
 
+use crate::geom::leg_tree::{LegTree, LineLeg};
 use crate::geom::polyline::Polyline;
-use crate::geom::rect::Rect;
 use crate::geom::segment;
 
-/// Segments in a piece: enough to make boxes cheap, few enough to keep them small.
-const SEGMENTS: usize = 8;
-
-/// A crossing at a smaller angle than this sine counts as this one: its room would have no end.
+/// A crossing at a smaller angle than this sine counts as this one: its clearance would have no end.
 const LEAST_SINE: f64 = 0.25;
 
-/// A way that others may pass over.
+/// A line that others may pass over.
 #[derive(Clone, Copy, Debug)]
 pub struct PassedLine<'a> {
     /// Its centerline in world coordinates.
@@ -29,45 +20,36 @@ pub struct PassedLine<'a> {
     pub level: i32,
 }
 
-/// Where a way passes over another one.
+/// Where a line passes over another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overpass {
-    /// Which of the upper ways.
+    /// The index of the upper line.
     pub upper: usize,
-    /// Which of the lower ways.
+    /// The index of the lower line.
     pub lower: usize,
-    /// The place.
+    /// The point.
     pub at: DVec2,
-    /// The station on the upper way, in meters.
+    /// The station on the upper line, in meters.
     pub upper_m: f64,
-    /// The station on the lower way, in meters.
+    /// The station on the lower line, in meters.
     pub lower_m: f64,
-    /// Half of the length of the upper way that lies over the lower one's width, in meters.
+    /// Half of the length of the upper line that lies over the lower one's width, in meters.
     pub half_m: f64,
 }
 
-/// A run of a line's segments.
-struct LineRun {
-    way: usize,
-    segments: Range<usize>,
-    rect: Rect,
-}
-
-/// Every place where one of `upper` crosses one of `lower` whose level is lower, by upper way and station. Lines that
+/// Every point where one of `upper` crosses one of `lower` whose level is lower, by upper line and station. Lines that
 /// only touch end to end do not cross.
 pub fn find(upper: &[PassedLine<'_>], lower: &[PassedLine<'_>]) -> Vec<Overpass> {
-    let mut below = pieces(lower);
-    below.sort_by(|a, b| a.rect.min.x.total_cmp(&b.rect.min.x));
-    let widest = below.iter().map(|piece| piece.rect.size().x).fold(0.0, f64::max);
+    let legs = |lines: &[PassedLine<'_>]| -> Vec<LineLeg> {
+        lines.iter().enumerate().flat_map(|(index, passed)| LineLeg::all(index, passed.line)).collect()
+    };
+    let below = LegTree::new(legs(lower));
     let mut found = Vec::new();
-    for piece in pieces(upper) {
-        let first = below.partition_point(|other| other.rect.min.x < piece.rect.min.x - widest);
-        let near = below[first..].iter().take_while(|other| other.rect.min.x <= piece.rect.max.x);
-        for other in near.filter(|other| other.rect.meets(&piece.rect)) {
-            if lower[other.way].level < upper[piece.way].level {
-                cross((&piece, &upper[piece.way]), (other, &lower[other.way]), &mut found);
-            }
-        }
+    for above in legs(upper) {
+        let over = &upper[above.line];
+        let near = below.near(&above).into_iter().map(|index| &below.legs()[index]);
+        let lower_legs = near.filter(|leg| lower[leg.line].level < over.level);
+        found.extend(lower_legs.filter_map(|leg| cross(over, &above, &lower[leg.line], leg)));
     }
     found.sort_by(|a, b| {
         a.upper.cmp(&b.upper).then(a.upper_m.total_cmp(&b.upper_m)).then(a.lower.cmp(&b.lower))
@@ -78,54 +60,29 @@ pub fn find(upper: &[PassedLine<'_>], lower: &[PassedLine<'_>]) -> Vec<Overpass>
     found
 }
 
-fn pieces(ways: &[PassedLine<'_>]) -> Vec<LineRun> {
-    let cut = |(way, line): (usize, &Polyline)| {
-        let count = line.points().len() - 1;
-        let piece = move |from: usize, points: &[DVec2]| {
-            let segments = from..(from + SEGMENTS).min(count);
-            let rect = Rect::around(points[segments.start..=segments.end].iter().copied());
-            LineRun { way, segments, rect }
-        };
-        (0..count).step_by(SEGMENTS).map(|from| piece(from, line.points())).collect::<Vec<_>>()
-    };
-    ways.iter().enumerate().flat_map(|(index, way)| cut((index, way.line))).collect()
-}
-
+/// Where a leg of one line crosses a leg of another.
 fn cross(
-    (piece, over): (&LineRun, &PassedLine<'_>),
-    (other, under): (&LineRun, &PassedLine<'_>),
-    found: &mut Vec<Overpass>,
-) {
-    for above in piece.segments.clone() {
-        for below in other.segments.clone() {
-            let ends = |line: &Polyline, segment: usize| (line.points()[segment], line.points()[segment + 1]);
-            let Some(parts) = segment::crossing(ends(over.line, above), ends(under.line, below)) else {
-                continue;
-            };
-            let station = |line: &Polyline, segment: usize, part: f64| {
-                let stations = line.stations();
-                stations[segment] + (stations[segment + 1] - stations[segment]) * part
-            };
-            let (upper_m, lower_m) =
-                (station(over.line, above, parts[0]), station(under.line, below, parts[1]));
-            if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
-                continue;
-            }
-            let direction = |line, segment| {
-                let (from, to) = ends(line, segment);
-                (to - from).normalize_or_zero()
-            };
-            let sine = direction(over.line, above).perp_dot(direction(under.line, below)).abs();
-            found.push(Overpass {
-                upper: piece.way,
-                lower: other.way,
-                at: over.line.at(upper_m),
-                upper_m,
-                lower_m,
-                half_m: under.width_m / 2.0 / sine.max(LEAST_SINE),
-            });
-        }
+    over: &PassedLine<'_>,
+    above: &LineLeg,
+    under: &PassedLine<'_>,
+    below: &LineLeg,
+) -> Option<Overpass> {
+    let parts = segment::crossing(above.ends.into(), below.ends.into())?;
+    let station = |leg: &LineLeg, part: f64| leg.stations[0] + (leg.stations[1] - leg.stations[0]) * part;
+    let (upper_m, lower_m) = (station(above, parts[0]), station(below, parts[1]));
+    if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
+        return None;
     }
+    let [a, b] = [above, below].map(|leg| (leg.ends[1] - leg.ends[0]).normalize_or_zero());
+    let half_m = under.width_m / 2.0 / a.perp_dot(b).abs().max(LEAST_SINE);
+    Some(Overpass {
+        upper: above.line,
+        lower: below.line,
+        at: over.line.at(upper_m),
+        upper_m,
+        lower_m,
+        half_m,
+    })
 }
 
 fn is_end(line: &Polyline, station_m: f64) -> bool {
@@ -162,7 +119,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn pieces_find_what_all_pairs_of_segments_do(
+        fn the_tree_finds_what_all_pairs_of_segments_do(
             over in prop::collection::vec((0.0..100.0f64, 0.0..100.0f64), 2..40),
             under in prop::collection::vec((0.0..100.0f64, 0.0..100.0f64), 2..40),
         ) {

@@ -8,12 +8,15 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::scene::roads::centerline::{Centerline, Support};
+use crate::earthworks::alignment::Support;
+use crate::geom::polyline::{VertexKey, vertex_key};
+use crate::geom::profile::Profile;
+use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
 use crate::scene::roads::crossings::{self, Overpass, PassedLine};
-use crate::scene::roads::spans::{PointKey, RoadSpan, place};
+use crate::scene::roads::spans::RoadSpan;
 use crate::structure::bridge::depth_m;
-use crate::structure::deck_profile::{ClearancePoint, DeckProfile};
+use crate::structure::deck_profile::{ClearancePoint, clearing};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -70,7 +73,7 @@ pub struct Passage {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChainRun {
     /// Its elevations by station.
-    pub profile: DeckProfile,
+    pub profile: Profile,
     /// The ground below it, at stations rising, where there is some.
     pub ground: Vec<ClearancePoint>,
     /// What passes below; none below a tunnel.
@@ -104,12 +107,12 @@ pub fn settle(
 }
 
 fn top_level(chain: &SpanChain, spans: &[RoadSpan]) -> i32 {
-    chain.links.iter().map(|link| spans[link.span].level).max().unwrap_or(0)
+    chain.links.iter().map(|link| spans[link.line].level).max().unwrap_or(0)
 }
 
 /// The widest span between piers of a bridge as high as this.
-fn by_height(profile: &DeckProfile, ground: &[ClearancePoint]) -> f64 {
-    let above = |floor: &ClearancePoint| profile.level_m(floor.station_m) - floor.level_m;
+fn by_height(profile: &Profile, ground: &[ClearancePoint]) -> f64 {
+    let above = |floor: &ClearancePoint| profile.at(floor.station_m) - floor.level_m;
     let highest = ground.iter().map(above).fold(0.0, f64::max);
     (SPACING_PER_HEIGHT * highest).clamp(PIER_SPACING_M, WIDEST_SPACING_M)
 }
@@ -140,37 +143,38 @@ struct Below {
     /// Which chain and link each span is.
     link_of: Vec<(usize, usize)>,
     /// The vertices inside spans, by place: span and station.
-    inside: BTreeMap<PointKey, (usize, f64)>,
+    inside: BTreeMap<VertexKey, (usize, f64)>,
 }
 
 impl Below {
     fn new(spans: &[RoadSpan], chains: &[SpanChain], all_roads: &[Centerline]) -> Self {
         let bridges: Vec<usize> =
-            (0..spans.len()).filter(|&span| spans[span].carried == Support::Bridge).collect();
-        let roads: Vec<usize> =
-            (0..all_roads.len()).filter(|&road| all_roads[road].carried == Support::Ground).collect();
+            (0..spans.len()).filter(|&span| spans[span].alignment.support == Support::Bridge).collect();
+        let roads: Vec<usize> = (0..all_roads.len())
+            .filter(|&road| all_roads[road].alignment.support == Support::Ground)
+            .collect();
         let over = |&span: &usize| PassedLine {
-            line: &spans[span].line,
+            line: &spans[span].alignment.line,
             width_m: spans[span].options.width_m,
             level: spans[span].level,
         };
         let upper: Vec<PassedLine<'_>> = bridges.iter().map(over).collect();
         let on_ground = roads.iter().map(|&road| {
             let road = &all_roads[road];
-            PassedLine { line: &road.line, width_m: road.options.width_m, level: road.level }
+            PassedLine { line: &road.alignment.line, width_m: road.options.width_m, level: road.level }
         });
         let lower: Vec<PassedLine<'_>> = on_ground.chain(upper.iter().copied()).collect();
         let mut link_of = vec![(0, 0); spans.len()];
         for (index, chain) in chains.iter().enumerate() {
             for (link, placed) in chain.links.iter().enumerate() {
-                link_of[placed.span] = (index, link);
+                link_of[placed.line] = (index, link);
             }
         }
         let mut inside = BTreeMap::new();
         for (index, span) in spans.iter().enumerate() {
-            let (points, stations) = (span.line.points(), span.line.stations());
+            let (points, stations) = (span.alignment.line.points(), span.alignment.line.stations());
             let between = 1..points.len() - 1;
-            inside.extend(between.map(|vertex| (place(points[vertex]), (index, stations[vertex]))));
+            inside.extend(between.map(|vertex| (vertex_key(points[vertex]), (index, stations[vertex]))));
         }
         Self {
             crossings: crossings::find(&upper, &lower),
@@ -183,10 +187,10 @@ impl Below {
     }
 
     /// The chain and station on it of a place inside another chain's line.
-    fn host(&self, at: PointKey, chains: &[SpanChain]) -> Option<(usize, f64)> {
+    fn host(&self, at: VertexKey, chains: &[SpanChain]) -> Option<(usize, f64)> {
         let &(span, on_span_m) = self.inside.get(&at)?;
         let (chain, link) = self.link_of[span];
-        Some((chain, SpanChain::station_m(&chains[chain].links[link], on_span_m)))
+        Some((chain, chains[chain].links[link].station_m(on_span_m)))
     }
 
     fn leans_on_another(&self, chain: &SpanChain) -> bool {
@@ -197,7 +201,7 @@ impl Below {
         &self,
         (index, ground): (usize, &[ClearancePoint]),
         (spans, chains): (&[RoadSpan], &[SpanChain]),
-        meetings: &BTreeMap<PointKey, f64>,
+        meetings: &BTreeMap<VertexKey, f64>,
         runs: &[Option<ChainRun>],
         site: &Site<'_>,
     ) -> Option<ChainRun> {
@@ -207,34 +211,30 @@ impl Below {
             ChainEnd::Ground | ChainEnd::Loose => own[end],
             ChainEnd::Onward(at) => {
                 let host = self.host(at, chains).filter(|&(host, _)| host != index);
-                let on_host =
-                    host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.level_m(station)));
+                let on_host = host.and_then(|(host, station)| Some(runs[host].as_ref()?.profile.at(station)));
                 on_host.or_else(|| meetings.get(&at).copied()).unwrap_or(own[end])
             }
         };
-        let first = &spans[chain.links[0].span];
+        let first = &spans[chain.links[0].line];
         let ends_m = [end_m(0), end_m(1)];
-        let stated = chain.links.iter().filter_map(|link| spans[link.span].pier_spacing_m).reduce(f64::min);
+        let stated = chain.links.iter().filter_map(|link| spans[link.line].pier_spacing_m).reduce(f64::min);
         let spacing_m =
-            stated.unwrap_or_else(|| by_height(&DeckProfile::straight(chain.length_m, ends_m), ground));
+            stated.unwrap_or_else(|| by_height(&Profile::straight(chain.length_m, ends_m), ground));
         let depth_m = depth_m(spacing_m.min(chain.length_m));
-        let is_bridge = first.carried == Support::Bridge;
+        let is_bridge = first.alignment.support == Support::Bridge;
         let passages = if is_bridge { self.passages(index, (spans, chains), runs, site) } else { Vec::new() };
-        let stated = first.levels_m.as_ref().and_then(|levels| {
-            let stations = first.line.stations().iter();
-            let points =
-                stations.zip(levels).map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m });
-            DeckProfile::stated(points.collect())
-        });
+        let level = first.alignment.level.clone();
+        let stated = level.filter(|level| level.values().iter().all(|level| level.is_finite()));
+        let straight = Profile::straight(chain.length_m, ends_m);
         let profile = stated.unwrap_or_else(|| {
             if !is_bridge {
-                return DeckProfile::straight(chain.length_m, ends_m);
+                return straight;
             }
             let room = CLEARANCE_M + depth_m / f64::from(site.exaggeration);
             let floors = passages.iter().flat_map(|passage| {
                 passage.reach_m.map(|station_m| ClearancePoint { station_m, level_m: passage.level_m + room })
             });
-            DeckProfile::clearing((chain.length_m, ends_m), ground, &floors.collect::<Vec<_>>(), STEEPEST)
+            clearing(&straight, ground, &floors.collect::<Vec<_>>(), STEEPEST)
         });
         Some(ChainRun { profile, ground: ground.to_vec(), passages, spacing_m, depth_m })
     }
@@ -258,11 +258,11 @@ impl Below {
                 None => site.ground_m(crossing.at),
                 Some(lower) => {
                     let (host, link) = self.link_of[self.bridges[lower]];
-                    let station = SpanChain::station_m(&chains[host].links[link], crossing.lower_m);
-                    runs[host].as_ref().map(|run| run.profile.level_m(station))
+                    let station = chains[host].links[link].station_m(crossing.lower_m);
+                    runs[host].as_ref().map(|run| run.profile.at(station))
                 }
             };
-            let station = SpanChain::station_m(&chain.links[link], crossing.upper_m);
+            let station = chain.links[link].station_m(crossing.upper_m);
             let half = crossing.half_m.min(self.widths_m[crossing.lower] * 3.0);
             let reach_m = [(station - half).max(0.0), (station + half).min(chain.length_m)];
             all.extend(level_m.map(|level_m| Passage { reach_m, level_m }));
@@ -309,18 +309,15 @@ fn meetings(
     chains: &[SpanChain],
     samples: &[Vec<ClearancePoint>],
     below: &Below,
-) -> BTreeMap<PointKey, f64> {
-    let mut levels: BTreeMap<PointKey, f64> = BTreeMap::new();
-    let mut lowest: BTreeMap<PointKey, f64> = BTreeMap::new();
+) -> BTreeMap<VertexKey, f64> {
+    let mut levels: BTreeMap<VertexKey, f64> = BTreeMap::new();
+    let mut lowest: BTreeMap<VertexKey, f64> = BTreeMap::new();
     // What pulls at a place: the level at the other end of a chain, fixed or a place's, and the chain's length.
-    let mut pulls: Vec<(PointKey, (Option<PointKey>, f64), f64)> = Vec::new();
+    let mut pulls: Vec<(VertexKey, (Option<VertexKey>, f64), f64)> = Vec::new();
     for (chain, ground) in chains.iter().zip(samples) {
         let Some(own) = ground_ends(ground) else { continue };
-        let settled = spans[chain.links[0].span].levels_m.as_ref();
-        let own = match settled.map(|levels| (levels.first(), levels.last())) {
-            Some((Some(&first), Some(&last))) => [first, last],
-            _ => own,
-        };
+        let settled = spans[chain.links[0].line].alignment.level.as_ref();
+        let own = settled.map_or(own, |level| [level.values()[0], level.values()[level.values().len() - 1]]);
         for end in 0..2 {
             let ChainEnd::Onward(at) = chain.ends[end] else { continue };
             let other = match chain.ends[1 - end] {
@@ -328,7 +325,7 @@ fn meetings(
                 _ => (None, own[1 - end]),
             };
             levels.entry(at).or_insert(own[end]);
-            if spans[chain.links[0].span].carried == Support::Bridge && settled.is_none() {
+            if spans[chain.links[0].line].alignment.support == Support::Bridge && settled.is_none() {
                 lowest.insert(at, own[end]);
             }
             let pull = if settled.is_some() { ((None, own[end]), 1e-3) } else { (other, chain.length_m) };
@@ -343,7 +340,7 @@ fn meetings(
     pulls.sort_by_key(|pull| pull.0);
     for _ in 0..EVENINGS {
         for group in pulls.chunk_by(|a, b| a.0 == b.0) {
-            let level = |&(other, level): &(Option<PointKey>, f64)| other.map_or(level, |at| levels[&at]);
+            let level = |&(other, level): &(Option<VertexKey>, f64)| other.map_or(level, |at| levels[&at]);
             let weight: f64 = group.iter().map(|pull| 1.0 / pull.2).sum();
             let sum: f64 = group.iter().map(|pull| level(&pull.1) / pull.2).sum();
             levels.insert(group[0].0, sum / weight);

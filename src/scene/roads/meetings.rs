@@ -6,13 +6,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
-
 use crate::earthworks::alignment::network::NodeId;
+use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::scene::roads::at_grade::crossings;
 use crate::scene::roads::centerline::Centerline;
 
-/// Vertices nearer to each other than this are one, in meters; as for [`crate::ribbon::junction`].
+/// A crossing this near to a vertex is at that vertex, in meters.
 const SAME_M: f64 = 0.01;
 
 /// A node on a centerline.
@@ -45,12 +44,12 @@ struct RoadVertex {
 
 /// Finds where the roads end and meet. Only roads for which `crosses` holds meet where they cross without a vertex.
 pub fn meetings(roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) -> RoadMeetings {
-    let mut places: BTreeMap<(i64, i64), Vec<RoadVertex>> = BTreeMap::new();
+    let mut places: BTreeMap<VertexKey, Vec<RoadVertex>> = BTreeMap::new();
     for (road, centerline) in roads.iter().enumerate() {
-        let points = centerline.line.points();
+        let points = centerline.alignment.line.points();
         for (index, at) in points.iter().enumerate() {
             let is_end = index == 0 || index + 1 == points.len();
-            places.entry(key(*at)).or_default().push(RoadVertex { road, index, is_end });
+            places.entry(vertex_key(*at)).or_default().push(RoadVertex { road, index, is_end });
         }
     }
     let mut found = RoadMeetings { stops: vec![Vec::new(); roads.len()], ..RoadMeetings::default() };
@@ -71,11 +70,6 @@ pub fn meetings(roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) -> 
     found
 }
 
-fn key(at: DVec2) -> (i64, i64) {
-    let place = (at / SAME_M).round();
-    (place.x as i64, place.y as i64)
-}
-
 impl RoadMeetings {
     fn node(&mut self) -> NodeId {
         self.nodes += 1;
@@ -85,7 +79,7 @@ impl RoadMeetings {
     fn join(&mut self, roads: &[Centerline], vertices: &[RoadVertex]) {
         let node = self.node();
         for vertex in vertices {
-            let station_m = roads[vertex.road].line.stations()[vertex.index];
+            let station_m = roads[vertex.road].alignment.line.stations()[vertex.index];
             self.stops[vertex.road].push(RoadStop { station_m, node });
         }
     }
@@ -124,7 +118,8 @@ impl RoadMeetings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centerline::{Support, tests::road};
+    use crate::earthworks::alignment::Support;
+    use crate::scene::roads::centerline::tests::road;
 
     #[test]
     fn ends_meet_whatever_is_there_and_through_roads_only_their_own_level() {

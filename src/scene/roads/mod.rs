@@ -17,4 +17,3 @@ pub mod network_survey;
 pub mod profiles;
 pub mod route;
 pub mod spans;
-pub mod stretches;

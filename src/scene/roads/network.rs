@@ -1,26 +1,27 @@
-//! Roads on the ground: lines become ribbons that go on in one another and meet in junctions.
+//! Roads on the ground: lines become ribbons that continue one another and meet in junctions.
 //!
-//! What lies over what, from above: the junctions of the best pavement, its carriageways, those of the lesser ones, and
-//! below them all the shoulders, which join as carriageways do. Only stretches that the ground carries are laid; those
-//! on bridges and in tunnels take part in what meets, so that a road ends on the edge where its bridge begins.
+//! From above: the junctions of the best pavement, its carriageways, those of the lesser ones, and below them all the
+//! shoulders, which join as carriageways do. Only roads on the ground are laid; bridges and tunnels take part in
+//! junctions, so that a road ends on the edge where its bridge begins.
 
 use std::collections::BTreeMap;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::chain::stations;
 use crate::ribbon::crossing::crossings;
-use crate::ribbon::junction::{self, Street, StreetNetwork, StreetSupport};
+use crate::ribbon::junction::{self, Street, StreetNetwork};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{StrokeOptions, StrokePath, Widths, stroke_course};
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke_path};
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
-use crate::scene::roads::centerline::{Centerline, Support};
+use crate::scene::roads::centerline::Centerline;
 
 /// Meters in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
@@ -42,13 +43,6 @@ pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
     lay_strips(&carriageways, extent, collected);
 }
 
-/// What meets among `all`, whatever carries it: for each its continuations, so that a bridge can begin on the edge where
-/// its road ends.
-pub fn connect(all: &[Centerline]) -> StreetNetwork {
-    let strips: Vec<RoadStrip<'_>> = all.iter().map(RoadStrip::carriageway).collect();
-    junction::connect(&strips.iter().map(RoadStrip::street).collect::<Vec<_>>())
-}
-
 /// How good a pavement is among roads that meet.
 pub fn rank_of(surface: RibbonSurface) -> u8 {
     match surface {
@@ -61,8 +55,8 @@ pub fn rank_of(surface: RibbonSurface) -> u8 {
 /// A strip of one surface along a road.
 struct RoadStrip<'a> {
     road: &'a Centerline,
-    /// The width at each vertex, where it changes.
-    widths_m: Option<Vec<f64>>,
+    /// The road's alignment with the strip's width.
+    alignment: Alignment,
     options: StrokeOptions,
     surface: RibbonSurface,
     rank: u8,
@@ -78,53 +72,28 @@ struct Class {
 impl<'a> RoadStrip<'a> {
     fn carriageway(road: &'a Centerline) -> Self {
         let rank = rank_of(road.surface);
-        Self { road, widths_m: widths_m(road, 0.0), options: road.options, surface: road.surface, rank }
+        Self { road, alignment: road.alignment.clone(), options: road.options, surface: road.surface, rank }
     }
 
     /// The carriageway and what lies beside it.
     fn with_shoulders(road: &'a Centerline) -> Self {
         let more_m = 2.0 * road.shoulder_m;
+        let width = road.alignment.width.grown(more_m);
         Self {
             road,
-            widths_m: widths_m(road, more_m),
+            alignment: Alignment { width, ..road.alignment.clone() },
             options: StrokeOptions { width_m: road.options.width_m + more_m, ..road.options },
             surface: RibbonSurface::Shoulder,
             rank: 0,
         }
     }
 
-    fn widths(&self) -> Widths<'_> {
-        match &self.widths_m {
-            Some(widths_m) => Widths::PerVertex(widths_m),
-            None => Widths::Constant(self.options.width_m),
-        }
-    }
-
     fn street(&self) -> Street<'_> {
-        Street {
-            line: &self.road.line,
-            widths: self.widths(),
-            options: self.options,
-            bed: if self.is_laid() { StreetSupport::Ground } else { StreetSupport::Structure },
-            level: self.road.level,
-            rank: self.rank,
-        }
-    }
-
-    fn is_laid(&self) -> bool {
-        self.road.carried == Support::Ground
+        Street { level: self.road.level, rank: self.rank, ..Street::new(&self.alignment, self.options) }
     }
 
     fn class(&self) -> Class {
         Class { rank: self.rank, level: self.road.level }
-    }
-}
-
-/// The widths of a road at its vertices where they change, each `more_m` wider.
-fn widths_m(road: &Centerline, more_m: f64) -> Option<Vec<f64>> {
-    match road.widths() {
-        Widths::Constant(_) => None,
-        Widths::PerVertex(widths_m) => Some(widths_m.iter().map(|width_m| width_m + more_m).collect()),
     }
 }
 
@@ -152,21 +121,21 @@ fn lay_strips(strips: &[RoadStrip<'_>], extent: &Rect, collected: &mut SceneBuil
 
 /// The ribbons of strips; an empty one where the ground does not carry it.
 fn ribbons(strips: &[RoadStrip<'_>], network: &StreetNetwork, extent: &Rect) -> Vec<(PlanMesh, Class)> {
-    let lengths_m: Vec<f64> = strips.iter().map(|strip| strip.road.line.length()).collect();
+    let lengths_m: Vec<f64> = strips.iter().map(|strip| strip.alignment.line.length()).collect();
     let stations = stations(&lengths_m, &network.links);
     strips
         .par_iter()
         .enumerate()
         .map(|(index, strip)| {
             let mut ribbon = Clipped { plan: PlanMesh::default(), extent };
-            let course = StrokePath {
-                line: &strip.road.line,
-                widths: strip.widths(),
+            let path = StrokePath {
+                line: &strip.alignment.line,
+                width: &strip.alignment.width,
                 beyond: network.continuations[index],
                 stations: stations[index],
             };
-            if strip.is_laid() {
-                stroke_course(&course, &strip.options, &mut ribbon);
+            if strip.alignment.support == Support::Ground {
+                stroke_path(&path, &strip.options, &mut ribbon);
             }
             (ribbon.plan, strip.class())
         })

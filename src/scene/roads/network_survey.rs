@@ -6,14 +6,17 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RoadTable;
 use crate::description::words::ProfileMode;
+use crate::earthworks::alignment::SupportSpan;
+use crate::earthworks::alignment::chain::LineEnd;
 use crate::earthworks::alignment::design::{Design, SectionGround};
 use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
-use crate::earthworks::alignment::spans::{DesignSpan, EarthworkLimits, SpanKind};
+use crate::earthworks::alignment::spans::EarthworkLimits;
 use crate::earthworks::grading::strip;
+use crate::geom::profile::Profile;
 use crate::scene::attributes::DefaultCounts;
-use crate::scene::roads::centerline::{Centerline, Support};
+use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::meetings::RoadMeetings;
-use crate::scene::roads::route::{Route, points_between};
+use crate::scene::roads::route::Route;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
 
@@ -117,7 +120,7 @@ impl NetworkSurvey {
         let (first, stops) = (self.network.sections.len(), &meetings.stops[index]);
         for pair in stops.windows(2) {
             let origin = lattice.origin();
-            let points = points_between(&road.line, pair[0].station_m, pair[1].station_m);
+            let points = road.alignment.line.between(pair[0].station_m, pair[1].station_m);
             let points: Vec<_> = points.into_iter().map(|point| point + origin).collect();
             let stations = profile(lattice, &points);
             self.network.sections.push(RoadSection {
@@ -127,7 +130,7 @@ impl NetworkSurvey {
             });
             self.courses.push(SectionGround {
                 ground_m: stations.iter().map(|at| at.ground.height_m().unwrap_or(f64::NAN)).collect(),
-                stated: stated(road.carried),
+                stated: road.alignment.support,
                 limits: rules.limits,
             });
         }
@@ -141,9 +144,9 @@ impl NetworkSurvey {
 
     /// A road that ends where no other of the network does ends on the ground.
     fn pin(&mut self) {
-        let pin = |arms: Vec<(usize, usize)>| match arms[..] {
-            [(section, end)] => {
-                let ground = &self.courses[section].ground_m;
+        let pin = |arms: Vec<LineEnd>| match arms[..] {
+            [LineEnd { line, end }] => {
+                let ground = &self.courses[line].ground_m;
                 ground[end * (ground.len() - 1)]
             }
             _ => f64::NAN,
@@ -151,51 +154,40 @@ impl NetworkSurvey {
         self.pins = self.network.arms().into_iter().map(pin).collect();
     }
 
-    /// The roads with their design, section by section on end; without those that no ground gave a level.
+    /// The roads with their design; without those that no ground gave a level.
     pub fn routes(&self, design: &Design) -> Vec<Route> {
-        let routes = self.surveyed.iter().map(|surveyed| self.route(surveyed, design));
-        routes.filter(|route| route.design_m.iter().all(|level| level.is_finite())).collect()
+        self.surveyed.iter().filter_map(|surveyed| self.route(surveyed, design)).collect()
     }
 
-    fn route(&self, surveyed: &SurveyedRoad, design: &Design) -> Route {
-        let mut route = Route {
-            road: surveyed.road,
-            stations_m: Vec::new(),
-            ground_m: Vec::new(),
-            design_m: Vec::new(),
-            spans: Vec::new(),
-        };
+    fn route(&self, surveyed: &SurveyedRoad, design: &Design) -> Option<Route> {
+        let (mut stations_m, mut ground_m, mut design_m) = (Vec::new(), Vec::new(), Vec::new());
+        let mut spans = Vec::new();
         for (section, &start_m) in surveyed.sections.clone().zip(&surveyed.starts_m) {
             // The node between two sections is the last station of one and the first of the next.
-            let skipped = usize::from(!route.stations_m.is_empty());
+            let skipped = usize::from(!stations_m.is_empty());
             let stations = self.network.sections[section].stations_m.iter().skip(skipped);
-            route.stations_m.extend(stations.map(|at| start_m + at));
-            route.ground_m.extend(self.courses[section].ground_m.iter().skip(skipped));
-            route.design_m.extend(design.levels_m[section].iter().skip(skipped));
-            route.spans.extend(design.spans[section].iter().map(|span| DesignSpan {
-                kind: span.kind,
+            stations_m.extend(stations.map(|at| start_m + at));
+            ground_m.extend(self.courses[section].ground_m.iter().skip(skipped));
+            design_m.extend(design.levels_m[section].iter().skip(skipped));
+            spans.extend(design.spans[section].iter().map(|span| SupportSpan {
                 from_m: start_m + span.from_m,
                 to_m: start_m + span.to_m,
+                ..*span
             }));
         }
-        route
-    }
-}
-
-fn stated(carried: Support) -> Option<SpanKind> {
-    match carried {
-        Support::Ground => None,
-        Support::Bridge => Some(SpanKind::Bridge),
-        Support::Tunnel => Some(SpanKind::Tunnel),
+        let ground = Profile::new(stations_m.clone(), ground_m)?;
+        let design = Profile::new(stations_m, design_m)?;
+        let is_level = design.values().iter().all(|level| level.is_finite());
+        is_level.then_some(Route { road: surveyed.road, ground, design, spans })
     }
 }
 
 /// About how many stations a road will have.
 fn stations_of(lattice: &Lattice, road: &Centerline) -> f64 {
     let (extent, cell) = (lattice.extent(), lattice.cell());
-    let on_ground = road.line.points().windows(2).filter_map(|ends| extent.clip_line(ends[0], ends[1]));
+    let on_ground = road.alignment.line.legs().filter_map(|[from, to]| extent.clip_line(from, to));
     let crossed = on_ground.map(|(from, to)| 2.0 * ((to - from).abs() / cell).element_sum());
-    crossed.sum::<f64>() + road.line.points().len() as f64
+    crossed.sum::<f64>() + road.alignment.line.points().len() as f64
 }
 
 fn too_many(document: &Document, road: &Centerline) -> Diagnostic {

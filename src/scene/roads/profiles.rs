@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::draw::list::FeatureId;
-use crate::scene::roads::centerline::Support;
+use crate::earthworks::alignment::Support;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub struct RoadProfile {
     pub ground_m: Vec<f64>,
     /// The road's level on the centerline in meters.
     pub design_m: Vec<f64>,
-    /// What carries the road at each station; where that changes, what carries it from there on.
-    pub carried: Vec<Support>,
+    /// What carries the road at each station; where that changes, what carries it from there.
+    pub supports: Vec<Support>,
 }
 
 impl RoadProfile {
@@ -31,13 +31,8 @@ impl RoadProfile {
         for (index, station_m) in self.stations_m.iter().enumerate() {
             let ground = Some(self.ground_m[index]).filter(|ground| !ground.is_nan());
             let ground = ground.map(|ground| format!("{ground:.3}")).unwrap_or_default();
-            let carried = match self.carried[index] {
-                Support::Ground => "ground",
-                Support::Bridge => "bridge",
-                Support::Tunnel => "tunnel",
-            };
-            let design_m = self.design_m[index];
-            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{carried}")
+            let (design_m, support) = (self.design_m[index], self.supports[index].word());
+            writeln!(text, "{station_m:.3},{ground},{design_m:.3},{support}")
                 .expect("text takes all that is written");
         }
         text
@@ -56,7 +51,7 @@ mod tests {
             stations_m: vec![0.0, 12.5],
             ground_m: vec![101.25, f64::NAN],
             design_m: vec![101.25, 102.0],
-            carried: vec![Support::Ground, Support::Bridge],
+            supports: vec![Support::Ground, Support::Bridge],
         };
         let table =
             "station_m,ground_m,design_m,carried\n0.000,101.250,101.250,ground\n12.500,,102.000,bridge\n";

@@ -1,147 +1,158 @@
-//! A road with its design: its longitudinal profile and the stretches that it is carried along by one thing.
+//! A road with its design: its longitudinal profile, and the road cut where bridges and tunnels begin.
 
-use glam::DVec2;
-
-use crate::earthworks::alignment::spans::{DesignSpan, SpanKind};
+use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
 use crate::geom::polyline::Polyline;
-use crate::scene::roads::centerline::Support;
+use crate::geom::profile::Profile;
+use crate::scene::roads::centerline::Centerline;
 
-/// Stretches shorter than this are not told apart from their neighbors, in meters.
+/// Spans shorter than this are part of their neighbors, in meters.
 const SHORTEST_M: f64 = 0.05;
+
+/// How far a deck may be off the design level between its vertices, in meters: less than anyone sees, and than a
+/// carriageway's own evenness.
+const DECK_SLACK_M: f64 = 0.02;
+
+/// Vertices nearer to each other than this are one, in meters.
+const SAME_M: f64 = 0.001;
 
 /// A road that the ground follows, designed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Which of the roads.
+    /// The index of the road.
     pub road: usize,
-    /// Meters along its centerline, from 0, never falling, to its length.
-    pub stations_m: Vec<f64>,
-    /// The ground there; NaN where there is none.
-    pub ground_m: Vec<f64>,
-    /// The road there.
-    pub design_m: Vec<f64>,
+    /// The ground along its centerline in meters; NaN where there is none.
+    pub ground: Profile,
+    /// The road's level in meters, at the same stations.
+    pub design: Profile,
     /// Where it leaves the ground, in order and apart from each other.
-    pub spans: Vec<DesignSpan>,
-}
-
-/// A stretch of a road.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RouteStretch {
-    /// What carries it.
-    pub carried: Support,
-    /// The station where it begins, in meters.
-    pub from_m: f64,
-    /// The station where it ends.
-    pub to_m: f64,
+    pub spans: Vec<SupportSpan>,
 }
 
 impl Route {
-    /// The road from its start to its end, stretch by stretch; at least one.
-    pub fn stretches(&self) -> Vec<RouteStretch> {
-        let length_m = self.length_m();
-        let mut all: Vec<RouteStretch> = Vec::new();
-        let mut add = |carried, to_m: f64| {
+    /// The stations in meters along the centerline, from 0 to its length.
+    pub fn stations_m(&self) -> &[f64] {
+        self.design.stations()
+    }
+
+    /// The spans from the road's start to its end, those on the ground included; at least one.
+    pub fn all_spans(&self) -> Vec<SupportSpan> {
+        let length_m = self.stations_m()[self.stations_m().len() - 1];
+        let mut all: Vec<SupportSpan> = Vec::new();
+        let mut add = |support, to_m: f64| {
             let from_m = all.last().map_or(0.0, |last| last.to_m);
             match all.last_mut() {
-                Some(last) if last.carried == carried || to_m - from_m < SHORTEST_M => last.to_m = to_m,
-                // At the very start there is nothing to add it to: what comes next begins there.
+                Some(last) if last.support == support || to_m - from_m < SHORTEST_M => last.to_m = to_m,
+                // At the very start there is nothing to add it to: the next span begins there.
                 None if to_m < SHORTEST_M && to_m < length_m => {}
-                _ => all.push(RouteStretch { carried, from_m, to_m }),
+                _ => all.push(SupportSpan { support, from_m, to_m }),
             }
         };
         for span in &self.spans {
             add(Support::Ground, span.from_m);
-            add(carried(span.kind), span.to_m);
+            add(span.support, span.to_m);
         }
         add(Support::Ground, length_m);
         all
     }
 
-    fn length_m(&self) -> f64 {
-        self.stations_m[self.stations_m.len() - 1]
-    }
-
-    /// The road's level at a station.
-    pub fn design_at(&self, station_m: f64) -> f64 {
-        at(&self.stations_m, &self.design_m, station_m)
-    }
-
-    /// Adds a station wherever a stretch ends, so that each has its own.
+    /// Adds a station wherever a span ends.
     pub fn with_ends(mut self) -> Self {
-        for RouteStretch { to_m, .. } in self.stretches() {
-            let place = self.stations_m.partition_point(|&station| station < to_m);
-            if self.stations_m.get(place).is_some_and(|&station| station > to_m) {
-                let (ground, design) = (at(&self.stations_m, &self.ground_m, to_m), self.design_at(to_m));
-                self.stations_m.insert(place, to_m);
-                self.ground_m.insert(place, ground);
-                self.design_m.insert(place, design);
-            }
+        for SupportSpan { to_m, .. } in self.all_spans() {
+            self.ground.insert(to_m);
+            self.design.insert(to_m);
         }
         self
     }
 
-    /// The road's stations and levels along a stretch, with both ends of it, in stations of its own from 0.
-    pub fn levels_along(&self, stretch: &RouteStretch) -> (Vec<f64>, Vec<f64>) {
-        let first = self.stations_m.partition_point(|&at| at <= stretch.from_m);
-        let past = self.stations_m.partition_point(|&at| at < stretch.to_m).max(first);
-        let mut stations = vec![0.0];
-        let mut levels = vec![self.design_at(stretch.from_m)];
-        stations.extend(self.stations_m[first..past].iter().map(|at| at - stretch.from_m));
-        levels.extend(&self.design_m[first..past]);
-        stations.push(stretch.to_m - stretch.from_m);
-        levels.push(self.design_at(stretch.to_m));
-        (stations, levels)
+    /// The spans of `road` in order, each with its levels.
+    ///
+    /// On the ground a span has the road's own vertices. Bridges and tunnels have more, so that they are straight between
+    /// them to two centimeters. A span that becomes a bridge or a tunnel passes over or under what the road was level with.
+    pub fn cut(&self, road: &Centerline) -> Vec<Centerline> {
+        self.all_spans().iter().filter_map(|span| self.part(road, span)).collect()
+    }
+
+    fn part(&self, road: &Centerline, span: &SupportSpan) -> Option<Centerline> {
+        let whole = &road.alignment.line;
+        let is_whole = span.from_m <= 0.0 && span.to_m >= whole.length();
+        let line = match span.support {
+            Support::Ground if is_whole => whole.clone(),
+            Support::Ground => whole.slice(span.from_m, span.to_m, SAME_M)?,
+            Support::Bridge | Support::Tunnel => self.deck(whole, span)?,
+        };
+        let levels = line.stations().iter().map(|station| self.design.at(span.from_m + station)).collect();
+        let level = Profile::new(line.stations().to_vec(), levels);
+        let width = road.alignment.width.along(&line, span.from_m);
+        let raised = match (road.alignment.support, span.support) {
+            (Support::Ground, Support::Bridge) => 1,
+            (Support::Ground, Support::Tunnel) => -1,
+            _ => 0,
+        };
+        let alignment = Alignment { line, level, width, support: span.support };
+        Some(Centerline { alignment, level: road.level + raised, ..road.clone() })
+    }
+
+    /// The line along a span, with vertices wherever its level bends.
+    fn deck(&self, line: &Polyline, span: &SupportSpan) -> Option<Polyline> {
+        let profile = self.design.slice(span.from_m, span.to_m, 0.0);
+        let bends = bends(profile.stations(), profile.values()).into_iter().map(|at| span.from_m + at);
+        let inside = |at: &f64| *at > span.from_m && *at < span.to_m;
+        let mut all: Vec<f64> = bends.chain(line.stations().iter().copied()).filter(inside).collect();
+        // The ends as they were stated: the neighbors end there to the last bit.
+        all.extend([span.from_m, span.to_m]);
+        all.sort_by(f64::total_cmp);
+        Polyline::new(all.into_iter().map(|station| line.at(station)), SAME_M)
     }
 }
 
-/// What carries a span.
-pub fn carried(kind: SpanKind) -> Support {
-    match kind {
-        SpanKind::Bridge => Support::Bridge,
-        SpanKind::Tunnel => Support::Tunnel,
+/// The stations that a profile needs to be within [`DECK_SLACK_M`] of its levels where it is straight between them
+/// (Douglas and Peucker 1973), its ends with them.
+fn bends(stations: &[f64], levels: &[f64]) -> Vec<f64> {
+    let last = stations.len() - 1;
+    let mut kept = vec![false; stations.len()];
+    (kept[0], kept[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let run = stations[to] - stations[from];
+        let off = |&index: &usize| {
+            let part = if run > 0.0 { (stations[index] - stations[from]) / run } else { 0.0 };
+            (levels[index] - (levels[from] + (levels[to] - levels[from]) * part)).abs()
+        };
+        let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
+        if let Some(worst) = worst.filter(|worst| off(worst) > DECK_SLACK_M) {
+            kept[worst] = true;
+            open.extend([(from, worst), (worst, to)]);
+        }
     }
-}
-
-/// The value at a station, straight between those given.
-fn at(stations_m: &[f64], values: &[f64], station_m: f64) -> f64 {
-    let after = stations_m.partition_point(|&at| at < station_m).clamp(1, stations_m.len() - 1);
-    let (from, to) = (stations_m[after - 1], stations_m[after]);
-    let part = if to > from { ((station_m - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
-    values[after - 1] + (values[after] - values[after - 1]) * part
-}
-
-/// The vertices of a line from one station to another, both ends with them.
-pub fn points_between(line: &Polyline, from_m: f64, to_m: f64) -> Vec<DVec2> {
-    let (first, past) = (
-        line.stations().partition_point(|&at| at <= from_m),
-        line.stations().partition_point(|&at| at < to_m),
-    );
-    let inner = line.points().get(first..past).unwrap_or_default();
-    std::iter::once(line.at(from_m)).chain(inner.iter().copied()).chain([line.at(to_m)]).collect()
+    stations.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&station, _)| station).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::roads::centerline::tests::road;
 
-    fn route(spans: &[(SpanKind, f64, f64)]) -> Route {
-        let span = |&(kind, from_m, to_m): &(SpanKind, f64, f64)| DesignSpan { kind, from_m, to_m };
+    fn profile(stations: &[f64], values: &[f64]) -> Profile {
+        Profile::new(stations.to_vec(), values.to_vec()).expect("stations rise")
+    }
+
+    fn route(spans: &[(Support, f64, f64)]) -> Route {
+        let span = |&(kind, from_m, to_m): &(Support, f64, f64)| SupportSpan { support: kind, from_m, to_m };
         Route {
             road: 0,
-            stations_m: vec![0.0, 40.0, 100.0],
-            ground_m: vec![0.0, f64::NAN, 0.0],
-            design_m: vec![10.0, 14.0, 8.0],
+            ground: profile(&[0.0, 40.0, 100.0], &[0.0, f64::NAN, 0.0]),
+            design: profile(&[0.0, 40.0, 100.0], &[10.0, 14.0, 8.0]),
             spans: spans.iter().map(span).collect(),
         }
     }
 
-    fn stretches(spans: &[(SpanKind, f64, f64)]) -> Vec<(Support, f64, f64)> {
-        route(spans).stretches().into_iter().map(|at| (at.carried, at.from_m, at.to_m)).collect()
+    fn stretches(spans: &[(Support, f64, f64)]) -> Vec<(Support, f64, f64)> {
+        route(spans).all_spans().into_iter().map(|at| (at.support, at.from_m, at.to_m)).collect()
     }
 
     #[test]
     fn stretches_cover_the_road_without_gap_or_overlap() {
-        use SpanKind::{Bridge, Tunnel};
+        use Support::{Bridge, Tunnel};
         assert_eq!(stretches(&[]), [(Support::Ground, 0.0, 100.0)]);
         assert_eq!(stretches(&[(Bridge, 0.0, 100.0)]), [(Support::Bridge, 0.0, 100.0)]);
         assert_eq!(
@@ -156,11 +167,48 @@ mod tests {
 
     #[test]
     fn a_stretch_has_its_own_stations_and_both_its_ends() {
-        let route = route(&[(SpanKind::Bridge, 20.0, 70.0)]).with_ends();
-        assert_eq!(route.stations_m, [0.0, 20.0, 40.0, 70.0, 100.0]);
-        assert_eq!(route.design_m, [10.0, 12.0, 14.0, 11.0, 8.0]);
-        let (stations, levels) = route.levels_along(&route.stretches()[1]);
-        assert_eq!(stations, [0.0, 20.0, 50.0]);
-        assert_eq!(levels, [12.0, 14.0, 11.0]);
+        let route = route(&[(Support::Bridge, 20.0, 70.0)]).with_ends();
+        assert_eq!(route.stations_m(), [0.0, 20.0, 40.0, 70.0, 100.0]);
+        assert_eq!(route.design.values(), [10.0, 12.0, 14.0, 11.0, 8.0]);
+        let bridge = route.all_spans()[1];
+        let level = route.design.slice(bridge.from_m, bridge.to_m, 0.0);
+        assert_eq!(level, profile(&[0.0, 20.0, 50.0], &[12.0, 14.0, 11.0]));
+    }
+
+    #[test]
+    fn a_road_is_cut_into_stretches_that_end_on_each_other() {
+        for quarter in 0..4 {
+            let turned = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));
+            let whole = road(&[(0.0, 0.0), (60.0, 0.0), (60.0, 40.0)].map(turned), Support::Ground, 0);
+            let stations_m: Vec<f64> = (0..=100).map(f64::from).collect();
+            let arch = |at: &f64| 20.0 - (at - 50.0) * (at - 50.0) / 400.0;
+            let route = Route {
+                road: 0,
+                design: profile(&stations_m, &stations_m.iter().map(arch).collect::<Vec<_>>()),
+                ground: profile(&stations_m, &[0.0; 101]),
+                spans: vec![SupportSpan { support: Support::Bridge, from_m: 20.5, to_m: 80.0 }],
+            };
+            let parts = route.cut(&whole);
+            assert_eq!(
+                parts.iter().map(|part| (part.alignment.support, part.level)).collect::<Vec<_>>(),
+                [(Support::Ground, 0), (Support::Bridge, 1), (Support::Ground, 0)]
+            );
+            for pair in parts.windows(2) {
+                let (end, start) =
+                    (pair[0].alignment.line.points().last(), pair[1].alignment.line.points().first());
+                assert_eq!(end, start);
+                let levels =
+                    |part: &Centerline| part.alignment.level.clone().expect("levels").values().to_vec();
+                let step = levels(&pair[0])[levels(&pair[0]).len() - 1] - levels(&pair[1])[0];
+                assert!(step.abs() < 1e-9, "{step}");
+            }
+            let bridge = &parts[1];
+            assert!(
+                bridge.alignment.line.points().len() > 6,
+                "an arch needs more vertices than its road has"
+            );
+            assert!((bridge.alignment.line.length() - 59.5).abs() < 1e-9);
+            assert_eq!(parts.iter().map(|part| part.alignment.line.length()).sum::<f64>(), 100.0);
+        }
     }
 }

@@ -23,7 +23,7 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::models::library::Library;
-use crate::scene::models::within;
+use crate::scene::models::{PlacedModels, within};
 use crate::scene::placement::outline;
 use crate::scene::report::ScatterRow;
 use crate::scene::scatter::bands::Bands;
@@ -53,22 +53,23 @@ const ROWS_AT_ONCE: usize = 256;
 /// # Errors
 /// A source or a model file cannot be had, or there are more models or areas than can be placed.
 pub fn strew(
-    document: &Document,
-    (places, sources): (&WorldFrame<'_>, &Sources<'_>),
+    sources: &Sources<'_>,
     lattice: &Lattice,
-    (library, placements): (&mut Library<'_>, &mut Vec<Placement>),
+    placed: &mut PlacedModels<'_>,
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
+    let (frame, document) = (sources.frame, sources.frame.document);
     if document.scatters.is_empty() {
         return Ok(());
     }
-    let taken = taken_by(placements, library, collected);
+    let taken = taken_by(placed, collected);
     let mut squares = 0;
     for table in &document.scatters {
-        let species = Species::of(table, library, collected)?;
+        let species = Species::new(table, &mut placed.library, collected)?;
         let feature = collected.add(FeatureKind::Scattered, table.name.clone().unwrap_or_default());
+        let library = &placed.library;
         let ground =
-            ScatterGround { table, places, lattice, taken: &taken, library, species: &species, feature };
+            ScatterGround { table, frame, lattice, taken: &taken, library, species: &species, feature };
         let (mut stood, mut counts, mut areas) = (Vec::new(), ScatterCounts::default(), 0);
         for Sourced { attributes, shape } in sources.polygons(&table.source)? {
             let pattern = pattern(table, &attributes, species.seed, collected);
@@ -82,7 +83,7 @@ pub fn strew(
                     stood.extend(standing);
                     counts.add(missing);
                 }
-                within(document, &table.source, placements.len() + stood.len())?;
+                within(document, &table.source, placed.placements.len() + stood.len())?;
             }
             areas += 1;
         }
@@ -90,7 +91,7 @@ pub fn strew(
         stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
         stood.dedup_by(|a, b| a.at == b.at);
         tell(table, (stood.len(), areas, counts), collected);
-        placements.append(&mut stood);
+        placed.placements.append(&mut stood);
     }
     Ok(())
 }
@@ -102,7 +103,7 @@ struct Species {
 }
 
 impl Species {
-    fn of(
+    fn new(
         table: &ScatterTable,
         library: &mut Library<'_>,
         collected: &mut SceneBuilder,
@@ -181,7 +182,7 @@ fn bands(
 /// What decides at a place.
 struct ScatterGround<'a> {
     table: &'a ScatterTable,
-    places: &'a WorldFrame<'a>,
+    frame: &'a WorldFrame<'a>,
     lattice: &'a Lattice,
     taken: &'a Taken,
     library: &'a Library<'a>,
@@ -237,14 +238,14 @@ impl ScatterGround<'_> {
         let [from, to] = self.table.scale;
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
-        let rise = (gradient.0.length() as f32) * self.places.exaggeration;
+        let rise = (gradient.0.length() as f32) * self.frame.exaggeration;
         let standing = GroundFit {
             sink_m: rise * self.library.footprint(model).radius() * scale,
             ..GroundFit::default()
         };
         let clamp = self.library.clamp(model, Clamp::Ground);
         let at = (place.at - self.lattice.origin()).as_vec2();
-        Placement { model, at, clamp, height_m: 0.0, heading_rad, scale, standing, feature: self.feature }
+        Placement { model, at, clamp, height: 0.0, heading_rad, scale, standing, feature: self.feature }
     }
 }
 
@@ -253,7 +254,7 @@ fn holds([from, to]: [f64; 2], value: f64) -> bool {
 }
 
 /// The ground that roads, water and buildings take, and what stands on it already.
-fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &SceneBuilder) -> Taken {
+fn taken_by(placed: &PlacedModels<'_>, collected: &SceneBuilder) -> Taken {
     let mut taken = Taken::default();
     let kind = |feature: FeatureId| {
         let index = (feature.0 as usize).checked_sub(FeatureId::GROUND.0 as usize + 1);
@@ -273,8 +274,8 @@ fn taken_by(placements: &[Placement], library: &Library<'_>, collected: &SceneBu
             solid.mesh.triangles.iter().for_each(|ids| taken.add([at(&ids[0]), at(&ids[1]), at(&ids[2])]));
         }
     }
-    for placement in placements {
-        taken.add_convex(&outline(placement, library.footprint(placement.model)));
+    for placement in &placed.placements {
+        taken.add_convex(&outline(placement, placed.library.footprint(placement.model)));
     }
     taken
 }

@@ -1,17 +1,15 @@
 //! The document's rivers as one network: which way each flows, how wide it is, what it meets.
 
-use std::collections::BTreeMap;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RiverTable;
 use crate::description::words::Water;
 use crate::draw::list::FeatureId;
-use crate::earthworks::channel::flow;
-use crate::earthworks::channel::flow::Flow;
+use crate::earthworks::alignment::{Alignment, Support, Width};
+use crate::earthworks::channel::flow::{self, Flow};
 use crate::geom::polyline::Polyline;
-use crate::ribbon::junction::{Street, StreetSupport};
-use crate::ribbon::stroke::{StrokeOptions, Widths};
+use crate::geom::profile::Profile;
+use crate::ribbon::stroke::StrokeOptions;
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
@@ -25,45 +23,26 @@ const REACH_M: f64 = 1000.0;
 
 /// A river, downstream.
 pub struct Stream {
-    /// The centerline in world coordinates.
-    pub line: Polyline,
-    /// The water's width at each vertex in meters.
-    pub widths_m: Vec<f64>,
+    /// Its centerline and the width of its water.
+    pub alignment: Alignment,
     /// The width of the bank on either side in meters.
     pub bank_m: f64,
     /// Whether the ground is cut to it.
     pub water: Water,
     /// How deep the ground may be cut, in meters.
     pub max_cut_m: f64,
-    /// The feature it is.
+    /// Its feature.
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
 }
 
 impl Stream {
-    /// The widest that its water is, in meters.
-    pub fn widest_m(&self) -> f64 {
-        self.widths_m.iter().copied().fold(0.0, f64::max)
-    }
-
     /// How its water is stroked.
     pub fn options(&self) -> StrokeOptions {
-        let width_m = self.widest_m();
+        let width_m = self.alignment.width.widest_m();
         let texture_length_m = texture_length_m(RibbonSurface::River, width_m);
         StrokeOptions { width_m, texture_length_m, ..StrokeOptions::default() }
-    }
-
-    /// It as lines that meet have it: all of one level and rank.
-    pub fn street(&self) -> Street<'_> {
-        Street {
-            line: &self.line,
-            widths: Widths::PerVertex(&self.widths_m),
-            options: self.options(),
-            bed: StreetSupport::Ground,
-            level: 0,
-            rank: 0,
-        }
     }
 }
 
@@ -78,62 +57,54 @@ pub fn collect(
     collected: &mut SceneBuilder,
 ) -> Result<Vec<Stream>, Diagnostic> {
     let extent = lattice.extent();
-    let mut drawn: Vec<(&RiverTable, Attributes, Polyline)> = Vec::new();
-    let mut widths_m: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    let mut drawn: Vec<(&RiverTable, Attributes, Polyline, Option<Profile>)> = Vec::new();
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
-        let inline =
-            river.widths.as_ref().and_then(|widths| lines.first().map(|line| (widths, line.shape.clone())));
-        let given = river.name.as_deref();
+        let shape = lines.first().map(|line| line.shape.clone()).unwrap_or_default();
+        let name = river.name.as_deref();
         for (attributes, line) in
-            near::lines(lines, (&extent, REACH_M), (FeatureKind::River, given), collected)
+            near::lines(lines, (&extent, REACH_M), (FeatureKind::River, name), collected)
         {
-            if let Some((widths, points)) = &inline {
-                widths_m.insert(drawn.len(), kept(&line, points, widths));
-            }
-            drawn.push((river, attributes, line));
+            let widths = river.widths.as_ref().and_then(|widths_m| widths(&line, &shape, widths_m));
+            drawn.push((river, attributes, line, widths));
         }
     }
-    let lines: Vec<&Polyline> = drawn.iter().map(|(_, _, line)| line).collect();
+    let lines: Vec<&Polyline> = drawn.iter().map(|(_, _, line, _)| line).collect();
     let flows = flow::directions(lattice, &lines);
-    let streams = drawn.into_iter().zip(flows).enumerate();
-    let stream = |(index, ((river, attributes, line), flow))| {
-        let stated = widths_m.remove(&index);
-        stream(river, &attributes, (line, stated, flow), collected)
-    };
-    Ok(streams.map(stream).collect())
+    let directed = drawn.into_iter().zip(flows).map(|((river, attributes, line, widths), flow)| match flow {
+        Flow::AsDrawn => (river, attributes, line, widths),
+        Flow::Against => (river, attributes, line.reversed(), widths.map(|widths| widths.reversed())),
+    });
+    let stream = |(river, attributes, line, widths)| stream(river, &attributes, line, widths, collected);
+    Ok(directed.map(stream).collect())
 }
 
-/// The widths of the vertices that a line kept of its points; it drops those that repeat the one before.
-fn kept(line: &Polyline, points: &[glam::DVec2], widths_m: &[f64]) -> Vec<f64> {
-    let mut given = points.iter().zip(widths_m);
-    let mut width = |at: &glam::DVec2| given.find(|(point, _)| *point == at).map(|(_, &width_m)| width_m);
-    line.points().iter().filter_map(&mut width).collect()
+/// The widths of the vertices that a line kept of its points; `None` where they are not as many.
+fn widths(line: &Polyline, points: &[glam::DVec2], widths_m: &[f64]) -> Option<Profile> {
+    let mut stated = points.iter().zip(widths_m);
+    let mut width = |at: &glam::DVec2| stated.find(|(point, _)| *point == at).map(|(_, &width_m)| width_m);
+    Profile::new(line.stations().to_vec(), line.points().iter().filter_map(&mut width).collect())
 }
 
 fn stream(
     river: &RiverTable,
     attributes: &Attributes,
-    (line, stated, flow): (Polyline, Option<Vec<f64>>, Flow),
+    line: Polyline,
+    widths: Option<Profile>,
     collected: &mut SceneBuilder,
 ) -> Stream {
-    let mut stated = stated.filter(|widths| widths.len() == line.points().len());
-    let line = match flow {
-        Flow::AsDrawn => line,
-        Flow::Against => {
-            stated.iter_mut().for_each(|widths| widths.reverse());
-            line.reversed()
-        }
-    };
     let name = attributes.name(river.name.as_deref());
     let feature = collected.add(FeatureKind::River, name.clone());
     let counts = &mut collected.default_counts;
-    let widths_m = stated.unwrap_or_else(|| {
+    let width = widths.map(Width::Varying).unwrap_or_else(|| {
         let width_m = attributes.number(&river.width, counts);
         let mouth_m = attributes.number_or(river.mouth_width.as_ref(), width_m, counts);
         let part = |station: &f64| station / line.length();
-        line.stations().iter().map(|station| width_m + (mouth_m - width_m) * part(station)).collect()
+        let widths_m = line.stations().iter().map(|station| width_m + (mouth_m - width_m) * part(station));
+        let widths = Profile::new(line.stations().to_vec(), widths_m.collect());
+        widths.filter(|_| mouth_m != width_m).map_or(Width::Constant(width_m), Width::Varying)
     });
     let bank_m = attributes.number(&river.bank, counts);
-    Stream { line, widths_m, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
+    let alignment = Alignment { line, level: None, width, support: Support::Ground };
+    Stream { alignment, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
 }

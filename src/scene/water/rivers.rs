@@ -14,14 +14,14 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::Water;
-use crate::earthworks::channel;
-use crate::earthworks::channel::{Channel, Climb, Cut, Cuts};
-use crate::geom::polyline::Polyline;
+use crate::earthworks::alignment::Width;
+use crate::earthworks::channel::{self, Channel, Climb, Cut, Cuts};
+use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{Continuations, Stations, StrokeOptions, StrokePath, Widths, stroke_course};
+use crate::ribbon::stroke::{Continuations, Stations, StrokePath, stroke_path};
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
@@ -60,8 +60,8 @@ pub fn lay(
 
 fn channel_of(stream: &Stream) -> Channel {
     Channel {
-        line: stream.line.clone(),
-        widths_m: stream.widths_m.clone(),
+        line: stream.alignment.line.clone(),
+        width: stream.alignment.width.clone(),
         bank_m: stream.bank_m,
         max_cut_m: stream.max_cut_m,
     }
@@ -109,7 +109,7 @@ fn greatest(cut: &Cut) -> Option<&Climb> {
 fn row(stream: &Stream, cut: &Cut) -> RiverRow {
     RiverRow {
         name: stream.name.clone(),
-        length: stream.line.length(),
+        length: stream.alignment.line.length(),
         from: cut.levels_m.map(|levels| levels.0),
         to: cut.levels_m.map(|levels| levels.1),
         deepest_cut: cut.deepest_m,
@@ -122,42 +122,35 @@ fn row(stream: &Stream, cut: &Cut) -> RiverRow {
 
 /// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
 fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
-    let streets: Vec<Street<'_>> = streams.iter().map(Stream::street).collect();
+    let streets: Vec<Street<'_>> =
+        streams.iter().map(|stream| Street::new(&stream.alignment, stream.options())).collect();
     let network = junction::connect(&streets);
+    let widest_m = |index: usize| streams[index].alignment.width.widest_m();
     let mut order: Vec<usize> = (0..streams.len()).collect();
-    order.sort_by(|&a, &b| streams[b].widest_m().total_cmp(&streams[a].widest_m()));
+    order.sort_by(|&a, &b| widest_m(b).total_cmp(&widest_m(a)));
     for index in order {
-        let (stream, beyond) =
-            (&streams[index], ends_of_one_width(&streams[index], network.continuations[index]));
-        let mut water = Clipped { plan: PlanMesh::default(), extent };
-        along(&stream.line, &stream.widths_m, beyond, &stream.options(), &mut water);
-        collected.lay(water.plan, RibbonSurface::River, stream.feature);
+        let stream = &streams[index];
+        let beyond = ends_of_one_width(stream, network.continuations[index]);
+        let ribbon = |width: &Width| {
+            let mut ribbon = Clipped { plan: PlanMesh::default(), extent };
+            let path =
+                StrokePath { line: &stream.alignment.line, width, beyond, stations: Stations::default() };
+            stroke_path(&path, &stream.options(), &mut ribbon);
+            ribbon.plan
+        };
+        let width = &stream.alignment.width;
+        collected.lay(ribbon(width), RibbonSurface::River, stream.feature);
         if stream.bank_m > 0.0 {
-            let widths_m: Vec<f64> =
-                stream.widths_m.iter().map(|width| width + 2.0 * stream.bank_m).collect();
-            let mut banks = Clipped { plan: PlanMesh::default(), extent };
-            along(&stream.line, &widths_m, beyond, &stream.options(), &mut banks);
-            collected.lay(banks.plan, RibbonSurface::Bank, stream.feature);
+            let banks = ribbon(&width.grown(2.0 * stream.bank_m));
+            collected.lay(banks, RibbonSurface::Bank, stream.feature);
         }
     }
     confluences(streams, &network.continuations, extent, collected);
 }
 
-/// What goes on at a river's ends: nothing where it tapers, since the other end would be of another width.
+/// What continues a river at its ends: nothing where it tapers, since the other end would be of another width.
 fn ends_of_one_width(stream: &Stream, beyond: Continuations) -> Continuations {
-    let is_even = stream.widths_m.iter().all(|width| *width == stream.widths_m[0]);
-    if is_even { beyond } else { Continuations::default() }
-}
-
-fn along(
-    line: &Polyline,
-    widths_m: &[f64],
-    beyond: Continuations,
-    options: &StrokeOptions,
-    sink: &mut impl MeshSink<PlanVertex>,
-) {
-    let widths = Widths::PerVertex(widths_m);
-    stroke_course(&StrokePath { line, widths, beyond, stations: Stations::default() }, options, sink);
+    if stream.alignment.width.is_constant() { beyond } else { Continuations::default() }
 }
 
 /// A river at a vertex: the water's width there, which river it is, and where.
@@ -170,18 +163,20 @@ fn confluences(
     extent: &Rect,
     collected: &mut SceneBuilder,
 ) {
-    let mut ends: BTreeMap<(i64, i64), bool> = BTreeMap::new();
+    let mut ends: BTreeMap<VertexKey, bool> = BTreeMap::new();
     for (stream, beyond) in streams.iter().zip(continuations) {
-        let (points, beyond) = (stream.line.points(), ends_of_one_width(stream, *beyond));
-        for (at, beyond) in [(points[0], beyond.before), (points[points.len() - 1], beyond.after)] {
-            *ends.entry(place(at)).or_default() |= beyond.is_none();
+        let beyond = ends_of_one_width(stream, *beyond);
+        for (at, beyond) in stream.alignment.line.ends().into_iter().zip([beyond.before, beyond.after]) {
+            *ends.entry(vertex_key(at)).or_default() |= beyond.is_none();
         }
     }
-    let mut widest: BTreeMap<(i64, i64), Vec<Meeting>> = BTreeMap::new();
+    let mut widest: BTreeMap<VertexKey, Vec<Meeting>> = BTreeMap::new();
     for (index, stream) in streams.iter().enumerate() {
-        for (&at, &width_m) in stream.line.points().iter().zip(&stream.widths_m) {
-            if ends.get(&place(at)).is_some_and(|is_open| *is_open) {
-                widest.entry(place(at)).or_default().push((width_m, index, at));
+        let line = &stream.alignment.line;
+        for (&at, &station_m) in line.points().iter().zip(line.stations()) {
+            let width_m = stream.alignment.width.at(station_m);
+            if ends.get(&vertex_key(at)).is_some_and(|is_open| *is_open) {
+                widest.entry(vertex_key(at)).or_default().push((width_m, index, at));
             }
         }
     }
@@ -193,12 +188,6 @@ fn confluences(
             collected.lay(plan.plan, RibbonSurface::Confluence, streams[index].feature);
         }
     }
-}
-
-/// A vertex's place in centimeters, as lines share it.
-fn place(at: DVec2) -> (i64, i64) {
-    let place = (at * 100.0).round();
-    (place.x as i64, place.y as i64)
 }
 
 fn disc(center: DVec2, radius_m: f64, sink: &mut impl MeshSink<PlanVertex>) {

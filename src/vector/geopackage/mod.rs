@@ -52,9 +52,6 @@ struct GpkgColumn {
 }
 
 /// Reads the requested layer, or the only one.
-///
-/// # Errors
-/// [`VectorError`].
 pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     let connection = open(bytes).map_err(|error| refused("its tables", error))?;
     let mut tables = tables(&connection)?;
@@ -77,7 +74,6 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     Ok(layer.finish())
 }
 
-/// Opens the database with its limits set.
 fn open(bytes: &[u8]) -> rusqlite::Result<Connection> {
     let mut connection = Connection::open_in_memory()?;
     let longest_value = i32::try_from(bytes.len()).unwrap_or(i32::MAX).max(1 << 20);
@@ -124,7 +120,7 @@ fn refused(place: &str, error: rusqlite::Error) -> VectorError {
         Some(ErrorCode::NotADatabase) => {
             VectorError::broken(FORMAT, place, "it is not an SQLite database that can be read")
         }
-        _ => VectorError::refused(FORMAT, place, error),
+        _ => VectorError::broken(FORMAT, place, error),
     }
 }
 
@@ -199,7 +195,7 @@ fn read_features(
                 WkbError::Unsupported(kind) => VectorError::curves(FORMAT, kind),
                 WkbError::Broken => {
                     let place = format!("{place}, feature {}", layer.feature_count() + 1);
-                    VectorError::refused(FORMAT, place, error)
+                    VectorError::broken(FORMAT, place, error)
                 }
             })?;
         }
@@ -213,7 +209,6 @@ fn read_features(
     Ok(())
 }
 
-/// Quotes a name for SQL.
 fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }

@@ -42,9 +42,6 @@ struct WkbLayout {
 }
 
 /// Adds the shape that `bytes` start with to `parts`.
-///
-/// # Errors
-/// [`WkbError`].
 pub(crate) fn read(bytes: &[u8], parts: &mut FeatureParts) -> Result<(), WkbError> {
     read_shape(&mut ByteCursor::new(bytes), parts, 0)
 }
@@ -59,10 +56,11 @@ fn read_shape(cursor: &mut ByteCursor<'_>, parts: &mut FeatureParts, depth: usiz
     let (kind, layout) = read_header(cursor)?;
     match kind {
         // An empty point is written as NaN.
-        1 => read_positions(cursor, layout, 1)?
-            .into_iter()
-            .filter(|position| !position.x.is_nan())
-            .for_each(|position| parts.add_point(position)),
+        1 => {
+            let mut points = read_positions(cursor, layout, 1)?;
+            points.retain(|position| !position.x.is_nan());
+            parts.add_points(points);
+        }
         2 => {
             let line = read_line(cursor, layout)?;
             if !line.is_empty() {

@@ -24,11 +24,10 @@ pub(super) struct AreaAssembler<'a> {
 }
 
 impl<'a> AreaAssembler<'a> {
-    /// An assembler that has replaced no way.
     pub fn new(data: &'a OsmData) -> Self {
         Self {
             data,
-            is_replaced: vec![false; data.ways().len()],
+            is_replaced: vec![false; data.ways.len()],
             sorter: RingSorter::new(HoleRule::Nesting),
             vertices_left: MAX_VERTICES,
         }
@@ -44,7 +43,7 @@ impl<'a> AreaAssembler<'a> {
     pub fn replace_outer_ways(&mut self, relation: &OsmRelation, tags: &OsmTags) {
         let data = self.data;
         for index in outer_ways(data, relation) {
-            let mut own = significant_tags(data, &data.ways()[index].tags);
+            let mut own = significant_tags(data, &data.ways[index].tags);
             self.is_replaced[index] |= own.all(|(key, value)| data.value(tags, key) == Some(value));
         }
     }
@@ -56,7 +55,7 @@ impl<'a> AreaAssembler<'a> {
         if data.tags(&relation.tags).any(|(key, _)| key != "type") {
             return &relation.tags;
         }
-        let mut tags = outer_ways(data, relation).map(|index| &data.ways()[index].tags);
+        let mut tags = outer_ways(data, relation).map(|index| &data.ways[index].tags);
         tags.find(|tags| significant_tags(data, tags).next().is_some()).unwrap_or(&relation.tags)
     }
 
@@ -70,12 +69,12 @@ impl<'a> AreaAssembler<'a> {
         ids.sort_unstable();
         ids.dedup();
         let ways: Option<Vec<&OsmWay>> =
-            ids.iter().map(|&id| data.way_index(id).map(|index| &data.ways()[index])).collect();
+            ids.iter().map(|&id| data.way_index(id).map(|index| &data.ways[index])).collect();
         let loops = ways.filter(|ways| !ways.is_empty()).and_then(|ways| closed_loops(&ways));
         let Some(loops) = loops else { return Ok(None) };
         let exceeded = |error: RingLimitExceeded| {
             let place = format!("relation {}", relation.id);
-            VectorError::refused("OpenStreetMap extract", place, error)
+            VectorError::broken("OpenStreetMap extract", place, error)
         };
         let vertices = loops.iter().map(Vec::len).sum();
         self.vertices_left =

@@ -18,11 +18,9 @@ pub(super) const UNITS_PER_DEGREE: f64 = 1e7;
 #[error("it takes more than {} GiB of memory; cut it down with 'osmium extract'", MAX_BYTES >> 30)]
 pub(super) struct OsmMemoryExceeded;
 
-/// The index of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TextId(u32);
 
-/// Pairs of keys and values.
 pub(super) type OsmTags = Box<[(TextId, TextId)]>;
 
 /// A position, in ten-millionths of a degree.
@@ -33,7 +31,6 @@ pub(super) struct OsmNode {
     pub latitude: i32,
 }
 
-/// A list of nodes.
 #[derive(Debug)]
 pub(super) struct OsmWay {
     pub id: i64,
@@ -63,16 +60,16 @@ pub(super) struct OsmMember {
 #[derive(Default)]
 pub(super) struct OsmData {
     nodes: Vec<OsmNode>,
-    tagged_nodes: Vec<(OsmNode, OsmTags)>,
-    ways: Vec<OsmWay>,
-    relations: Vec<OsmRelation>,
+    pub tagged_nodes: Vec<(OsmNode, OsmTags)>,
+    /// Sorted by id after [`Self::sort`].
+    pub ways: Vec<OsmWay>,
+    pub relations: Vec<OsmRelation>,
     texts: Vec<Arc<str>>,
     text_ids: HashMap<Arc<str>, TextId>,
     bytes: usize,
 }
 
 impl OsmNode {
-    /// Returns longitude and latitude in degrees.
     pub fn degrees(self) -> (f64, f64) {
         (f64::from(self.longitude) / UNITS_PER_DEGREE, f64::from(self.latitude) / UNITS_PER_DEGREE)
     }
@@ -95,7 +92,6 @@ impl OsmData {
         Ok(id)
     }
 
-    /// Adds a node.
     pub fn add_node(&mut self, node: OsmNode, tags: OsmTags) -> Result<(), OsmMemoryExceeded> {
         self.charge(size_of::<OsmNode>())?;
         self.nodes.push(node);
@@ -106,7 +102,6 @@ impl OsmData {
         Ok(())
     }
 
-    /// Adds a way.
     pub fn add_way(&mut self, way: OsmWay) -> Result<(), OsmMemoryExceeded> {
         let content = size_of_val(&*way.refs) + size_of_val(&*way.tags);
         self.charge(size_of::<OsmWay>() + 2 * ALLOCATION_BYTES + content)?;
@@ -114,7 +109,6 @@ impl OsmData {
         Ok(())
     }
 
-    /// Adds a relation.
     pub fn add_relation(&mut self, relation: OsmRelation) -> Result<(), OsmMemoryExceeded> {
         let content = size_of_val(&*relation.members) + size_of_val(&*relation.tags);
         self.charge(size_of::<OsmRelation>() + 2 * ALLOCATION_BYTES + content)?;
@@ -139,24 +133,9 @@ impl OsmData {
         }
     }
 
-    /// Returns the nodes that have tags, in the file's order.
-    pub fn tagged_nodes(&self) -> &[(OsmNode, OsmTags)] {
-        &self.tagged_nodes
-    }
-
-    /// Returns all ways, sorted by id.
-    pub fn ways(&self) -> &[OsmWay] {
-        &self.ways
-    }
-
     /// Returns the index of the way `id`, `None` where the extract lacks it.
     pub fn way_index(&self, id: i64) -> Option<usize> {
         self.ways.binary_search_by_key(&id, |way| way.id).ok()
-    }
-
-    /// Returns all relations, in the file's order.
-    pub fn relations(&self) -> &[OsmRelation] {
-        &self.relations
     }
 
     /// Returns the positions of those of the nodes that the extract has, in degrees without elevations.
@@ -169,7 +148,6 @@ impl OsmData {
         refs.iter().filter_map(node).collect()
     }
 
-    /// Returns the texts of keys and values.
     pub fn tags(&self, tags: &OsmTags) -> impl Iterator<Item = (&str, &str)> {
         let text = |TextId(index): TextId| &*self.texts[index as usize];
         tags.iter().map(move |&(key, value)| (text(key), text(value)))

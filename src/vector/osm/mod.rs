@@ -33,7 +33,6 @@ use crate::vector::hints::VectorHints;
 use crate::vector::osm::areas::AreaAssembler;
 use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 
-/// Returns whether `bytes` are an extract as protocol buffers.
 pub(super) fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..).is_some_and(|rest| rest.starts_with(b"\x0a\x09OSMHeader"))
 }
@@ -47,9 +46,6 @@ pub(super) fn read_pbf(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer,
 }
 
 /// Reads the requested layer of an extract as XML.
-///
-/// # Errors
-/// As [`read_pbf`].
 pub(super) fn read_xml(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     OsmLayer::requested(hints)?.features(&xml::read(bytes)?, hints)
 }
@@ -140,11 +136,11 @@ impl OsmLayer {
     }
 
     fn add_points(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
-        for (node, tags) in data.tagged_nodes().iter().filter(|(_, tags)| self.holds(data, tags)) {
+        for (node, tags) in data.tagged_nodes.iter().filter(|(_, tags)| self.holds(data, tags)) {
             let elevation = data.value(tags, "ele").and_then(|text| text.trim().parse().ok());
             let (x, y) = node.degrees();
             let mut parts = FeatureParts::default();
-            parts.add_point(position(x, y, elevation));
+            parts.add_points(vec![position(x, y, elevation)]);
             layer.add(parts, properties(data, tags, "osm_id", node.id))?;
         }
         Ok(())
@@ -152,7 +148,7 @@ impl OsmLayer {
 
     fn add_lines(self, data: &OsmData, layer: &mut LayerBuilder) -> Result<(), VectorError> {
         let mut cut = 0;
-        for way in data.ways().iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
+        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && !is_area(data, way)) {
             let line = data.positions(&way.refs);
             cut += usize::from(line.len() < way.refs.len());
             if line.len() >= 2 {
@@ -173,7 +169,7 @@ impl OsmLayer {
         let is_area_relation = |relation: &&OsmRelation| {
             matches!(data.value(&relation.tags, "type"), Some("multipolygon" | "boundary"))
         };
-        for relation in data.relations().iter().filter(is_area_relation) {
+        for relation in data.relations.iter().filter(is_area_relation) {
             let tags = assembler.tags_of(relation);
             if !self.holds(data, tags) {
                 continue;
@@ -189,7 +185,7 @@ impl OsmLayer {
             }
         }
         layer.note_omitted(incomplete, "areas of relations that leave the extract or do not close");
-        for way in data.ways().iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
+        for way in data.ways.iter().filter(|way| self.holds(data, &way.tags) && is_area(data, way)) {
             let mut parts = FeatureParts::default();
             parts.add_polygon([data.positions(&way.refs)]);
             if !parts.is_empty() && !assembler.replaces(way) {

@@ -41,9 +41,6 @@ enum PbfError {
 }
 
 /// Reads everything in the file.
-///
-/// # Errors
-/// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let mut data = OsmData::default();
     let mut cursor = ByteCursor::new(bytes);
@@ -54,7 +51,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
         match blob.kind {
             b"OSMHeader" => check_header(&unpack(blob.content, &place)?)?,
             b"OSMData" => read_block(&unpack(blob.content, &place)?, &mut data)
-                .map_err(|error| VectorError::refused(FORMAT, &place, error))?,
+                .map_err(|error| VectorError::broken(FORMAT, &place, error))?,
             _ => {}
         }
     }
@@ -77,12 +74,10 @@ fn next_blob<'a>(cursor: &mut ByteCursor<'a>) -> Option<PbfBlob<'a>> {
     Some(PbfBlob { kind, content: cursor.take(bytes as usize)? })
 }
 
-/// Returns a blob's content, unpacked.
 fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
     let broken = |reason: &'static str| VectorError::broken(FORMAT, place, reason);
     let values = last_values(blob, [1, 2, 3, 4, 5, 6, 7]);
-    let [raw, size, zlib, others @ ..] =
-        values.map_err(|error| VectorError::refused(FORMAT, place, error))?;
+    let [raw, size, zlib, others @ ..] = values.map_err(|error| VectorError::broken(FORMAT, place, error))?;
     match (raw, zlib) {
         (FieldValue::Bytes(raw), _) => Ok(raw.to_vec()),
         (_, FieldValue::Bytes(packed)) => {
@@ -90,7 +85,7 @@ fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
                 return Err(broken("it states no size that is allowed"));
             };
             let unpacked = archive::inflate_zlib(packed, size)
-                .map_err(|error| VectorError::refused(FORMAT, place, error))?;
+                .map_err(|error| VectorError::broken(FORMAT, place, error))?;
             let is_full = unpacked.len() as u64 == size;
             if is_full { Ok(unpacked) } else { Err(broken("it unpacks to less than it states")) }
         }
@@ -107,7 +102,7 @@ fn unpack(blob: &[u8], place: &str) -> Result<Vec<u8>, VectorError> {
 
 fn check_header(header: &[u8]) -> Result<(), VectorError> {
     for field in fields(header) {
-        let field = field.map_err(|error| VectorError::refused(FORMAT, "its header", error))?;
+        let field = field.map_err(|error| VectorError::broken(FORMAT, "its header", error))?;
         if let (4, FieldValue::Bytes(name)) = field
             && !KNOWN_FEATURES.contains(&name)
         {
@@ -121,7 +116,6 @@ fn check_header(header: &[u8]) -> Result<(), VectorError> {
     Ok(())
 }
 
-/// One block while it is read.
 struct PbfBlock<'a> {
     data: &'a mut OsmData,
     texts: Vec<PbfText<'a>>,
@@ -256,7 +250,6 @@ impl PbfBlock<'_> {
         Ok(self.data.add_relation(OsmRelation { id, members: members.into(), tags })?)
     }
 
-    /// Reads packed keys and their values.
     fn tags(&mut self, keys: FieldValue<'_>, values: FieldValue<'_>) -> Result<OsmTags, PbfError> {
         let mut values = varints(values.bytes()?);
         let tag = |key: Result<u64, MalformedMessage>| Ok((self.text(key?)?, self.text(next(&mut values)?)?));

@@ -15,7 +15,6 @@ pub(super) struct MalformedMessage;
 pub(super) enum FieldValue<'a> {
     /// The message does not have the field.
     Absent,
-    /// A number.
     Number(u64),
     /// Text, a message, or packed numbers.
     Bytes(&'a [u8]),
@@ -119,7 +118,6 @@ fn items<'a, T>(
     })
 }
 
-/// Reads a number, its least significant seven bits first.
 fn varint(cursor: &mut ByteCursor<'_>) -> Option<u64> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {

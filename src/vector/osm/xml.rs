@@ -9,9 +9,6 @@ use crate::vector::xml::{self, XmlElement, XmlReader};
 const FORMAT: &str = "OpenStreetMap XML";
 
 /// Reads everything in the file but what is marked as deleted.
-///
-/// # Errors
-/// [`VectorError`].
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);
@@ -51,7 +48,7 @@ fn add(xml: &XmlReader<'_>, element: &XmlElement<'_>, data: &mut OsmData) -> Res
         (None, "way") => data.add_way(OsmWay { id, refs, tags }),
         (None, _) => data.add_relation(OsmRelation { id, members, tags }),
     });
-    added.map_err(|error| xml.refused_at(element, error))
+    added.map_err(|error| xml.broken_at(element, error))
 }
 
 fn tags(element: &XmlElement<'_>, data: &mut OsmData) -> Result<OsmTags, OsmMemoryExceeded> {

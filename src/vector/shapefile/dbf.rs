@@ -20,7 +20,6 @@ use crate::vector::feature::Properties;
 
 const FORMAT: &str = "dBASE table (.dbf)";
 
-/// A table.
 pub(super) struct DbfTable<'a> {
     columns: Vec<DbfColumn>,
     encoding: TextEncoding,
@@ -34,7 +33,6 @@ struct DbfColumn {
     length: usize,
 }
 
-/// A row.
 pub(super) struct DbfRow<'a> {
     table: &'a DbfTable<'a>,
     bytes: &'a [u8],
@@ -63,7 +61,6 @@ impl<'a> DbfTable<'a> {
         Ok(Self { columns, encoding, rows: data[..rows * row_bytes].chunks_exact(row_bytes) })
     }
 
-    /// Returns the number of rows, with deleted ones.
     pub fn row_count(&self) -> usize {
         self.rows.len()
     }
@@ -92,7 +89,6 @@ fn until_nul(bytes: &[u8]) -> &[u8] {
 }
 
 impl DbfRow<'_> {
-    /// Returns whether it is marked as deleted.
     pub fn is_deleted(&self) -> bool {
         self.bytes[0] == b'*'
     }

@@ -35,7 +35,6 @@ const HEADER_BYTES: usize = 100;
 /// Smaller numbers mean "no data" (page 2 of the description, there of measures).
 const MIN_ELEVATION: f64 = -1e38;
 
-/// The files of one shapefile.
 pub(super) struct ShapefileParts<'a> {
     /// `.shp`.
     pub shapes: &'a [u8],
@@ -173,19 +172,15 @@ impl<'a> ShapefileReader<'a> {
         let mut parts = FeatureParts::default();
         match kind {
             0 => {}
-            1 | 11 | 21 => parts.add_point(reader.point().ok_or_else(short)?),
-            8 | 18 | 28 => {
-                let points = reader.multipoint().ok_or_else(short)?;
-                points.into_iter().for_each(|position| parts.add_point(position));
-            }
+            1 | 11 | 21 => parts.add_points(vec![reader.point().ok_or_else(short)?]),
+            8 | 18 | 28 => parts.add_points(reader.multipoint().ok_or_else(short)?),
             3 | 13 | 23 => {
                 let lines = reader.lines().ok_or_else(short)?;
                 lines.into_iter().for_each(|line| parts.add_line(line));
             }
             5 | 15 | 25 => {
                 let polygons = self.sorter.polygons(reader.lines().ok_or_else(short)?);
-                let polygons =
-                    polygons.map_err(|error| VectorError::refused(FORMAT, record(index), error))?;
+                let polygons = polygons.map_err(|error| VectorError::broken(FORMAT, record(index), error))?;
                 polygons.into_iter().for_each(|rings| parts.add_polygon(rings));
             }
             31 => {

@@ -160,7 +160,7 @@ fn print_walked() {
         });
         mesh_us.push(spent);
     }
-    walk.check().expect("right for the ground as it is now");
+    walk.check();
     println!(
         "\nThe same before the eye of a walk, {posts}², {} triangles in view: µs for the edit {}, for mesh and index lists {}",
         walk.triangle_count(),
@@ -184,7 +184,7 @@ fn make(lattice: &Lattice, layout: &PatchLayout, measure: ErrorMeasure) -> Maps 
         }
     };
     let ground = PatchedGround { lattice, layout };
-    let spheres = SphereMap::of(ground, &own_radius(&errors, measure));
+    let spheres = SphereMap::new(ground, &own_radius(&errors, measure));
     Maps { own, errors, spheres }
 }
 

@@ -152,7 +152,7 @@ fn by_corners(active: &ActiveSet, mut emit: impl FnMut([Vertex; 3])) {
 }
 
 fn index_lists(active: &ActiveSet, list: &mut Vec<[u16; 3]>) -> StripStats {
-    let block = VertexBlock::of(active.layout()).expect("small patches");
+    let block = VertexBlock::new(active.layout()).expect("small patches");
     list.clear();
     active.layout().patches().for_each(|corner| block.append(active, corner, |_| true, list));
     StripStats { triangles: list.len(), vertices: 3 * list.len(), strips: list.len() }

@@ -1,4 +1,4 @@
-//! The comparison of 000 on its own terms: classic queues, forced split + forced merge, and splits alone.
+//! The comparison of Lin et al. on its own terms: classic queues, forced split + forced merge, and splits alone.
 //!
 //! 1025² posts in patches of 64 cells, the circling flight of one post a frame, about 8,766, 7,656 and 6,360
 //! triangles in the patches in view. A frame is culling and the update of the mesh, nothing is emitted. All
@@ -6,7 +6,7 @@
 //! method's figure is the median of its rounds' medians. Each frame is updated twice, the second time at rest:
 //! what the first takes longer, over the splits and merges it made, is the price of one.
 //!
-//! Two criteria. 000's own, variance over distance, is not monotone, so that splits are forced; nested spheres,
+//! Two criteria. Lin et al.'s own, variance over distance, is not monotone, so that splits are forced; nested spheres,
 //! where they never are, is what the other sections of this benchmark refine by.
 
 use std::time::{Duration, Instant};
@@ -15,8 +15,8 @@ use glam::{DVec2, Vec2, Vec3};
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::criterion::Criterion;
+use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{Culling, PatchHeights, cull};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
@@ -32,7 +32,7 @@ use sandtable::view::camera::Camera;
 
 use crate::fields::fractal;
 
-/// The triangles of 000's three comparisons.
+/// The triangles of Lin et al.'s three comparisons.
 const TRIANGLES: [usize; 3] = [8_766, 7_656, 6_360];
 const POSTS: u32 = 1025;
 const SPACING_M: f32 = 10.0;
@@ -65,8 +65,8 @@ enum Rule {
 impl Rule {
     fn title(self) -> &'static str {
         match self {
-            Self::Variance => "k · variance · width / distance (000)",
-            Self::Spheres => "nested spheres (003)",
+            Self::Variance => "k · variance · width / distance (Lin et al.)",
+            Self::Spheres => "nested spheres (Yu and Zhang)",
         }
     }
 }
@@ -192,7 +192,7 @@ fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut 
     let (mut flown, mut patches) = (Flown::default(), Vec::new());
     for frame in 0..FRAMES {
         let camera = world.camera(frame);
-        let variance = Variance::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+        let variance = Midpoint::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
         let nested = Spheres::new(world.ground(), spheres, camera.eye());
         let mut frame_takes = || {
             let start = Instant::now();
@@ -246,7 +246,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// 000's k that reaches as far as spheres of `scale` meters a meter of error.
+/// Lin et al.'s k that reaches as far as spheres of `scale` meters a meter of error.
 fn k_of(scale: f32) -> f32 {
     scale / ((POSTS - 1) as f32 * SPACING_M)
 }
@@ -265,7 +265,7 @@ fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
             let camera = world.camera(frame);
             let mut patches = Vec::new();
             cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
-            let variance = Variance::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+            let variance = Midpoint::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
             let nested = Spheres::new(world.ground(), &spheres, camera.eye());
             let active = match rule {
                 Rule::Variance => rebuild(&world.layout, &variance, patches.iter().copied()),
@@ -299,7 +299,7 @@ fn culling(world: &World) {
     let mut found = Vec::new();
     println!("culling of {} patches     µs   patches in view", world.layout.patch_count());
     for (name, culling_of) in
-        [("wedge (000)", Culling::wedge as fn(&Camera) -> Culling), ("frustum", Culling::frustum)]
+        [("wedge (Lin et al.)", Culling::wedge as fn(&Camera) -> Culling), ("frustum", Culling::frustum)]
     {
         let mut seen = 0;
         let times = (0..FRAMES).map(|frame| {

@@ -116,7 +116,7 @@ pub struct Rebuilding<'a> {
 impl<'a> Rebuilding<'a> {
     /// By these spheres.
     pub fn new(world: &'a World, spheres: &'a SphereMap) -> Self {
-        let block = VertexBlock::of(&world.layout).expect("small patches");
+        let block = VertexBlock::new(&world.layout).expect("small patches");
         Self { world, spheres, block, seen: InView::default(), indices: Vec::new() }
     }
 }
@@ -161,7 +161,7 @@ pub struct Queueing<'a> {
 impl<'a> Queueing<'a> {
     /// With at most `budget` triangles.
     pub fn new(world: &'a World, spheres: &'a SphereMap, budget: usize) -> Self {
-        let block = VertexBlock::of(&world.layout).expect("small patches");
+        let block = VertexBlock::new(&world.layout).expect("small patches");
         let queues = Queues::new(world.ground(), Goal::Budget(budget));
         let corners = world.layout.patches().collect();
         Self { world, spheres, block, seen: InView::default(), queues, indices: Vec::new(), work: 0, corners }

@@ -70,7 +70,7 @@ fn assert_all_patches_match(raster: &Raster, options: PagingOptions) {
             assert_eq!(paged.bounds(corner), heights.bounds(whole.ground, corner), "{corner:?}");
             let largest = wanted.radii.iter().fold(0f32, |a, &b| a.max(b));
             assert_eq!(paged.summary(corner).radius, largest, "{corner:?}");
-            assert_eq!(paged.check(), Ok(()));
+            paged.check();
         }
     });
 }
@@ -166,7 +166,7 @@ fn a_failing_read_names_the_patch_and_spoils_nothing() {
     assert_eq!((error.column, error.row), (48, 32));
     assert!(error.to_string().contains("the disk is gone"), "{error}");
     assert_eq!(paged.block(Vertex::new(0, 0)).expect("still kept"), kept[0]);
-    assert_eq!(paged.check(), Ok(()));
+    paged.check();
     fails.store(false, std::sync::atomic::Ordering::Relaxed);
     assert!(paged.block(Vertex::new(48, 32)).is_ok());
     assert_eq!((paged.counts().loads, paged.counts().evictions), (3, 1));

@@ -45,7 +45,8 @@ fn told(out: &str, word: &str) -> usize {
 fn every_scene_s_glb_passes_the_validator_and_holds_every_triangle() {
     let scratch = Scratch::new();
     let entries = std::fs::read_dir(project("scenes")).expect("scenes").flatten();
-    let mut scenes: Vec<_> = entries.filter(|entry| entry.path().is_file()).collect();
+    let is_scene = |entry: &std::fs::DirEntry| entry.path().extension().is_some_and(|it| it == "toml");
+    let mut scenes: Vec<_> = entries.filter(is_scene).collect();
     scenes.sort_by_key(|entry| entry.file_name());
     assert!(scenes.len() >= 8);
     for scene in scenes {

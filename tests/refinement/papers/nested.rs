@@ -8,6 +8,7 @@ use sandtable::dem::warp::to_metric;
 use sandtable::earthworks::brush::{BrushChanges, Crater, TireTrack};
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::bintree::Triangle;
+use sandtable::roam::block::BlockSource;
 use sandtable::roam::block::WholeGround;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::spheres::Spheres;
@@ -113,7 +114,7 @@ fn the_sphere_s_radius_is_the_screen_error_solved_for_the_distance() {
     let lambda_d = camera(Vec3::ZERO, Vec3::Y).pixels_per_meter(1.0);
     let own = OwnRadius::Plain { errors: &errors, reach: lambda_d / TOLERANCE_PX };
     for vertex in world.vertices().into_iter().filter(|&vertex| errors.at(&world.layout, vertex) > 0.0) {
-        let (radius, delta) = (own.of(world.ground(), vertex), errors.at(&world.layout, vertex));
+        let (radius, delta) = (own.at(world.ground(), vertex), errors.at(&world.layout, vertex));
         let tau = |distance: f32| lambda_d * delta / distance;
         assert!(same(tau(radius), TOLERANCE_PX), "{vertex:?}: {} px", tau(radius));
         assert!(tau(radius * 0.99) > TOLERANCE_PX && tau(radius * 1.01) < TOLERANCE_PX);
@@ -157,7 +158,7 @@ fn the_constrained_radius_is_k_times_the_plain_one_and_is_nested_the_same_way() 
     for vertex in world.vertices() {
         let k = roughness.factor(world.layout.post(vertex)) as f32;
         let plain = reach * midpoint_error_at(&world.lattice, &world.layout, vertex);
-        assert!(same(own.of(ground, vertex), k * plain), "{vertex:?}: {k} of {plain}");
+        assert!(same(own.at(ground, vertex), k * plain), "{vertex:?}: {k} of {plain}");
         let below = vertex
             .children()
             .filter(|&child| world.layout.contains(child) && map.at(&world.layout, child) > 0.0)
@@ -167,7 +168,7 @@ fn the_constrained_radius_is_k_times_the_plain_one_and_is_nested_the_same_way() 
         let nested = below.fold(k * plain, f32::max);
         assert!(same(map.at(&world.layout, vertex), nested), "{vertex:?}");
     }
-    map.check(ground).expect("nested");
+    map.check(ground);
     let criterion = Spheres::new(ground, &map, Vec3::new(400.0, 300.0, 90.0));
     let mut directly = ActiveSet::new(world.layout);
     let wanted: Vec<Vertex> =
@@ -209,7 +210,10 @@ fn cost(lattice: &Lattice, layout: &PatchLayout, map: &SphereMap) -> (usize, f64
         let lists: Vec<PatchList> =
             layout.patches().map(|corner| PatchList::bintree(ground, &active, corner)).collect();
         triangles += lists.iter().map(|list| list.triangles.len()).sum::<usize>();
-        off_m += height_difference(lattice, layout, &lists).mean_m().expect("posts were measured") / 2.0;
+        off_m += height_difference(lattice, layout, &lists, |_, _| Some(0.0))
+            .mean_m()
+            .expect("posts were measured")
+            / 2.0;
     }
     (triangles, off_m)
 }
@@ -263,7 +267,7 @@ fn after_a_crater_and_a_tire_track_errors_and_spheres_are_those_computed_anew() 
         terrain.edit(brush).expect("it digs");
         let anew = DynamicTerrain::new((**terrain.lattice()).clone(), OPTIONS).expect("sound");
         assert!(terrain.errors() == anew.errors() && terrain.spheres() == anew.spheres());
-        terrain.spheres().check(terrain.ground()).expect("nested");
+        terrain.spheres().check(terrain.ground());
     }
 }
 
@@ -332,7 +336,7 @@ impl<'a> Walk<'a> {
     /// Moves the eye; returns how many vertices were looked at and how many changed.
     fn go(&mut self, eye: Vec3) -> (usize, usize) {
         self.mesh.update(eye, &self.patches).expect("in memory");
-        self.mesh.check().expect("sound");
+        self.mesh.check();
         let criterion = Spheres::new(self.ground, self.spheres, eye);
         let built = rebuild(self.ground.layout, &criterion, self.ground.layout.patches());
         assert!(self.mesh.active_set() == built, "at {eye}");

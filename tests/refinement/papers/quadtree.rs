@@ -73,7 +73,7 @@ fn restrictions_are_applied_until_nothing_more_is_activated() {
     let mut active = ActiveSet::new(PatchLayout::new(129, 65, 32).expect("sound"));
     for (x, y) in [(1, 1), (77, 33), (128, 64), (63, 20)] {
         active.activate(Vertex::new(x, y));
-        active.check().expect("every dependency is active");
+        active.check();
     }
 }
 

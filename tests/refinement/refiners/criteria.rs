@@ -5,7 +5,6 @@ use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::anisotropic::Anisotropic;
 use sandtable::roam::criterion::block::BlockRelief;
 use sandtable::roam::criterion::midpoint::Midpoint;
-use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::graph::Vertex;
 use sandtable::view::camera::Camera;
 
@@ -34,10 +33,10 @@ fn close(found: f32, meant: f32) {
 fn variance_is_k_times_variance_times_land_width_over_distance() {
     let terrain = bump();
     let camera = looking_from(Vec3::new(0.0, 30.0, 40.0));
-    let published = Variance::with_k(terrain.ground(), &terrain.midpoint, camera.eye(), 0.7);
+    let published = Midpoint::with_k(terrain.ground(), &terrain.midpoint, camera.eye(), 0.7);
     // The terrain is 16 cells of 3 × 4 m: 64 m wide; 50 m away; exaggerated 1.5 times.
     close(published.excess(MIDDLE), 0.7 * (2.0 * 1.5) * 64.0 / 50.0);
-    let in_pixels = Variance::new(terrain.ground(), &terrain.midpoint, &camera, 2.0);
+    let in_pixels = Midpoint::by_land_width(terrain.ground(), &terrain.midpoint, &camera, 2.0);
     close(in_pixels.excess(MIDDLE), 3.0 * camera.pixels_per_meter(50.0) / 2.0);
 }
 

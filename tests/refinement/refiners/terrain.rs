@@ -9,7 +9,6 @@ use sandtable::roam::criterion::flat::Flat;
 use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::screen::ScreenError;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::criterion::variance::Variance;
 use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
@@ -77,7 +76,7 @@ impl Terrain {
             ("spheres", Any(Box::new(Spheres::new(ground, &self.spheres, camera.eye())))),
             ("screen", Any(Box::new(screen))),
             ("midpoint", Any(Box::new(Midpoint::new(ground, &self.midpoint, camera, 9.0)))),
-            ("variance", Any(Box::new(Variance::new(ground, &self.midpoint, camera, 20.0)))),
+            ("variance", Any(Box::new(Midpoint::by_land_width(ground, &self.midpoint, camera, 20.0)))),
             ("anisotropic", Any(Box::new(Anisotropic::new(ground, &self.midpoint, camera, 6.0)))),
             ("block", Any(Box::new(BlockRelief::new(ground, &self.relief, camera, 60.0)))),
             ("whim", Any(Box::new(Whim { frame }))),

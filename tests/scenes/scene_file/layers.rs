@@ -14,7 +14,7 @@ fn scene(text: &str, files: &[(&str, &str)]) -> Result<Document, String> {
         let text = files.get(name).ok_or_else(|| format!("there is no file {name}").into());
         text.map(|text| text.as_bytes().to_vec())
     };
-    parse_including("scenes/hill.toml", text, &load).map_err(|errors| errors.to_string())
+    parse_including("scenes/hill.toml", text.as_bytes(), &load).map_err(|errors| errors.to_string())
 }
 
 #[track_caller]

@@ -46,6 +46,19 @@ pub struct ViewshedOptions {
     pub curvature: Curvature,
 }
 
+impl ViewshedOptions {
+    /// Targets on the ground in all directions at any distance, on the curved Earth with the usual refraction.
+    pub fn new(observer: SightEnd) -> Self {
+        Self {
+            observer,
+            target_above_m: 0.0,
+            range_m: f64::INFINITY,
+            sector: Sector::ALL,
+            curvature: Curvature::default(),
+        }
+    }
+}
+
 /// Directions, as azimuths clockwise from north in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sector {

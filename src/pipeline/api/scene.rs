@@ -1,0 +1,126 @@
+//! Scenes, their views and pictures.
+
+use std::path::{Path, PathBuf};
+
+use crate::draw::pixels::Pixels;
+use crate::pipeline::api::error::Error;
+use crate::pipeline::files;
+use crate::pipeline::picture::{PictureSize, render_view};
+use crate::pipeline::scene_file::open_scene;
+use crate::render::RenderBackend;
+use crate::scene;
+use crate::terrain::query::service::HeightService;
+
+/// A digital terrain model: the ground, the features on it and the views of it that its file describes.
+pub struct Scene {
+    model: scene::Scene,
+}
+
+/// How a scene is opened.
+#[derive(Clone, Copy)]
+pub struct SceneOptions<'a> {
+    /// Folders that the scene may read besides the parent of its own. Default none.
+    pub allowed: &'a [PathBuf],
+    /// Called with the name of each step as it begins. Default: nothing.
+    pub progress: &'a dyn Fn(&'static str),
+}
+
+impl Default for SceneOptions<'_> {
+    fn default() -> Self {
+        Self { allowed: &[], progress: &|_| () }
+    }
+}
+
+/// What a picture shows of a scene, and its size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    view: scene::View,
+    size: PictureSize,
+    backend: RenderBackend,
+}
+
+/// An annotated picture.
+pub struct Picture {
+    pixels: Pixels,
+}
+
+impl Scene {
+    /// Opens a scene file and the files that it names under the parent of its folder.
+    ///
+    /// # Errors
+    /// [`Error::OpenScene`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::open_with(path, &SceneOptions::default())
+    }
+
+    /// [`Scene::open`] with options.
+    ///
+    /// # Errors
+    /// [`Error::OpenScene`].
+    pub fn open_with(path: impl AsRef<Path>, options: &SceneOptions<'_>) -> Result<Self, Error> {
+        Ok(Self { model: open_scene(path.as_ref(), options.allowed, options.progress)? })
+    }
+
+    /// What was done that a user should know: features off the model, missing textures, earth moved.
+    pub fn notes(&self) -> &[String] {
+        &self.model.notes
+    }
+
+    /// The names of the views, the first one that of the default.
+    pub fn view_names(&self) -> impl Iterator<Item = &str> {
+        self.model.cameras.iter().map(|view| view.name.as_str())
+    }
+
+    /// The view called `name`, 1920 by 1080 pixels.
+    ///
+    /// # Errors
+    /// [`Error::NoView`].
+    pub fn view(&self, name: &str) -> Result<View, Error> {
+        let no_view = || Error::NoView(name.to_owned(), self.view_names().collect::<Vec<_>>().join(", "));
+        let view = self.model.view(Some(name)).ok_or_else(no_view)?.clone();
+        Ok(View { view, size: PictureSize { width: 1920, height: 1080 }, backend: RenderBackend::Cpu })
+    }
+
+    /// Answers heights of the ground and the decks over it, in map coordinates.
+    pub fn heights(&self) -> &HeightService {
+        &self.model.heights
+    }
+
+    /// Renders a view and paints its annotations. The same scene gives the same bytes on every machine.
+    ///
+    /// # Errors
+    /// [`Error::Picture`].
+    pub fn render(&self, view: &View) -> Result<Picture, Error> {
+        let rendered = render_view(&self.model, &view.view, view.size, view.backend, &|_| ())?;
+        Ok(Picture { pixels: rendered.pixels })
+    }
+}
+
+impl View {
+    /// The same view on a picture of another size, 16 to 16384 pixels each side.
+    pub fn with_size(self, width: u32, height: u32) -> Self {
+        Self { size: PictureSize { width, height }, ..self }
+    }
+}
+
+impl Picture {
+    /// Pixels across and down.
+    pub fn size(&self) -> (u32, u32) {
+        (self.pixels.width(), self.pixels.height())
+    }
+
+    /// The pixels row by row from the top, red, green, blue and alpha each.
+    pub fn rgba(&self) -> &[u8] {
+        self.pixels.bytes()
+    }
+
+    /// Writes a PNG file.
+    ///
+    /// # Errors
+    /// [`Error::WriteFile`].
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        files::check_picture_output::<&Path>(path, &[])?;
+        Ok(files::write_picture(path, &self.pixels)?)
+    }
+}

@@ -1,0 +1,115 @@
+//! `scenes/README.md` lists every key as it is declared. `SANDTABLE_BLESS=1 cargo test --test scenes reference` writes it.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use sandtable::description::declaration::{KeyDeclaration, KeyKind, Presence};
+use sandtable::description::document::Document;
+use sandtable::description::styles::STYLE_KEY;
+use sandtable::description::words::{RampName, Word, WordDeclaration};
+
+const HEAD: &str = "# Scene files: keys and defaults
+
+Each scene in this folder shows one feature, and says what in its first lines. This page lists every key that a scene file
+may have. `sandtable schema` prints the same as a JSON Schema for editors; `sandtable check SCENE` finds what is wrong in a
+scene file.
+
+A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
+points `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in, unless a
+key says otherwise. A key of a value without a default is needed. An expression gives a value for each feature from its
+properties, such as `\"lanes * 3.5 ?? 8\"`.
+";
+
+/// A heading and a table for `keys`, then for the tables among them. `dotted` is the name of their own table.
+fn add_section(page: &mut String, title: &str, doc: &str, keys: &[&KeyDeclaration], dotted: &str) {
+    let _ = writeln!(page, "\n## {title}\n\n{doc}\n");
+    let _ =
+        writeln!(page, "| key | type | unit | range | default | what it does |\n|---|---|---|---|---|---|");
+    keys.iter().for_each(|key| page.push_str(&row(key)));
+    for key in keys.iter().filter(|key| !matches!(key.kind, KeyKind::Group(_)) && !key.inner().is_empty()) {
+        let dotted = if dotted.is_empty() { key.name.to_owned() } else { format!("{dotted}.{}", key.name) };
+        let (title, style) = match key.kind {
+            KeyKind::Table(_) => (format!("`[{dotted}]`"), None),
+            KeyKind::StyledTables(_) => (format!("`[[{dotted}]]`"), Some(&STYLE_KEY)),
+            _ => (format!("`[[{dotted}]]`"), None),
+        };
+        let inner: Vec<&KeyDeclaration> = key.inner().iter().chain(style).collect();
+        add_section(page, &title, key.doc(), &inner, &dotted);
+    }
+}
+
+fn row(key: &KeyDeclaration) -> String {
+    if let KeyKind::Group(keys) = key.kind {
+        let names: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name)).collect();
+        let doc = key.doc();
+        return format!("| {} | [source](#source-of-features) | | | | {doc} |\n", names.join(", "));
+    }
+    let (kind, range) = kind_and_range(key.kind);
+    let default = match key.presence {
+        Presence::Default("{}" | "[]") | Presence::Required | Presence::Inline => String::new(),
+        Presence::Default(value) => format!("`{value}`"),
+        Presence::Otherwise(text) => text.to_owned(),
+    };
+    let words = match key.kind {
+        KeyKind::Word(words) | KeyKind::FeatureWord(words) => {
+            let meanings: Vec<String> =
+                words.iter().map(|declared| format!(" `{}`: {}", declared.word, declared.doc)).collect();
+            meanings.join(";") + "."
+        }
+        _ => String::new(),
+    };
+    let doc = format!("{}{words}", key.doc()).replace('|', "\\|");
+    format!("| `{}` | {kind} | {} | {range} | {default} | {doc} |\n", key.name, key.unit)
+}
+
+fn kind_and_range(kind: KeyKind) -> (String, String) {
+    let any = |kind: &str| (kind.to_owned(), String::new());
+    match kind {
+        KeyKind::Number(range) => ("number".into(), range.to_string()),
+        KeyKind::Integer(least, most) => ("whole number".into(), format!("from {least} to {most}")),
+        KeyKind::FeatureNumber(range) => ("number or expression".into(), range.to_string()),
+        KeyKind::NumberRange(range) => ("two numbers, from and to".into(), range.to_string()),
+        KeyKind::Numbers(range) => ("list of numbers".into(), range.to_string()),
+        KeyKind::Switch => any("true or false"),
+        KeyKind::Text | KeyKind::FilledText => any("text"),
+        KeyKind::TextList => any("text or list of texts"),
+        KeyKind::TextTable | KeyKind::Styles => any("table with names of yours"),
+        KeyKind::Expression => any("expression"),
+        KeyKind::Word(words) => (listed(words), String::new()),
+        KeyKind::FeatureWord(words) => (listed(words) + " or expression", String::new()),
+        KeyKind::Color => any("color, `\"#rrggbb\"`"),
+        KeyKind::Point => any("point"),
+        KeyKind::Points(_) => any("list of points"),
+        KeyKind::Ramp => (listed(RampName::DECLARATIONS) + " or list of stops", String::new()),
+        KeyKind::Selection => any("table or expression"),
+        KeyKind::Table(_) => any("table"),
+        KeyKind::Tables(_) | KeyKind::StyledTables(_) => any("list of tables"),
+        KeyKind::Group(_) => any(""),
+    }
+}
+
+fn listed(words: &[WordDeclaration]) -> String {
+    words.iter().map(|declared| format!("`{}`", declared.word)).collect::<Vec<_>>().join(", ")
+}
+
+fn page() -> String {
+    let mut page = HEAD.to_owned();
+    let keys: Vec<&KeyDeclaration> = Document::DECLARATIONS.iter().collect();
+    add_section(&mut page, "Outside tables", "These keys stand before the first table.", &keys, "");
+    let mut all = Document::DECLARATIONS.iter().flat_map(|key| key.inner());
+    let source = all.find(|key| matches!(key.kind, KeyKind::Group(_))).expect("roads have a source");
+    let doc = "Features come from inline points or from a file. The keys stand in the feature's own table.";
+    let source: Vec<&KeyDeclaration> = source.inner().iter().collect();
+    add_section(&mut page, "Source of features", doc, &source, "");
+    page
+}
+
+#[test]
+fn the_reference_page_lists_the_keys_as_they_are_declared() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/README.md");
+    if std::env::var_os("SANDTABLE_BLESS").is_some() {
+        std::fs::write(&file, page()).expect("writable");
+    }
+    let committed = std::fs::read_to_string(&file).expect("scenes/README.md");
+    assert!(committed == page(), "scenes/README.md is outdated; write it with SANDTABLE_BLESS=1");
+}
