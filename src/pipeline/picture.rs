@@ -3,7 +3,7 @@
 use crate::annotate::paint::annotate;
 use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
-use crate::pipeline::choice::{Choice, Word, word};
+use crate::pipeline::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -20,7 +20,7 @@ pub struct PictureSize {
 }
 
 impl Choice for RenderBackend {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::Cpu, "cpu", "The processor"),
         word(Self::Gpu, "gpu", "A graphics adapter; needs the Cargo feature `gpu`"),
     ];

@@ -68,11 +68,7 @@ pub fn stand(
         (Anchor::Origin, _) | (_, None) => ground.z(at)?,
     };
     let tilt_rad = libm::atan(lean.length());
-    Some(ModelPose {
-        world_from_model: pose(placement, footprint, anchor_z, lean),
-        anchor_z,
-        tilt_rad,
-    })
+    Some(ModelPose { world_from_model: pose(placement, footprint, anchor_z, lean), anchor_z, tilt_rad })
 }
 
 impl ModelPose {
@@ -141,12 +137,7 @@ fn leaning(gradient: DVec2, tilt_rad: f64) -> DVec2 {
 }
 
 /// Model space to world space, given the anchor's drawn height and the plane that the model leans with.
-fn pose(
-    placement: &Placement,
-    footprint: &ModelFootprint,
-    anchor_z: f64,
-    lean: DVec2,
-) -> Mat4 {
+fn pose(placement: &Placement, footprint: &ModelFootprint, anchor_z: f64, lean: DVec2) -> Mat4 {
     let rotation = tilted(lean.as_vec2()) * heading(placement.heading_rad);
     let sink_m = f64::from(placement.standing.sink_m);
     let foot = Vec3::Z * footprint.min.z;
@@ -210,7 +201,8 @@ mod tests {
 
     fn stand_on(lattice: &Lattice, placement: &Placement) -> ModelPose {
         let finest = FullResolution { lattice };
-        stand(placement, &FOOTPRINT, SupportSurface { displayed: &finest, ground: &finest }).expect("on the ground")
+        stand(placement, &FOOTPRINT, SupportSurface { displayed: &finest, ground: &finest })
+            .expect("on the ground")
     }
 
     #[test]

@@ -18,7 +18,6 @@ use sandtable::structure::trench::parapets;
 use sandtable::structure::wall::wall;
 use sandtable::terrain::full_resolution::FullResolution;
 use sandtable::terrain::support_surface::SupportSurface;
-use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
 use crate::common::scratch::Scratch;
@@ -106,7 +105,8 @@ fn posts_and_obstacles_stand_on_the_displayed_ground_and_reach_into_it() {
                 DrapedSolid::Obstacles(belt) => (belt.stands[0].0, belt.height_m),
                 _ => continue,
             };
-            let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
+            let mesh =
+                standing.upright.mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
             let near = |position: &[f32; 3]| {
                 (DVec2::new(f64::from(position[0]), f64::from(position[1])) - first.at).length()
                     < 1.2 * height_m
@@ -115,7 +115,8 @@ fn posts_and_obstacles_stand_on_the_displayed_ground_and_reach_into_it() {
                 mesh.vertices.iter().map(|vertex| vertex.position).filter(near).map(|at| f64::from(at[2]));
             let (low, high) =
                 zs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-            let ground = SupportSurface { displayed: &displayed, ground: &finest(scene) }.z(first.at).expect("ground");
+            let ground =
+                SupportSurface { displayed: &displayed, ground: &finest(scene) }.z(first.at).expect("ground");
             assert!(
                 low < ground && (high - ground - height_m).abs() < 0.1 * height_m,
                 "{low} {high} {ground}"
@@ -133,7 +134,8 @@ fn a_wall_holds_what_its_length_width_and_height_make() {
             (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()) + DVec2::new(262.0, 455.0)
         };
         let points = [turn(-30.0, 0.0), turn(0.0, 0.0), turn(0.0, 25.0)];
-        let mesh = DrapedSolid::Band(wall(&points, (2.0, 3.0), 50.0)).mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
+        let mesh = DrapedSolid::Band(wall(&points, (2.0, 3.0), 50.0))
+            .mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
         let at = |position: [f32; 3]| Vec3::from(position).as_dvec3() - DVec2::new(262.0, 455.0).extend(0.0);
         // Between ground and top every upright prism is as high as the wall: the sides and the top tell its volume.
         let top: f64 = mesh

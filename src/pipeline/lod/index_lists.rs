@@ -33,7 +33,8 @@ pub struct IndexWriter<'a> {
 impl<'a> IndexWriter<'a> {
     /// Writes lists by `emitter`.
     pub fn new(emitter: IndexEmitter, ground: &'a PreparedGround) -> Self {
-        let block = VertexBlock::new(&ground.layout).expect("patches of the default size have 16-bit indices");
+        let block =
+            VertexBlock::new(&ground.layout).expect("patches of the default size have 16-bit indices");
         Self { ground, emitter, block, strips: Strips::default() }
     }
 

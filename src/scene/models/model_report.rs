@@ -66,9 +66,8 @@ impl StandReport {
     ) -> Option<Self> {
         let ground = SupportSurface { displayed: finest, ground: finest };
         let pose = stand(placement, footprint, ground)?;
-        let gap = |corner: Vec3| {
-            Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?)
-        };
+        let gap =
+            |corner: Vec3| Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?);
         Some(Self {
             anchor_m: (placement.clamp != Clamp::Absolute)
                 .then_some(pose.anchor_z / f64::from(finest.exaggeration)),
