@@ -8,8 +8,8 @@ use clap::Args;
 use crate::cli::error::CliError;
 use crate::cli::options::HeightArguments;
 use crate::cli::output::{print_lines, row};
+use crate::cli::output_format::raster_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::rasters::format_for;
 use crate::cli::values::number;
 use crate::dem::formats::DemFormat;
 use crate::dem::warp::WarpError;
@@ -55,7 +55,7 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
         Some((out, inputs @ [_, ..])) => (out.as_path(), inputs),
         _ => return Err(CliError::usage("name an elevation file and the file to write")),
     };
-    let format = format_for(out, inputs)?;
+    let format = raster_format(out, inputs)?;
     let steps = StepTimer::default();
     steps.begin("reading");
     let options = DemOptions {

@@ -1,17 +1,17 @@
 //! `sandtable export`: a scene as a file that modeling programs open.
 
 use std::path::PathBuf;
+use std::slice::from_ref;
 
 use clap::Args;
 
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
 use crate::cli::output::{print_lines, row};
+use crate::cli::output_format::output_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::rasters::extension;
 use crate::cli::values::number;
 use crate::pipeline::export::{ExportFormat, export};
-use crate::pipeline::files;
 use crate::pipeline::scene_file::open_scene_true_to_scale;
 
 /// `export`.
@@ -35,11 +35,8 @@ pub struct ExportArguments {
 
 pub fn run(arguments: &ExportArguments) -> Result<(), CliError> {
     let (scene, out) = (&arguments.scene, &arguments.output);
-    let format = ExportFormat::from_extension(&extension(out)).ok_or_else(|| {
-        let out = out.display();
-        CliError::usage(format!("{out}: scenes are exported as .glb or .obj; name a file that ends so"))
-    })?;
-    files::check_output(out, &[&scene.scene])?;
+    let written = "scenes are exported as .glb or .obj";
+    let format = output_format(out, from_ref(&scene.scene), ExportFormat::from_extension, written)?;
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
     let scene = open_scene_true_to_scale(&scene.scene, &scene.access.allow, &progress)?;

@@ -8,8 +8,8 @@ use glam::DVec2;
 
 use crate::cli::error::CliError;
 use crate::cli::output::print;
+use crate::cli::output_format::raster_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::rasters::format_for;
 use crate::cli::values::{choice, numbers};
 use crate::dem::cell_grid::CellGrid;
 use crate::dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
@@ -17,7 +17,7 @@ use crate::dem::points::PointCloud;
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-use crate::pipeline::error::error_text;
+use crate::pipeline::error::FileError;
 use crate::pipeline::gridding::PointSources;
 use crate::pipeline::raster_file;
 
@@ -115,7 +115,7 @@ pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
         arguments.files.split_last().ok_or_else(|| CliError::input("name points and a grid"))?;
     let method = method(arguments)?;
     let inputs: Vec<PathBuf> = points.iter().chain(&arguments.breaklines).cloned().collect();
-    let format = format_for(out, &inputs)?;
+    let format = raster_format(out, &inputs)?;
     let crs = arguments.crs.as_deref().map(Crs::parse).transpose();
     let crs = crs.map_err(|error| CliError::input(format!("--crs: {error}")))?;
     let steps = StepTimer::default();
@@ -123,8 +123,7 @@ pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
     let sources = PointSources { points, breaklines: &arguments.breaklines, crs, classes: &arguments.class };
     let cloud = sources.open()?;
     steps.begin("making the grid");
-    let gridded = grid(arguments, &cloud, method)
-        .map_err(|error| CliError::input(format!("{}: {}", points[0].display(), error_text(&error))))?;
+    let gridded = grid(arguments, &cloud, method).map_err(FileError::at(&points[0]))?;
     steps.begin("writing");
     let written = raster_file::write(&gridded.raster, format, out, &inputs)?;
     steps.finish();

@@ -15,7 +15,7 @@ use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, number};
 use crate::pipeline::choice::Choice;
 use crate::pipeline::dem;
-use crate::pipeline::error::error_text;
+use crate::pipeline::error::FileError;
 use crate::pipeline::ground::MetricGround;
 use crate::pipeline::lod::flight_path::FlightPath;
 use crate::pipeline::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
@@ -85,14 +85,13 @@ pub fn run(arguments: &LodArguments) -> Result<(), CliError> {
     let methods = filter.methods().map_err(CliError::usage)?;
     let steps = StepTimer::default();
     steps.begin("reading elevation");
-    let about = |reason: String| CliError::input(format!("{}: {reason}", arguments.file.display()));
     let mosaic = dem::open(&arguments.file, &arguments.heights.dem_options())?;
     let warning = dem::warning(&arguments.file, &mosaic);
-    let ground = MetricGround::from_raster(&mosaic.raster).map_err(|error| about(error_text(&error)))?;
+    let ground = MetricGround::from_raster(&mosaic.raster).map_err(FileError::at(&arguments.file))?;
     let cameras = arguments.flight.cameras(arguments.frames as usize, &ground.lattice)?;
     steps.begin("measuring terrain");
     let ground = PreparedGround::new(ground.lattice, arguments.tolerance_px)
-        .map_err(|error| about(error_text(&error)))?;
+        .map_err(FileError::at(&arguments.file))?;
     let start = Instant::now();
     let plan = FlightPlan {
         ground: &ground,

@@ -1,6 +1,7 @@
 //! `sandtable mesh`: an elevation file as a mesh with an error bound.
 
 use std::path::PathBuf;
+use std::slice::from_ref;
 use std::sync::Arc;
 
 use clap::Args;
@@ -9,15 +10,15 @@ use crate::cli::convert::place_error;
 use crate::cli::error::CliError;
 use crate::cli::options::HeightArguments;
 use crate::cli::output::{print_lines, row, warn};
+use crate::cli::output_format::output_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::rasters::extension;
 use crate::cli::values::number;
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 use crate::mesh::write::{self, MeshFormat, Remarks};
 use crate::pipeline::bounded_mesh::BoundedMesh;
 use crate::pipeline::dem::{self, DemOptions};
-use crate::pipeline::error::error_text;
+use crate::pipeline::error::FileError;
 use crate::pipeline::files;
 use crate::pipeline::ground::{GroundError, MetricGround};
 use crate::roam::bound::Deviation;
@@ -51,13 +52,8 @@ pub struct MeshArguments {
 
 pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     let out = &arguments.output;
-    let format = MeshFormat::from_extension(&extension(out)).ok_or_else(|| {
-        let out = out.display();
-        CliError::usage(format!(
-            "{out}: meshes are written as .obj, .ply, .stl or .glb; name a file that ends so"
-        ))
-    })?;
-    files::check_output(out, &[&arguments.file])?;
+    let written = "meshes are written as .obj, .ply, .stl or .glb";
+    let format = output_format(out, from_ref(&arguments.file), MeshFormat::from_extension, written)?;
     let steps = StepTimer::default();
     steps.begin("reading");
     let options =
@@ -65,11 +61,13 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     let mosaic = dem::open(&arguments.file, &options)?;
     let warning = dem::warning(&arguments.file, &mosaic);
     let MetricGround { lattice, crs } =
-        MetricGround::from_raster(&mosaic.raster).map_err(|error| about(arguments, &error))?;
+        MetricGround::from_raster(&mosaic.raster).map_err(|error| match error {
+            GroundError::Warp(error) => place_error(&arguments.file, &error, "--crs"),
+            other => FileError::at(&arguments.file)(other).into(),
+        })?;
     let lattice = Arc::new(lattice);
     steps.begin("building the mesh");
-    let bounded = BoundedMesh::new(&lattice, arguments.max_error)
-        .map_err(|error| CliError::input(format!("{}: {}", arguments.file.display(), error_text(&error))))?;
+    let bounded = BoundedMesh::new(&lattice, arguments.max_error).map_err(FileError::at(&arguments.file))?;
     steps.begin("writing");
     let remarks = remarks(arguments, &lattice, &crs, bounded.deviation);
     files::write_with(out, |out| write::write(format, &bounded.mesh, &remarks, out))?;
@@ -79,13 +77,6 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
         warn(&format!("note: {}: {note}", arguments.file.display()));
     }
     print_lines(&summary(arguments, &lattice, &crs, &bounded))
-}
-
-fn about(arguments: &MeshArguments, error: &GroundError) -> CliError {
-    match error {
-        GroundError::Warp(error) => place_error(&arguments.file, error, "--crs"),
-        GroundError::Lattice(error) => CliError::input(format!("{}: {error}", arguments.file.display())),
-    }
 }
 
 /// That the posts are not those of the file, where they are not.

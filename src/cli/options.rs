@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::cli::error::CliError;
 use crate::cli::output::warn;
+use crate::cli::values::picture_size;
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
 use crate::geom::crs::Crs;
@@ -75,7 +76,7 @@ pub struct ChartArguments {
     #[arg(short, long, value_name = "OUT.png")]
     pub output: Option<PathBuf>,
     /// Size of the chart in pixels
-    #[arg(long, value_name = "WxH", default_value = "1600x800")]
+    #[arg(long, value_name = "WxH", default_value = "1600x800", value_parser = picture_size)]
     pub size: PictureSize,
 }
 

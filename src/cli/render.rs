@@ -10,7 +10,7 @@ use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
 use crate::cli::output::{print_lines, row, warn};
 use crate::cli::progress::StepTimer;
-use crate::cli::values::choice;
+use crate::cli::values::{choice, picture_size};
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files;
 use crate::pipeline::picture::{PictureSize, RenderedView, render_view};
@@ -31,7 +31,7 @@ pub struct RenderArguments {
     #[arg(short, long, value_name = "OUT.png")]
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = picture_size)]
     pub size: PictureSize,
     /// The camera of the scene to look through [default: its first]
     #[arg(long, value_name = "NAME")]

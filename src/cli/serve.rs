@@ -34,7 +34,7 @@ pub struct ServeArguments {
     /// The most posts of one viewshed: those in the square around its range
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_posts, value_parser = clap::value_parser!(u32).range(1..=268_435_456))]
     pub max_posts: u32,
-    /// The most requests answered at once; clients of more are told to try again
+    /// The most requests answered at once; more are refused with 503
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_requests, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub max_requests: u32,
     /// The most connections held open

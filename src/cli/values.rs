@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec2;
 
 use crate::pipeline::choice::Choice;
+use crate::pipeline::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
 pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
@@ -30,6 +31,16 @@ pub fn number<T: FromStr + Into<f64> + Copy>(
 pub fn numbers(text: &str) -> Option<Vec<f64>> {
     let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
     text.split(',').map(number).collect()
+}
+
+/// Parses the size of a picture, such as `1920x1080`.
+pub fn picture_size(text: &str) -> Result<PictureSize, &'static str> {
+    let sides = text.split_once(['x', 'X', '×']);
+    let sides = sides.and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    match sides.ok_or("write width and height as in 1920x1080")? {
+        [width @ 16..=16384, height @ 16..=16384] => Ok(PictureSize { width, height }),
+        _ => Err("each side must lie between 16 and 16384 pixels"),
+    }
 }
 
 /// Two finite numbers.
@@ -100,6 +111,14 @@ mod tests {
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
             assert!(wrong.parse::<PositionList>().is_err(), "{wrong}");
             assert!(wrong.parse::<RaisedPosition>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_two_numbers_within_range() {
+        assert_eq!(picture_size("640x480"), Ok(PictureSize { width: 640, height: 480 }));
+        for wrong in ["640", "640x", "0x0", "99999x10", "-4x20", "axb"] {
+            assert!(picture_size(wrong).is_err(), "{wrong}");
         }
     }
 

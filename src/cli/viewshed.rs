@@ -13,8 +13,8 @@ use crate::cli::error::CliError;
 use crate::cli::los::curvature;
 use crate::cli::options::DatasetArguments;
 use crate::cli::output::{print, print_lines, row};
+use crate::cli::output_format::raster_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::rasters::format_for;
 use crate::cli::values::{NumberPair, number};
 use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
@@ -100,7 +100,7 @@ fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, Cli
         files::check_output(path, &[input])?;
         return Ok(ViewshedOutput::Map(path));
     }
-    Ok(ViewshedOutput::Raster(path, format_for(path, slice::from_ref(input))?))
+    Ok(ViewshedOutput::Raster(path, raster_format(path, slice::from_ref(input))?))
 }
 
 fn options(

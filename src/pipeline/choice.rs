@@ -6,7 +6,7 @@ use crate::terrain::query::{Interpolation, Surface};
 /// A type whose values are written as words.
 pub trait Choice: Copy + PartialEq + 'static {
     /// Every value that may be written, in the order in which they are listed.
-    const CHOICES: &'static [Word<Self>];
+    const CHOICES: &'static [ChoiceWord<Self>];
 
     /// The word for this value; empty where there is none.
     fn word(self) -> &'static str {
@@ -20,7 +20,7 @@ pub trait Choice: Copy + PartialEq + 'static {
 }
 
 /// A value, its word and what it means.
-pub struct Word<T> {
+pub struct ChoiceWord<T> {
     /// The value.
     pub value: T,
     /// The word.
@@ -30,12 +30,12 @@ pub struct Word<T> {
 }
 
 /// A value with its word and meaning.
-pub const fn word<T: Copy>(value: T, word: &'static str, meaning: &'static str) -> Word<T> {
-    Word { value, word, meaning }
+pub const fn word<T: Copy>(value: T, word: &'static str, meaning: &'static str) -> ChoiceWord<T> {
+    ChoiceWord { value, word, meaning }
 }
 
 impl Choice for Interpolation {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::Planar, "planar", "On the finest triangles"),
         word(Self::Bilinear, "bilinear", "Between four posts, as GDAL does"),
         word(Self::Nearest, "nearest", "The height of the nearest post"),
@@ -44,7 +44,7 @@ impl Choice for Interpolation {
 }
 
 impl Choice for Surface {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::Source, "source", "The raster as read, in its own grid"),
         word(Self::Ground, "ground", "The ground in meters, after a scene's earthworks"),
         word(Self::Scene, "scene", "The higher of the ground and the decks over it"),
@@ -52,7 +52,7 @@ impl Choice for Surface {
 }
 
 impl Choice for BeyondHull {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::NoData, "nodata", "No data"),
         word(Self::Nearest, "nearest", "The height of the nearest point"),
     ];

@@ -1,6 +1,6 @@
 //! Bringing elevation to another coordinate system or to other cells.
 //!
-//! Where neither is asked for, the samples stay as they are, to the last bit.
+//! Without options the samples stay as they are, to the last bit.
 
 use crate::dem::mosaic::Mosaic;
 use crate::dem::raster::Raster;

@@ -12,7 +12,7 @@ use crate::pipeline::error::FileError;
 /// The largest input file: more than any elevation tile in use, less than the memory of today's machines.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// The path that stands for standard input.
+/// The path that means standard input.
 const STDIN: &str = "-";
 
 /// A file that cannot be read.
@@ -215,7 +215,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteFileError> {
     write_with(path, |out| out.write_all(bytes))
 }
 
-/// [`write`] for content that is made while it is written.
+/// [`write()`] for content that is made while it is written.
 ///
 /// # Errors
 /// The system or `content` fails.

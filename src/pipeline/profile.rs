@@ -17,7 +17,7 @@ use crate::pipeline::positions::{InputLine, format_position};
 use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
 use crate::terrain::query::service::Snapshot;
 
-/// The most steps along a profile: more would fill the memory, and nobody reads them.
+/// The most steps along a profile: more would fill the memory.
 const MOST_STEPS: f64 = 1e7;
 
 /// Stretches without ground that are shorter than this, in meters, are not mentioned.

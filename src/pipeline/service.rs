@@ -121,7 +121,7 @@ impl NamedFile {
 fn name_fault(name: &str) -> Option<&'static str> {
     let is_unfit = |c: char| c.is_control() || matches!(c, ',' | '/' | '?' | '#' | '%' | '\\');
     match name {
-        _ if RESERVED.contains(&name) => Some("is the address of a question"),
+        _ if RESERVED.contains(&name) => Some("is the address of a query"),
         "" => Some("is empty"),
         _ if name.len() > LONGEST_NAME => Some("is longer than 100 bytes"),
         _ if name.contains(is_unfit) => Some("holds a character that an address cannot"),

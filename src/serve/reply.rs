@@ -1,6 +1,6 @@
 //! What goes back: an answer, or a refusal with its reason.
 //!
-//! Both are JSON whatever was asked: an answer ends with `"status":"OK"`; a refusal is
+//! Both are always JSON: an answer ends with `"status":"OK"`; a refusal is
 //! `{"status":"INVALID_REQUEST","error":"…"}` where the client can mend it, else `SERVER_ERROR`.
 
 use axum::Json;
@@ -32,7 +32,7 @@ pub struct HttpError {
     hint: RefusalHint,
 }
 
-/// What a refusal tells the client's program besides.
+/// What a refusal's headers state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RefusalHint {
     None,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! request ─► permit ─► parameters (query, body) ─► read ─► light? ─► answer ─► response
-//!              │ 503     │ 414 413 415 408 400       │ 400   └ no ─► a thread of its own ─┘ 503 in the end
+//!              │ 503     │ 414 413 415 408 400       │ 400   └ no ─► another thread ────┘ 503 in the end
 //! ```
 //!
 //! Answering a few points takes less time than handing them to another thread, so they are answered where they were

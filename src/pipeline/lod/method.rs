@@ -5,7 +5,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::{Choice, Word, word};
+use crate::pipeline::choice::{Choice, ChoiceWord, word};
 
 /// What emits triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,7 +101,7 @@ pub enum LodMethod {
 }
 
 impl Choice for Emit {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::Lists(IndexEmitter::Bintree), "bintree", "The leaves of the triangle bintree"),
         word(
             Self::Lists(IndexEmitter::Quadtree),
@@ -119,7 +119,7 @@ impl Choice for Emit {
 }
 
 impl Choice for CriterionKind {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(
             Self::Screen,
             "screen",
@@ -152,7 +152,7 @@ impl Choice for CriterionKind {
 }
 
 impl Choice for Refine {
-    const CHOICES: &'static [Word<Self>] = &[
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::With(Refiner::Rebuild), "rebuild", "From the roots for every frame, by splits alone"),
         word(
             Self::With(Refiner::Coherent),

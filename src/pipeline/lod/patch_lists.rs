@@ -37,7 +37,7 @@ impl<L: Default> PatchLists<L> {
     /// No patch is in view.
     pub fn new(layout: PatchLayout) -> Self {
         let slots = (0..layout.patch_count()).map(|_| PatchSlot::default()).collect();
-        // Frames count from 1; frame 0 stands for never.
+        // Frames count from 1; 0 is never.
         Self { layout, slots, view: Vec::new(), frame: 1, written: 0 }
     }
 

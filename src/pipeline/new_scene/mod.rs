@@ -108,7 +108,7 @@ pub fn write(
     fs::create_dir_all(&options.folder).map_err(system)?;
     let draft = complete(&path, draft, &allowed).inspect_err(|_| {
         if is_new {
-            // Fails, as it should, where somebody has put anything into it meanwhile.
+            // Fails, as it should, where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
         }
     })?;
@@ -120,7 +120,7 @@ fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewScen
     Ok(VectorDraft { file: folder.relative(file)?, layers: survey::layers(file)? })
 }
 
-/// The draft with what the elevation tells: heights, extent, and a camera that sees all of it.
+/// The draft with what the elevation gives: heights, extent, and a camera that sees all of it.
 fn complete(path: &Path, mut draft: SceneDraft, allowed: &[PathBuf]) -> Result<SceneDraft, OpenSceneError> {
     let assets = Assets::new(path, allowed)?;
     let built = |draft: &SceneDraft| {

@@ -189,21 +189,3 @@ pub fn strings<'a>(json: &'a str, name: &str) -> Vec<&'a str> {
         .map(|(at, _)| json[at + key.len()..].split('"').next().expect("a value"))
         .collect()
 }
-
-/// An encoded polyline of latitudes and longitudes in hundred-thousandths of a degree.
-pub fn encoded(places: &[(i64, i64)]) -> String {
-    let mut out = String::new();
-    let mut last = (0, 0);
-    for &(lat, lng) in places {
-        for step in [lat - last.0, lng - last.1] {
-            let mut bits = if step < 0 { !(step << 1) } else { step << 1 };
-            while bits >= 32 {
-                out.push(char::from((bits & 31 | 32) as u8 + 63));
-                bits >>= 5;
-            }
-            out.push(char::from(bits as u8 + 63));
-        }
-        last = (lat, lng);
-    }
-    out
-}

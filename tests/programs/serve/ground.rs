@@ -142,9 +142,9 @@ fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let answer = server.get(&path).ok();
     assert_eq!(answer["counts"]["visible"].as_u64(), Some(count(PostVisibility::Visible)));
     assert_eq!(answer["counts"]["hidden"].as_u64(), Some(count(PostVisibility::Hidden)));
-    let told: String =
+    let answer: String =
         answer["runs"].as_array().expect("rows").iter().filter_map(|row| row.as_str()).collect();
-    let visible: u64 = runs(&told).filter(|&(_, letter)| letter == 'v').map(|(length, _)| length).sum();
+    let visible: u64 = runs(&answer).filter(|&(_, letter)| letter == 'v').map(|(length, _)| length).sum();
     assert_eq!(visible, count(PostVisibility::Visible), "the runs tell the same as the counts");
     assert!(visible > 100);
 }

@@ -5,7 +5,7 @@ use sandtable::geom::crs::Crs;
 use serde_json::{Value, json};
 
 use crate::common::scratch::Scratch;
-use crate::serve::client::{Server, encoded};
+use crate::serve::client::Server;
 
 /// Three rows of four samples a hundredth of a degree apart, the second of the second row a hole. Sample centers stand
 /// at 10.005, 10.015, 10.025 and 10.035 east and 50.025, 50.015 and 50.005 north.
@@ -78,12 +78,14 @@ fn get_form_and_json_say_the_same() {
 #[test]
 fn a_polyline_is_the_same_as_its_locations() {
     let (_scratch, server) = server();
-    let text = encoded(&[(5_001_000, 1_000_968), (5_002_000, 1_002_960)]);
-    let answer = server.get(&format!("/v1/grid?locations={text}"));
-    assert_eq!(answer.body, server.get("/v1/grid?locations=50.01,10.00968|50.02,10.0296").body);
+    // The example of the Encoded Polyline Algorithm Format.
+    let text = "_p~iF~ps|U_ulLnnqC_mqNvxq`@";
+    let answer = server.get(&format!("/v1/grid?locations={}", text.replace('`', "%60").replace('|', "%7C")));
+    let locations = "38.5,-120.2|40.7,-120.95|43.252,-126.453";
+    assert_eq!(answer.body, server.get(&format!("/v1/grid?locations={locations}")).body);
     let object = serde_json::json!({"locations": text}).to_string();
     assert_eq!(server.post("/v1/grid", "application/json", &object).body, answer.body);
-    assert_eq!(answer.ok()["results"].as_array().map(Vec::len), Some(2));
+    assert_eq!(answer.ok()["results"].as_array().map(Vec::len), Some(3));
 }
 
 #[test]
@@ -111,7 +113,7 @@ fn what_stands_for_no_height_can_be_chosen() {
     assert!(body("null").contains("\"elevation\":null"));
     assert!(body("nan").contains("\"elevation\":NaN"));
     assert!(body("-9999").contains("\"elevation\":-9999.0"));
-    assert!(body("-9999").contains("\"status\":\"Outside\""), "the status still tells");
+    assert!(body("-9999").contains("\"status\":\"Outside\""), "the status stays");
 }
 
 #[test]
@@ -131,14 +133,14 @@ fn of_several_datasets_the_first_with_a_height_answers() {
     let (_scratch, server) = server();
     let path = "/v1/grid,other?locations=50.005,10.005|50.015,10.015|50.005,10.055|50.005,10.075|60,10&interpolation=nearest";
     let answer = server.get(path).ok();
-    let told: Vec<_> = answer["results"]
+    let results: Vec<_> = answer["results"]
         .as_array()
         .expect("results")
         .iter()
         .map(|result| (result["elevation"].as_f64(), result["dataset"].as_str(), result["status"].as_str()))
         .collect();
     assert_eq!(
-        told,
+        results,
         [
             (Some(90.0), Some("grid"), Some("Ok")),
             (Some(2.0), Some("other"), Some("Ok")),

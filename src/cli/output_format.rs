@@ -1,0 +1,28 @@
+//! The format of a file that a command writes.
+
+use std::path::{Path, PathBuf};
+
+use crate::cli::error::CliError;
+use crate::dem::formats::DemFormat;
+use crate::pipeline::files;
+
+/// The format that `from_extension` finds for the extension of `path`, where a file could be written there that replaces
+/// none of `inputs`. `written` says of what is written which extensions it has.
+pub fn output_format<F>(
+    path: &Path,
+    inputs: &[PathBuf],
+    from_extension: impl Fn(&str) -> Option<F>,
+    written: &str,
+) -> Result<F, CliError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    let format = from_extension(&extension)
+        .ok_or_else(|| CliError::usage(format!("{}: {written}; name a file that ends so", path.display())))?;
+    files::check_output(path, inputs)?;
+    Ok(format)
+}
+
+/// [`output_format`] for a raster.
+pub fn raster_format(path: &Path, inputs: &[PathBuf]) -> Result<&'static DemFormat, CliError> {
+    let written = "rasters are written as .tif, .asc, .bt, .hgt or .png";
+    output_format(path, inputs, DemFormat::to_write, written)
+}
