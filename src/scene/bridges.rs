@@ -244,8 +244,7 @@ impl<'a> BuiltChain<'a> {
         Some((0..32).map(place).find(|&from_end| open(from_end)).unwrap_or(longest))
     }
 
-    /// The stations of the piers along the chain: evenly between the abutments, half a span from where the chain goes on,
-    /// beside what passes below rather than in it.
+    /// The stations of the piers along the chain: evenly between the abutments, beside what passes below.
     fn piers(&self, abutments: [Option<f64>; 2]) -> Vec<f64> {
         let from = abutments[0].unwrap_or(0.0);
         let clear = self.chain.length_m - from - abutments[1].unwrap_or(0.0);

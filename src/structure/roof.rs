@@ -94,8 +94,7 @@ fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
 /// No vertex of a gabled roof's footprint may lie nearer to the ridge, meters.
 const LEAST_ASIDE_M: f64 = 0.02;
 
-/// The ring with a vertex where it crosses the line on which `aside` is 0, and the two places of these in it; `None`
-/// where it crosses it more than twice, or a vertex lies on it.
+/// The ring with a vertex at both crossings of the line where `aside` is 0, and their indices; `None` otherwise.
 fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, [usize; 2])> {
     let (mut with, mut crossings) = (Vec::with_capacity(ring.len() + 2), Vec::new());
     for (from, to) in polygon::edges(ring) {

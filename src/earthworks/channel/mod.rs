@@ -47,7 +47,7 @@ pub struct Channel {
     pub max_cut_m: f64,
 }
 
-/// What cutting one channel came to.
+/// The result of cutting one channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cut {
     /// The water's level in meters where the line first has ground, and where it last has; `None` where it has none.
@@ -71,7 +71,7 @@ pub struct Climb {
     pub rise_m: f64,
 }
 
-/// What cutting a network came to.
+/// The result of cutting a network.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cuts {
     /// One for each channel.
