@@ -60,7 +60,7 @@ const LONGEST_ABUTMENT: f64 = 0.25;
 /// Builds the bridges and tunnels of the document's roads and tables. Roads through underpasses become roads on the ground.
 ///
 /// # Errors
-/// A source cannot be had, or asks for too many piers.
+/// A source cannot be read, or needs too many piers.
 pub fn build(
     document: &Document,
     sources: &Sources<'_>,

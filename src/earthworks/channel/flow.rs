@@ -5,7 +5,7 @@
 //! hills beside its valley. And ends of a level stretch differ by the error of the elevation model alone. So lines that
 //! share vertices are heard together: where most of their fall agrees with the way they were drawn, or runs against it, all
 //! of them follow, but for those that fall the other way by more than such an error. Files of rivers are drawn downstream
-//! as a rule, so most networks agree, and a line that nothing speaks against flows as drawn.
+//! as a rule, so most networks agree, and a line without evidence against it flows as drawn.
 
 use std::collections::BTreeMap;
 
@@ -92,7 +92,7 @@ fn networks(lines: &[&Polyline]) -> Vec<usize> {
     (0..lines.len()).map(|index| root(&mut parents, index)).collect()
 }
 
-/// The line that stands for all that hang together with this one; the way to it is halved for the next that asks.
+/// The first of the lines that are connected with this one; halves the path to it.
 fn root(parents: &mut [usize], mut index: usize) -> usize {
     while parents[index] != index {
         parents[index] = parents[parents[index]];

@@ -92,7 +92,7 @@ pub enum ChannelError {
 /// seconds' work.
 pub const MOST_VISITS: usize = 200_000_000;
 
-/// Cuts the ground so that it never rises along any of `channels` but where their cuts tell of a climb.
+/// Cuts the ground so that it never rises along any of `channels` but at the climbs in their cuts.
 ///
 /// # Errors
 /// See [`ChannelError`]; the ground is then as it was.
@@ -130,7 +130,7 @@ fn joined(climbs: &mut Vec<Climb>) {
 const SAME_STATION_M: f64 = 1e-6;
 
 /// The most by which the ground rises along `line`, world coordinates downstream, above where it was lower before; 0
-/// where it never rises. What this room promises of every channel, on the finest triangles; where a line leaves the ground
+/// where it never rises. The promise of every channel, on the finest triangles; where a line leaves the ground
 /// and comes back, and at each of `climbs`, it begins anew.
 pub fn check_rise(lattice: &Lattice, line: &Polyline, climbs: &[Climb]) -> f64 {
     let map: Vec<_> = line.points().iter().map(|&at| at + lattice.origin()).collect();
