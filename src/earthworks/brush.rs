@@ -14,8 +14,7 @@ use crate::terrain::lattice::{HIGHEST_M, Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
 
-/// Posts along a tile's side: a brush up to this size is one rectangle. Smaller tiles follow a stroke more closely, and
-/// each costs a walk up the vertex graph.
+/// Posts along a tile's side. Smaller tiles follow a stroke more closely; each costs a walk up the vertex graph.
 const TILE: u32 = 64;
 
 /// One rectangle in which heights changed.

@@ -86,8 +86,7 @@ impl Touched {
         }
     }
 
-    /// Marks the cells whose middle lies inside by the even-odd rule over all edges: along the middle of each row of cells
-    /// the inside lies between the first and the second edge, the third and the fourth, and so on.
+    /// Marks the cells whose middle lies inside by the even-odd rule over all edges, row by row.
     fn mark_inside(&mut self, edges: impl Iterator<Item = (DVec2, DVec2)>) {
         let rising = edges.map(|(from, to)| if from.y <= to.y { (from, to) } else { (to, from) });
         let mut waiting: Vec<(DVec2, DVec2)> = rising.collect();

@@ -32,8 +32,7 @@ impl Default for Batters {
     }
 }
 
-/// The most cells that a batter reaches: one from far above or below the ground ends there in a step, so that the cost of
-/// a pad is bounded.
+/// The most cells that a batter reaches, to bound the cost: a longer one ends in a step.
 const MAX_REACH: u32 = 64;
 
 /// A convex counter-clockwise outline and the level of the ground in it.

@@ -17,8 +17,8 @@ use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
 
-/// The move of the first posts ashore as a share of that of the posts under water: with a half, a cut or dam of one cell
-/// becomes two steps of half the height.
+/// The move of the first posts ashore as a share of that under water: a step of one cell becomes two of half the
+/// height.
 const BLEND: f64 = 0.5;
 
 /// The result of flooding.
@@ -86,8 +86,7 @@ impl ShoreWorks<'_> {
         self.flooded.volumes += Volumes::from_rise(rise_m, self.lattice.cell_m2());
     }
 
-    /// Moves every post next to the bed half as far as its neighbors there were moved on average, but not beyond the
-    /// level.
+    /// Moves every post next to the bed by half the mean move of its neighbors there, but not beyond the level.
     fn blend(&mut self, water: &[Post], level_m: f32) {
         let mut ashore: BTreeMap<(u32, u32), (f64, u32)> = BTreeMap::new();
         for &post in water {

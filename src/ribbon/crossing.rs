@@ -16,8 +16,7 @@ use crate::ribbon::plan::PlanMesh;
 /// Ground smaller than this is rounding, in square meters: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
 
-/// A piece that shares ground with more others than this is shared whole: where so many lie over one another, nothing
-/// that is painted on one can be read, and their number must not grow with its square.
+/// A piece that overlaps more others than this is shared as a whole, so that overlaps do not grow with the square.
 const MOST: usize = 64;
 
 /// Ground that two ribbons share.

@@ -60,7 +60,7 @@ fn write_piece(
 }
 
 /// The largest vertical distance in meters between a draped mesh and the displayed ground, at the middle of
-/// every triangle and at every corner above displayed ground: the invariant this room exists for. Infinite
+/// every triangle and at every corner above displayed ground: the invariant of this module. Infinite
 /// where the middle of a triangle lies off the ground.
 pub fn check_clearance(draped: &DrawMesh, ground: &dyn TriangleSurface) -> f64 {
     let clearance = |at: Vec3| {

@@ -17,8 +17,7 @@ use glam::DVec2;
 use crate::description::words::Join;
 use crate::geom::offset::LineBend;
 
-/// The largest angle between two corners of an arc: at 15 degrees its chords lie within 1 % of a half width of it, which
-/// no picture shows.
+/// The largest angle between two corners of an arc: chords lie within 1 % of a half width of it.
 const ARC_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 /// What two segments end on, as ways from the vertex between them.

@@ -30,8 +30,7 @@ use crate::ribbon::stroke::{Continuations, StrokeOptions};
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
 
-/// How far a junction may reach along an arm, in widths of its widest arm: where two arms leave at a small angle their
-/// curbs meet far away, and the ground between them is better left to their ribbons.
+/// How far a junction may reach along an arm, in widths of its widest arm: curbs at a small angle meet far away.
 const LONGEST_REACH: f64 = 2.5;
 
 /// A road or river among those that it may meet.
@@ -195,8 +194,8 @@ impl Streets<'_> {
         })
     }
 
-    /// The arms at one place, parted by what meets: streets that pass on one level, with those that end there. An end
-    /// of another level goes on in what passes on the ground; a bridge begins so.
+    /// The arms at one vertex by what meets: streets that pass on one level with those that end there. An end of
+    /// another level continues what passes on the ground.
     fn groups(&self, arms: Vec<Arm>) -> Vec<Vec<Arm>> {
         let level = |arm: &Arm| self.0[arm.street].level;
         let first = level(&arms[0]);
@@ -290,8 +289,8 @@ struct HullArm {
 }
 
 impl HullArm {
-    /// How far along it its curb meets that of a neighbor; 0 where they part. Curbs of unequal arms that are nearly
-    /// one line meet far away, where neither is any more: no further than the wider one's half.
+    /// How far along the arm its curb meets that of a neighbor; 0 where they part. For arms that are nearly one line at
+    /// most half of the wider one's width.
     fn curbs_meet(&self, other: &Self) -> f64 {
         let (sine, cosine) = (self.along.perp_dot(other.along).abs(), self.along.dot(other.along));
         if sine < 1e-9 {

@@ -125,8 +125,7 @@ impl Covering {
         before.map(|other| shared_m2(corners, &self.triangles[other])).sum()
     }
 
-    /// What no triangle before this one covers. It stops where nothing is left, so that many over one another cost no
-    /// more than a few.
+    /// What no triangle before this one covers.
     fn rest(&self, triangle: usize) -> Rest {
         let corners = &self.triangles[triangle];
         let mut pieces = vec![corners.to_vec()];

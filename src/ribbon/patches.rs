@@ -93,7 +93,7 @@ impl Drapes {
         Self { patches }
     }
 
-    /// Cuts the parts in `patches` to what is displayed there now. Which patches those are the refiner tells: those it
+    /// Cuts the parts in `patches` to what is displayed there now. The refiner gives these patches: those it
     /// changed, those that came into view, and those that went.
     ///
     /// # Panics

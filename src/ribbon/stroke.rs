@@ -14,8 +14,7 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::joint::{JointFan, RibbonJoint};
 use crate::ribbon::plan::PlanVertex;
 
-/// How much wider a taper may grow from one cross-section to the next. A texture is straight on each of a quad's two
-/// triangles, so across a quad of unequal ends its lines have a kink, of this part of their way from the middle.
+/// The widest taper between cross-sections, as a ratio: a texture's lines have a kink between a quad's two triangles.
 const TAPER_STEP: f64 = 1.1;
 
 /// The most cross-sections in one taper: a ribbon that grows twentyfold from vertex to vertex has kinks anyway.

@@ -60,7 +60,7 @@ const LONGEST_ABUTMENT: f64 = 0.25;
 /// Builds the bridges and tunnels of the document's roads and tables. Roads through underpasses become roads on the ground.
 ///
 /// # Errors
-/// A source cannot be had, or asks for too many piers.
+/// A source cannot be read, or needs too many piers.
 pub fn build(
     document: &Document,
     sources: &Sources<'_>,
@@ -244,8 +244,7 @@ impl<'a> BuiltChain<'a> {
         Some((0..32).map(place).find(|&from_end| open(from_end)).unwrap_or(longest))
     }
 
-    /// The stations of the piers along the chain: evenly between the abutments, half a span from where the chain goes on,
-    /// beside what passes below rather than in it.
+    /// The stations of the piers along the chain: evenly between the abutments, beside what passes below.
     fn piers(&self, abutments: [Option<f64>; 2]) -> Vec<f64> {
         let from = abutments[0].unwrap_or(0.0);
         let clear = self.chain.length_m - from - abutments[1].unwrap_or(0.0);

@@ -48,7 +48,7 @@ const MOST_ROOF: f64 = 0.5;
 /// How deep walls go below the lowest ground under them, meters.
 const FOUNDATION_M: f64 = 1.0;
 
-/// A building with its place found, not raised yet.
+/// A building with its footprint, not raised yet.
 pub struct Plot {
     table: usize,
     attributes: Attributes,
@@ -119,8 +119,7 @@ pub fn lay_out(
     Ok(plots)
 }
 
-/// Levels the ground under a building and returns its level; `None` where some of that ground belongs to a lake, or to a
-/// pad laid before.
+/// Levels the ground under a building and returns its level; `None` where a lake or another pad shares that ground.
 fn pad(
     lattice: &mut Lattice,
     parts: &[BuildingFootprint],
@@ -162,8 +161,7 @@ struct GroundUnder {
 }
 
 impl GroundUnder {
-    /// Exact: over all of the finest triangles that the footprints meet. `None` where some lies off the model or has no
-    /// data.
+    /// Over all of the finest triangles that the footprints meet; `None` where some have no data.
     fn parts(lattice: &Lattice, parts: &[BuildingFootprint]) -> Option<Self> {
         let mut under = Self { low_m: f64::INFINITY, mean_m: 0.0, high_m: f64::NEG_INFINITY };
         let (mut area_m2, mut sum) = (0.0, 0.0);

@@ -43,7 +43,7 @@ const LEAST_CELLS: f64 = 3.0;
 /// A trench's bottom as a share of its width.
 const BOTTOM: f64 = 0.55;
 
-/// A line with what is to stand along it.
+/// A line of fences, wires or the like.
 pub struct FenceLine {
     kind: FenceKind,
     /// Its parts on the elevation model, at least two distinct points each.
@@ -248,7 +248,7 @@ pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBu
     }
 }
 
-/// What stands along one part of a line; `added` counts the pylons that keep wires off the ground.
+/// The uprights along one part of a line; `added` counts the pylons that keep wires off the ground.
 fn uprights(
     points: &[DVec2],
     line: &FenceLine,

@@ -39,8 +39,7 @@ const WIDEST_REAL_M: f64 = 20.0;
 /// Over how many widths a deck turns from how the ground lies across its end to level.
 const TILT_WIDTHS: f64 = 2.0;
 
-/// Where bridges meet, sections stand an eighth of the width apart for three widths, so that parapets end where they
-/// should.
+/// Sections where bridges meet, an eighth of the width apart, so that parapets end where they should.
 const MEETING_BREAKS: u32 = 24;
 
 /// How far above or below a parapet's foot a carriageway lies that it would stand in the way of, in meters.
@@ -60,7 +59,7 @@ pub enum Across {
     Level,
 }
 
-/// How a bridge is built.
+/// The options of a bridge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BridgeOptions {
     /// Meters from the carriageway to the soffit, above 0; see [`depth_m`].
@@ -80,7 +79,7 @@ pub struct BridgeOptions {
 /// The solids of a bridge, in world space with drawn heights.
 #[derive(Clone, Debug, Default)]
 pub struct BridgeSolids {
-    /// What traffic runs on, with a road's texture coordinates.
+    /// The carriageway, with a road's texture coordinates.
     pub carriageway: DrawMesh,
     /// All the rest.
     pub body: DrawMesh,
@@ -95,7 +94,7 @@ pub fn depth_m(longest_span_m: f64) -> f64 {
     (longest_span_m / 18.0).clamp(0.6, 4.0)
 }
 
-/// How many times larger than life what is built for a road of this width is drawn, at least 1.
+/// How much larger than life a structure on a road of this width is drawn, at least 1.
 pub fn magnified(width_m: f64) -> f64 {
     (width_m / WIDEST_REAL_M).max(1.0)
 }

@@ -34,7 +34,7 @@ pub struct BuildingLevels {
     pub top_z: f64,
 }
 
-/// What a building is painted with.
+/// The colors of a building.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paint {
     /// The walls.
@@ -79,8 +79,7 @@ const FLATS: [Srgba; 5] = [
 ];
 
 impl Paint {
-    /// What a building wears that nobody painted: a plaster and a roof chosen by where its middle stands, so that it is
-    /// the same in every picture.
+    /// The default paint: a plaster and a roof chosen by the position, so that they are the same in every picture.
     pub fn by_place(footprint: &BuildingFootprint, roof: &UnitRoof) -> Self {
         let at = centroid(footprint.exterior()).round();
         let pick = |colors: &[Srgba], salt: u64| {

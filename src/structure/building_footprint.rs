@@ -10,8 +10,7 @@ use crate::geom::convex;
 use crate::geom::polygon;
 use crate::geom::region;
 
-/// Vertices nearer to each other than this, and those nearer to the line between their neighbors, are dropped: less
-/// than a wall's plaster, more than an f32 can tell apart 30 km from the origin.
+/// Vertices nearer to each other or to their neighbors' line are dropped: less than plaster, more than f32 rounding.
 const MERGE_M: f64 = 0.01;
 
 /// A footprint smaller than this is what repairing left over.

@@ -20,16 +20,13 @@ use crate::geom::offset::LineBend;
 use crate::geom::polyline::Polyline;
 use crate::structure::bridge::{PARAPET_THICK_M, magnified};
 
-/// How far along a segment the inner corner of a miter may reach, as a part of it: below a half, so that the corners at
-/// its two ends never pass each other.
+/// How far along a leg the inner corner of a miter may reach, as a part of it: two of them do not meet.
 const LONGEST_INNER: f64 = 0.45;
 
-/// How far apart sections put in stand at least, in widths: nearer ones would be one where coordinates are rounded to
-/// f32, a hundred kilometers from the origin, and the solid between them would have no sides.
+/// The least distance of added sections, in widths: nearer ones would be one after rounding to f32.
 const LEAST_APART: f64 = 0.02;
 
-/// The most sections that are put in between the vertices of one centerline: enough for one every meter of a long
-/// bridge, and a bound for lines that go on and on.
+/// The most sections that are added between the vertices of one centerline.
 const MOST_BREAKS: usize = 4096;
 
 /// A line across a deck.

@@ -9,8 +9,7 @@ use crate::draw::list::DrawMesh;
 /// A position, bit by bit.
 type CornerBits = [u32; 3];
 
-/// Edges nearer than this to each other are one, in meters: what is computed in two ways is rounded to f32 in two ways,
-/// and a face thinner than this has no area that f32 could hold.
+/// Edges nearer than this to each other are one, in meters: computed twice, they are rounded to f32 twice.
 const SAME_M: f32 = 1e-3;
 
 /// Whether every edge of a triangle is run along once in each direction, or as often in one as in the other: then the

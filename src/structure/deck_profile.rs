@@ -17,8 +17,7 @@ use glam::DVec2;
 use crate::geom::convex;
 use crate::geom::profile::Profile;
 
-/// How far rounding may take a deck down below the corner it rounds, in meters: what is lifted over the ground has this
-/// much to spare.
+/// How far rounding may lower a deck below the corner it rounds, in meters.
 const ROUNDED_OFF_M: f64 = 0.2;
 
 /// How far from a corner its vertical curve may begin, in meters: longer ones would look no smoother.

@@ -9,7 +9,7 @@ use crate::terrain::support_surface::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);
 
-/// Where something stands, and which way the line runs there.
+/// The position of something along a line, and the line's direction there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PostPosition {
     /// World X and Y, meters.

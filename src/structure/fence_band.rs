@@ -154,7 +154,7 @@ impl FenceBand {
         found
     }
 
-    /// Where along a segment rows stand: where either foot is cut, and where the ruffle asks for more.
+    /// Where along a segment rows stand: where either foot is cut, and where the ruffle needs more.
     fn parts(&self, runs: [&GroundRun; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
         let inside = |part: &f64| *part > low + SAME_PART && *part < high - SAME_PART;
         let cuts = runs.into_iter().flat_map(GroundRun::stations).map(|station| station.part);

@@ -181,8 +181,7 @@ fn hanging((from, to): (DVec3, DVec3), sag_m: f64, part: f64) -> DVec3 {
     from.lerp(to, part) - DVec3::Z * (4.0 * sag_m * part * (1.0 - part))
 }
 
-/// How deep a wire may hang: `wanted_m`, or as deep as it may over the ground beneath the line; 0, straight, where it
-/// may not hang at all.
+/// The sag of a wire: `wanted_m`, or less over the ground beneath the line, at least 0.
 fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f64) -> f64 {
     let over = |part: f64, z: f64| {
         let room = hanging(ends, 0.0, part).z - z - clearance_m;
@@ -236,8 +235,7 @@ fn split(
     }
 }
 
-/// Where the lowest wire of a span, drawn straight, comes nearest to the ground, if that is too near; never so near to a
-/// pylon that another one would help nobody.
+/// Where the lowest wire of a span, drawn straight, comes too near to the ground and a pylon would help.
 fn worst([from, to]: [PostPosition; 2], height_m: f64, ground: &dyn TriangleSurface) -> Option<f64> {
     let foot = |stand: PostPosition| ground.displayed_z(stand.at);
     let up = DVec3::Z * LOWEST_WIRE.min(0.9) * height_m;

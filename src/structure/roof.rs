@@ -28,7 +28,7 @@ const MOST_VERTICES: usize = 400;
 /// A roof with a rise of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitRoof {
-    /// What it is; not always what was asked for.
+    /// Its shape; not always the stated one.
     pub shape: words::RoofShape,
     /// The footprint's rings with the rise at each vertex, 0..=1; all 0 but at gables.
     pub edge: Vec<Vec<DVec3>>,
@@ -38,7 +38,7 @@ pub struct UnitRoof {
     pub run_m: f64,
 }
 
-/// The roof of the shape asked for over a footprint, or the nearest that can be made: a gabled one needs nearly a
+/// The roof of the stated shape over a footprint, or the nearest that can be made: a gabled one needs nearly a
 /// rectangle, else it is hipped; a hipped one needs a footprint without courtyards, a pyramidal one a middle that sees
 /// every wall; else they are flat.
 pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof {
@@ -94,8 +94,7 @@ fn gabled(footprint: &BuildingFootprint) -> Option<UnitRoof> {
 /// No vertex of a gabled roof's footprint may lie nearer to the ridge, meters.
 const LEAST_ASIDE_M: f64 = 0.02;
 
-/// The ring with a vertex where it crosses the line on which `aside` is 0, and the two places of these in it; `None`
-/// where it crosses it more than twice, or a vertex lies on it.
+/// The ring with a vertex at both crossings of the line where `aside` is 0, and their indices; `None` otherwise.
 fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, [usize; 2])> {
     let (mut with, mut crossings) = (Vec::with_capacity(ring.len() + 2), Vec::new());
     for (from, to) in polygon::edges(ring) {

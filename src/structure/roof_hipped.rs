@@ -25,8 +25,7 @@ use crate::structure::roof::{UnitRoof, level_edge};
 /// The most walls under a hipped roof: rounder plans cost the cube of their vertices.
 const MOST_WALLS: usize = 64;
 
-/// Corners of faces nearer to each other than this are one: what cutting leaves beside each other, and what nobody would
-/// build apart.
+/// Corners of faces nearer to each other than this are one, in meters.
 const WELD_M: f64 = 2e-3;
 
 /// The line of a wall.

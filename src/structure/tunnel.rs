@@ -37,7 +37,7 @@ const ROOF: Srgba = Srgba::opaque(158, 154, 132);
 const SHADE: Srgba = Srgba::opaque(74, 70, 66);
 const DARK: Srgba = Srgba::opaque(22, 21, 22);
 
-/// Where a portal stands.
+/// The position and size of a portal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Portal {
     /// The middle of its mouth in world coordinates.
@@ -196,8 +196,7 @@ impl Portal {
         faces.polygon(&lid.map(|(x, y, z)| self.drawn(x, y, z)), ROOF);
     }
 
-    /// The wall that holds the slope beside the road, on the left (−1) or right (1) seen from outside: from the portal
-    /// outward, its top falling to the ground.
+    /// The wall that holds the slope on the left (−1) or right (1) as seen from outside; its top falls outward.
     fn wing(&self, side: f64, ground: &GroundHeight<'_>, faces: &mut Faces) {
         let by = magnified(self.width_m);
         let (_, wall) = self.halves_m();

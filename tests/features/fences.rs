@@ -59,10 +59,10 @@ proptest! {
         prop_assume!(displayed.is_some());
         let displayed = displayed.expect("checked");
         let points: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
-        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 3.0 })]
+        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 3.0 })]
             .into_iter()
             .chain(rails(&points, width_m, 2.0))
-            .chain(parapets(&points, BandSize { width_m: width_m, height_m: 2.0, every_m: 5.0 }))
+            .chain(parapets(&points, BandSize { width_m, height_m: 2.0, every_m: 5.0 }))
             .collect();
         for band in &bands {
             let off = check_feet(band, &displayed);

@@ -11,11 +11,10 @@ use crate::earthworks::alignment::spans::{EarthworkLimits, spans};
 use crate::earthworks::alignment::{Support, SupportSpan};
 use crate::geom::profile::Profile;
 
-/// How often at most the network is fitted. The second time moves roads by meters, the third by decimeters; the spans
-/// always are those of the last levels.
+/// The most fits: the second moves roads by meters, the third by decimeters.
 const ROUNDS: usize = 4;
 
-/// What is known of a section beforehand.
+/// The ground under a section and what is stated for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SectionGround {
     /// The ground at its stations in meters; NaN where there is none.
@@ -98,8 +97,7 @@ fn straighten(stations: &[f64], targets: &[f64], levels: &mut [f64]) {
     }
 }
 
-/// Finds the spans along a chain and tells them to its sections. Stated bridges and tunnels part a chain: what is found
-/// must not reach over them.
+/// Finds the spans along a chain for its sections. None reaches over a stated bridge or tunnel.
 fn find(
     network: &SectionNetwork,
     chain: &SectionChain,
@@ -139,7 +137,7 @@ fn needs(course: &SectionGround, levels: &[f64]) -> Vec<f64> {
     rises.map(|rise_m| course.limits.need(rise_m)).collect()
 }
 
-/// Lets go of the ground along spans; how many stations' ground was let go of that counted before.
+/// Releases the ground along spans and returns how many stations counted before.
 fn release(
     network: &SectionNetwork,
     courses: &[SectionGround],

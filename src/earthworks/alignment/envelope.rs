@@ -19,7 +19,7 @@ use std::collections::BinaryHeap;
 use crate::earthworks::alignment::network::{RoadSection, SectionNetwork, StationLevels};
 
 /// The highest profile that nowhere lies above `levels` and keeps the grade; infinite where none of the levels reaches.
-/// `levels` may be NaN where nothing is asked for.
+/// `levels` may be NaN where there is none.
 pub fn below(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
     let mut nodes = vec![f64::INFINITY; network.nodes];
     for (section, levels) in network.sections.iter().zip(levels) {

@@ -19,10 +19,10 @@ use crate::earthworks::alignment::{Support, SupportSpan};
 /// Nearer to 1 spans are shorter and follow the limit's every waver; nearer to 0 they are long, and costly.
 pub const ABUTMENT: f64 = 0.5;
 
-/// No bridge or tunnel is shorter than this, in meters: a culvert or a wall would be built.
+/// The shortest bridge or tunnel in meters; a culvert or a wall is shorter.
 const SHORTEST_M: f64 = 12.0;
 
-/// Two of one kind with less than this between are one, in meters: nobody builds two abutments back to back.
+/// Two of one kind nearer to each other than this are one, in meters.
 const NEAREST_M: f64 = 30.0;
 
 /// How high embankments and how deep cuttings may be, in meters; infinite for any.
@@ -35,8 +35,8 @@ pub struct EarthworkLimits {
 }
 
 impl EarthworkLimits {
-    /// How much of what is allowed the road needs where it lies `rise_m` above the ground: above 0 for fill, below for
-    /// cut, beyond ±1 for more than is allowed. 0 where there is no ground.
+    /// The share of the limit that a road `rise_m` above the ground needs: above 0 for fill, below for cut, beyond ±1
+    /// for too much; 0 where there is no ground.
     pub fn need(&self, rise_m: f64) -> f64 {
         if rise_m > 0.0 {
             rise_m / self.max_fill_m

@@ -127,8 +127,7 @@ impl ChannelBed {
     }
 }
 
-/// So many wishes may wait before all but the nearest are dropped: on wide rivers every post is wished for once a cell
-/// along the water. They take 100 MB.
+/// The most wishes before all but the nearest are dropped: 100 MB. On wide rivers each post has one per cell of river.
 const MOST_WAITING: usize = 4_000_000;
 
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.

@@ -98,8 +98,7 @@ impl CenterlinePiece {
 /// What each of a triangle's corners weighs at a place in the cell.
 type Weigh = fn(DVec2) -> [f64; 3];
 
-/// The corners of the triangle of a cell that holds `part`, and what each weighs at a place in its plane. Corners are
-/// counted south-west, south-east, north-west, north-east.
+/// The corners of a cell's triangle that holds `part`, from south-west by rows, and their weights at a point in it.
 fn triangle(diagonal: Diagonal, part: DVec2) -> ([usize; 3], Weigh) {
     match diagonal {
         Diagonal::Rising if part.x >= part.y => ([0, 1, 3], |at| [1.0 - at.x, at.x - at.y, at.y]),
@@ -223,8 +222,7 @@ fn raise_behind(bed: &mut ChannelBed, stretch: &CarveStretch) -> Vec<usize> {
     raised
 }
 
-/// The height to which those of the posts `ahead`, the highest first, that lie above it are to be lowered, so that the
-/// stretch rises by `excess_m` less.
+/// The height to which the posts `ahead`, the highest first, are lowered for the stretch to rise by `excess_m` less.
 fn gentle_m(bed: &ChannelBed, ahead: &[(usize, f64)], excess_m: f64) -> f64 {
     let (mut sum, mut shares, mut to_m) = (0.0, 0.0, f64::NEG_INFINITY);
     for (index, &(place, share)) in ahead.iter().enumerate() {

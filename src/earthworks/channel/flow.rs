@@ -5,7 +5,7 @@
 //! hills beside its valley. And ends of a level stretch differ by the error of the elevation model alone. So lines that
 //! share vertices are heard together: where most of their fall agrees with the way they were drawn, or runs against it, all
 //! of them follow, but for those that fall the other way by more than such an error. Files of rivers are drawn downstream
-//! as a rule, so most networks agree, and a line that nothing speaks against flows as drawn.
+//! as a rule, so most networks agree, and a line without evidence against it flows as drawn.
 
 use std::collections::BTreeMap;
 
@@ -15,12 +15,10 @@ use crate::geom::polyline::{Polyline, VertexKey, vertex_key};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// How far two heights of one elevation model may be off one another, in meters: the relative error that SRTM's
-/// makers promise (Farr et al. 2007). A line that falls by less tells nothing against its neighbors.
+/// The relative error of heights in meters (SRTM: Farr et al. 2007). A smaller fall is no evidence against neighbors.
 const RELATIVE_ERROR_M: f64 = 10.0;
 
-/// The share of a network's fall that must agree for all its lines to follow: more than half of it then says the same
-/// with three quarters on one side.
+/// The share of a network's fall that must agree for all its lines to follow: three quarters on one side.
 const AGREEMENT: f64 = 0.5;
 
 /// The most steps in which a line is walked to find its fall: a step a cell, and wider on lines that would need more.
@@ -54,8 +52,8 @@ pub fn directions(lattice: &Lattice, lines: &[&Polyline]) -> Vec<Flow> {
     networks.iter().zip(&drops).map(direction).collect()
 }
 
-/// How far the ground falls along `line`: from its first end over ground to its last, or as the straight line nearest to the
-/// ground does by least squares, whichever is less; 0 where these disagree on the way, or it has no ground.
+/// The fall of the ground along `line`: between its ends or by least squares, whichever is less; 0 where these
+/// disagree.
 fn drop_m(lattice: &Lattice, line: &Polyline) -> f64 {
     let steps = (line.length() / lattice.cell().min_element()).ceil().clamp(1.0, MOST_STEPS);
     let grounded = |step: u32| {
@@ -94,7 +92,7 @@ fn networks(lines: &[&Polyline]) -> Vec<usize> {
     (0..lines.len()).map(|index| root(&mut parents, index)).collect()
 }
 
-/// The line that stands for all that hang together with this one; the way to it is halved for the next that asks.
+/// The first of the lines that are connected with this one; halves the path to it.
 fn root(parents: &mut [usize], mut index: usize) -> usize {
     while parents[index] != index {
         parents[index] = parents[parents[index]];

@@ -138,8 +138,7 @@ fn relax(
     }
 }
 
-/// Lowers a course to what flows in at its nodes, as far as it may be cut, and returns the nodes that it reaches lower
-/// than all before.
+/// Lowers a course to what flows in at its nodes, as far as allowed, and returns the nodes that it lowers.
 fn lower(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
     let (mut lowered, mut lowest_m, mut reach) = (Vec::new(), f64::INFINITY, None);
     let mut own = nodes.of_courses[index].iter().peekable();

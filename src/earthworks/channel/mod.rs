@@ -47,7 +47,7 @@ pub struct Channel {
     pub max_cut_m: f64,
 }
 
-/// What cutting one channel came to.
+/// The result of cutting one channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cut {
     /// The water's level in meters where the line first has ground, and where it last has; `None` where it has none.
@@ -71,7 +71,7 @@ pub struct Climb {
     pub rise_m: f64,
 }
 
-/// What cutting a network came to.
+/// The result of cutting a network.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cuts {
     /// One for each channel.
@@ -92,7 +92,7 @@ pub enum ChannelError {
 /// seconds' work.
 pub const MOST_VISITS: usize = 200_000_000;
 
-/// Cuts the ground so that it never rises along any of `channels` but where their cuts tell of a climb.
+/// Cuts the ground so that it never rises along any of `channels` but at the climbs in their cuts.
 ///
 /// # Errors
 /// See [`ChannelError`]; the ground is then as it was.
@@ -130,7 +130,7 @@ fn joined(climbs: &mut Vec<Climb>) {
 const SAME_STATION_M: f64 = 1e-6;
 
 /// The most by which the ground rises along `line`, world coordinates downstream, above where it was lower before; 0
-/// where it never rises. What this room promises of every channel, on the finest triangles; where a line leaves the ground
+/// where it never rises. The promise of every channel, on the finest triangles; where a line leaves the ground
 /// and comes back, and at each of `climbs`, it begins anew.
 pub fn check_rise(lattice: &Lattice, line: &Polyline, climbs: &[Climb]) -> f64 {
     let map: Vec<_> = line.points().iter().map(|&at| at + lattice.origin()).collect();

@@ -34,7 +34,7 @@ impl Legs {
         (strip as usize, leg as usize)
     }
 
-    /// Where a world position lies beside a leg.
+    /// The position of a world point relative to a leg.
     pub fn beside(&self, strips: &[GradingStrip], id: LegId, at: DVec2) -> StripOffset {
         let (strip, leg) = self.place(id);
         strips[strip].beside(leg, at)
@@ -120,8 +120,7 @@ pub(in crate::earthworks::grading) fn world(lattice: &Lattice, post: Post) -> DV
     DVec2::new(f64::from(post.column), f64::from(post.row)) * lattice.cell() + lattice.extent().min
 }
 
-/// The posts within `reach` of the line from one end to the other, and some that are further: row by row, those beside
-/// the part of the line that lies within reach of the row.
+/// The posts within `reach` of a leg, and some farther ones: row by row, beside the part of the leg near the row.
 fn posts_near(lattice: &Lattice, [from, to]: [DVec2; 2], reach: f64) -> impl Iterator<Item = Post> {
     let bounds = Rect::around([from, to]).grown(reach);
     let rows = between(lattice.grid_at(bounds.min).y, lattice.grid_at(bounds.max).y, lattice.rows());

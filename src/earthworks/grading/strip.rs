@@ -18,16 +18,13 @@ use crate::geom::offset::LineBend;
 use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
 
-/// The steepest line between two legs, meters along for each meter aside: that of a square turn. Further, legs are
-/// nearly opposite, and hardly any of the ground beside them belongs to both.
+/// The steepest border between two legs, meters along for each meter aside: that of a square turn.
 const STEEPEST_LEAN: f64 = 1.0;
 
-/// How far from a bend stations are squeezed, in the meters by which they must be at the formation's edge. There the
-/// road is then steeper by a third than along its centerline; with less it would be steeper yet, with more the road would
-/// lie aslant for longer.
+/// How far from a bend stations are squeezed, in meters of their shift at the formation's edge: a third steeper there.
 const EASE: f64 = 4.0;
 
-/// What a road's cross section looks like.
+/// The cross section of a road.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossSection {
     /// Half the carriageway's width in meters.
@@ -42,17 +39,16 @@ pub struct CrossSection {
     pub cut_slope: f64,
 }
 
-/// What stands where a strip ends.
+/// What ends a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StripEnd {
     /// Nothing, or more road: batters go round it.
     Open,
-    /// A wall: an abutment, that an embankment would else run past into the valley, or the portal in the hill over a
-    /// tunnel.
+    /// The wall of an abutment or of a portal: no batter goes round it.
     Wall,
 }
 
-/// A stretch of road on the ground.
+/// A road on the ground between bridges and tunnels.
 #[derive(Clone, Debug)]
 pub struct GradingStrip {
     /// Its centerline in world coordinates.
@@ -65,7 +61,7 @@ pub struct GradingStrip {
     pub ends: [StripEnd; 2],
 }
 
-/// A place beside a leg of a strip.
+/// The position of a point relative to a leg of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripOffset {
     /// How far from the edge of the formation, shoulders included, in meters; below 0 within.
@@ -84,7 +80,7 @@ impl GradingStrip {
         self.line.points().len() - 1
     }
 
-    /// Where a world position lies beside a leg.
+    /// The position of a world point relative to a leg.
     pub fn beside(&self, leg: usize, at: DVec2) -> StripOffset {
         let points = self.line.points();
         let (from, to) = (points[leg], points[leg + 1]);
@@ -110,8 +106,8 @@ impl GradingStrip {
         StripOffset { out_m, station_m, aside_m: left.abs(), beyond_m }
     }
 
-    /// What the station of a place `distance` meters along a leg from one of its vertices differs by from that, where the
-    /// place lies `aside` meters to the side, to the left seen from the leg's start and to the right seen from its end.
+    /// The shift of the station of a point `distance` meters along a leg from one of its vertices and `aside` meters to
+    /// the left as seen from the leg's start, to the right as seen from its end.
     fn squeezed(&self, vertex: usize, leg: usize, aside: f64, distance: f64) -> f64 {
         let lean = self.lean(vertex, leg);
         let points = self.line.points();

@@ -183,8 +183,7 @@ struct Crown {
     own: f32,
 }
 
-/// The figure at a place, of those thrown one into each of `count` × `count` squares, their radius in squares between
-/// two numbers; where several overlap the one nearest by its own measure.
+/// The figure at a point, of those thrown one into each of `count` × `count` squares, with radii between two numbers.
 fn crown(u: f32, v: f32, count: u32, (least, most): (f32, f32), seed: u32) -> Option<Crown> {
     let [x, y] = [u, v].map(|at| at * count as f32);
     let (column, row) = (x as u32, y as u32);

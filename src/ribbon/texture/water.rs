@@ -17,8 +17,7 @@ pub(super) fn stream(grain: f32) -> Srgba {
 
 /// A bank, from its outer edge on either side: damp green that fades into the ground.
 pub(super) fn bank(u: f32, grain: f32) -> Srgba {
-    /// How far from the edge, as a part of banks and water together, the bank is whole: half-way in, where a bank is a
-    /// sixth as wide as its river.
+    /// How far from the edge, as a part of banks and water together, the bank is opaque.
     const FADE: f32 = 0.06;
     let alpha = (u.min(1.0 - u) / FADE).min(1.0) * 0.75;
     let Srgba([red, green, blue, _]) = shade([116, 138, 92], (grain - 0.5) * 24.0);

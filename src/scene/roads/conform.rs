@@ -31,8 +31,7 @@ const CURVE_M: f64 = 50.0;
 /// A vertical curve is at least so many cells long: the kinks of the ground's own planes are no kinks of the land.
 const CURVE_CELLS: f64 = 2.0;
 
-/// How many posts should stand across the narrowest carriageway that the ground follows: fewer, and its formation is
-/// wider than itself; more, and the lattice grows with the square.
+/// Posts across the narrowest carriageway that the ground follows; the lattice grows with the square.
 const POSTS_ACROSS: f64 = 4.0;
 
 /// Designs the roads that the ground follows, grades the ground for them and cuts them where bridges and tunnels begin.

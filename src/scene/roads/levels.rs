@@ -42,11 +42,11 @@ const MOST_SAMPLES: f64 = 4096.0;
 /// How often levels of meetings are averaged: changes die off the faster, the fewer chains lie between two grounds.
 const EVENINGS: usize = 200;
 
-/// What lies under bridges.
+/// The ground and the water under bridges.
 pub struct Site<'a> {
     /// The ground.
     pub lattice: &'a Lattice,
-    /// Where there is water; its heights mean nothing.
+    /// Where there is water; its heights have no meaning.
     pub water: &'a Deck,
     /// How many times heights are stretched when drawn.
     pub exaggeration: f32,
@@ -59,7 +59,7 @@ impl Site<'_> {
     }
 }
 
-/// What passes below a chain.
+/// Something that passes below a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
     /// From where to where along the chain, in meters.
@@ -68,7 +68,7 @@ pub struct Passage {
     pub level_m: f64,
 }
 
-/// How a chain runs.
+/// The levels of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChainRun {
     /// Its elevations by station.
@@ -83,7 +83,7 @@ pub struct ChainRun {
     pub depth_m: f64,
 }
 
-/// How every chain runs; `None` where there is no ground along it.
+/// The levels of every chain; `None` where there is no ground along it.
 pub fn settle(
     spans: &[RoadSpan],
     chains: &[SpanChain],

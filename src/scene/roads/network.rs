@@ -29,8 +29,7 @@ const JUNCTION_TEXTURE_M: f64 = 15.0;
 /// Triangles of a junction smaller than this are what clipping left at a corner, in square meters.
 const NOTHING_M2: f64 = 1e-6;
 
-/// Joints by the rank of their pavement, from the least: where a lesser road meets a better one, the better one goes
-/// through.
+/// The surfaces of joints by the rank of their pavement, from the least.
 const JOINTS: [RibbonSurface; 3] =
     [RibbonSurface::TrackJunction, RibbonSurface::GravelJunction, RibbonSurface::AsphaltJunction];
 
@@ -43,7 +42,7 @@ pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
     lay_strips(&carriageways, extent, collected);
 }
 
-/// How good a pavement is among roads that meet.
+/// The rank of a pavement among roads that meet.
 pub fn rank_of(surface: RibbonSurface) -> u8 {
     match surface {
         RibbonSurface::Track => 0,
@@ -142,8 +141,7 @@ fn ribbons(strips: &[RoadStrip<'_>], network: &StreetNetwork, extent: &Rect) -> 
         .collect()
 }
 
-/// The joints that are told as a part of each strip, by their rank: those at shared vertices before those where ribbons
-/// share ground for another reason.
+/// The joints of each strip by rank: those at shared vertices before those where ribbons overlap otherwise.
 fn joints(
     strips: &[RoadStrip<'_>],
     ribbons: &[(PlanMesh, Class)],

@@ -23,7 +23,7 @@ use crate::terrain::profile::profile;
 /// No more stations than this: as many as 100 000 km of road have over cells of 15 m, and some 2 GB.
 const MOST_STATIONS: f64 = 2e7;
 
-/// What is stated for a road that the ground follows.
+/// The rules for a road that the ground follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// The steepest rise, meters per meter.

@@ -8,8 +8,7 @@ use crate::scene::roads::centerline::Centerline;
 /// Spans shorter than this are part of their neighbors, in meters.
 const SHORTEST_M: f64 = 0.05;
 
-/// How far a deck may be off the design level between its vertices, in meters: less than anyone sees, and than a
-/// carriageway's own evenness.
+/// How far a deck may be off the design level between its vertices, in meters: less than its evenness.
 const DECK_SLACK_M: f64 = 0.02;
 
 /// Vertices nearer to each other than this are one, in meters.
@@ -105,8 +104,7 @@ impl Route {
     }
 }
 
-/// The stations that a profile needs to be within [`DECK_SLACK_M`] of its levels where it is straight between them
-/// (Douglas and Peucker 1973), its ends with them.
+/// The stations that keep a profile within [`DECK_SLACK_M`] of its levels (Douglas and Peucker 1973), with its ends.
 fn bends(stations: &[f64], levels: &[f64]) -> Vec<f64> {
     let last = stations.len() - 1;
     let mut kept = vec![false; stations.len()];

@@ -124,7 +124,7 @@ fn level_of(
 
 /// The ground along a lake's outer shore.
 struct Shore {
-    /// Heights in meters, rising, each with the meters of shore that it stands for.
+    /// Heights in meters, rising, each with the meters of shore that it represents.
     heights: Vec<(f64, f64)>,
 }
 

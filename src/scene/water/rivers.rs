@@ -30,8 +30,7 @@ use crate::scene::sources::Sources;
 use crate::scene::water::network::{self, Stream};
 use crate::terrain::lattice::Lattice;
 
-/// The corners of a confluence's disc: with 8 its rim is nowhere further than a thirteenth of its radius from the circle,
-/// which is less than the ribbon's darker sides, and thousands of confluences cost little.
+/// The corners of a confluence's disc: its rim lies within a thirteenth of its radius of the circle.
 const DISC_CORNERS: u32 = 8;
 
 /// Adds the document's rivers and cuts the ground to those that fall.
