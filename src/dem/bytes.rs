@@ -35,7 +35,9 @@ impl<'a> ByteFields<'a> {
         Self { bytes, order: ByteOrder::Big }
     }
 
-    fields!(i16, u16, i32, u32, i64, u64, f32, f64);
+    fields!(i16, u16, i32, u32, f32, f64);
+    #[cfg(feature = "las")]
+    fields!(i64, u64);
 }
 
 /// The `N` bytes that start at `at`; `None` beyond the end.
