@@ -133,7 +133,7 @@ mod tests {
             }
         }
         let drivers = (0..=u8::MAX).filter(|&driver| TextEncoding::from_language_driver(driver).is_some());
-        assert_eq!(drivers.count(), 56);
+        assert_eq!(drivers.count(), 60);
     }
 
     #[test]

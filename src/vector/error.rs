@@ -74,7 +74,7 @@ pub enum VectorError {
         /// The member, shortened.
         found: String,
         /// Why its name is not understood; `None` where it has none.
-        source: Option<CrsError>,
+        source: Option<Box<CrsError>>,
     },
     /// The file holds several layers, and none was requested.
     #[error("it holds {} layers; choose one with 'layer': {}", names.len(), list(names))]

@@ -212,7 +212,7 @@ fn crs_of(member: &Value) -> Result<Crs, VectorError> {
         ["urn", .., authority, _, code] if authority.eq_ignore_ascii_case("epsg") => format!("EPSG:{code}"),
         _ => name.to_owned(),
     };
-    Crs::parse(&definition).map_err(|error| unknown(Some(error)))
+    Crs::parse(&definition).map_err(|error| unknown(Some(Box::new(error))))
 }
 
 /// Returns whether this is WGS 84 with longitude first, the system of all GeoJSON today.
