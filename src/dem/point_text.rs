@@ -17,13 +17,13 @@ const NAMES: [&[&str]; 3] = [
 pub(crate) struct PointText<'a> {
     text: &'a str,
     /// The first line, where it holds column names.
-    pub header: Option<TextLine<'a>>,
+    pub header: Option<PointLine<'a>>,
     /// The columns of x, y and z; 0, 1 and 2 without a header, `None` where the header does not name one.
     pub columns: [Option<usize>; 3],
 }
 
 #[derive(Clone, Copy)]
-pub(crate) struct TextLine<'a> {
+pub(crate) struct PointLine<'a> {
     /// Its number, from 1.
     pub number: usize,
     text: &'a str,
@@ -42,18 +42,18 @@ impl<'a> PointText<'a> {
         Self { text, header, columns }
     }
 
-    pub fn lines(&self) -> impl Iterator<Item = TextLine<'a>> {
+    pub fn lines(&self) -> impl Iterator<Item = PointLine<'a>> {
         let header = self.header.map_or(0, |header| header.number);
         lines(self.text).filter(move |line| line.number > header)
     }
 }
 
-fn lines(text: &str) -> impl Iterator<Item = TextLine<'_>> {
-    let lines = text.lines().zip(1..).map(|(line, number)| TextLine { number, text: line.trim() });
+fn lines(text: &str) -> impl Iterator<Item = PointLine<'_>> {
+    let lines = text.lines().zip(1..).map(|(line, number)| PointLine { number, text: line.trim() });
     lines.filter(|line| !(line.text.is_empty() || line.text.starts_with('#') || line.text.starts_with("//")))
 }
 
-impl<'a> TextLine<'a> {
+impl<'a> PointLine<'a> {
     /// The point in three columns, NaN where the height is empty; `None` where one is no number or x or y not finite.
     pub fn point(&self, columns: [usize; 3]) -> Option<DVec3> {
         let mut found = [None; 3];

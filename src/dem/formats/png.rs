@@ -51,7 +51,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     // Four samples a pixel with alpha, and as much again for rows and the inflater.
     decoder.set_limits(png::Limits { bytes: size.x as usize * size.y as usize * 8 + (1 << 20) });
     decoder.set_transformations(Transformations::EXPAND);
-    let pixels = Pixels::read(decoder).map_err(|error| FORMAT.undecodable(error))?;
+    let pixels = PngPixels::read(decoder).map_err(|error| FORMAT.undecodable(error))?;
     let samples = match heights {
         PngHeights::Gray { scale, offset } => Samples::F32(pixels.gray()).scaled(scale, offset),
         PngHeights::Colors(encoding) => Samples::F64(pixels.heights(encoding)),
@@ -105,7 +105,7 @@ fn check_pixels(color: ColorType, depth: BitDepth) -> Result<(), DemErrorKind> {
 }
 
 /// Decoded pixels: palettes as colors, transparency as alpha, two bytes a sample with the most significant first.
-struct Pixels {
+struct PngPixels {
     bytes: Vec<u8>,
     /// Bytes of a sample.
     sample: usize,
@@ -114,7 +114,7 @@ struct Pixels {
     transparent_gray: Option<f64>,
 }
 
-impl Pixels {
+impl PngPixels {
     fn read(decoder: png::Decoder<Cursor<&[u8]>>) -> Result<Self, png::DecodingError> {
         let mut reader = decoder.read_info()?;
         let is_gray = reader.info().color_type == ColorType::Grayscale;
