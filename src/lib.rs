@@ -63,7 +63,14 @@
 //! World space is right-handed: X east, Y north, Z up, meters from the south-west post. Map coordinates are those of the
 //! terrain's or scene's coordinate system. [`architecture`] draws the modules below.
 
-#![cfg_attr(not(feature = "internals"), allow(dead_code, reason = "tests and benches use the rest"))]
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(
+        dead_code,
+        rustdoc::private_intra_doc_links,
+        reason = "tests, benches and their readers use the rest"
+    )
+)]
 
 #[doc = include_str!("ARCHITECTURE.md")]
 pub mod architecture {}

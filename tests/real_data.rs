@@ -28,13 +28,13 @@ use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 
 use common::scratch::Scratch;
 
 /// The scene that `text` describes, written to `folder` and reading what lies there and under `allowed`.
-fn scene(folder: &Scratch, text: &str, allowed: &[PathBuf]) -> Result<Scene, String> {
+fn scene(folder: &Scratch, text: &str, allowed: &[PathBuf]) -> Result<SceneModel, String> {
     let path = folder.write("scenes/scene.toml", text);
     let document =
         parse_bytes(&path.to_string_lossy(), text.as_bytes()).map_err(|report| report.to_string())?;
@@ -52,7 +52,7 @@ struct Pictured {
 }
 
 /// Renders the scene's camera and leaves the annotated picture as `tmp/real_<name>.png` in the target folder.
-fn picture(scene: &Scene, view: &str, name: &str, size: (u32, u32)) -> Pictured {
+fn picture(scene: &SceneModel, view: &str, name: &str, size: (u32, u32)) -> Pictured {
     let view = scene.view(Some(view)).expect("a camera of the scene");
     let camera = camera(scene, view, size).expect("a sound camera");
     let shot = build_draw_list(scene, &camera, &|_| ());

@@ -5,7 +5,7 @@ use crate::cli::options::SceneArguments;
 use crate::cli::output::{print_lines, row};
 use crate::cli::progress::StepTimer;
 use crate::pipeline::scene_file::open_scene;
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::scene::views::whole_meters;
 
 /// The most notes that are printed: as many as fit on a screen beside the rest.
@@ -21,7 +21,7 @@ pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
 }
 
 /// What a scene holds, and the notes about it, in lines.
-pub fn contents(scene: &Scene) -> Vec<String> {
+pub fn contents(scene: &SceneModel) -> Vec<String> {
     let lattice = &scene.terrain.lattice;
     let (low, high) = scene.terrain.height_range();
     let size = lattice.extent().size() / 1000.0;

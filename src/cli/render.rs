@@ -16,7 +16,7 @@ use crate::pipeline::files;
 use crate::pipeline::picture::{PictureSize, RenderedView, render_view};
 use crate::pipeline::scene_file::open_scene;
 use crate::render::RenderBackend;
-use crate::scene::{Scene, View};
+use crate::scene::{SceneModel, SceneView};
 
 /// The longest text of a label in the summary, in characters.
 const LONGEST_LABEL: usize = 60;
@@ -67,7 +67,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
 
 /// A scene and the picture of it that was written.
 struct RenderedScene {
-    scene: Scene,
+    scene: SceneModel,
     camera: String,
     view: RenderedView,
 }
@@ -83,7 +83,7 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
     Ok(RenderedScene { scene, camera: camera.name, view })
 }
 
-fn find_camera<'a>(scene: &'a Scene, name: Option<&str>) -> Result<&'a View, CliError> {
+fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let name = name.unwrap_or_default();

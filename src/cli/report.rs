@@ -11,7 +11,7 @@ use crate::cli::output::{aligned, print, print_lines};
 use crate::cli::progress::StepTimer;
 use crate::pipeline::files::{self, WriteFileError};
 use crate::pipeline::scene_file::open_scene_true_to_scale;
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
 
 /// The most rows of a table that are printed; a file or JSON holds all.
@@ -82,7 +82,7 @@ fn value(cell: &ReportCell) -> Value {
 
 /// Writes a file for each table, `NAME.csv`, and for each road profile, `profile_NUMBER_NAME.csv` with the number of the
 /// road among the scene's features. Returns their paths.
-fn write_csv_files(scene: &Scene, folder: &Path) -> Result<Vec<String>, WriteFileError> {
+fn write_csv_files(scene: &SceneModel, folder: &Path) -> Result<Vec<String>, WriteFileError> {
     let tables = scene.report.tables();
     let tables = tables.iter().map(|table| (table.name.replace(' ', "_"), as_csv(table)));
     let profiles = scene.profiles.iter().map(|profile| {

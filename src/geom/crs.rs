@@ -61,7 +61,7 @@ pub enum CrsError {
         text: String,
         /// What is wrong with it.
         #[source]
-        reason: CrsFault,
+        reason: Box<CrsFault>,
     },
     /// The two systems have different datums and the shift between them is not known.
     #[error(
@@ -88,7 +88,7 @@ pub enum CrsError {
         y: f64,
         /// The projection's error.
         #[source]
-        reason: CrsFault,
+        reason: Box<CrsFault>,
     },
 }
 
@@ -285,7 +285,7 @@ impl Crs {
             to: to.name().into(),
             x: at.x,
             y: at.y,
-            reason,
+            reason: Box::new(reason),
         };
         let scale_in = if self.is_geographic() { 1f64.to_radians() } else { 1.0 };
         let mut point = (at.x * scale_in, at.y * scale_in, 0.0);
@@ -360,7 +360,7 @@ fn unknown(text: &str, reason: impl Into<CrsFault>) -> CrsError {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.into(),
     };
-    CrsError::Unknown { text, reason: reason.into() }
+    CrsError::Unknown { text, reason: Box::new(reason.into()) }
 }
 
 #[cfg(test)]

@@ -125,7 +125,7 @@ pub fn value_at(stations: &[f64], values: &[f64], station: f64) -> f64 {
     let (from, to) = (stations[after - 1], stations[after]);
     let part = if to > from { ((station - from) / (to - from)).clamp(0.0, 1.0) } else { 1.0 };
     let (low, high) = (values[after - 1], values[after]);
-    if part < 1.0 { low + (high - low) * part } else { high }
+    if part < 1.0 { low * (1.0 - part) + high * part } else { high }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::roam::criterion::flat::Flat;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
 use crate::scene::picture;
-use crate::scene::{Scene, SceneFeature, Terrain};
+use crate::scene::{SceneFeature, SceneModel, SceneTerrain};
 
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub struct ExportedScene {
 /// # Errors
 /// A file cannot be written, or would replace one that the scene is made of.
 pub fn export(
-    scene: &Scene,
+    scene: &SceneModel,
     path: &Path,
     format: ExportFormat,
     max_error_m: f64,
@@ -81,7 +81,7 @@ pub fn export(
 }
 
 /// The terrain with errors of at most `max_error_m` at every post.
-fn displayed(terrain: &Terrain, max_error_m: f32) -> DisplayedTerrain {
+fn displayed(terrain: &SceneTerrain, max_error_m: f32) -> DisplayedTerrain {
     let patches: Vec<_> = terrain.layout.patches().collect();
     let criterion = Flat::new(&terrain.layout, terrain.errors(), max_error_m);
     let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
@@ -100,7 +100,7 @@ fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
     })
 }
 
-fn remarks(scene: &Scene, max_error_m: f64) -> Remarks {
+fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {
     let origin = scene.terrain.lattice.origin();
     let title = scene.title.as_deref().unwrap_or("a scene");
     let lines = [

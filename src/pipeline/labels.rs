@@ -6,12 +6,12 @@ use crate::annotate::annotation::{Annotations, PictureLabel};
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
-use crate::render::picture::Picture;
-use crate::scene::{Scene, SceneLabel};
+use crate::render::picture::Rendering;
+use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
 
 /// The annotations of a picture: labels with their positions on it, and furniture.
-pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotations {
+pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Annotations {
     let furniture = scene.furniture;
     Annotations {
         labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
@@ -24,7 +24,7 @@ pub fn annotations(scene: &Scene, camera: &Camera, picture: &Picture) -> Annotat
     }
 }
 
-fn project(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<PictureLabel> {
+fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<PictureLabel> {
     let ground = camera.project(label.ground)?;
     let top = camera.project(label.anchor)?;
     Some(PictureLabel {
@@ -40,7 +40,7 @@ fn project(label: &SceneLabel, camera: &Camera, picture: &Picture) -> Option<Pic
 
 /// Whether a place is in front of, or within 2 % of, the depth of one of the pixels around it. The drawn ground may be
 /// off by its tolerance, and the pixel of a summit may show the ground behind it.
-fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
+fn is_visible(picture: &Rendering, pixel: Vec2, depth_m: f32) -> bool {
     let (width, height) = (i64::from(picture.pixels.width()), i64::from(picture.pixels.height()));
     // A place near the plane of the eye may project beyond the range of an i32.
     let (column, row) = (i64::from(pixel.x.floor() as i32), i64::from(pixel.y.floor() as i32));
@@ -54,14 +54,14 @@ fn is_visible(picture: &Picture, pixel: Vec2, depth_m: f32) -> bool {
 }
 
 /// The scale bar for the distance of the ground at the picture's center, or at the first pixel with ground below it.
-fn scale_bar(camera: &Camera, picture: &Picture) -> Option<ScaleBar> {
+fn scale_bar(camera: &Camera, picture: &Rendering) -> Option<ScaleBar> {
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
     let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
     let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;
     Some(ScaleBar::at_distance(camera, distance_m))
 }
 
-fn legend(scene: &Scene) -> Legend {
+fn legend(scene: &SceneModel) -> Legend {
     let (low_m, high_m) = scene.terrain.height_range();
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
     Legend {

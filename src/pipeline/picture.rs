@@ -7,7 +7,7 @@ use crate::pipeline::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
-use crate::scene::{Scene, View};
+use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::CameraError;
 
 /// The size of a picture.
@@ -53,8 +53,8 @@ pub enum PictureError {
 /// # Errors
 /// See [`PictureError`].
 pub fn render_view(
-    scene: &Scene,
-    view: &View,
+    scene: &SceneModel,
+    view: &SceneView,
     size: PictureSize,
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),

@@ -8,7 +8,7 @@ use crate::description::parse::parse_including;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
-use crate::scene::{Scene, SceneGround};
+use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -36,7 +36,7 @@ pub fn open_scene(
     path: &Path,
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
-) -> Result<Scene, OpenSceneError> {
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed)?;
     Ok(build(&document, &assets, progress)?)
@@ -60,7 +60,7 @@ pub fn open_scene_true_to_scale(
     path: &Path,
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
-) -> Result<Scene, OpenSceneError> {
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed)?;
     document.terrain.vertical_exaggeration = 1.0;

@@ -12,7 +12,7 @@ pub mod picture;
 
 use crate::draw::list::DrawList;
 use crate::render::cpu::{CpuRenderError, RenderQuality};
-use crate::render::picture::Picture;
+use crate::render::picture::Rendering;
 use crate::view::camera::Camera;
 
 /// The renderer to draw with.
@@ -46,7 +46,7 @@ pub enum RenderError {
 ///
 /// # Errors
 /// See [`RenderError`].
-pub fn render(list: &DrawList, camera: &Camera, backend: RenderBackend) -> Result<Picture, RenderError> {
+pub fn render(list: &DrawList, camera: &Camera, backend: RenderBackend) -> Result<Rendering, RenderError> {
     match backend {
         RenderBackend::Cpu => Ok(cpu::render(list, camera, &RenderQuality::default())?),
         #[cfg(feature = "gpu")]

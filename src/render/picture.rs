@@ -12,7 +12,7 @@ pub(in crate::render) const LEAST_VISIBLE_ALPHA: f32 = 0.5;
 /// Where a transparent surface covers a pixel, depth and feature are its own from an alpha of ½ on, and those of the
 /// surface behind it below that.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct Rendering {
     /// Colors, opaque.
     pub pixels: Pixels,
     /// Meters from the eye along the viewing direction at the pixel's center; infinite for sky.

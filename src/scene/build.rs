@@ -31,7 +31,7 @@ use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{Scene, SceneGround, Terrain};
+use crate::scene::{SceneGround, SceneModel, SceneTerrain};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -63,7 +63,7 @@ pub fn build(
     document: &Document,
     assets: &Assets,
     progress: &dyn Fn(&'static str),
-) -> Result<Scene, Diagnostic> {
+) -> Result<SceneModel, Diagnostic> {
     progress("reading elevation");
     let loaded = ground::load(document, assets)?;
     let (crs, mut lattice) = (loaded.crs, loaded.lattice);
@@ -93,7 +93,7 @@ pub fn build(
     let (low, high) = terrain.bounds();
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&terrain.lattice), &collected.decks)?;
-    Ok(Scene {
+    Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),
         heights,
@@ -159,11 +159,16 @@ fn height_service(
     Ok(if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) })
 }
 
-fn terrain(document: &Document, lattice: Lattice) -> Result<Terrain, Diagnostic> {
+fn terrain(document: &Document, lattice: Lattice) -> Result<SceneTerrain, Diagnostic> {
     let layout = PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
     })?;
     let tolerance_px = document.terrain.tolerance_px as f32;
-    Ok(Terrain::new(Arc::new(lattice), layout, document.terrain.vertical_exaggeration as f32, tolerance_px))
+    Ok(SceneTerrain::new(
+        Arc::new(lattice),
+        layout,
+        document.terrain.vertical_exaggeration as f32,
+        tolerance_px,
+    ))
 }

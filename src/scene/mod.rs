@@ -58,7 +58,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it, labels and views.
-pub struct Scene {
+pub struct SceneModel {
     /// The picture's title.
     pub title: Option<String>,
     /// A second line under it.
@@ -66,7 +66,7 @@ pub struct Scene {
     /// The map coordinates' system.
     pub crs: Crs,
     /// The terrain.
-    pub terrain: Terrain,
+    pub terrain: SceneTerrain,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     /// The colors of the ground by height.
@@ -91,7 +91,7 @@ pub struct Scene {
     /// Names and heights.
     pub labels: Vec<SceneLabel>,
     /// Views; at least one.
-    pub cameras: Vec<View>,
+    pub cameras: Vec<SceneView>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
     /// Every feature, in the order of ids from 2 up.
@@ -115,7 +115,7 @@ pub struct SceneGround {
 }
 
 /// The ground with the measures that refinement needs, each made on first use.
-pub struct Terrain {
+pub struct SceneTerrain {
     /// The heights.
     pub lattice: Arc<Lattice>,
     /// The patches over them.
@@ -130,7 +130,7 @@ pub struct Terrain {
     patch_heights: OnceLock<PatchHeights>,
 }
 
-impl Terrain {
+impl SceneTerrain {
     /// The terrain of `lattice`, displayed `exaggeration` times as high. Nothing is measured yet.
     pub fn new(lattice: Arc<Lattice>, layout: PatchLayout, exaggeration: f32, tolerance_px: f32) -> Self {
         Self {
@@ -334,7 +334,7 @@ pub struct SceneLabel {
 
 /// A view of the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View {
+pub struct SceneView {
     /// Its name on the command line.
     pub name: String,
     /// The eye, world space.
@@ -345,7 +345,7 @@ pub struct View {
     pub fov_y_rad: f32,
 }
 
-impl Scene {
+impl SceneModel {
     /// What the ground looks like, its light computed on first use.
     pub fn map(&self) -> &Arc<GroundMap> {
         self.map.get_or_init(|| {
@@ -361,7 +361,7 @@ impl Scene {
     }
 
     /// The view called `name`, or the first where no name is given.
-    pub fn view(&self, name: Option<&str>) -> Option<&View> {
+    pub fn view(&self, name: Option<&str>) -> Option<&SceneView> {
         match name {
             Some(name) => self.cameras.iter().find(|view| view.name == name),
             None => self.cameras.first(),

@@ -11,7 +11,7 @@ use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::{Haze, Lighting};
-use crate::scene::Terrain;
+use crate::scene::SceneTerrain;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
@@ -94,7 +94,12 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
 }
 
 /// The height, slope and light of every post.
-pub fn ground_map(terrain: &Terrain, to_sun: Vec3, ramp: ColorRamp, contours: Option<Contours>) -> GroundMap {
+pub fn ground_map(
+    terrain: &SceneTerrain,
+    to_sun: Vec3,
+    ramp: ColorRamp,
+    contours: Option<Contours>,
+) -> GroundMap {
     let lattice = &terrain.lattice;
     let light = light::light(terrain.displayed(), to_sun);
     let filled = filled_heights(lattice, terrain.height_range().0);

@@ -5,14 +5,14 @@ use glam::Vec3;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, LabelTable};
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneLabel, Terrain, View};
+use crate::scene::{SceneLabel, SceneTerrain, SceneView};
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in.
 ///
 /// # Errors
 /// A label lies off the ground.
-pub fn labels(frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<Vec<SceneLabel>, Diagnostic> {
+pub fn labels(frame: &WorldFrame<'_>, terrain: &SceneTerrain) -> Result<Vec<SceneLabel>, Diagnostic> {
     let label = |table: &LabelTable| {
         let world = frame.point(&table.at, table.crs.as_ref())?;
         let ground = frame.on_ground(&terrain.lattice, &table.at, world)?;
@@ -37,14 +37,18 @@ pub fn whole_meters(height_m: f32) -> String {
 ///
 /// # Errors
 /// The eye of a camera without `eye_elevation` lies off the ground, its target does, or the two coincide.
-pub fn cameras(frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<Vec<View>, Diagnostic> {
+pub fn cameras(frame: &WorldFrame<'_>, terrain: &SceneTerrain) -> Result<Vec<SceneView>, Diagnostic> {
     if frame.document.cameras.is_empty() {
         return Ok(vec![overview(terrain)]);
     }
     frame.document.cameras.iter().map(|table| camera(table, frame, terrain)).collect()
 }
 
-fn camera(table: &CameraTable, frame: &WorldFrame<'_>, terrain: &Terrain) -> Result<View, Diagnostic> {
+fn camera(
+    table: &CameraTable,
+    frame: &WorldFrame<'_>,
+    terrain: &SceneTerrain,
+) -> Result<SceneView, Diagnostic> {
     let eye_world = frame.point(&table.eye, table.crs.as_ref())?;
     let eye = match table.eye_elevation {
         Some(elevation) => eye_world.as_vec2().extend(elevation as f32 * terrain.exaggeration),
@@ -63,7 +67,7 @@ fn camera(table: &CameraTable, frame: &WorldFrame<'_>, terrain: &Terrain) -> Res
         let help = "move look_at, or give it another look_at_height";
         return Err(frame.document.error(&table.look_at, message).with_help(help));
     }
-    Ok(View {
+    Ok(SceneView {
         name: table.name.to_string(),
         eye,
         target,
@@ -72,9 +76,9 @@ fn camera(table: &CameraTable, frame: &WorldFrame<'_>, terrain: &Terrain) -> Res
 }
 
 /// A note for each camera whose eye is under the ground.
-pub fn buried(cameras: &[View], terrain: &Terrain) -> Vec<String> {
+pub fn buried(cameras: &[SceneView], terrain: &SceneTerrain) -> Vec<String> {
     let lattice = &terrain.lattice;
-    let depth_m = |view: &View| {
+    let depth_m = |view: &SceneView| {
         let at = lattice.origin() + view.eye.truncate().as_dvec2();
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
         Some(height - f64::from(view.eye.z / terrain.exaggeration)).filter(|&depth| depth > 0.0)
@@ -94,7 +98,7 @@ const OVERVIEW_ASPECT: f32 = 4.0 / 3.0;
 const OVERVIEW_MARGIN: f32 = 1.1;
 
 /// A view from the south, 36° down, as near as the whole ground fits in.
-fn overview(terrain: &Terrain) -> View {
+fn overview(terrain: &SceneTerrain) -> SceneView {
     let (min, max) = terrain.bounds();
     let target = (min + max) / 2.0;
     let back = Vec3::new(0.0, -0.8, 0.6);
@@ -109,7 +113,12 @@ fn overview(terrain: &Terrain) -> View {
             offset.dot(back) + (offset.dot(up).abs() / tan).max(offset.x.abs() / (tan * OVERVIEW_ASPECT))
         })
         .fold(0.0, f32::max);
-    View { name: "overview".into(), eye: target + back * (distance * OVERVIEW_MARGIN), target, fov_y_rad }
+    SceneView {
+        name: "overview".into(),
+        eye: target + back * (distance * OVERVIEW_MARGIN),
+        target,
+        fov_y_rad,
+    }
 }
 
 #[cfg(test)]

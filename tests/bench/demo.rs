@@ -17,7 +17,7 @@ use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::render::RenderBackend;
 use sandtable::scene::picture::ViewDraw;
-use sandtable::scene::{Scene, View};
+use sandtable::scene::{SceneModel, SceneView};
 
 use crate::steps::{Step, Steps};
 
@@ -41,8 +41,8 @@ fn main() {
 
 /// Everything from the scene file to the PNG, once.
 struct Run {
-    scene: Scene,
-    view: View,
+    scene: SceneModel,
+    view: SceneView,
     finished: RenderedView,
     steps: Vec<Step>,
     png_bytes: usize,
@@ -59,7 +59,7 @@ fn run_once() -> Run {
     Run { scene, view, finished, steps: steps.finish(), png_bytes }
 }
 
-fn picture(scene: &Scene, view: &View, steps: &Steps) -> RenderedView {
+fn picture(scene: &SceneModel, view: &SceneView, steps: &Steps) -> RenderedView {
     render_view(scene, view, SIZE, RenderBackend::Cpu, &|step| steps.begin(step))
         .expect("the camera is sound")
 }

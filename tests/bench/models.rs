@@ -24,7 +24,7 @@ use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model};
 use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
@@ -63,7 +63,7 @@ fn print_forest() {
     });
 }
 
-fn row(name: &str, scene: &Scene, camera: &Camera, listed: impl Fn(&Scene, &Camera) -> DrawList) {
+fn row(name: &str, scene: &SceneModel, camera: &Camera, listed: impl Fn(&SceneModel, &Camera) -> DrawList) {
     let steps = Steps::default();
     steps.begin("listing");
     let list = listed(scene, camera);

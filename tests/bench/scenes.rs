@@ -35,7 +35,7 @@ fn built(
     folder: &tests_common::scratch::Scratch,
     text: &str,
     allowed: &[std::path::PathBuf],
-) -> (sandtable::scene::Scene, Vec<steps::Step>) {
+) -> (sandtable::scene::SceneModel, Vec<steps::Step>) {
     let path = folder.write("scene.toml", text);
     let steps = steps::Steps::default();
     let scene = sandtable::pipeline::scene_file::open_scene(&path, allowed, &|step| steps.begin(step))

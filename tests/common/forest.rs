@@ -9,7 +9,7 @@ use sandtable::description::words::Clamp;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture;
-use sandtable::scene::{GroundFit, Placement, Scene};
+use sandtable::scene::{GroundFit, Placement, SceneModel};
 use sandtable::view::camera::Camera;
 
 use super::scratch::Scratch;
@@ -21,7 +21,7 @@ const POSTS: u32 = 257;
 pub const SIDE_M: f32 = (POSTS - 1) as f32 * 10.0;
 
 /// The scene with `count` placements of `models`, in turn, files of the project's own.
-pub fn forest(count: usize, models: &[&str]) -> Scene {
+pub fn forest(count: usize, models: &[&str]) -> SceneModel {
     let scratch = Scratch::new();
     scratch.write("hills.asc", hills());
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
@@ -73,7 +73,7 @@ fn placements(count: usize, models: usize) -> Vec<Placement> {
 }
 
 /// A picture over the whole forest from above its southern edge.
-pub fn overlook(scene: &Scene, size: (u32, u32)) -> Camera {
+pub fn overlook(scene: &SceneModel, size: (u32, u32)) -> Camera {
     seen_from(
         scene,
         Vec3::new(SIDE_M * 0.5, -60.0, 520.0),
@@ -83,7 +83,7 @@ pub fn overlook(scene: &Scene, size: (u32, u32)) -> Camera {
 }
 
 /// A picture from anywhere.
-pub fn seen_from(scene: &Scene, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
-    let view = sandtable::scene::View { name: String::new(), eye, target, fov_y_rad: 0.7 };
+pub fn seen_from(scene: &SceneModel, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
+    let view = sandtable::scene::SceneView { name: String::new(), eye, target, fov_y_rad: 0.7 };
     picture::camera(scene, &view, size).expect("sound")
 }

@@ -11,12 +11,12 @@ use sandtable::ribbon::texture::cover::cover_length_m;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 
 use crate::common::scratch::Scratch;
 
 /// A scene over hills of 300 m by 300 m, from `text` after its `[terrain]`, with `uses.geojson` beside it.
-fn scene(text: &str) -> Scene {
+fn scene(text: &str) -> SceneModel {
     let folder = Scratch::new();
     let height =
         |index: i32| 100.0 + 8.0 * libm::sin(f64::from(index % 31) * 0.4) + f64::from(index / 31) * 0.7;
@@ -39,7 +39,7 @@ fn scene(text: &str) -> Scene {
     build(&document, &assets, &|_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn area_m2(scene: &Scene, wanted: RibbonSurface) -> f64 {
+fn area_m2(scene: &SceneModel, wanted: RibbonSurface) -> f64 {
     scene.ribbons.iter().filter(|ribbon| ribbon.surface == wanted).map(|ribbon| ribbon.plan.area_m2()).sum()
 }
 

@@ -8,20 +8,20 @@ use crate::common::scratch::Scratch;
 use glam::DVec2;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::pipeline::scene_file::open_scene;
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::structure::deck_check::closed;
 use sandtable::terrain::query::{Interpolation, Surface};
 
-fn scene(path: &Path, allow: Vec<PathBuf>) -> Scene {
+fn scene(path: &Path, allow: Vec<PathBuf>) -> SceneModel {
     open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
-fn crossing() -> Scene {
+fn crossing() -> SceneModel {
     scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bridge.toml"), Vec::new())
 }
 
 /// Every bridge's solids, by feature.
-fn bridges(scene: &Scene) -> BTreeMap<FeatureId, Vec<&DrawMesh>> {
+fn bridges(scene: &SceneModel) -> BTreeMap<FeatureId, Vec<&DrawMesh>> {
     let mut all: BTreeMap<FeatureId, Vec<&DrawMesh>> = BTreeMap::new();
     for solid in &scene.solids {
         if scene.features[solid.feature.0 as usize - 2].kind == FeatureKind::Bridge {
@@ -96,7 +96,7 @@ fn too_many_piers_are_refused_at_the_bridge_that_asks_for_most() {
 }
 
 /// Builds a city's roads and tells how its bridges and tunnels came out.
-fn city(dem: &str, roads: &str) -> Option<Scene> {
+fn city(dem: &str, roads: &str) -> Option<SceneModel> {
     let (dem, roads) = (data(dem)?, data(roads)?);
     let scratch = Scratch::new();
     let text = format!(
@@ -107,7 +107,7 @@ fn city(dem: &str, roads: &str) -> Option<Scene> {
     Some(scene(&path, folders))
 }
 
-fn holds(scene: &Scene) {
+fn holds(scene: &SceneModel) {
     for (feature, meshes) in bridges(scene) {
         assert_eq!(closed(&meshes), Ok(()), "{feature:?}");
     }

@@ -8,7 +8,7 @@ use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::picture::display;
 use sandtable::scene::report::BuildingPadRow;
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::structure::building::{self, Measures};
 use sandtable::structure::draped_solid::DrapedSolid;
 use sandtable::terrain::full_resolution::FullResolution;
@@ -23,22 +23,22 @@ use crate::common::scratch::Scratch;
 const HILLS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/jacksboro/hills.png");
 
 /// A scene of the hills with `tables`.
-fn scene(tables: &str) -> Scene {
+fn scene(tables: &str) -> SceneModel {
     let scratch = Scratch::new();
     std::fs::copy(HILLS, scratch.at("hills.png")).expect("copied");
     let ground = "[terrain]\ndem = \"hills.png\"\nheight_scale = 0.1\ncell = 10\n";
     load_scene(&scratch.write("scene.toml", format!("{ground}{tables}")), &[])
 }
 
-fn load_scene(path: &Path, allow: &[PathBuf]) -> Scene {
+fn load_scene(path: &Path, allow: &[PathBuf]) -> SceneModel {
     open_scene(path, allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 
-fn demo() -> Scene {
+fn demo() -> SceneModel {
     load_scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/buildings.toml"), &[])
 }
 
-fn measured(scene: &Scene) -> Vec<(FeatureId, Measures)> {
+fn measured(scene: &SceneModel) -> Vec<(FeatureId, Measures)> {
     let measures = |mesh: &DrawMesh| building::check(mesh).unwrap_or_else(|fault| panic!("{fault}"));
     scene.solids.iter().map(|solid| (solid.feature, measures(&solid.mesh))).collect()
 }
@@ -119,7 +119,7 @@ proptest! {
         eye in (-500f32..1800.0, -500f32..1800.0, 150f32..2500.0),
         tolerance in 0usize..3,
     ) {
-        static SCENES: std::sync::LazyLock<Vec<Scene>> = std::sync::LazyLock::new(|| {
+        static SCENES: std::sync::LazyLock<Vec<SceneModel>> = std::sync::LazyLock::new(|| {
             [1.0, 15.0, 120.0].into_iter().map(|tolerance_px| {
                 let mut scene = demo();
                 scene.terrain.tolerance_px = tolerance_px;
@@ -148,7 +148,7 @@ fn lowest_along(ring: &[DVec2], ground: &dyn TriangleSurface) -> f64 {
 }
 
 /// Buildings of a real place, each with every roof that is asked for.
-fn city(folder: &str, dem: &str, buildings: &str) -> Option<Vec<Scene>> {
+fn city(folder: &str, dem: &str, buildings: &str) -> Option<Vec<SceneModel>> {
     let folder = data(folder)?;
     let scratch = Scratch::new();
     let scenes = ["flat", "gabled", "hipped"].map(|roof| {
@@ -161,7 +161,7 @@ fn city(folder: &str, dem: &str, buildings: &str) -> Option<Vec<Scene>> {
     Some(scenes.into())
 }
 
-fn raised(scene: &Scene) -> usize {
+fn raised(scene: &SceneModel) -> usize {
     scene.features.iter().filter(|feature| feature.kind == FeatureKind::Building).count()
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec2;
 use sandtable::description::parse::parse_bytes;
 use sandtable::earthworks::alignment::Support;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::report::ConformedRoadRow;
@@ -19,14 +19,14 @@ use crate::common::scratch::Scratch;
 /// How far a level that was rounded to f32 may be off, in meters.
 const ROUNDED_M: f64 = 1e-3;
 
-fn scene(file: &Path, text: &str) -> Result<Scene, String> {
+fn scene(file: &Path, text: &str) -> Result<SceneModel, String> {
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
     let assets = Assets::new(file, &[]).expect("the folder is there");
     build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
 }
 
 /// A scene over 81 × 61 posts 10 m apart with this height at each place, `text` after its `[terrain]`.
-fn made_up(height: impl Fn(f64, f64) -> f64, text: &str) -> Result<Scene, String> {
+fn made_up(height: impl Fn(f64, f64) -> f64, text: &str) -> Result<SceneModel, String> {
     let scratch = Scratch::new();
     let at = |index: u32| (f64::from(index % 81) * 10.0, f64::from(60 - index / 81) * 10.0);
     let heights: Vec<String> = (0..81 * 61).map(at).map(|(x, y)| format!("{:.4}", height(x, y))).collect();
@@ -44,11 +44,11 @@ fn hills(x: f64, y: f64) -> f64 {
 }
 
 /// What the report says of the first road that conforms.
-fn conformed(scene: &Scene) -> &ConformedRoadRow {
+fn conformed(scene: &SceneModel) -> &ConformedRoadRow {
     scene.report.conformed_roads.first().expect("a road conforms")
 }
 
-fn ground(scene: &Scene, at: DVec2) -> f64 {
+fn ground(scene: &SceneModel, at: DVec2) -> f64 {
     let answer = ground_height(&scene.terrain.lattice, Interpolation::Planar, at);
     answer.height_m().expect("on the model")
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::picture::display;
 use sandtable::structure::bands::{BandSize, hedge, parapets, rails, wall};
 use sandtable::structure::draped_solid::DrapedSolid;
@@ -23,7 +23,7 @@ use crate::common::scratch::Scratch;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The gallery's scene of lines at several tolerances.
-static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
+static SCENES: LazyLock<Vec<SceneModel>> = LazyLock::new(|| {
     let path = Path::new(ROOT).join("scenes/lines.toml");
     let load = |tolerance_px: f32| {
         let mut scene = open_scene(&path, &[], &|_| {}).expect("sound");
@@ -33,13 +33,13 @@ static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
     [0.5, 5.0, 40.0, 300.0].map(load).into()
 });
 
-fn seen(scene: &Scene, eye: (f32, f32, f32), target: (f32, f32)) -> Option<DisplayedTerrain> {
+fn seen(scene: &SceneModel, eye: (f32, f32, f32), target: (f32, f32)) -> Option<DisplayedTerrain> {
     let target = Vec3::new(target.0, target.1, 80.0);
     let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), target, 0.8, (800, 600), (0.5, 9000.0)).ok()?;
     Some(display(&scene.terrain, &camera))
 }
 
-fn finest(scene: &Scene) -> FullResolution<'_> {
+fn finest(scene: &SceneModel) -> FullResolution<'_> {
     FullResolution { lattice: scene.terrain.displayed() }
 }
 
@@ -59,7 +59,7 @@ proptest! {
         prop_assume!(displayed.is_some());
         let displayed = displayed.expect("checked");
         let points: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
-        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m: width_m, height_m: 3.0, every_m: 3.0 })]
+        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m, height_m: 3.0, every_m: 3.0 })]
             .into_iter()
             .chain(rails(&points, width_m, 2.0))
             .chain(parapets(&points, BandSize { width_m, height_m: 2.0, every_m: 5.0 }))
@@ -147,7 +147,7 @@ fn a_wall_holds_what_its_length_width_and_height_make() {
 }
 
 /// The message about a scene of the hills with `tables`, or the scene.
-fn built(tables: &str) -> Result<Scene, String> {
+fn built(tables: &str) -> Result<SceneModel, String> {
     let scratch = Scratch::new();
     std::fs::copy(Path::new(ROOT).join("assets/jacksboro/hills.png"), scratch.at("hills.png"))
         .expect("copied");

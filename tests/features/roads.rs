@@ -8,14 +8,14 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::ribbon::partition::overlap_m2;
 use sandtable::ribbon::plan::PlanMesh;
 use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 
 use crate::common::scratch::Scratch;
 
 /// Level ground of 1 km² in plain meters, and what `features` says of the rest.
-fn scene(folder: &Scratch, features: &str) -> Scene {
+fn scene(folder: &Scratch, features: &str) -> SceneModel {
     let row = "100 ".repeat(21);
     let grid = format!(
         "ncols 21\nnrows 21\nxllcenter 0\nyllcenter 0\ncellsize 50\n{}",
@@ -26,14 +26,14 @@ fn scene(folder: &Scratch, features: &str) -> Scene {
     built(&path, &[])
 }
 
-fn built(path: &std::path::Path, allowed: &[std::path::PathBuf]) -> Scene {
+fn built(path: &std::path::Path, allowed: &[std::path::PathBuf]) -> SceneModel {
     let text = std::fs::read(path).expect("readable");
     let document = parse_bytes(&path.to_string_lossy(), &text).unwrap_or_else(|report| panic!("{report}"));
     let assets = Assets::new(path, allowed).unwrap_or_else(|error| panic!("{error}"));
     build(&document, &assets, &|_| ()).unwrap_or_else(|diagnostic| panic!("{diagnostic}"))
 }
 
-fn area_m2(scene: &Scene, surfaces: &[RibbonSurface]) -> f64 {
+fn area_m2(scene: &SceneModel, surfaces: &[RibbonSurface]) -> f64 {
     let ribbons = scene.ribbons.iter().filter(|ribbon| surfaces.contains(&ribbon.surface));
     ribbons.map(|ribbon| ribbon.plan.area_m2()).sum()
 }
@@ -43,7 +43,7 @@ fn area_m2(scene: &Scene, surfaces: &[RibbonSurface]) -> f64 {
 /// # Panics
 /// Where a triangle faces down, or two lie over one another by more than rounding: a square millimeter for each square
 /// meter that is covered, a sliver of which each triangle may leave.
-fn check_laid(scene: &Scene) {
+fn check_laid(scene: &SceneModel) {
     let plans: Vec<&PlanMesh> = scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect();
     for [a, b, c] in plans.iter().flat_map(|plan| plan.corners()) {
         let doubled = (b.at - a.at).perp_dot(c.at - a.at);

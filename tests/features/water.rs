@@ -16,7 +16,7 @@ use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::vector::feature::Geometry;
 use sandtable::vector::read as vector;
@@ -221,7 +221,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
     assert_eq!(lattice.heights(), before);
 }
 
-fn gallery(name: &str) -> Scene {
+fn gallery(name: &str) -> SceneModel {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
     open_scene(&path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
@@ -290,7 +290,7 @@ fn water_that_follows_the_ground_is_not_cut() {
 }
 
 /// A scene over ground that rises 1 m a post eastward, from `text` after its `[terrain]`.
-fn ramp(text: &str) -> Result<Scene, String> {
+fn ramp(text: &str) -> Result<SceneModel, String> {
     let folder = Scratch::new();
     let heights: Vec<String> = (0..31 * 31).map(|index| (100 + index % 31).to_string()).collect();
     let grid = "ncols 31\nnrows 31\nxllcorner -5\nyllcorner -5\ncellsize 10\n";

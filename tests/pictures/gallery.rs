@@ -18,7 +18,7 @@ use sandtable::pipeline::scene_file::open_scene;
 use sandtable::render::RenderBackend;
 use sandtable::ribbon::drape::check_clearance;
 use sandtable::scene::picture::ViewDraw;
-use sandtable::scene::{Scene, View};
+use sandtable::scene::{SceneModel, SceneView};
 
 /// Small enough to be quick and to be kept, large enough for annotations.
 const SIZE: PictureSize = PictureSize { width: 480, height: 270 };
@@ -29,14 +29,14 @@ const MOST_BYTES: u64 = 4_000_000;
 /// A scene of the gallery.
 struct Exhibit {
     name: String,
-    scene: Scene,
+    scene: SceneModel,
 }
 
 /// A view of a scene, rendered with one thread.
 struct Shown {
     name: String,
     exhibit: &'static Exhibit,
-    view: &'static View,
+    view: &'static SceneView,
     finished: RenderedView,
 }
 
@@ -72,12 +72,12 @@ fn shown() -> &'static [Shown] {
     &SHOWN
 }
 
-fn show(exhibit: &'static Exhibit, view: &'static View) -> Shown {
+fn show(exhibit: &'static Exhibit, view: &'static SceneView) -> Shown {
     let name = format!("{}-{}", exhibit.name, view.name);
     Shown { name, exhibit, view, finished: render(&exhibit.scene, view, 1) }
 }
 
-fn render(scene: &Scene, view: &View, threads: usize) -> RenderedView {
+fn render(scene: &SceneModel, view: &SceneView, threads: usize) -> RenderedView {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let finished = pool.install(|| render_view(scene, view, SIZE, RenderBackend::Cpu, &|_| {}));
     finished.unwrap_or_else(|failure| panic!("{}: {failure:?}", view.name))
@@ -126,7 +126,7 @@ fn draped(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
 
 /// What rounding corners to f32 may come to: twice the step between numbers at the far end of the ground, which
 /// is 8 mm at 32 km. A corner is moved aside by half a step each way, and up or down on slopes by as much.
-fn clearance_m(scene: &Scene) -> f64 {
+fn clearance_m(scene: &SceneModel) -> f64 {
     scene.terrain.lattice.extent().size().max_element() * f64::from(f32::EPSILON) * 2.0
 }
 

@@ -11,7 +11,7 @@ use sandtable::draw::list::{DrawList, DrawMesh, FeatureId};
 use sandtable::draw::pixels::Pixels;
 use sandtable::mesh::sink::MeshSink;
 use sandtable::render::cpu::{RenderQuality, SampleCount, render};
-use sandtable::render::picture::Picture;
+use sandtable::render::picture::Rendering;
 use sandtable::view::camera::Camera;
 
 fn save(picture: &Pixels, name: &str) {
@@ -24,22 +24,22 @@ fn looking(eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
     Camera::new(eye, target, 0.8, size, (0.5, 60_000.0)).expect("a sound camera")
 }
 
-fn shot(list: &DrawList, camera: &Camera) -> Picture {
+fn shot(list: &DrawList, camera: &Camera) -> Rendering {
     render(list, camera, &RenderQuality::default()).expect("a sound list")
 }
 
 /// The feature at a pixel.
-fn feature(picture: &Picture, x: u32, y: u32) -> FeatureId {
+fn feature(picture: &Rendering, x: u32, y: u32) -> FeatureId {
     picture.features[(y * picture.pixels.width() + x) as usize]
 }
 
 /// The depth at a pixel.
-fn depth(picture: &Picture, x: u32, y: u32) -> f32 {
+fn depth(picture: &Rendering, x: u32, y: u32) -> f32 {
     picture.depth_m[(y * picture.pixels.width() + x) as usize]
 }
 
 /// How many pixels show a feature.
-fn count(picture: &Picture, feature: FeatureId) -> usize {
+fn count(picture: &Rendering, feature: FeatureId) -> usize {
     picture.features.iter().filter(|&&seen| seen == feature).count()
 }
 
@@ -100,7 +100,7 @@ fn one_two_and_three_threads_give_the_same_bytes() {
         assert!(pictures[0].pixels == other.pixels);
         assert!(pictures[0].features == other.features);
         let bits =
-            |picture: &Picture| picture.depth_m.iter().map(|depth| depth.to_bits()).collect::<Vec<_>>();
+            |picture: &Rendering| picture.depth_m.iter().map(|depth| depth.to_bits()).collect::<Vec<_>>();
         assert!(bits(&pictures[0]) == bits(other));
     }
 }

@@ -17,13 +17,13 @@ use sandtable::draw::pixels::Pixels;
 use sandtable::render::gpu::adapter::Gpu;
 use sandtable::render::gpu::error::GpuError;
 use sandtable::render::gpu::{render, render_on};
-use sandtable::render::picture::Picture;
+use sandtable::render::picture::Rendering;
 use sandtable::view::camera::Camera;
 
 /// Eight-bit steps by which a driver's rounding may differ from ours.
 const TOLERANCE: i32 = 2;
 
-fn drawn(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Picture {
+fn drawn(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Rendering {
     render_on(gpu, list, camera).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -36,7 +36,7 @@ struct Seen {
     world: Vec3,
 }
 
-fn seen(picture: &Picture, camera: &Camera, world: Vec3) -> Seen {
+fn seen(picture: &Rendering, camera: &Camera, world: Vec3) -> Seen {
     let pixel = camera.project(world).expect("before the camera").pixel.floor();
     let index = pixel.y as usize * camera.size().0 as usize + pixel.x as usize;
     let depth_m = picture.depth_m[index];
@@ -107,7 +107,7 @@ fn ground_drapes_and_sky_show_what_the_formulas_say() {
     }
 }
 
-fn assert_sky(picture: &Picture, list: &DrawList, camera: &Camera, gpu: &Gpu) {
+fn assert_sky(picture: &Rendering, list: &DrawList, camera: &Camera, gpu: &Gpu) {
     assert_eq!(picture.features[5], FeatureId::NONE);
     assert_eq!(picture.depth_m[5], f32::INFINITY);
     let expected = list.lighting.sky_color(camera.ray_through(Vec2::new(5.5, 0.5)));

@@ -14,7 +14,7 @@ use glam::Vec3;
 use sandtable::draw::list::DrawList;
 use sandtable::render::cpu::{RenderQuality, SampleCount, render};
 use sandtable::render::gpu::render_on;
-use sandtable::render::picture::Picture;
+use sandtable::render::picture::Rendering;
 use sandtable::scene::picture::build_draw_list;
 use sandtable::view::camera::Camera;
 
@@ -36,7 +36,7 @@ const ALLOWED: Difference = Difference { features: 1e-3, depths: 1e-3, mean: 0.7
 
 impl Difference {
     /// Features and depths from `one`, colors from `four` samples a pixel, against `other`.
-    fn of(one: &Picture, four: &Picture, other: &Picture) -> Self {
+    fn of(one: &Rendering, four: &Rendering, other: &Rendering) -> Self {
         let count = one.features.len() as f64;
         let share = |pixels: usize| pixels as f64 / count;
         let features: Vec<bool> = one.features.iter().zip(&other.features).map(|(a, b)| a == b).collect();
@@ -119,7 +119,7 @@ fn a_forest_is_nearly_the_same_picture_on_both_renderers() {
     }
 }
 
-fn mean_difference(one: &Picture, other: &Picture) -> f64 {
+fn mean_difference(one: &Rendering, other: &Rendering) -> f64 {
     let pixels = one.pixels.data().iter().zip(other.pixels.data());
     let steps = pixels
         .map(|(a, b)| (0..3).map(|channel| u64::from(a.0[channel].abs_diff(b.0[channel]))).sum::<u64>());

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use sandtable::geom::crs::Crs;
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::terrain::query::Surface;
 
 use crate::common::data::data;
@@ -24,7 +24,7 @@ fn place(name: &str) -> Option<(PathBuf, Scratch)> {
 }
 
 /// Builds `text`, with `PLACE` replaced by the folder of the place and `PROJECT` by the project's.
-fn built(scratch: &Scratch, place: &Path, text: &str) -> Scene {
+fn built(scratch: &Scratch, place: &Path, text: &str) -> SceneModel {
     let project = env!("CARGO_MANIFEST_DIR");
     let text = text.replace("PLACE", &place.to_string_lossy()).replace("PROJECT", project);
     let allowed = [place.to_path_buf(), Path::new(project).join("assets")];
@@ -37,7 +37,7 @@ fn built(scratch: &Scratch, place: &Path, text: &str) -> Scene {
 }
 
 /// The picture of a view; everything in it lies on the ground, and ground fills part of it.
-fn pictured(scene: &Scene, view: &str, name: &str) -> Pictured {
+fn pictured(scene: &SceneModel, view: &str, name: &str) -> Pictured {
     let pictured = picture(scene, view, name, SIZE);
     let (clearance, corners) = clearance_of_draped(&pictured.shot);
     println!("{name}: {clearance} m at {corners} draped corners; {:?}", pictured.pixels);
@@ -46,12 +46,12 @@ fn pictured(scene: &Scene, view: &str, name: &str) -> Pictured {
     pictured
 }
 
-fn count(scene: &Scene, wanted: FeatureKind) -> usize {
+fn count(scene: &SceneModel, wanted: FeatureKind) -> usize {
     scene.census().into_iter().find(|(kind, _)| *kind == wanted).map_or(0, |(_, count)| count)
 }
 
 /// Holds the source against every sampled vertex; positions in the elevation model's own system `dem`.
-fn source_agrees(scene: &Scene, place: &Path, dem: &Crs, least: usize) {
+fn source_agrees(scene: &SceneModel, place: &Path, dem: &Crs, least: usize) {
     let samples = samples(place);
     assert!(samples.len() >= least, "{} samples", samples.len());
     let at = |sample: &Sample| (dem.clone(), sample.on_dem);

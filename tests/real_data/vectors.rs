@@ -3,23 +3,23 @@
 
 use std::path::Path;
 
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 use crate::{clearance_of_draped, picture, scene};
 
-fn built(text: &str, place: &Path) -> Result<Scene, String> {
+fn built(text: &str, place: &Path) -> Result<SceneModel, String> {
     let text = text.replace("PLACE", &place.to_string_lossy());
     scene(&Scratch::new(), &text, &[place.to_path_buf()])
 }
 
-fn count(scene: &Scene, wanted: FeatureKind) -> usize {
+fn count(scene: &SceneModel, wanted: FeatureKind) -> usize {
     scene.census().into_iter().find(|(kind, _)| *kind == wanted).map_or(0, |(_, count)| count)
 }
 
 /// Everything draped lies on the ground, and every kind of feature shows.
-fn shows_everything(scene: &Scene, name: &str) {
+fn shows_everything(scene: &SceneModel, name: &str) {
     let pictured = picture(scene, "view", name, (960, 540));
     let (clearance, corners) = clearance_of_draped(&pictured.shot);
     println!("{name}: {clearance} m at {corners} draped corners; {:?}", pictured.pixels);

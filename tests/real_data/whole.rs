@@ -2,14 +2,14 @@
 
 use sandtable::earthworks::alignment::Support;
 use sandtable::ribbon::partition::overlap_m2;
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 
 use crate::common::places::text_of;
 use crate::common::scratch::Scratch;
 use crate::{clearance_of_draped, picture};
 
 /// Builds the place and holds its scene and its pictures to what every scene must be.
-fn built(place: &str) -> Option<Scene> {
+fn built(place: &str) -> Option<SceneModel> {
     let (text, allowed) = text_of(place)?;
     let scratch = Scratch::new();
     let scene = crate::scene(&scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
@@ -32,7 +32,7 @@ fn built(place: &str) -> Option<Scene> {
     Some(scene)
 }
 
-fn count(scene: &Scene, wanted: FeatureKind) -> usize {
+fn count(scene: &SceneModel, wanted: FeatureKind) -> usize {
     scene.census().into_iter().find(|(kind, _)| *kind == wanted).map_or(0, |(_, count)| count)
 }
 

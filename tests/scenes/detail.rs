@@ -12,8 +12,8 @@ use sandtable::model::read::read;
 use sandtable::model::simplify::levels;
 use sandtable::model::{Companions, Model, ModelPart};
 use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::render::picture::Picture;
-use sandtable::scene::Scene;
+use sandtable::render::picture::Rendering;
+use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
 use sandtable::view::camera::Camera;
 
@@ -31,7 +31,7 @@ fn asset(name: &str) -> Model {
 }
 
 /// The picture as seen, and the one in which every model is drawn in full.
-fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
+fn pictures(scene: &SceneModel, camera: &Camera) -> ([DrawList; 2], [Rendering; 2]) {
     let seen = build_draw_list(scene, camera, &|_| ()).list;
     let (full, _) = draw_list(scene, &display(&scene.terrain, camera), &|_| ());
     let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
@@ -40,7 +40,7 @@ fn pictures(scene: &Scene, camera: &Camera) -> ([DrawList; 2], [Picture; 2]) {
 }
 
 /// The mean difference of a channel in 8-bit steps over the pixels that either picture has a model in.
-fn mean_difference([one, other]: &[Picture; 2]) -> (f64, usize) {
+fn mean_difference([one, other]: &[Rendering; 2]) -> (f64, usize) {
     let pixels = one.pixels.data().iter().zip(other.pixels.data());
     let features = one.features.iter().zip(&other.features);
     let (mut sum, mut count) = (0u64, 0);
@@ -52,10 +52,10 @@ fn mean_difference([one, other]: &[Picture; 2]) -> (f64, usize) {
 }
 
 /// The mean colors of both pictures where both have a model.
-fn mean_colors([one, other]: &[Picture; 2]) -> [Vec3; 2] {
+fn mean_colors([one, other]: &[Rendering; 2]) -> [Vec3; 2] {
     let features = one.features.iter().zip(&other.features);
     let both: Vec<bool> = features.map(|(a, b)| a.0 > 1 && b.0 > 1).collect();
-    let mean = |picture: &Picture| {
+    let mean = |picture: &Rendering| {
         let models = picture.pixels.data().iter().zip(&both).filter(|(_, both)| **both);
         let (sum, count) = models.fold((Vec3::ZERO, 0.0), |(sum, count), (pixel, _)| {
             let [red, green, blue, _] = pixel.0.map(f32::from);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sandtable::description::parse::parse_bytes;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
@@ -24,7 +24,7 @@ fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {
 }
 
 /// The scene over the hill of `size` posts with `text` after its `[terrain]`, or the message that refuses it.
-fn scene(test: &str, size: (u32, u32), text: &str) -> Result<Scene, String> {
+fn scene(test: &str, size: (u32, u32), text: &str) -> Result<SceneModel, String> {
     let file = folder(test, size).join("scene.toml");
     let text = format!("[terrain]\ndem = \"hill.asc\"\n{text}");
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;

@@ -10,7 +10,7 @@ use sandtable::scene::assets::Assets;
 use sandtable::scene::build::{build, build_ground};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
 use sandtable::scene::report::ModelRow;
-use sandtable::scene::{Scene, View};
+use sandtable::scene::{SceneModel, SceneView};
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::terrain::triangle_surface::TriangleSurface;
@@ -32,7 +32,7 @@ fn hills() -> String {
 }
 
 /// The scene with `text` after its `[terrain]`, or the message that refuses it.
-fn scene(text: &str) -> Result<Scene, String> {
+fn scene(text: &str) -> Result<SceneModel, String> {
     built(text, |document, assets| build(document, assets, &|_| ()))
 }
 
@@ -85,7 +85,7 @@ fn the_ground_alone_reads_no_model_without_a_pad() {
 }
 
 /// Houses here and there, all with the same lines in their tables.
-fn houses(lines: &str) -> Scene {
+fn houses(lines: &str) -> SceneModel {
     let table = |index: u32| {
         let (x, y) = (300 + index % 4 * 420, 350 + index / 4 * 520);
         format!(
@@ -97,13 +97,13 @@ fn houses(lines: &str) -> Scene {
 }
 
 /// What a camera somewhere sees at a tolerance, for a few of both.
-fn shots(mut scene: Scene, mut check: impl FnMut(&Scene, &ViewDraw)) {
+fn shots(mut scene: SceneModel, mut check: impl FnMut(&SceneModel, &ViewDraw)) {
     for (index, tolerance_px) in [0.5, 2.0, 8.0, 40.0, 200.0].into_iter().enumerate() {
         scene.terrain.tolerance_px = tolerance_px;
         let turn = index as f32 * 1.3;
         let eye = Vec3::new(1000.0 + 2600.0 * turn.cos(), 1000.0 + 2600.0 * turn.sin(), 1500.0);
         let target = Vec3::new(1000.0, 1000.0, 450.0);
-        let view = View { name: String::new(), eye, target, fov_y_rad: 0.8 };
+        let view = SceneView { name: String::new(), eye, target, fov_y_rad: 0.8 };
         let camera = camera(&scene, &view, (640, 360)).expect("sound");
         check(&scene, &build_draw_list(&scene, &camera, &|_| ()));
     }

@@ -14,7 +14,7 @@ use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::coherent::Coherent;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{camera, recut};
 use sandtable::view::camera::Camera;
 use sandtable::view::frustum::Frustum;
@@ -24,7 +24,7 @@ const ROUNDING_M: f64 = 5e-3;
 
 /// A walk that keeps what it cut.
 struct Walk<'a> {
-    scene: &'a Scene,
+    scene: &'a SceneModel,
     coherent: Coherent,
     seen: BTreeSet<usize>,
     drapes: Drapes,

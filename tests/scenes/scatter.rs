@@ -6,7 +6,7 @@ use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2};
 use sandtable::description::parse::parse_bytes;
 use sandtable::geom::polygon;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::terrain::query::gradient::{GradientSurface, ground_gradient};
@@ -24,7 +24,7 @@ fn valley(corner: (f64, f64), posts: u32) -> String {
         + &heights.join(" ")
 }
 
-fn scene_on(ground: String, text: &str) -> Result<Scene, String> {
+fn scene_on(ground: String, text: &str) -> Result<SceneModel, String> {
     let scratch = Scratch::new();
     scratch.write("s/valley.asc", ground);
     scratch.write("s/wood.geojson", WOOD);
@@ -35,7 +35,7 @@ fn scene_on(ground: String, text: &str) -> Result<Scene, String> {
     build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
 }
 
-fn scene(text: &str) -> Result<Scene, String> {
+fn scene(text: &str) -> Result<SceneModel, String> {
     scene_on(valley((0.0, 0.0), 101), text)
 }
 
@@ -50,7 +50,7 @@ fn table(points: &str, lines: &str) -> String {
 const ALL: &str = "[[0, 0], [1000, 0], [1000, 1000], [0, 1000]]";
 
 /// Where trees stand, in map coordinates, as bits, so that they can be told apart and compared.
-fn places(scene: &Scene) -> BTreeSet<(u64, u64)> {
+fn places(scene: &SceneModel) -> BTreeSet<(u64, u64)> {
     let map = |at: Vec2| at.as_dvec2() + scene.terrain.lattice.origin();
     scene
         .placements
@@ -86,7 +86,7 @@ fn the_same_tree_stands_where_it_stood_on_another_cut_of_the_ground() {
     let area = "[[300, 300], [600, 300], [600, 600], [300, 600]]";
     let whole = scene(&table(area, "")).expect("sound");
     let part = scene_on(valley((200.0, 250.0), 60), &table(area, "")).expect("sound");
-    let near = |scene: &Scene| -> Vec<DVec2> { places(scene).into_iter().map(at).collect() };
+    let near = |scene: &SceneModel| -> Vec<DVec2> { places(scene).into_iter().map(at).collect() };
     let (whole, part) = (near(&whole), near(&part));
     assert!(whole.len() > 700 && whole.len() == part.len(), "{} and {}", whole.len(), part.len());
     // A place is kept in f32 from the ground's own origin.

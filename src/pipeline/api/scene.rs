@@ -13,7 +13,7 @@ use crate::terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.
 pub struct Scene {
-    model: scene::Scene,
+    model: scene::SceneModel,
 }
 
 /// How a scene is opened.
@@ -34,7 +34,7 @@ impl Default for SceneOptions<'_> {
 /// What a picture shows of a scene, and its size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
-    view: scene::View,
+    view: scene::SceneView,
     size: PictureSize,
     backend: RenderBackend,
 }

@@ -14,7 +14,7 @@ use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::ground;
 use crate::pipeline::viewshed::raster;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
-use crate::scene::{Terrain as Bundle, picture};
+use crate::scene::{SceneTerrain as Bundle, picture};
 use crate::terrain::query::service::{HeightService, Snapshot};
 use crate::terrain::query::{Interpolation, Surface};
 use crate::terrain::sight::viewshed::{ViewshedOptions, viewshed};

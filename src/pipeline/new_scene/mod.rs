@@ -26,7 +26,7 @@ use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{CameraDraft, SceneDraft, VectorDraft};
 use crate::pipeline::scene_file::OpenSceneError;
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -150,7 +150,7 @@ fn exaggeration(relief: f64) -> f64 {
 }
 
 /// The default camera of the scene as a table states it; `None` where there is no ground at the center to look at.
-fn camera(scene: &Scene) -> Option<CameraDraft> {
+fn camera(scene: &SceneModel) -> Option<CameraDraft> {
     let view = scene.cameras.first()?;
     let lattice = &scene.terrain.lattice;
     let exaggeration = f64::from(scene.terrain.exaggeration);

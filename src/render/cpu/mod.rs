@@ -56,7 +56,7 @@ use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::tile::TileContext;
 use crate::render::cpu::visibility::TILE;
-use crate::render::picture::Picture;
+use crate::render::picture::Rendering;
 use crate::view::camera::Camera;
 
 /// Samples and filter of a picture.
@@ -103,7 +103,11 @@ impl Default for RenderQuality {
 ///
 /// # Errors
 /// See [`CpuRenderError`].
-pub fn render(list: &DrawList, camera: &Camera, quality: &RenderQuality) -> Result<Picture, CpuRenderError> {
+pub fn render(
+    list: &DrawList,
+    camera: &Camera,
+    quality: &RenderQuality,
+) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     let screen = Screen::new(camera);
     let geometry = ScreenGeometry::new(list, &screen)
@@ -121,7 +125,7 @@ fn draw<const N: usize>(
     geometry: &ScreenGeometry,
     shader: &Shader,
     pattern: &SamplePattern<N>,
-) -> Picture {
+) -> Rendering {
     let frame = TileContext { screen, geometry, shader, pattern };
     let [width, height] = screen.size;
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
@@ -137,5 +141,5 @@ fn draw<const N: usize>(
         .for_each(|(number, ((colors, depths_m), features))| {
             draw_band(&frame, number as u32, BandRows { colors, depths_m, features });
         });
-    Picture { pixels, depth_m, features }
+    Rendering { pixels, depth_m, features }
 }

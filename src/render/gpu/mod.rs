@@ -29,14 +29,14 @@ use crate::render::gpu::pipelines::{Layouts, Pipelines};
 use crate::render::gpu::plan::Plan;
 use crate::render::gpu::readback::Targets;
 use crate::render::gpu::upload::Resources;
-use crate::render::picture::Picture;
+use crate::render::picture::Rendering;
 use crate::view::camera::Camera;
 
 /// The picture of `list` as `camera` sees it, drawn by the first adapter found: Vulkan's, else OpenGL's.
 ///
 /// # Errors
 /// See [`GpuError`].
-pub fn render(list: &DrawList, camera: &Camera) -> Result<Picture, GpuError> {
+pub fn render(list: &DrawList, camera: &Camera) -> Result<Rendering, GpuError> {
     render_on(&Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl])?, list, camera)
 }
 
@@ -44,7 +44,7 @@ pub fn render(list: &DrawList, camera: &Camera) -> Result<Picture, GpuError> {
 ///
 /// # Errors
 /// As [`render`], except that there is an adapter.
-pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Picture, GpuError> {
+pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Rendering, GpuError> {
     list.check()?;
     let plan = Plan::new(list, camera);
     let (layouts, pipelines) = gpu.guarded("building its shaders", || {

@@ -13,7 +13,7 @@ use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::{DriverError, GpuError};
 use crate::render::gpu::memory::texture;
 use crate::render::gpu::pipelines::{COLOR, DEPTH, FEATURE};
-use crate::render::picture::Picture;
+use crate::render::picture::Rendering;
 
 /// How long a picture may take before the device counts as hung. A software adapter needs a second for millions of
 /// triangles; ten minutes allow for a far slower machine.
@@ -59,7 +59,7 @@ impl Targets {
         })
     }
 
-    pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Picture, GpuError> {
+    pub fn read(&self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<Rendering, GpuError> {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;
         gpu.queue.submit([encoder.finish()]);
@@ -67,13 +67,13 @@ impl Targets {
         picture.map_err(|error| gpu.driver_error("reading the picture back", error))
     }
 
-    fn picture(&self, color: &TextureCopy, feature: &TextureCopy) -> Result<Picture, DriverError> {
+    fn picture(&self, color: &TextureCopy, feature: &TextureCopy) -> Result<Rendering, DriverError> {
         let colors = color.texels::<4>()?.into_iter();
         let colors = colors.map(|[red, green, blue, _]| Srgba::opaque(red, green, blue)).collect();
         let pixels = Pixels::from_data(self.color.width(), self.color.height(), colors)
             .ok_or(DriverError::TooFewPixels)?;
         let (features, depth_m) = feature.texels::<8>()?.into_iter().map(feature_and_depth).unzip();
-        Ok(Picture { pixels, depth_m, features })
+        Ok(Rendering { pixels, depth_m, features })
     }
 }
 

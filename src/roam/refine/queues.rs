@@ -172,7 +172,7 @@ impl<'a> Queues<'a> {
     /// Fills both queues with this frame's priorities.
     fn gather(&mut self, criterion: &impl Criterion) {
         let (goal, active, listed) = (self.goal, &self.active, &self.listed);
-        let evaluation = Evaluation { goal, drawn: &self.drawn, listed, criterion };
+        let evaluation = QueueEvaluation { goal, drawn: &self.drawn, listed, criterion };
         let mut splits = std::mem::take(&mut self.splits).into_vec();
         splits.clear();
         self.splittable.retain(active.layout(), |vertex, index| {
@@ -201,8 +201,8 @@ impl<'a> Queues<'a> {
         self.merges = BinaryHeap::from(merges);
     }
 
-    fn evaluation<'b, C>(&'b self, criterion: &'b C) -> Evaluation<'b, C> {
-        Evaluation { goal: self.goal, drawn: &self.drawn, listed: &self.listed, criterion }
+    fn evaluation<'b, C>(&'b self, criterion: &'b C) -> QueueEvaluation<'b, C> {
+        QueueEvaluation { goal: self.goal, drawn: &self.drawn, listed: &self.listed, criterion }
     }
 
     /// Merges idle diamonds, and the lowest ones until the budget holds or only roots are left.
@@ -370,14 +370,14 @@ impl<'a> Queues<'a> {
 }
 
 /// What a priority depends on.
-struct Evaluation<'a, C> {
+struct QueueEvaluation<'a, C> {
     goal: Goal,
     drawn: &'a Drawn<'a>,
     listed: &'a ListedPatches,
     criterion: &'a C,
 }
 
-impl<C: Criterion> Evaluation<'_, C> {
+impl<C: Criterion> QueueEvaluation<'_, C> {
     /// The excess of a vertex; under a budget 0 where splitting it can never draw anything. Where rounding leaves open on
     /// which side of 1 it lies, [`Criterion::wants`] decides, so that this refiner wants what the others want.
     fn priority(&self, vertex: Vertex) -> f32 {

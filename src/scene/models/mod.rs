@@ -37,7 +37,7 @@ use crate::terrain::triangle_surface::TriangleSurface;
 pub const MAX_MODELS: usize = 1_000_000;
 
 /// The placements of one `[[model]]`.
-pub struct Group<'a> {
+pub struct InstanceGroup<'a> {
     /// The table.
     pub table: &'a ModelPlacement,
     /// Its placements among all.
@@ -53,7 +53,7 @@ pub struct PlacedModels<'a> {
     /// The models.
     pub library: Library<'a>,
     /// The tables.
-    pub groups: Vec<Group<'a>>,
+    pub groups: Vec<InstanceGroup<'a>>,
     /// The placements of all groups, then those of scatters.
     pub placements: Vec<Placement>,
 }
@@ -133,7 +133,7 @@ impl<'a> PlacedModels<'a> {
             }
             unknown = choice.unknown;
         }
-        self.groups.push(Group { table, placements: first..self.placements.len(), off, unknown });
+        self.groups.push(InstanceGroup { table, placements: first..self.placements.len(), off, unknown });
         Ok(())
     }
 

@@ -12,7 +12,7 @@ use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::models::{Group, PlacedModels};
+use crate::scene::models::{InstanceGroup, PlacedModels};
 use crate::scene::placement::stand;
 use crate::scene::report::{InstancesRow, ModelRow};
 use crate::scene::world_frame::WorldFrame;
@@ -95,7 +95,7 @@ impl StandReport {
     }
 }
 
-fn instances(group: &Group<'_>, name: String, all: &[StandReport]) -> InstancesRow {
+fn instances(group: &InstanceGroup<'_>, name: String, all: &[StandReport]) -> InstancesRow {
     let gaps = || all.iter().flat_map(|stand| stand.gaps_m).flatten();
     let total = |of: fn(&Volumes) -> f64| {
         let moved: Vec<f64> = all.iter().filter_map(|stand| stand.moved.as_ref()).map(of).collect();
@@ -115,7 +115,7 @@ fn instances(group: &Group<'_>, name: String, all: &[StandReport]) -> InstancesR
     }
 }
 
-fn note(group: &Group<'_>, name: &str, notes: &mut Vec<String>) {
+fn note(group: &InstanceGroup<'_>, name: &str, notes: &mut Vec<String>) {
     let models = |count: usize| if count == 1 { "1 model".into() } else { format!("{count} models") };
     if group.off > 0 {
         notes.push(format!("{} of '{name}' left out: off the elevation model", models(group.off)));

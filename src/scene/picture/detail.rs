@@ -14,7 +14,7 @@ use crate::draw::material::{Material, TextureId};
 use crate::model::detail::{ApparentSize, DetailForm, ModelDetail};
 use crate::model::impostor::Impostor;
 use crate::model::{Model, ModelPart};
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -49,7 +49,7 @@ struct BoundingSphere {
 }
 
 /// Adds the models that `viewer` may see.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, placed: &[PlacedModel], viewer: Viewer<'_>) {
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel], viewer: Viewer<'_>) {
     let balls: Vec<BoundingSphere> = scene.models.iter().map(BoundingSphere::around).collect();
     let groups = match viewer {
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
@@ -93,7 +93,7 @@ fn grouped<'a>(stands: impl Iterator<Item = (&'a PlacedModel, DetailForm)>) -> G
 
 /// The form of each model in view.
 fn forms(
-    scene: &Scene,
+    scene: &SceneModel,
     camera: &Camera,
     balls: &[BoundingSphere],
     in_view: &[&PlacedModel],
@@ -115,7 +115,7 @@ fn forms(
 ///
 /// Not by `get_or_init`: making them runs on several threads, and one that helps another picture meanwhile could wait for
 /// itself.
-fn prepare(scene: &Scene, in_view: &[&PlacedModel]) {
+fn prepare(scene: &SceneModel, in_view: &[&PlacedModel]) {
     let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
     wanted.sort_unstable();
     wanted.dedup();

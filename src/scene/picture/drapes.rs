@@ -9,12 +9,12 @@ use crate::draw::list::{DepthLayer, DrawList, DrawMesh, MaterialId};
 use crate::draw::material::{AlphaMode, Material, NormalSource};
 use crate::ribbon::drape::drape;
 use crate::ribbon::texture::{RibbonSurface, texture};
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all ribbons, lower layers first.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurface) {
     let meshes: Vec<DrawMesh> = scene
         .ribbons
         .par_iter()

@@ -18,7 +18,7 @@ use crate::roam::culling::patches_in_view;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::roam::refine::rebuild::rebuild;
 use crate::scene::picture::detail::Viewer;
-use crate::scene::{Scene, Terrain, View};
+use crate::scene::{SceneModel, SceneTerrain, SceneView};
 use crate::view::camera::{Camera, CameraError};
 use crate::view::frustum::Frustum;
 
@@ -36,7 +36,7 @@ pub struct ViewDraw {
 ///
 /// # Errors
 /// See [`CameraError`].
-pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, CameraError> {
+pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<Camera, CameraError> {
     let (min, max) = scene.terrain.bounds();
     let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
     let far = view.eye.distance(farthest) * 1.5 + 1000.0;
@@ -44,7 +44,7 @@ pub fn camera(scene: &Scene, view: &View, size: (u32, u32)) -> Result<Camera, Ca
 }
 
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.
-pub fn build_draw_list(scene: &Scene, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
+pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
     let displayed = Arc::new(display(&scene.terrain, camera));
     let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
@@ -54,7 +54,7 @@ pub fn build_draw_list(scene: &Scene, camera: &Camera, progress: &dyn Fn(&'stati
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
 /// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
-    scene: &Scene,
+    scene: &SceneModel,
     displayed: &DisplayedTerrain,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
@@ -62,7 +62,7 @@ pub fn draw_list(
 }
 
 fn listed(
-    scene: &Scene,
+    scene: &SceneModel,
     displayed: &DisplayedTerrain,
     viewer: Viewer<'_>,
     progress: &dyn Fn(&'static str),
@@ -85,12 +85,12 @@ fn listed(
 }
 
 /// The terrain as `camera` shows it, off by at most the terrain's own tolerance.
-pub fn display(terrain: &Terrain, camera: &Camera) -> DisplayedTerrain {
+pub fn display(terrain: &SceneTerrain, camera: &Camera) -> DisplayedTerrain {
     display_within(terrain, camera, terrain.tolerance_px)
 }
 
 /// The terrain as `camera` shows it, off by at most `tolerance_px` pixels.
-pub fn display_within(terrain: &Terrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
+pub fn display_within(terrain: &SceneTerrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
     let (ground, heights) = (terrain.ground(), terrain.patch_heights());
     let patches = patches_in_view(ground, heights, &Frustum::new(camera));
     let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, tolerance_px);

@@ -9,12 +9,17 @@ use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
 use crate::scene::placement::stand;
-use crate::scene::{Placement, Scene};
+use crate::scene::{Placement, SceneModel};
 use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds every placement that has ground under it and may be seen, and the plinths.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface, viewer: Viewer<'_>) {
+pub(super) fn add(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    displayed: &dyn TriangleSurface,
+    viewer: Viewer<'_>,
+) {
     let finest = DrawnGround { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
     let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();

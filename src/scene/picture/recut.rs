@@ -2,16 +2,16 @@
 
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::roam::graph::Vertex;
-use crate::scene::{Scene, Terrain};
+use crate::scene::{SceneModel, SceneTerrain};
 
 /// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::PatchLayout::patches`] lists them;
 /// the places of ribbons are those in [`Scene::ribbons`].
-pub fn drapes(scene: &Scene) -> Drapes {
+pub fn drapes(scene: &SceneModel) -> Drapes {
     Drapes::new(&borders(&scene.terrain), scene.ribbons.iter().map(|ribbon| &ribbon.plan))
 }
 
 /// The borders as f32 has them, where the displayed triangles end.
-fn borders(terrain: &Terrain) -> Borders {
+fn borders(terrain: &SceneTerrain) -> Borders {
     let (layout, ground) = (&terrain.layout, terrain.ground());
     let (columns, rows) = layout.patch_grid();
     let at =

@@ -6,10 +6,10 @@ use crate::draw::list::{DepthLayer, DrawList};
 use crate::draw::material::Material;
 use crate::ribbon::texture::texture;
 use crate::scene::picture::add_mesh;
-use crate::scene::{Coat, Scene};
+use crate::scene::{Coat, SceneModel};
 
 /// Adds all solids.
-pub(super) fn add(list: &mut DrawList, scene: &Scene) {
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {
     let mut materials = BTreeMap::new();
     for solid in &scene.solids {
         let material = *materials.entry(solid.coat).or_insert_with(|| {

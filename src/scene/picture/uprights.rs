@@ -4,14 +4,14 @@ use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
-use crate::scene::Scene;
+use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all uprights that have ground under them.
-pub(super) fn add(list: &mut DrawList, scene: &Scene, displayed: &dyn TriangleSurface) {
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurface) {
     let ground = FullResolution { lattice: scene.terrain.displayed() };
     let under = SupportSurface { displayed, ground: &ground };
     let meshes: Vec<DrawMesh> =

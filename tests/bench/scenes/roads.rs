@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sandtable::description::parse::parse_bytes;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 
@@ -70,7 +70,7 @@ fn size(path: &Path, allowed: &[PathBuf]) -> (usize, f64) {
     (scene.features.len(), area_m2 / 7.0 / 1e3)
 }
 
-fn built(path: &Path, allowed: &[PathBuf]) -> Scene {
+fn built(path: &Path, allowed: &[PathBuf]) -> SceneModel {
     let text = fs::read(path).expect("readable");
     let document = parse_bytes(&path.to_string_lossy(), &text).unwrap_or_else(|report| panic!("{report}"));
     let assets = Assets::new(path, allowed).unwrap_or_else(|error| panic!("{error}"));

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::{FeatureKind, Scene};
+use sandtable::scene::{FeatureKind, SceneModel};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 use crate::roads::{area_m2, built, check_laid};
 
 /// The scene of a place, with `PLACE` in `text` for where its files lie.
-fn place(name: &str, text: &str) -> Option<Scene> {
+fn place(name: &str, text: &str) -> Option<SceneModel> {
     let at: PathBuf = data(&format!("scenes/{name}"))?;
     let text = text.replace("PLACE", &at.to_string_lossy());
     let folder = Scratch::new();
@@ -19,7 +19,7 @@ fn place(name: &str, text: &str) -> Option<Scene> {
     Some(scene)
 }
 
-fn roads(scene: &Scene) -> usize {
+fn roads(scene: &SceneModel) -> usize {
     scene.features.iter().filter(|feature| feature.kind == FeatureKind::Road).count()
 }
 

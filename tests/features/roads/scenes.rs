@@ -2,7 +2,7 @@
 
 use sandtable::mesh::sink::VertexId;
 use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::Scene;
+use sandtable::scene::SceneModel;
 
 use crate::common::scratch::Scratch;
 use crate::roads::{area_m2, built, check_laid, scene};
@@ -14,14 +14,14 @@ const ASPHALT: [RibbonSurface; 4] = [
     RibbonSurface::AsphaltPlain,
 ];
 
-fn laid(features: &str) -> Scene {
+fn laid(features: &str) -> SceneModel {
     let scene = scene(&Scratch::new(), features);
     check_laid(&scene);
     scene
 }
 
 #[track_caller]
-fn assert_area(scene: &Scene, surfaces: &[RibbonSurface], expected_m2: f64) {
+fn assert_area(scene: &SceneModel, surfaces: &[RibbonSurface], expected_m2: f64) {
     let found = area_m2(scene, surfaces);
     assert!(
         (found - expected_m2).abs() < 0.01 + 1e-6 * expected_m2,

@@ -5,7 +5,7 @@ use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
 use sandtable::draw::material::{AlphaMode, Material};
 use sandtable::draw::pixels::Pixels;
-use sandtable::render::picture::Picture;
+use sandtable::render::picture::Rendering;
 use sandtable::view::camera::Camera;
 
 use crate::render_cpu::landscape::{
@@ -40,7 +40,7 @@ fn draped_all_over(half_m: f32, height: impl Fn(f32, f32) -> f32) -> DrawList {
 }
 
 /// The pixels that show ground well inside the area that [`draped_all_over`] covers.
-fn bare_pixels(picture: &Picture, camera: &Camera, middle: Vec3, half_m: f32) -> usize {
+fn bare_pixels(picture: &Rendering, camera: &Camera, middle: Vec3, half_m: f32) -> usize {
     let (width, height) = camera.size();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     pixels
