@@ -1,6 +1,6 @@
 //! What is declared of a key: name, documentation, type, unit, range and default.
 //!
-//! The macro [`table!`](crate::description::table) makes these declarations. The decoder, the JSON schema, the reference
+//! The macro `table!` makes these declarations. The decoder, the JSON schema, the reference
 //! page `scenes/README.md` and the messages read them.
 
 use std::iter;

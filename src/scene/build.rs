@@ -5,7 +5,7 @@
 //!                                                              └─► networks, fences, buildings, models, views ─► Scene
 //! ```
 //!
-//! Neither stage computes what only a picture needs: see [`Scene::map`] and [`Terrain`].
+//! Neither stage computes what only a picture needs: see [`SceneModel::map`] and [`SceneTerrain`].
 
 use std::sync::{Arc, OnceLock};
 

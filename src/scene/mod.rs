@@ -1,6 +1,6 @@
 //! From a scene file to a draw list.
 //!
-//! `build` turns a document and its assets into a [`SceneGround`] or a [`Scene`], one pass a file: the ground (`ground`),
+//! `build` turns a document and its assets into a [`SceneGround`] or a [`SceneModel`], one pass a file: the ground (`ground`),
 //! ribbons (`areas`, `water`, `roads`), solids (`buildings`, `fences`, `bridges`), models (`models`, `scatter`; `footprint`
 //! and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`. `picture` turns a
 //! scene and a camera into a draw list.
@@ -355,7 +355,7 @@ impl SceneModel {
         })
     }
 
-    /// Whether [`Scene::map`] has been made.
+    /// Whether [`SceneModel::map`] has been made.
     pub fn is_lit(&self) -> bool {
         self.map.get().is_some()
     }

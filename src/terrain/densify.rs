@@ -36,13 +36,13 @@ const MOST_IN_A_ROW: u64 = 8192;
 const MOST_DOUBLINGS: u32 = 5;
 
 /// How often the lattice must be doubled for its posts to be at most `spacing_m` apart; no more than
-/// [`MOST_DOUBLINGS`].
+/// `MOST_DOUBLINGS`.
 pub fn doublings_for(lattice: &Lattice, spacing_m: f64) -> u32 {
     let spacing = |times: u32| lattice.cell().max_element() / f64::from(1u32 << times);
     (0..MOST_DOUBLINGS).find(|&times| spacing(times) <= spacing_m).unwrap_or(MOST_DOUBLINGS)
 }
 
-/// The largest number of doublings, up to `wanted`, that leaves the lattice within [`MOST_POSTS`].
+/// The largest number of doublings, up to `wanted`, that leaves the lattice within `MOST_POSTS`.
 pub fn affordable_doublings(lattice: &Lattice, wanted: u32) -> u32 {
     let side = |posts: u32, times: u32| ((u64::from(posts) - 1) << times) + 1;
     let is_affordable = |&times: &u32| {

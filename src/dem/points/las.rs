@@ -1,7 +1,7 @@
 //! LAS and LAZ: points of laser scanners.
 //!
 //! Of each record only x, y, z, the class and the flag "withheld" matter, and they lie at fixed places. Compressed
-//! records are unpacked first ([`super::laz`]).
+//! records are unpacked first (`laz`).
 //!
 //! A scanner's points are of everything that it met. Without a choice of classes the ground's (class 2) are taken where
 //! there are any; a file without classification gives all its points, roofs and treetops among them, and notes so.

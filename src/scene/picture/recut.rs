@@ -5,7 +5,7 @@ use crate::roam::graph::Vertex;
 use crate::scene::{SceneModel, SceneTerrain};
 
 /// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::PatchLayout::patches`] lists them;
-/// the places of ribbons are those in [`Scene::ribbons`].
+/// the places of ribbons are those in [`SceneModel::ribbons`].
 pub fn drapes(scene: &SceneModel) -> Drapes {
     Drapes::new(&borders(&scene.terrain), scene.ribbons.iter().map(|ribbon| &ribbon.plan))
 }
