@@ -26,16 +26,13 @@
 //!
 //! ```
 //! use sandtable::Scene;
-//! # let folder = tempfolder();
+//! # let folder = std::env::temp_dir().join(format!("sandtable-doc-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder).expect("a folder for the picture");
 //! let scene = Scene::open("scenes/road.toml")?;
 //! let view = scene.view("front")?.with_size(320, 180);
 //! scene.render(&view)?.save(folder.join("road.png"))?;
 //! # std::fs::remove_dir_all(folder).ok();
 //! # Ok::<(), sandtable::Error>(())
-//! # fn tempfolder() -> std::path::PathBuf {
-//! #     let folder = std::env::temp_dir().join(format!("sandtable-doc-{}", std::process::id()));
-//! #     std::fs::create_dir_all(&folder).map(|()| folder).expect("a folder for the picture")
-//! # }
 //! ```
 //!
 //! What an observer two meters above the ground sees, as a raster of zeros and ones:
@@ -45,7 +42,7 @@
 //! let terrain = Terrain::open("assets/jacksboro/dem.tif")?;
 //! let observer = SightEnd { at: DVec2::new(750_000.0, 4_018_000.0), above_m: 2.0 };
 //! let seen = terrain.viewshed(&ViewshedOptions::new(observer))?;
-//! assert_eq!(seen.size(), (0, 0));
+//! assert_eq!(seen.size(), (374, 393));
 //! # Ok::<(), sandtable::Error>(())
 //! ```
 //!

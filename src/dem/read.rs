@@ -264,6 +264,7 @@ fn split_extension(name: &str) -> (&str, &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::archive::tests::zipped;
 
     #[test]
     fn tiles_are_named_by_extensions_that_nothing_else_has() {
@@ -290,32 +291,17 @@ mod tests {
         assert!(message("x", b"").contains("empty"));
     }
 
-    /// An archive of stored members.
-    fn zip(members: &[(&str, &[u8])]) -> Vec<u8> {
-        let (mut bytes, mut directory) = (Vec::new(), Vec::new());
-        for (name, content) in members {
-            let (at, size) = ((bytes.len() as u32).to_le_bytes(), (content.len() as u32).to_le_bytes());
-            let length = (name.len() as u16).to_le_bytes();
-            bytes.extend([&b"PK\x03\x04"[..], &[0; 22], &length, &[0; 2], name.as_bytes(), content].concat());
-            directory.extend([&b"PK\x01\x02"[..], &[0; 16], &size, &size, &length, &[0; 12], &at].concat());
-            directory.extend(name.as_bytes());
-        }
-        let (start, count) = ((bytes.len() as u32).to_le_bytes(), (members.len() as u16).to_le_bytes());
-        let end = [&b"PK\x05\x06\0\0\0\0"[..], &count, &count, &[0; 4], &start, &[0; 2]].concat();
-        [bytes, directory, end].concat()
-    }
-
     #[test]
     fn the_elevation_file_in_an_archive_is_read_with_its_companions() {
         let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
-        let archive = zip(&[("readme.txt", b"1 2 3"), ("d/a.asc", grid), ("d/a.prj", b"EPSG:32612")]);
+        let archive = zipped(&[("readme.txt", b"1 2 3"), ("d/a.asc", &grid[..]), ("d/a.prj", b"EPSG:32612")]);
         let raster = read("a.zip", &archive, &DemHints::default()).expect("a grid in it");
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
-        let nested = zip(&[("a.hgt.zip", &archive)]);
+        let nested = zipped(&[("a.hgt.zip", &archive[..])]);
         assert!(
             read("b.zip", &nested, &DemHints::default()).expect_err("nested").to_string().contains("twice")
         );
-        let without = zip(&[("readme.txt", b"1 2 3")]);
+        let without = zipped(&[("readme.txt", &b"1 2 3"[..])]);
         assert!(
             read("c.zip", &without, &DemHints::default()).expect_err("none").to_string().contains(".hgt")
         );

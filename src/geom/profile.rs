@@ -141,7 +141,8 @@ mod tests {
     #[test]
     fn a_profile_is_straight_between_its_stations_and_level_beyond() {
         let hill = profile(&[(0.0, 1.0), (10.0, 6.0), (30.0, 0.1)]);
-        assert_eq!([-5.0, 0.0, 4.0, 10.0, 30.0, 99.0].map(|at| hill.at(at)), [1.0, 1.0, 3.0, 6.0, 0.1, 0.1]);
+        assert_eq!([-5.0, 0.0, 10.0, 30.0, 99.0].map(|at| hill.at(at)), [1.0, 1.0, 6.0, 0.1, 0.1]);
+        assert!((hill.at(4.0) - 3.0).abs() < 1e-12);
         assert_eq!(hill.steepest(0.0), 0.5);
         assert_eq!(hill.steepest(10.0), 5.9 / 20.0);
     }

@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_that_crosses_itself_encloses_both_its_lobes_and_a_ring_in_a_ring_is_a_hole() {
+    fn a_ring_across_itself_encloses_both_lobes_and_a_ring_in_a_ring_is_a_hole() {
         let at = |x: f64, y: f64| DVec2::new(x, y);
         let bow = [at(0.0, 0.0), at(10.0, 10.0), at(10.0, 0.0), at(0.0, 10.0)];
         let lobes = even_odd([&bow[..]]);

@@ -322,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_lies_between_those_of_its_children_and_at_the_border_the_inner_one_stands_twice() {
+    fn a_row_lies_between_its_children_and_a_border_repeats_the_inner_one() {
         let layout = PatchLayout::new(9, 9, 8).expect("sound");
         let mut values: Vec<f32> = (0..81).map(|at| (at / 9) as f32).collect();
         let all = VertexRect { min: Vertex::new(0, 0), max: Vertex::new(8, 8) };

@@ -286,7 +286,7 @@ fn a_river_over_a_hill_is_told_of_and_a_deeper_cut_lets_it_through() {
 fn water_that_follows_the_ground_is_not_cut() {
     let text = "[[river]]\npoints = [[50, 150], [250, 150]]\nwater = \"drape\"\nmax_cut = 5\n";
     let refused = ramp(text).err().expect("it is not sensible");
-    assert!(refused.contains("follows the ground"), "{refused}");
+    assert!(refused.contains("`max_cut` has no effect on draped water"), "{refused}");
 }
 
 /// A scene over ground that rises 1 m a post eastward, from `text` after its `[terrain]`.

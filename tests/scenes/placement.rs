@@ -63,7 +63,7 @@ fn built<T>(text: &str, build: impl Fn(&Document, &Assets) -> Result<T, Diagnost
 }
 
 #[test]
-fn the_ground_alone_is_the_ground_of_the_scene_and_a_scene_is_not_lit_before_a_picture() {
+fn the_ground_alone_is_the_scene_s_and_no_scene_is_lit_before_a_picture() {
     let pads = "[[model]]\nfile = \"house.obj\"\nat = [700, 900]\nheading = 20\nfooting = \"pad\"\n\
                 [[model]]\nfile = \"house.obj\"\nat = [720, 930]\nfooting = \"plinth\"\n";
     let scene = scene(pads).expect("sound");

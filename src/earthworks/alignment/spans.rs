@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bridge_reaches_from_abutment_to_abutment_and_not_only_where_the_fill_is_too_high() {
+    fn a_bridge_reaches_from_abutment_to_abutment() {
         let needs = [0.0, 0.0, 1.0, 1.5, 1.5, 1.0, 0.0, 0.0];
         assert_eq!(spans_of(&needs), [(Support::Bridge, 30.0, 110.0)]);
     }

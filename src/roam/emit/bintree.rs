@@ -167,7 +167,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn where_holes_have_infinite_errors_the_bintree_s_quadtree_s_and_strips_holes_are_the_full_mesh_s(
+        fn holes_of_infinite_error_are_those_of_the_full_mesh_in_every_emitter(
             columns in 2u32..49, rows in 2u32..49, holes in proptest::collection::vec(0usize..2400, 0..5),
             tolerance_m in 0.0..10.0f32,
         ) {

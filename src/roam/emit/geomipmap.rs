@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn patches_far_from_the_eye_are_coarser_and_hold_the_tolerance_at_their_nearest_point() {
+    fn far_patches_are_coarser_and_hold_the_tolerance_at_their_nearest_point() {
         let (layout, lattice) = (layout(129, 129), lattice(129, 129, &[]));
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let heights = PatchHeights::new(ground);

@@ -67,7 +67,8 @@ impl Numbers for Vec4 {
 
     #[inline(always)]
     fn or_larger(self, other: Self) -> Self {
-        self.max(other)
+        // In this order a NaN in `other` is left out, as by `larger`.
+        other.max(self)
     }
 }
 

@@ -72,7 +72,7 @@ mod tests {
     use glam::DVec2;
 
     #[test]
-    fn a_plane_has_the_heights_of_its_posts_and_those_between_and_none_on_a_line_or_over_no_data() {
+    fn a_plane_has_its_posts_heights_and_none_on_a_line_or_over_no_data() {
         let mut heights: Vec<f32> = (0..16).map(|at| (at % 4 * 3 + at / 4 * 7) as f32).collect();
         heights[15] = f32::NAN;
         let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 4, heights).expect("sound");

@@ -102,7 +102,7 @@ fn a_place_that_cannot_be_written_is_told() {
     }
     // A scene whose own name ends in .png would be overwritten by its picture.
     let refused = run_in(&scratch.at("scenes"), &["render", "a.png"]).failed(1);
-    assert!(refused.contains("-o"), "{refused}");
+    assert!(refused.contains("name another to write to"), "{refused}");
     assert_eq!(fs::read_to_string(scratch.at("scenes/a.png")).expect("still there"), text);
     assert_eq!(scratch.names(), ["data", "scenes"]);
     // Nor may a picture take the place of what its scene is made of.

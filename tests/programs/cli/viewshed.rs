@@ -70,6 +70,6 @@ fn what_cannot_be_looked_at_is_refused_with_a_reason_and_nothing_is_written() {
     assert!(look(&["--at", "5,25", "-o", "wall.asc"]).failed(1).contains("a file that is read"));
     assert!(look(&["--at", "5;25"]).failed(2).contains("two numbers with a comma between"));
     assert!(look(&["--at", "5,25", "--range", "0"]).failed(2).contains("above 0"));
-    assert!(look(&["--at", "5,25", "--crs", "EPSG:99999"]).failed(2).contains("--crs EPSG:99999"));
+    assert!(look(&["--at", "5,25", "--crs", "EPSG:99999"]).failed(2).contains("'EPSG:99999' for '--crs"));
     assert!(!scratch.folder().join("x.png").exists());
 }

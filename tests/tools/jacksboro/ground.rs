@@ -5,11 +5,8 @@
 //! a degree its scale is off by less than 0.3 %, which is nothing to a road; no projection library is
 //! needed, so the result is the same everywhere.
 
-use std::io::Cursor;
-
 use glam::DVec2;
-use tiff::decoder::{Decoder, DecodingResult};
-use tiff::tags::Tag;
+use sandtable::dem::read::{DemHints, read};
 
 /// WGS 84 semi-major axis in meters.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
@@ -37,15 +34,10 @@ pub struct Ground {
 impl Ground {
     /// Reads the committed GeoTIFF: 16-bit samples, pixel scale and tie point, square pixels in degrees.
     pub fn read(bytes: &[u8]) -> Self {
-        let mut decoder = Decoder::new(Cursor::new(bytes)).expect("dem.tif is a TIFF");
-        let (width, height) = decoder.dimensions().expect("dem.tif has a size");
-        let scale = decoder.get_tag_f64_vec(Tag::ModelPixelScaleTag).expect("dem.tif has a pixel scale");
-        let tie = decoder.get_tag_f64_vec(Tag::ModelTiepointTag).expect("dem.tif has a tie point");
-        let DecodingResult::I16(samples) = decoder.read_image().expect("dem.tif decodes") else {
-            panic!("dem.tif holds 16-bit integers");
-        };
-        let z = samples.into_iter().map(f64::from).collect();
-        Self::new(width as usize, height as usize, z, DVec2::new(tie[3], tie[4]), scale[0])
+        let raster = read("dem.tif", bytes, &DemHints::default()).expect("dem.tif is a GeoTIFF");
+        let [west, step, _, north, ..] = raster.geotransform();
+        let z = raster.samples.iter().collect();
+        Self::new(raster.width as usize, raster.height as usize, z, DVec2::new(west, north), step)
     }
 
     /// A ground from its posts; `corner` is the longitude and latitude of the raster's north-west edge.
