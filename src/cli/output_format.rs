@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::cli::error::CliError;
-use crate::dem::formats::DemFormat;
+use crate::dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
 use crate::pipeline::files;
 
 /// The format that `from_extension` finds for the extension of `path`, where a file could be written there that replaces
@@ -23,6 +23,5 @@ pub fn output_format<F>(
 
 /// [`output_format`] for a raster.
 pub fn raster_format(path: &Path, inputs: &[PathBuf]) -> Result<&'static DemFormat, CliError> {
-    let written = "rasters are written as .tif, .asc, .bt, .hgt or .png";
-    output_format(path, inputs, DemFormat::to_write, written)
+    output_format(path, inputs, DemFormat::to_write, &format!("rasters are written as {WRITTEN_EXTENSIONS}"))
 }

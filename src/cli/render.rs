@@ -12,7 +12,7 @@ use crate::cli::output::{print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, picture_size};
 use crate::message::suggest::{nearest, quoted};
-use crate::pipeline::files;
+use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
 use crate::pipeline::picture::{PictureSize, RenderedView, render_view};
 use crate::pipeline::scene_file::open_scene;
 use crate::render::RenderBackend;
@@ -49,7 +49,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
     let scene_file = &arguments.scene.scene;
     let path = arguments.output.clone().unwrap_or_else(|| default_output(scene_file));
-    files::check_picture_output(&path, &[scene_file])?;
+    files::check_picture_output(&path, &[scene_file])
+        .map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let steps = StepTimer::default();
     let rendered = pool.install(|| render(arguments, &path, &steps))?;
     let times = steps.finish();
@@ -76,11 +77,20 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
     let progress = |step| steps.begin(step);
     let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
     let camera = find_camera(&scene, arguments.camera.as_deref())?.clone();
-    files::check_output(path, &scene.files)?;
+    files::check_output(path, &scene.files)
+        .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
     let view = render_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
     progress("writing the picture");
     files::write_picture(path, &view.pixels)?;
     Ok(RenderedScene { scene, camera: camera.name, view })
+}
+
+/// The error, which says `reason` and names the option where the picture would replace an input.
+fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
+    match error.cause {
+        WriteFileCause::Input => CliError::input(format!("{error}: {reason}; name another with -o")),
+        _ => error.into(),
+    }
 }
 
 fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {

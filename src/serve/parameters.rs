@@ -70,7 +70,19 @@ impl<'de> Visitor<'de> for ParametersVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parameters, A::Error> {
         let mut parameters = BTreeMap::new();
         while let Some((name, value)) = map.next_entry::<String, ParameterValue>()? {
-            parameters.extend(value.text().map(|value| (name, value)));
+            let value = value.text();
+            // What decodes escapes puts this character where the bytes are no text; no parameter takes it.
+            if [Some(&name), value.as_ref()]
+                .into_iter()
+                .flatten()
+                .any(|text| text.contains(char::REPLACEMENT_CHARACTER))
+            {
+                return Err(A::Error::custom(format!(
+                    "{} is not UTF-8 text after its escapes are read",
+                    quoted(&name)
+                )));
+            }
+            parameters.extend(value.map(|value| (name, value)));
             if parameters.len() > MOST {
                 return Err(A::Error::custom(format!("there are more than {MOST} parameters")));
             }

@@ -45,6 +45,9 @@ pub static FORMATS: [&DemFormat; 13] = [
 
 type DemWriter = fn(&Raster, &str) -> Result<WrittenDem, WriteError>;
 
+/// The extensions of the formats that are written, for messages.
+pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .bt, .hgt or .png";
+
 /// The declaration of a format.
 #[derive(Debug)]
 pub struct DemFormat {

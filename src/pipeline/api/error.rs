@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::dem::answer::Status;
+use crate::dem::formats::WRITTEN_EXTENSIONS;
 use crate::pipeline::bounded_mesh::MeshError;
 use crate::pipeline::dem::OpenDemError;
 use crate::pipeline::files::WriteFileError;
@@ -46,7 +47,7 @@ pub enum Error {
     #[error(transparent)]
     Picture(#[from] PictureError),
     /// No raster format has this extension.
-    #[error("{}: rasters are written as .tif, .asc, .bt, .hgt or .png; name a file that ends so", .0.display())]
+    #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
     /// A raster cannot be written.
     #[error(transparent)]

@@ -14,7 +14,7 @@ use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::ground;
 use crate::pipeline::viewshed::raster;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
-use crate::scene::{SceneTerrain as Bundle, picture};
+use crate::scene::{SceneTerrain, picture};
 use crate::terrain::query::service::{HeightService, Snapshot};
 use crate::terrain::query::{Interpolation, Surface};
 use crate::terrain::sight::viewshed::{ViewshedOptions, viewshed};
@@ -35,7 +35,7 @@ const NEAR_M: f32 = 0.5;
 pub struct Terrain {
     heights: HeightService,
     ground: Arc<Snapshot>,
-    bundle: Bundle,
+    terrain: SceneTerrain,
 }
 
 impl Terrain {
@@ -58,7 +58,7 @@ impl Terrain {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let layout =
             PatchLayout::new(columns, rows, DEFAULT_PATCH).ok_or(MeshError::TooLarge { columns, rows })?;
-        Ok(Self { heights, ground, bundle: Bundle::new(lattice, layout, 1.0, TOLERANCE_PX) })
+        Ok(Self { heights, ground, terrain: SceneTerrain::new(lattice, layout, 1.0, TOLERANCE_PX) })
     }
 
     /// The coordinate system of positions.
@@ -97,7 +97,7 @@ impl Terrain {
     pub fn camera(&self, eye: DVec3, target: DVec3, (width, height): (u32, u32)) -> Result<Camera, Error> {
         let origin = self.ground.lattice().origin().extend(0.0);
         let (eye, target) = ((eye - origin).as_vec3(), (target - origin).as_vec3());
-        let (min, max) = self.bundle.bounds();
+        let (min, max) = self.terrain.bounds();
         let far_m = 2.0 * (eye.distance(min).max(eye.distance(max)) + 1000.0);
         Ok(Camera::new(eye, target, FOV_Y_RAD, (width, height), (NEAR_M, far_m))?)
     }
@@ -106,7 +106,7 @@ impl Terrain {
     /// more than `tolerance_px` pixels. Positions are meters from the south-west post.
     pub fn mesh_for(&self, camera: &Camera, tolerance_px: f32) -> TriMesh {
         let mut mesh = TriMesh::default();
-        picture::display_within(&self.bundle, camera, tolerance_px).emit(&mut mesh);
+        picture::display_within(&self.terrain, camera, tolerance_px).emit(&mut mesh);
         mesh
     }
 

@@ -61,7 +61,12 @@ fn bits(block: &PatchBlock) -> [Vec<u32>; 4] {
 
 fn assert_all_patches_match(raster: &Raster, options: PagingOptions) {
     let mut paged = PagedGround::open(raster.clone(), exact_spheres(40.0), &options).expect("sound");
-    in_memory(raster, options.patch, 40.0, |mut whole| {
+    let metric = Raster {
+        samples: Samples::F32(raster.samples.iter().map(|z| (z * raster.meters_per_z) as f32).collect()),
+        meters_per_z: 1.0,
+        ..raster.clone()
+    };
+    in_memory(&metric, options.patch, 40.0, |mut whole| {
         let heights = PatchHeights::new(whole.ground);
         for corner in whole.ground.layout.patches() {
             let (found, wanted) =
@@ -78,7 +83,7 @@ fn assert_all_patches_match(raster: &Raster, options: PagingOptions) {
 #[test]
 fn every_patch_read_alone_is_that_of_the_whole_bit_for_bit() {
     for (width, height, holes) in [(161, 129, 0), (170, 140, 900), (33, 300, 50), (2, 40, 0)] {
-        let raster = raster(width, height, 5, holes);
+        let raster = Raster { meters_per_z: 1.7, ..raster(width, height, 5, holes) };
         for patch in [2, 8, 16, 64] {
             assert_all_patches_match(&raster, PagingOptions { patch, capacity: 3 });
         }

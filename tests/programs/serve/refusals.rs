@@ -37,7 +37,7 @@ fn a_wrong_parameter_is_named_with_what_was_found() {
         ("locations=50,10&crs=utm32", "crs is 'utm32'"),
         ("locations=50,10&crs=EPSG:1", "EPSG:1"),
         ("locations=50,10&crs=EPSG:32632&format=geojson", "geojson"),
-        ("locations=%ff,10", "location 1"),
+        ("locations=%ff,10", "UTF-8"),
     ] {
         let reason = server.get(&format!("/v1/grid?{query}")).refused(400);
         assert!(reason.contains(words), "{query}: {reason}");
