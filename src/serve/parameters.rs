@@ -14,6 +14,7 @@ use axum::body::{Body, Bytes, to_bytes};
 use axum::extract::{Form, FromRequest, Query, Request};
 use axum::http::header::{CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
+use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 use crate::pipeline::choice::Choice;
@@ -70,19 +71,7 @@ impl<'de> Visitor<'de> for ParametersVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Parameters, A::Error> {
         let mut parameters = BTreeMap::new();
         while let Some((name, value)) = map.next_entry::<String, ParameterValue>()? {
-            let value = value.text();
-            // What decodes escapes puts this character where the bytes are no text; no parameter takes it.
-            if [Some(&name), value.as_ref()]
-                .into_iter()
-                .flatten()
-                .any(|text| text.contains(char::REPLACEMENT_CHARACTER))
-            {
-                return Err(A::Error::custom(format!(
-                    "{} is not UTF-8 text after its escapes are read",
-                    quoted(&name)
-                )));
-            }
-            parameters.extend(value.map(|value| (name, value)));
+            parameters.extend(value.text().map(|value| (name, value)));
             if parameters.len() > MOST {
                 return Err(A::Error::custom(format!("there are more than {MOST} parameters")));
             }
@@ -108,6 +97,7 @@ impl FromRequest<Arc<Service>> for Parameters {
             );
             return Err(HttpError::new(StatusCode::URI_TOO_LONG, reason));
         }
+        check_utf8(request.uri().query().unwrap_or_default().as_bytes())?;
         let query = Query::<Self>::try_from_uri(request.uri());
         let Query(mut parameters) = query.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
         if request.method() == Method::POST {
@@ -117,6 +107,20 @@ impl FromRequest<Arc<Service>> for Parameters {
         }
         Ok(parameters)
     }
+}
+
+/// Refuses a form whose escapes stand for bytes that are no text: what decodes forms would replace them unseen.
+fn check_utf8(form: &[u8]) -> Result<(), HttpError> {
+    for parameter in form.split(|byte| *byte == b'&') {
+        if percent_decode(parameter).decode_utf8().is_err() {
+            let parameter = String::from_utf8_lossy(parameter);
+            return Err(HttpError::wrong(format!(
+                "{} is not UTF-8 text after its escapes are read",
+                quoted(&parameter)
+            )));
+        }
+    }
+    Ok(())
 }
 
 impl Parameters {
@@ -129,6 +133,7 @@ impl Parameters {
                 .map_err(|rejection| HttpError::wrong(rejection.body_text()));
         }
         body.truncate(body.trim_ascii_end().len());
+        check_utf8(&body)?;
         let mut request = Request::new(Body::from(body));
         *request.method_mut() = Method::POST;
         request.headers_mut().insert(CONTENT_TYPE, HeaderValue::from_static(FORM));
