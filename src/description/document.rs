@@ -138,7 +138,8 @@ table! {
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
-        /// Distance at which 63 % of what is seen is haze; 0 for clear air.
+        /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
+        /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
             otherwise "eight times the longest side of the terrain, its drawn height included";
     }

@@ -24,6 +24,9 @@ pub struct GroundMap {
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
     pub contours: Option<Contours>,
+    /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
+    /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
+    pub form_level: u32,
 }
 
 /// The ground at one post.
@@ -70,6 +73,12 @@ impl ColorRamp {
         let (low, high) = self.height_range();
         let height = |step: usize| low + (high - low) * step as f32 / (steps - 1).max(1) as f32;
         (0..steps).map(|step| self.linear_at(height(step))).collect()
+    }
+
+    /// `height_m` as a share of the range of the stops, 0..=1 between them; 0 where there is one stop.
+    pub fn elevation(&self, height_m: f32) -> f32 {
+        let (low, high) = self.height_range();
+        if high > low { (height_m - low) / (high - low) } else { 0.0 }
     }
 
     /// The heights of the lowest and the highest stop.
@@ -208,6 +217,7 @@ mod tests {
             posts: vec![GroundPost::default(); 6],
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
+            form_level: 0,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();
         assert_eq!(map.check(), Ok(()));

@@ -90,7 +90,6 @@ pub fn build(
     let labels = views::labels(&frame, &terrain)?;
     let cameras = views::cameras(&frame, &terrain)?;
     collected.notes.extend(views::buried(&cameras, &terrain));
-    let (low, high) = terrain.bounds();
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&terrain.lattice), &collected.decks)?;
     Ok(SceneModel {
@@ -99,7 +98,8 @@ pub fn build(
         heights,
         ramp: style::ramp(document, terrain.height_range())?,
         contours: style::contours(document),
-        lighting: style::lighting(document, (high - low).max_element()),
+        lighting: style::lighting(document),
+        haze_m: document.style.haze.map(|distance_m| distance_m as f32),
         map: OnceLock::new(),
         terrain,
         ribbons: collected.ribbons,

@@ -73,8 +73,11 @@ pub struct SceneModel {
     pub ramp: ColorRamp,
     /// Lines of equal height on the ground.
     pub contours: Option<Contours>,
-    /// Light, haze and sky.
+    /// Light and sky.
     pub lighting: Lighting,
+    /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
+    /// `None` fits haze to each view.
+    pub haze_m: Option<f32>,
     map: OnceLock<Arc<GroundMap>>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,

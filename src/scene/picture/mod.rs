@@ -3,6 +3,7 @@
 mod detail;
 mod drapes;
 mod ground;
+mod haze;
 mod models;
 pub mod recut;
 mod solids;
@@ -72,6 +73,10 @@ fn listed(
     }
     let mut list =
         DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
+    if let Viewer::Camera(camera) = viewer {
+        list.lighting.haze =
+            haze::haze(scene.lighting.haze.color, scene.haze_m, camera, scene.terrain.bounds());
+    }
     let walls = ground::add(&mut list, &scene.terrain, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
