@@ -178,8 +178,8 @@ impl Lattice {
         })
     }
 
-    /// The lattice that a vertical exaggeration displays: every height times `factor`, which is above 0.
-    pub fn exaggerated(&self, factor: f32) -> Self {
+    /// The lattice with every height times `factor`, which is above 0.
+    pub fn stretched(&self, factor: f32) -> Self {
         let heights = self.heights.iter().map(|height| height * factor).collect();
         Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
@@ -265,7 +265,7 @@ impl Lattice {
         &self.pinned
     }
 
-    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which an exaggeration multiplies.
+    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which [`Lattice::stretched`] multiplies.
     pub fn pin_slack_m(&self) -> f32 {
         self.pin_slack_m
     }
@@ -405,10 +405,10 @@ mod tests {
     }
 
     #[test]
-    fn an_exaggerated_lattice_has_the_same_posts_and_higher_heights() {
+    fn a_stretched_lattice_has_the_same_posts_and_higher_heights() {
         let mut plain = plane();
         plain.pin(Post { column: 1, row: 2 }, 7.0);
-        let steep = plain.exaggerated(3.0);
+        let steep = plain.stretched(3.0);
         for post in plain.posts() {
             assert_eq!(steep.height(post), plain.height(post) * 3.0);
             assert_eq!(steep.position(post), plain.position(post));
