@@ -326,15 +326,11 @@ impl Lattice {
     }
 
     /// The heights of a cell's corners: south-west, south-east, north-west, north-east.
+    #[inline]
     pub fn corner_heights(&self, cell: Post) -> [f32; 4] {
-        let first = self.index(cell);
         let stride = self.columns as usize;
-        [
-            self.heights[first],
-            self.heights[first + 1],
-            self.heights[first + stride],
-            self.heights[first + stride + 1],
-        ]
+        let heights = &self.heights[self.index(cell)..][..stride + 2];
+        [heights[0], heights[1], heights[stride], heights[stride + 1]]
     }
 
     /// The slopes at a post, rise per meter eastward and northward, by the weights of Horn (1981) over the eight

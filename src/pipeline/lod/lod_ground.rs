@@ -24,9 +24,8 @@ pub struct LodGround {
     pub measured: MeasuredGround,
     /// The most pixels that an error may span.
     pub tolerance_px: f32,
-    plain: OnceLock<SphereMap>,
-    constrained: OnceLock<SphereMap>,
-    bounding: OnceLock<SphereMap>,
+    /// By [`SphereRule`].
+    spheres: [OnceLock<SphereMap>; 3],
 }
 
 /// Ground with too many vertices for patches of the default size.
@@ -64,13 +63,7 @@ impl LodGround {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let measured = MeasuredGround::new(lattice, DEFAULT_PATCH).ok_or(TooManyPosts { columns, rows })?;
         measured.measure_patches();
-        Ok(Self {
-            measured,
-            tolerance_px,
-            plain: OnceLock::new(),
-            constrained: OnceLock::new(),
-            bounding: OnceLock::new(),
-        })
+        Ok(Self { measured, tolerance_px, spheres: Default::default() })
     }
 
     /// Makes the measures that a criterion needs.
@@ -107,16 +100,14 @@ impl LodGround {
     pub fn spheres(&self, rule: SphereRule, camera: &Camera) -> &SphereMap {
         let (measured, ground) = (&self.measured, self.measured.patched());
         let center = camera.pixels_per_meter(1.0) / self.tolerance_px;
-        match rule {
-            SphereRule::Plain => {
-                self.plain.get_or_init(|| SphereMap::plain(ground, measured.midpoint(), center))
-            }
-            SphereRule::Constrained => self.constrained.get_or_init(|| {
+        self.spheres[rule as usize].get_or_init(|| match rule {
+            SphereRule::Plain => SphereMap::plain(ground, measured.midpoint(), center),
+            SphereRule::Constrained => {
                 SphereMap::constrained(ground, center, &Roughness::new(measured.lattice(), HALF_WINDOW))
-            }),
-            SphereRule::Bounding => self.bounding.get_or_init(|| {
+            }
+            SphereRule::Bounding => {
                 SphereMap::bounding(ground, measured.exact(), reach(camera, self.tolerance_px))
-            }),
-        }
+            }
+        })
     }
 }
