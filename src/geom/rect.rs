@@ -25,6 +25,11 @@ impl Rect {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
+    /// What this rectangle and `other` have in common; possibly empty.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
     /// This rectangle extended by `margin` on all four sides.
     pub fn grown(self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin }

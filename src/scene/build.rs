@@ -88,7 +88,7 @@ pub fn build(
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
     let labels = views::labels(&frame, &lattice)?;
-    let cameras = views::cameras(&frame, &lattice, bounds)?;
+    let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;

@@ -42,6 +42,7 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
 use crate::ribbon::plan::PlanMesh;
@@ -280,12 +281,35 @@ pub struct SceneLabel {
 pub struct SceneView {
     /// Its name on the command line.
     pub name: String,
-    /// The eye, world space.
-    pub eye: Vec3,
-    /// The point in the picture's middle, world space.
-    pub target: Vec3,
+    /// From where it looks, and whereto.
+    pub aim: ViewAim,
     /// Vertical field of view in radians.
     pub fov_y_rad: f32,
+}
+
+/// From where a view looks, and whereto.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewAim {
+    /// From a place to a place, world space.
+    At {
+        /// The eye.
+        eye: Vec3,
+        /// The point in the picture's middle.
+        target: Vec3,
+    },
+    /// From as near as what it shows fits into the picture.
+    Fitted(FittedView),
+}
+
+/// A view whose eye depends on the picture's shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedView {
+    /// Where it looks, clockwise from north, radians.
+    pub azimuth_rad: f32,
+    /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
+    pub pitch_rad: Option<f32>,
+    /// The ground that it shows, world X and Y; `None` for all of it.
+    pub shown: Option<Rect>,
 }
 
 impl SceneModel {

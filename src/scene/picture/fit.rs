@@ -71,7 +71,9 @@ mod tests {
     /// The corners of a block, 3 by 2 km and 400 m high.
     fn block() -> Vec<Vec3> {
         let side = |corner: u32, bit: u32, length: f32| if corner & bit == 0 { 0.0 } else { length };
-        (0..8).map(|corner| Vec3::new(side(corner, 1, 3000.0), side(corner, 2, 2000.0), side(corner, 4, 400.0))).collect()
+        (0..8)
+            .map(|corner| Vec3::new(side(corner, 1, 3000.0), side(corner, 2, 2000.0), side(corner, 4, 400.0)))
+            .collect()
     }
 
     #[test]
