@@ -56,6 +56,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let times = steps.finish();
     let mut lines = vec![path.display().to_string()];
     lines.extend(contents(&rendered.scene));
+    lines.extend(rendered.scene.inferred_notes().iter().map(|note| row(9, "note", note)));
     lines.extend(summary(&rendered));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));

@@ -122,6 +122,8 @@ table! {
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
         /// Whether samples without data that others enclose are filled by a membrane.
         fill_voids: bool = key::switch(), default false;
+        /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
+        infer_water: bool = key::switch(), default true;
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.

@@ -101,6 +101,8 @@ pub fn build(
         lighting: style::lighting(document),
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
         map: OnceLock::new(),
+        infers_water: document.terrain.infer_water,
+        water: OnceLock::new(),
         lattice,
         height_range_m,
         scale,

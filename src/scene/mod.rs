@@ -55,6 +55,7 @@ use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
+use crate::terrain::water_cover::{WaterCover, water_cover};
 
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
@@ -88,6 +89,8 @@ pub struct SceneModel {
     /// `None` fits haze to each view.
     pub haze_m: Option<f32>,
     map: OnceLock<Arc<GroundMap>>,
+    infers_water: bool,
+    water: OnceLock<WaterCover>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
     /// Solids with fixed heights: buildings, bridges.
@@ -321,6 +324,31 @@ impl SceneModel {
     /// What the ground looks like, its light computed on first use.
     pub fn map(&self) -> &Arc<GroundMap> {
         self.map.get_or_init(|| Arc::new(style::ground_map(self)))
+    }
+
+    /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
+    pub fn water(&self) -> &WaterCover {
+        self.water.get_or_init(|| {
+            if self.infers_water { water_cover(&self.lattice) } else { WaterCover::default() }
+        })
+    }
+
+    /// What a picture shows that no file states, for the user.
+    pub fn inferred_notes(&self) -> Vec<String> {
+        let WaterCover { sea_posts, lakes, .. } = self.water();
+        let area = |posts: usize| format!("{:.2} km²", posts as f64 * self.lattice.cell_m2() / 1e6);
+        let sea = (*sea_posts > 0).then(|| {
+            format!(
+                "{} are drawn as sea: ground at or below 0 m that is connected to the border",
+                area(*sea_posts)
+            )
+        });
+        let lakes = (!lakes.is_empty()).then(|| {
+            let area = area(lakes.iter().sum());
+            format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
+        });
+        let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");
+        sea.into_iter().chain(lakes).map(off).collect()
     }
 
     /// Whether [`SceneModel::map`] has been made.

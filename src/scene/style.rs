@@ -92,12 +92,14 @@ pub fn lighting(document: &Document) -> Lighting {
 pub fn ground_map(scene: &SceneModel) -> GroundMap {
     let lattice = &scene.lattice;
     let light = light::light(scene.ground().lattice(), scene.lighting.to_sun);
+    let is_water = &scene.water().is_water;
     let filled = filled_heights(lattice, scene.height_range_m.0);
     let posts = lattice
         .posts()
         .zip(filled)
         .zip(light.sun.into_iter().zip(light.sky))
-        .map(|((post, height_m), (sun_visibility, sky_visibility))| {
+        .enumerate()
+        .map(|(index, ((post, height_m), (sun_visibility, sky_visibility)))| {
             let slopes = lattice.slopes(post);
             GroundPost {
                 height_m,
@@ -105,6 +107,7 @@ pub fn ground_map(scene: &SceneModel) -> GroundMap {
                 slope_north: scene.scale.world_z(slopes.y),
                 sun_visibility,
                 sky_visibility,
+                water: if is_water.get(index).is_some_and(|&is_water| is_water) { 1.0 } else { 0.0 },
             }
         })
         .collect();

@@ -151,6 +151,7 @@ fn ground_map() -> GroundMap {
             slope_north: slope.y,
             sun_visibility: if at(index).x > 500.0 { 0.25 } else { 1.0 },
             sky_visibility: 0.9,
+            water: 0.0,
         }
     };
     let stops = [

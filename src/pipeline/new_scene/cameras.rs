@@ -26,7 +26,7 @@ const BLOCKS: u32 = 10;
 /// The low camera's angle below the horizon.
 const LOW_PITCH_DEG: f64 = 14.0;
 /// The directions in which the low camera may look: light from the upper left models the ground.
-const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
+const LOW_AZIMUTHS_DEG: [f64; 7] = [0.0, -30.0, 30.0, -60.0, 60.0, -90.0, 90.0];
 
 /// The cameras for a scene whose vectors, if any, lie within `vectors` in the scene's system; the first is the default.
 pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
@@ -90,15 +90,18 @@ fn boldest_block(lattice: &Lattice) -> Option<Rect> {
         .then(|| Rect { min: min - size / 2.0, max: min + size * 1.5 }.intersection(&lattice.extent()))
 }
 
-/// The direction toward `block` with the lowest ground before it, degrees clockwise from north.
+/// The direction toward `block` with the lowest ground before it, degrees clockwise from north; beyond the border of the
+/// data there is none, and the walls of the ground's block would be in the way.
 fn lowest_approach(lattice: &Lattice, block: Rect) -> f64 {
     let (center, reach) = (block.center(), block.size().max_element());
     let highest = |azimuth_deg: f64| {
         let (sin, cos) = (libm::sin(azimuth_deg.to_radians()), libm::cos(azimuth_deg.to_radians()));
-        (2..12).fold(f32::NEG_INFINITY, |highest, step| {
+        let approach = (2..8).map(|step| {
             let at = center - DVec2::new(sin, cos) * (reach * f64::from(step) / 4.0);
-            let height = lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post));
-            highest.max(height)
+            lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post))
+        });
+        approach.fold((0, f32::NEG_INFINITY), |(beyond, highest), height| {
+            (beyond + u32::from(height.is_nan()), highest.max(height))
         })
     };
     let [first, others @ ..] = LOW_AZIMUTHS_DEG.map(|azimuth| (azimuth, highest(azimuth)));

@@ -18,6 +18,8 @@ struct Frame {
     haze: vec4f,          // rgb, 1 / distance
     zenith: vec4f,        // rgb, distance at which haze begins
     sides: array<vec4f, 4>, // xyz toward a side light, its share
+    water: vec4f,         // rgb at the surface
+    deep: vec4f,          // rgb of deep water
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     contour: vec4f,       // rgb, strength
@@ -42,7 +44,8 @@ const MOST_TAPS = 8.0;
 const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-// One texel a post: height, slope east and slope north as bits of f32, both visibilities as 16 bits each.
+// One texel a post: height, slope east and slope north as bits of f32; the visibilities of the sun in 12 bits and of the
+// sky in 10, and water in 10.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
 // The same for all smaller levels, side by side.
 @group(0) @binding(2) var ground_coarse: texture_2d<u32>;
@@ -115,7 +118,7 @@ fn vertex(corner: Corner, instance: Instance) -> Varying {
 struct Post {
     height: f32,
     slope: vec2f,
-    visibility: vec2f, // of the sun, of the sky
+    visibility: vec3f, // of the sun, of the sky; under water
     gradient: vec2f,   // rise of the height itself, meters per meter
 }
 
@@ -126,7 +129,9 @@ fn post_at(at: vec2u, level: u32) -> Post {
     } else {
         texel = textureLoad(ground_coarse, at + vec2u(frame.ground_levels[level].z, 0u), 0);
     }
-    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), unpack2x16unorm(texel.w), vec2f(0.0));
+    let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
+    let visibility = shares / vec3f(4095.0, 1023.0, 1023.0);
+    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0));
 }
 
 fn mix_post(a: Post, b: Post, t: f32) -> Post {
@@ -170,7 +175,7 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     let level = clamp(log2(max(longer / taps, 1e-6)), 0.0, most);
     let lower = u32(level);
     let part = level - f32(lower);
-    var sum = Post(0.0, vec2f(0.0), vec2f(0.0), vec2f(0.0));
+    var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0));
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let here = at + axis * ((tap + 0.5) / taps - 0.5);
         var post = ground_on_level(here, lower);
@@ -295,7 +300,11 @@ fn shade(in: Varying, front: bool) -> vec4f {
         if (flags & FROM_GROUND_ALBEDO) != 0u {
             let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
-            color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), 1.0);
+            // WaterColor.
+            let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
+            let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
+            let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water);
+            color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
         }
         light = relief_lit(color.rgb, post, in.world.xy);
     }

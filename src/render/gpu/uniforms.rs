@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::draw::ground::WaterColor;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
@@ -35,6 +36,8 @@ pub struct FrameUniforms {
     haze: [f32; 4],
     zenith: [f32; 4],
     sides: [[f32; 4]; 4],
+    water: [f32; 4],
+    deep: [f32; 4],
     ground: [f32; 4],
     ground_size: [u32; 4],
     contour: [f32; 4],
@@ -84,6 +87,8 @@ impl FrameUniforms {
             haze: with(light.haze.color, 1.0 / light.haze.distance_m),
             zenith: with(light.zenith, light.haze.near_m),
             sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
+            water: with(WaterColor::SURFACE.linear(), 1.0),
+            deep: with(WaterColor::DEEP.linear(), 1.0),
             ..Self::ground(list)
         }
     }

@@ -81,6 +81,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             slope_north: rise(0.0, cell),
             sun_visibility: 1.0,
             sky_visibility: 1.0,
+            water: 0.0,
         }
     };
     let stops = [
