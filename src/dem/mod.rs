@@ -5,6 +5,7 @@ pub mod answer;
 mod bytes;
 pub mod cache;
 pub mod cell_grid;
+pub mod crop;
 pub mod error;
 pub mod formats;
 mod georef;

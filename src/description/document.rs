@@ -124,6 +124,8 @@ table! {
         fill_voids: bool = key::switch(), default false;
         /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
         infer_water: bool = key::switch(), default true;
+        /// Points around the part that the scene is made of, such as two corners of a map.
+        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole model";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.

@@ -23,7 +23,7 @@ use crate::description::parse::parse;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::pipeline::files::{self, SystemError, WriteFileError};
-use crate::pipeline::new_scene::cameras::cameras;
+use crate::pipeline::new_scene::cameras::{cameras, map_extent};
 use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
@@ -128,15 +128,23 @@ fn complete(
     allowed: &[PathBuf],
 ) -> Result<SceneDraft, OpenSceneError> {
     let assets = Assets::new(path, allowed)?;
-    let document = parse(&path.to_string_lossy(), &text::terrain(&draft))?;
-    let scene = build(&document, &assets, &|_| ())?;
+    let built = |draft: &SceneDraft| {
+        let document = parse(&path.to_string_lossy(), &text::terrain(draft))?;
+        Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
+    };
+    let mut scene = built(&draft)?;
+    let vectors = extent(vectors, &scene.crs);
+    draft.extent = worth_cropping(vectors, map_extent(&scene.lattice));
+    if draft.extent.is_some() {
+        scene = built(&draft)?;
+    }
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     draft.size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
     draft.crs_name = scene.crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / draft.size_m);
     draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
-    draft.cameras = cameras(&scene, extent(vectors, &scene.crs));
+    draft.cameras = cameras(&scene, vectors);
     Ok(draft)
 }
 
@@ -156,6 +164,21 @@ fn extent(vectors: &[VectorDraft], crs: &Crs) -> Rect {
     Rect::around(
         layers.flat_map(|layer| layer.corners.iter().filter_map(|at| layer.crs.transform(crs, *at).ok())),
     )
+}
+
+/// The extent of a scene whose vectors cover little of the `ground`: theirs and a margin; `None` where they cover more, or
+/// where there are none.
+fn worth_cropping(vectors: Rect, ground: Rect) -> Option<Rect> {
+    /// The share of the ground below which it is cropped.
+    const LITTLE: f64 = 0.3;
+    /// The margin on each side, as a share of the longer side.
+    const MARGIN: f64 = 0.15;
+    /// A smaller share of the ground along a side is a point on it, not a place to crop to.
+    const LEAST: f64 = 0.01;
+    let covered = vectors.intersection(&ground);
+    let share = covered.size() / ground.size();
+    let is_little = !covered.is_empty() && share.element_product() < LITTLE && share.min_element() > LEAST;
+    is_little.then(|| covered.grown(covered.size().max_element() * MARGIN).intersection(&ground))
 }
 
 /// A title from a file name.

@@ -278,12 +278,7 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         (kind, left.filter(|(feature, _)| feature.geometry.kind() == kind).count())
     });
     let bounds = Rect::around(layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied()));
-    let side = [0.0, 0.5, 1.0];
-    let corners = if bounds.is_empty() {
-        Vec::new()
-    } else {
-        side.iter().flat_map(|x| side.map(|y| bounds.min + bounds.size() * DVec2::new(*x, y))).collect()
-    };
+    let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
     let rest = rest.into_iter().filter(|rest| rest.1 > 0).collect();
     SurveyedLayer { name, matches, rest, crs: layer.crs.clone(), corners }
 }

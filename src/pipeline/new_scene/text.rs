@@ -27,6 +27,8 @@ pub(super) struct SceneDraft {
     pub exaggeration: f64,
     pub contours_m: Option<f64>,
     pub cameras: Vec<CameraDraft>,
+    /// The part of the elevation that the scene is made of, in the scene's system; `None` for all of it.
+    pub extent: Option<Rect>,
 }
 
 /// A vector file and what it holds.
@@ -104,6 +106,13 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     if let Some(crs) = &draft.crs {
         let _ = writeln!(out, "crs = {}", quoted(crs));
     }
+    if let Some(extent) = &draft.extent {
+        let corners = corners(extent);
+        let _ = writeln!(
+            out,
+            "# The features and a margin; remove it to see the whole elevation model.\nextent = {corners}"
+        );
+    }
     if draft.exaggeration > 0.0 {
         let _ = writeln!(out, "# 1 is true to scale; flat country shows its forms at 2 or 3.");
         let _ = writeln!(out, "vertical_exaggeration = {}", draft.exaggeration);
@@ -164,9 +173,14 @@ fn camera(out: &mut String, camera: &CameraDraft) {
             let _ = writeln!(out, "{key} = {angle}");
         }
     }
-    if let Some(Rect { min, max }) = camera.shown {
-        let _ = writeln!(out, "shows = [[{:.0}, {:.0}], [{:.0}, {:.0}]]", min.x, min.y, max.x, max.y);
+    if let Some(shown) = &camera.shown {
+        let _ = writeln!(out, "shows = {}", corners(shown));
     }
+}
+
+/// The corners of a rectangle in whole meters, as a list of points.
+fn corners(Rect { min, max }: &Rect) -> String {
+    format!("[[{:.0}, {:.0}], [{:.0}, {:.0}]]", min.x, min.y, max.x, max.y)
 }
 
 /// A text in double quotes; JSON's escapes are TOML's.
