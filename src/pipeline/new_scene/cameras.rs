@@ -26,7 +26,7 @@ const BLOCKS: u32 = 10;
 /// The low camera's angle below the horizon.
 const LOW_PITCH_DEG: f64 = 14.0;
 /// The directions in which the low camera may look: light from the upper left models the ground.
-const LOW_AZIMUTHS_DEG: [f64; 7] = [0.0, -30.0, 30.0, -60.0, 60.0, -90.0, 90.0];
+const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 
 /// The cameras for a scene whose vectors, if any, lie within `vectors` in the scene's system; the first is the default.
 pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {

@@ -18,6 +18,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
+
 use crate::annotate::nice::NiceNumber;
 use crate::description::parse::parse;
 use crate::geom::crs::Crs;
@@ -173,12 +175,18 @@ fn worth_cropping(vectors: Rect, ground: Rect) -> Option<Rect> {
     const LITTLE: f64 = 0.3;
     /// The margin on each side, as a share of the longer side.
     const MARGIN: f64 = 0.15;
+    /// The shorter side as a share of the longer: a narrow block leaves most of a picture empty.
+    const NARROWEST: f64 = 0.8;
     /// A smaller share of the ground along a side is a point on it, not a place to crop to.
     const LEAST: f64 = 0.01;
     let covered = vectors.intersection(&ground);
     let share = covered.size() / ground.size();
     let is_little = !covered.is_empty() && share.element_product() < LITTLE && share.min_element() > LEAST;
-    is_little.then(|| covered.grown(covered.size().max_element() * MARGIN).intersection(&ground))
+    is_little.then(|| {
+        let longer = covered.size().max_element();
+        let half = covered.size().max(DVec2::splat(longer * NARROWEST)) / 2.0 + longer * MARGIN;
+        Rect { min: covered.center() - half, max: covered.center() + half }.intersection(&ground)
+    })
 }
 
 /// A title from a file name.
