@@ -22,8 +22,8 @@ pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
 
 /// What a scene holds, and the notes about it, in lines.
 pub fn contents(scene: &SceneModel) -> Vec<String> {
-    let lattice = &scene.terrain.lattice;
-    let (low, high) = scene.terrain.height_range();
+    let lattice = &scene.lattice;
+    let (low, high) = scene.height_range_m;
     let size = lattice.extent().size() / 1000.0;
     let ground = format!(
         "{}×{} posts, {:.2}×{:.2} km, {} to {} m, {}",

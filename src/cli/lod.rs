@@ -19,8 +19,8 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::ground::MetricGround;
 use crate::pipeline::lod::flight_path::FlightPath;
 use crate::pipeline::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
+use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::method::{CriterionKind, Emit, Refine};
-use crate::pipeline::lod::prepared::PreparedGround;
 
 /// `lod`.
 #[derive(Debug, Args)]
@@ -90,8 +90,8 @@ pub fn run(arguments: &LodArguments) -> Result<(), CliError> {
     let ground = MetricGround::from_raster(&mosaic.raster).map_err(FileError::at(&arguments.file))?;
     let cameras = arguments.flight.cameras(arguments.frames as usize, &ground.lattice)?;
     steps.begin("measuring terrain");
-    let ground = PreparedGround::new(ground.lattice, arguments.tolerance_px)
-        .map_err(FileError::at(&arguments.file))?;
+    let ground =
+        LodGround::new(ground.lattice, arguments.tolerance_px).map_err(FileError::at(&arguments.file))?;
     let start = Instant::now();
     let plan = FlightPlan {
         ground: &ground,
@@ -138,8 +138,8 @@ fn json(report: &FlightReport) -> Value {
 }
 
 /// The flight, a row for each method, and what the columns are.
-fn table(reports: &[FlightReport], ground: &PreparedGround, arguments: &LodArguments) -> Vec<String> {
-    let lattice = &ground.lattice;
+fn table(reports: &[FlightReport], ground: &LodGround, arguments: &LodArguments) -> Vec<String> {
+    let lattice = ground.measured.lattice();
     let frames = reports.first().map_or(0, |report| report.frames);
     let goal = match arguments.budget {
         Some(most) => format!("triangle budget {most}"),

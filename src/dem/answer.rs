@@ -3,7 +3,7 @@
 /// A height, or why there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
-    /// The height, without vertical exaggeration: in meters, or as a sample of a raster in the raster's vertical unit.
+    /// The height, true to scale: in meters, or as a sample of a raster in the raster's vertical unit.
     Height(f64),
     /// The position lies on the model, where it holds no data.
     NoData,

@@ -30,11 +30,11 @@ pub struct GroundMap {
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct GroundPost {
-    /// Height in meters, without vertical exaggeration; posts without data hold a neighbor's height.
+    /// Elevation in meters, true to scale; posts without data hold a neighbor's height.
     pub height_m: f32,
-    /// Rise eastward, meters per meter, with vertical exaggeration.
+    /// Rise eastward of the drawn ground, meters per meter.
     pub slope_east: f32,
-    /// Rise northward, meters per meter, with vertical exaggeration.
+    /// Rise northward of the drawn ground, meters per meter.
     pub slope_north: f32,
     /// Share of the sun that reaches the post past other terrain, 0..=1.
     pub sun_visibility: f32,

@@ -1,17 +1,13 @@
 //! Exporting a scene as a file that modeling programs open.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::draw::list::{DrawList, FeatureId};
 use crate::export::{SceneExport, glb, obj, prepare};
 use crate::mesh::write::Remarks;
 use crate::pipeline::files::{self, WriteFileError};
-use crate::roam::criterion::flat::Flat;
-use crate::roam::displayed::DisplayedTerrain;
-use crate::roam::refine::rebuild::rebuild;
 use crate::scene::picture;
-use crate::scene::{SceneFeature, SceneModel, SceneTerrain};
+use crate::scene::{SceneFeature, SceneModel};
 
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +51,7 @@ pub fn export(
 ) -> Result<ExportedScene, WriteFileError> {
     files::check_output(path, &scene.files)?;
     progress("refining terrain");
-    let displayed = displayed(&scene.terrain, max_error_m as f32);
+    let displayed = scene.ground().displayed_within(max_error_m as f32);
     let (list, _) = picture::draw_list(scene, &displayed, progress);
     progress("removing covered ground");
     let list = prepare::prepare(list);
@@ -80,14 +76,6 @@ pub fn export(
     Ok(ExportedScene { files: written, list })
 }
 
-/// The terrain with errors of at most `max_error_m` at every post.
-fn displayed(terrain: &SceneTerrain, max_error_m: f32) -> DisplayedTerrain {
-    let patches: Vec<_> = terrain.layout.patches().collect();
-    let criterion = Flat::new(&terrain.layout, terrain.errors(), max_error_m);
-    let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
-    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
-}
-
 fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
     if feature == FeatureId::GROUND {
         return "ground".into();
@@ -101,7 +89,7 @@ fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
 }
 
 fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {
-    let origin = scene.terrain.lattice.origin();
+    let origin = scene.lattice.origin();
     let title = scene.title.as_deref().unwrap_or("a scene");
     let lines = [
         format!("{title}, written by sandtable"),

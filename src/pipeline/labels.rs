@@ -62,13 +62,13 @@ fn scale_bar(camera: &Camera, picture: &Rendering) -> Option<ScaleBar> {
 }
 
 fn legend(scene: &SceneModel) -> Legend {
-    let (low_m, high_m) = scene.terrain.height_range();
+    let (low_m, high_m) = scene.height_range_m;
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
     Legend {
         ramp: scene.ramp.clone(),
         low_m,
         high_m,
-        vertical_exaggeration: scene.terrain.exaggeration,
+        vertical_exaggeration: scene.scale.0,
         contour_interval: scene.contours.map(|contours| contours.interval_m),
         vertical_datum: datum.map(|name| format!("Heights: {name}")),
     }

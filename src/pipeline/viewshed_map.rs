@@ -104,7 +104,7 @@ fn colors(lattice: &Lattice, viewshed: &Viewshed, ramp: &ColorRamp) -> Vec<Vec3>
     const STEPS: usize = 512;
     let table = ramp.table(STEPS);
     let (low, high) = ramp.height_range();
-    let grays = hillshade(&lattice.exaggerated(RELIEF), &HillshadeOptions::default());
+    let grays = hillshade(&lattice.stretched(RELIEF), &HillshadeOptions::default());
     let color = |((&height, &gray), &post): ((&f32, &u8), &PostVisibility)| {
         if height.is_nan() || gray == NO_DATA {
             return EMPTY.linear();

@@ -61,18 +61,13 @@ impl Growth<'_> {
         }
     }
 
-    /// Activates a vertex, its parents first, and adds the halves that it makes to those waiting.
+    /// Activates a vertex, its parents first, and adds the halves that they make to those waiting.
     fn force(&mut self, vertex: Vertex) {
-        if !self.layout.contains(vertex) || self.active.is_active(vertex) {
-            return;
-        }
-        for parent in vertex.parents() {
-            self.force(parent);
-        }
-        self.active.activate(vertex);
-        for triangle in triangles_split_at(self.layout, vertex).into_iter().flatten() {
-            self.waiting.extend(triangle.split());
-        }
+        let (layout, waiting) = (self.layout, &mut self.waiting);
+        self.active.activate_each(vertex, &mut |vertex| {
+            let split = triangles_split_at(layout, vertex).into_iter().flatten();
+            waiting.extend(split.flat_map(|triangle| triangle.split()));
+        });
     }
 }
 

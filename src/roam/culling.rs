@@ -12,6 +12,9 @@ use glam::Vec3;
 
 use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
+use crate::terrain::lattice::Post;
+use crate::terrain::post_rect::PostRect;
+use crate::terrain::pyramid::Pyramid;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 use crate::view::wedge::GroundWedge;
@@ -59,14 +62,10 @@ impl Culling {
 /// The lowest and highest displayed Z of each patch and of squares of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchHeights {
-    levels: Vec<RangeLevel>,
-}
-
-/// The ranges of all squares of one size, row by row from the south-west.
-#[derive(Clone, Debug, PartialEq)]
-struct RangeLevel {
-    columns: usize,
-    ranges: Vec<(f32, f32)>,
+    /// Its smallest blocks are the patches.
+    pyramid: Pyramid,
+    /// The side of a patch, as a power of two.
+    bits: u32,
 }
 
 /// The range without posts.
@@ -75,44 +74,35 @@ pub(in crate::roam) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINIT
 impl PatchHeights {
     /// The ranges of a ground; patches without data have an empty range.
     pub fn new(ground: PatchedGround<'_>) -> Self {
-        let (columns, _) = ground.layout.patch_grid();
-        let ranges = ground.layout.patches().map(|corner| range(ground, corner)).collect();
-        let mut levels = vec![RangeLevel { columns, ranges }];
-        while let Some(coarser) = levels.last().and_then(RangeLevel::halved) {
-            levels.push(coarser);
-        }
-        Self { levels }
+        let bits = ground.layout.patch().trailing_zeros();
+        Self { pyramid: Pyramid::with_blocks(ground.lattice, bits), bits }
     }
 
     /// Measures the patch with south-west corner `corner` again, after an edit.
     pub fn renew(&mut self, ground: PatchedGround<'_>, corner: Vertex) {
-        self.put(ground.layout.patch_index(corner), range(ground, corner));
+        // The posts on its border belong to other patches too.
+        let inner = [1, ground.layout.patch() - 1].map(|at| ground.layout.post(corner.moved(at, at)));
+        self.pyramid.update(ground.lattice, PostRect { first: inner[0], last: inner[1] });
     }
 
-    /// Sets the range of the patch `index`, and those of the squares that hold it.
-    fn put(&mut self, index: usize, mut range: (f32, f32)) {
-        let (mut x, mut y) = (index % self.levels[0].columns, index / self.levels[0].columns);
-        for level in &mut self.levels {
-            level.ranges[y * level.columns + x] = range;
-            (x, y) = (x / 2, y / 2);
-            range = level.square(x, y);
-        }
+    /// Widens the range of a patch by new heights, where none of the range's ends was removed.
+    pub(in crate::roam) fn widen(&mut self, corner: Vertex, heights: (f32, f32)) {
+        self.pyramid.widen(self.block(corner), heights);
     }
 
-    /// Widens the range of the patch `index` by new heights, where none of the range's ends was removed.
-    pub(in crate::roam) fn widen(&mut self, index: usize, heights: (f32, f32)) {
-        self.put(index, joined(self.range(index), heights));
+    fn block(&self, corner: Vertex) -> Post {
+        Post { column: corner.x as u32 >> self.bits, row: corner.y as u32 >> self.bits }
     }
 
-    /// The lowest and highest displayed Z of the patch `index`, in the layout's patch order; low above high where it has
-    /// no data.
-    pub fn range(&self, index: usize) -> (f32, f32) {
-        self.levels[0].ranges[index]
+    /// The lowest and highest displayed Z of the patch with south-west corner `corner`; low above high where it has no
+    /// data.
+    pub fn range(&self, corner: Vertex) -> (f32, f32) {
+        self.pyramid.range(self.bits, self.block(corner)).unwrap_or(NO_DATA)
     }
 
     /// The box of the patch with south-west corner `corner`, in world space; `None` without data.
     pub fn bounds(&self, ground: PatchedGround<'_>, corner: Vertex) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.range(ground.layout.patch_index(corner));
+        let (low, high) = self.range(corner);
         let far = corner.moved(ground.layout.patch(), ground.layout.patch());
         (low <= high).then(|| (ground.plan(corner).extend(low), ground.plan(far).extend(high)))
     }
@@ -122,48 +112,14 @@ impl PatchHeights {
     pub fn diamond(&self, ground: PatchedGround<'_>, vertex: Vertex) -> Option<(Vec3, Vec3)> {
         let (min, max) = ground.diamond(vertex);
         let patches = ground.layout.patches_meeting(vertex, vertex);
-        let (low, high) =
-            patches.map(|corner| self.range(ground.layout.patch_index(corner))).reduce(joined)?;
+        let (low, high) = patches.map(|corner| self.range(corner)).reduce(joined)?;
         (low <= high).then(|| (min.extend(low), max.extend(high)))
-    }
-}
-
-impl RangeLevel {
-    fn rows(&self) -> usize {
-        self.ranges.len() / self.columns
-    }
-
-    /// The level of squares twice as large; `None` above a single square.
-    fn halved(&self) -> Option<Self> {
-        let (columns, rows) = (self.columns.div_ceil(2), self.rows().div_ceil(2));
-        let squares = || (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
-        let coarser = || Self { columns, ranges: squares().map(|(x, y)| self.square(x, y)).collect() };
-        (self.ranges.len() > 1).then(coarser)
-    }
-
-    /// The range of the four squares under the square (`x`, `y`) of the next level.
-    fn square(&self, x: usize, y: usize) -> (f32, f32) {
-        let (x, y) = (2 * x, 2 * y);
-        let rows = y..(y + 2).min(self.rows());
-        rows.flat_map(|y| &self.ranges[y * self.columns + x..y * self.columns + (x + 2).min(self.columns)])
-            .fold(NO_DATA, |joint, &range| joined(joint, range))
     }
 }
 
 /// The smallest range around both.
 pub(in crate::roam) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
-}
-
-fn range(ground: PatchedGround<'_>, corner: Vertex) -> (f32, f32) {
-    let (lattice, layout) = (ground.lattice, ground.layout);
-    let (first, last) = (layout.post(corner), layout.post(corner.moved(layout.patch(), layout.patch())));
-    (first.row..=last.row)
-        .map(|row| {
-            let start = row as usize * lattice.columns() as usize;
-            drawn_range(&lattice.heights()[start + first.column as usize..=start + last.column as usize])
-        })
-        .fold(NO_DATA, joined)
 }
 
 /// The lowest and highest of some heights, those without data left out. In lanes, which do not wait for each other.
@@ -199,8 +155,8 @@ pub fn cull(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling
 /// [`cull`] in the order in which the squares are visited: row by row within every square.
 fn gather(ground: PatchedGround<'_>, heights: &PatchHeights, culling: &Culling, patches: &mut Vec<Vertex>) {
     patches.clear();
-    let top = PatchSquare { level: heights.levels.len() - 1, x: 0, y: 0 };
-    PatchCull { ground, heights, culling, patches }.visit(top, culling.all());
+    let all = Post { column: 0, row: 0 };
+    PatchCull { ground, heights, culling, patches }.visit(heights.pyramid.top_bits(), all, culling.all());
 }
 
 /// The patches in view, culled again only when the view changes.
@@ -232,14 +188,6 @@ impl InView {
     }
 }
 
-/// A square of 2^level patches a side.
-#[derive(Clone, Copy)]
-struct PatchSquare {
-    level: usize,
-    x: usize,
-    y: usize,
-}
-
 struct PatchCull<'a> {
     ground: PatchedGround<'a>,
     heights: &'a PatchHeights,
@@ -248,27 +196,22 @@ struct PatchCull<'a> {
 }
 
 impl PatchCull<'_> {
-    fn visit(&mut self, square: PatchSquare, among: u8) {
-        let Some(level) = self.heights.levels.get(square.level).filter(|level| square.x < level.columns)
-        else {
-            return;
-        };
-        let range = level.ranges.get(square.y * level.columns + square.x);
-        let Some(&(low, high)) = range.filter(|range| range.0 <= range.1) else { return };
-        let side = self.ground.layout.patch() << square.level;
-        let corner = Vertex::new(square.x as i32 * side, square.y as i32 * side);
+    /// Visits the square of patches that is a block with sides of 2^`bits` cells.
+    fn visit(&mut self, bits: u32, block: Post, among: u8) {
+        let range = self.heights.pyramid.range(bits, block);
+        let Some((low, high)) = range.filter(|range| range.0 <= range.1) else { return };
+        let side = 1 << bits;
+        let corner = Vertex::new(block.column as i32 * side, block.row as i32 * side);
         // The far posts of a square that reaches past the last patch are those on the border.
         let (min, max) = (self.ground.plan(corner), self.ground.plan(corner.moved(side, side)));
         let Some(among) = self.culling.crossed(min.extend(low), max.extend(high), among) else { return };
-        if square.level == 0 {
+        if bits == self.heights.bits {
             self.patches.push(corner);
             return;
         }
-        for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            self.visit(
-                PatchSquare { level: square.level - 1, x: 2 * square.x + x, y: 2 * square.y + y },
-                among,
-            );
+        let first = Post { column: 2 * block.column, row: 2 * block.row };
+        for (east, north) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            self.visit(bits - 1, first.offset(east, north), among);
         }
     }
 }
@@ -277,7 +220,7 @@ impl PatchCull<'_> {
 mod tests {
     use super::*;
     use crate::roam::layout::PatchLayout;
-    use crate::terrain::lattice::{Lattice, Post};
+    use crate::terrain::lattice::Lattice;
     use glam::{DVec2, Vec2};
     use proptest::prelude::*;
 

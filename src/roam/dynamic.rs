@@ -222,16 +222,15 @@ impl DynamicTerrain {
         let rect = VertexRect::from_posts(&self.layout, &change.posts);
         let (first, last) = (change.posts.first, change.posts.last);
         for corner in self.layout.patches_meeting(rect.min, rect.max) {
-            let index = self.layout.patch_index(corner);
             let far = corner.moved(self.layout.patch(), self.layout.patch());
             let (low, high) = (self.layout.post(corner), self.layout.post(far));
             let columns = (low.column.max(first.column), high.column.min(last.column));
             let rows = low.row.max(first.row)..=high.row.min(last.row);
             let joint = rows.map(|row| change.row(&self.lattice, row, columns).map(drawn_range));
             let [old, new] = joint.fold([NO_DATA; 2], |[a, b], [c, d]| [joined(a, c), joined(b, d)]);
-            let range = self.heights.range(index);
+            let range = self.heights.range(corner);
             if old.0 > range.0 && old.1 < range.1 {
-                self.heights.widen(index, new);
+                self.heights.widen(corner, new);
             } else {
                 let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout };
                 self.heights.renew(ground, corner);

@@ -10,7 +10,7 @@
 //! - `criterion`, `culling`: whether a vertex is wanted in a view, and which patches are in view.
 //! - `refine`: policies that set the bits; `closure`: the fewest bits that keep an error bound.
 //! - `emit`, `extract`: triangles from bits, and from errors alone, without a view.
-//! - `displayed`: the mesh of the bits as a surface for features.
+//! - `displayed`: the mesh of the bits as a surface for features; `measured_ground`: a ground with all its measures.
 //! - `levels`, `edit`, `dynamic`: updates of errors and spheres after heights changed, and a terrain that can be edited.
 //! - `paging`: terrain larger than memory.
 //! - `shown`, `frames`, `measure`, `bound`: index lists of a frame, comparisons of frames, of a frame with the ground, and of
@@ -38,6 +38,7 @@ pub mod graph;
 pub mod layout;
 pub mod levels;
 pub mod measure;
+pub mod measured_ground;
 pub mod paging;
 pub mod patched_ground;
 pub mod quadtree;

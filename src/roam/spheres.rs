@@ -71,6 +71,8 @@ pub enum OwnRadius<'a> {
 /// Meters of distance per meter of error for a tolerance of `tolerance_px` in every corner of the camera's picture, where
 /// pixels are largest; the papers' `camera.pixels_per_meter(1.0) / tolerance_px` holds in its middle only.
 pub fn reach(camera: &Camera, tolerance_px: f32) -> f32 {
+    // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the picture's
+    // plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
     let corner = 1.0 + camera.tan_half_fov().length_squared();
     camera.pixels_per_meter(1.0) * corner / tolerance_px
 }

@@ -29,7 +29,7 @@ use crate::scene::roads::spans::{self, RoadSpan};
 use crate::scene::sources::Sources;
 use crate::scene::{Coat, FeatureKind, Solid};
 use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
-use crate::structure::deck::DeckCourse;
+use crate::structure::deck::{DeckCourse, DeckSection};
 use crate::structure::deck_profile::ClearancePoint;
 use crate::structure::tunnel::Portal;
 use crate::terrain::lattice::Lattice;
@@ -65,7 +65,6 @@ pub fn build(
     document: &Document,
     sources: &Sources<'_>,
     lattice: &Lattice,
-    exaggeration: f32,
     roads: &mut [Centerline],
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
@@ -76,7 +75,7 @@ pub fn build(
     }
     check_piers(document, &spans)?;
     let water = water(collected).map_err(|error| document.error_at(0..0, WaterError(error)))?;
-    let site = Site { lattice, water: &water, exaggeration };
+    let site = Site { lattice, water: &water, scale: sources.frame.scale };
     let chains = SpanChain::all(&spans, roads);
     let runs = levels::settle(&spans, &chains, roads, &site);
     let mouths: BTreeSet<VertexKey> = spans
@@ -84,7 +83,7 @@ pub fn build(
         .filter(|span| span.alignment.support == Support::Tunnel)
         .flat_map(|span| span.alignment.line.ends().map(vertex_key))
         .collect();
-    let mut bridges: Vec<(BuiltChain<'_>, &ChainLink, BridgeOptions)> = Vec::new();
+    let mut bridges: Vec<PlannedBridge<'_>> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
             collected.notes.push(format!("{} left out: no ground lies along it", described(&spans, chain)));
@@ -92,18 +91,15 @@ pub fn build(
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
         match spans[chain.links[0].line].alignment.support {
-            Support::Bridge => {
-                bridges.extend(built.planned(&extent).map(|(link, options)| (built, link, options)))
-            }
+            Support::Bridge => bridges.extend(built.planned(&extent)),
             Support::Tunnel => built.tunnel(&extent, roads, collected),
             Support::Ground => {}
         }
     }
-    let decks = bridges.iter().flat_map(|(built, link, options)| built.deck(link, options));
-    let decks = Deck::new(&decks.collect::<Vec<_>>());
-    let decks = decks.map_err(|error| document.error_at(0..0, error))?;
-    for (built, link, options) in &bridges {
-        built.bridge(link, options, &decks, collected);
+    collected.decks = bridges.iter().flat_map(|planned| bridge::deck(&planned.sections)).collect();
+    let decks = Deck::new(&collected.decks).map_err(|error| document.error_at(0..0, error))?;
+    for planned in bridges {
+        planned.build(&decks, collected);
     }
     Ok(())
 }
@@ -149,6 +145,32 @@ fn described(spans: &[RoadSpan], chain: &SpanChain) -> String {
     if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
 }
 
+/// A bridge true to scale.
+struct PlannedBridge<'a> {
+    chain: BuiltChain<'a>,
+    link: &'a ChainLink,
+    course: DeckCourse<'a>,
+    profile: Profile,
+    options: BridgeOptions,
+    sections: Vec<DeckSection>,
+}
+
+impl PlannedBridge<'_> {
+    /// Builds it as it is drawn.
+    fn build(mut self, decks: &Deck, collected: &mut SceneBuilder) {
+        let (span, site) = (&self.chain.spans[self.link.line], self.chain.site);
+        bridge::end_parapets(&mut self.sections, self.course.width_m, decks);
+        for section in &mut self.sections {
+            section.edges_m = section.edges_m.map(|edge_m| site.scale.world_z(edge_m));
+        }
+        let built = bridge::build(&self.course, &self.sections, &self.options, &|at| site.ground_z(at));
+        let feature = collected.add(FeatureKind::Bridge, span.name.clone());
+        collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
+        collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
+        self.chain.report(self.link, Some(built.piers), None, self.profile.steepest(0.0), collected);
+    }
+}
+
 /// A chain with its levels and its site.
 #[derive(Clone, Copy)]
 struct BuiltChain<'a> {
@@ -161,8 +183,8 @@ struct BuiltChain<'a> {
 }
 
 impl<'a> BuiltChain<'a> {
-    /// How the bridges of the chain are to be built, one a span.
-    fn planned(self, extent: &Rect) -> impl Iterator<Item = (&'a ChainLink, BridgeOptions)> {
+    /// The bridges of the chain, one a span.
+    fn planned(self, extent: &Rect) -> impl Iterator<Item = PlannedBridge<'a>> {
         let widest =
             self.chain.links.iter().map(|link| self.spans[link.line].options.width_m).fold(0.0, f64::max);
         let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
@@ -188,38 +210,17 @@ impl<'a> BuiltChain<'a> {
                     .map(|length| length.map(|length| length.min(span.alignment.line.length() / 2.0))),
                 across,
                 texture_length_m: span.options.texture_length_m,
-                exaggeration: self.site.exaggeration,
             };
-            (link, options)
+            let course = DeckCourse {
+                line: &span.alignment.line,
+                beyond: span.beyond,
+                width_m: span.options.width_m,
+                miter_limit: span.options.miter_limit,
+            };
+            let profile = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M);
+            let sections = bridge::sections(&course, &profile, &options, &|at| self.site.ground_m(at));
+            PlannedBridge { chain: self, link, course, profile, options, sections }
         })
-    }
-
-    /// The course and the elevations of a bridge.
-    fn course(&self, link: &ChainLink) -> (DeckCourse<'a>, Profile) {
-        let span = &self.spans[link.line];
-        let course = DeckCourse {
-            line: &span.alignment.line,
-            beyond: span.beyond,
-            width_m: span.options.width_m,
-            miter_limit: span.options.miter_limit,
-        };
-        (course, self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M))
-    }
-
-    fn deck(&self, link: &ChainLink, options: &BridgeOptions) -> Vec<SurfaceTriangle> {
-        let (course, profile) = self.course(link);
-        bridge::deck(&course, &profile, options, &|at| self.site.ground_m(at))
-    }
-
-    fn bridge(&self, link: &ChainLink, options: &BridgeOptions, decks: &Deck, collected: &mut SceneBuilder) {
-        let span = &self.spans[link.line];
-        let (course, profile) = self.course(link);
-        let built = bridge::build(&course, &profile, options, &|at| self.site.ground_m(at), decks);
-        let feature = collected.add(FeatureKind::Bridge, span.name.clone());
-        collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
-        collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
-        collected.decks.extend(built.deck);
-        self.report(link, Some(built.piers), None, profile.steepest(0.0), collected);
     }
 
     /// How far the abutment at an end of the chain reaches under it; `None` where the chain goes on or leaves the model.
@@ -236,7 +237,7 @@ impl<'a> BuiltChain<'a> {
             let Some(ground_m) = self.site.ground_m(self.chain.at(self.spans, at(from_end))) else {
                 return true;
             };
-            let above = (self.run.profile.at(at(from_end)) - ground_m) * f64::from(self.site.exaggeration);
+            let above = self.site.scale.world_z(self.run.profile.at(at(from_end)) - ground_m);
             above - self.run.depth_m > ABUTMENT_M * by
         };
         let least = (1.2 * by).min(longest);
@@ -291,7 +292,7 @@ impl<'a> BuiltChain<'a> {
                 (0..2).filter_map(|end| self.portal(link, end, extent)).collect()
             };
             for portal in &portals {
-                let mesh = portal.build(&|at| self.site.ground_m(at));
+                let mesh = portal.build(&|at| self.site.ground_z(at));
                 collected.solids.push(Solid { mesh, coat: Coat::Painted, feature });
             }
             let grade = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M).steepest(0.0);
@@ -313,12 +314,11 @@ impl<'a> BuiltChain<'a> {
         let inner = if end == 0 { points[1] } else { points[points.len() - 2] };
         let portal = Portal {
             at,
-            level_m: self.run.profile.at(station),
+            level_m: self.site.scale.world_z(self.run.profile.at(station)),
             outward: (at - inner).normalize_or_zero(),
             width_m: span.options.width_m,
-            exaggeration: self.site.exaggeration,
         };
-        portal.covered_after_m(BURIED, &|at| self.site.ground_m(at)).map(|_| portal)
+        portal.covered_after_m(BURIED, &|at| self.site.ground_z(at)).map(|_| portal)
     }
 
     /// Adds a span's row to the report.
@@ -336,7 +336,7 @@ impl<'a> BuiltChain<'a> {
         let above = under.map(|floor| self.run.profile.at(floor.station_m) - floor.level_m);
         let (least, most) =
             above.fold((0.0f64, 0.0f64), |(least, most), here| (least.min(here), most.max(here)));
-        let depth_m = self.run.depth_m / f64::from(self.site.exaggeration);
+        let depth_m = self.site.scale.elevation_m(self.run.depth_m);
         let here = self
             .run
             .passages

@@ -5,7 +5,7 @@
 //!                                                              └─► networks, fences, buildings, models, views ─► Scene
 //! ```
 //!
-//! Neither stage computes what only a picture needs: see [`SceneModel::map`] and [`SceneTerrain`].
+//! Neither stage computes what only a picture needs: see [`SceneModel::map`] and [`SceneModel::ground`].
 
 use std::sync::{Arc, OnceLock};
 
@@ -20,7 +20,6 @@ use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::ground;
 use crate::scene::models;
@@ -31,7 +30,7 @@ use crate::scene::style;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneGround, SceneModel, SceneTerrain};
+use crate::scene::{SceneGround, SceneModel};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
@@ -74,9 +73,8 @@ pub fn build(
     let mut collected = SceneBuilder { notes: loaded.notes, ..SceneBuilder::default() };
     let shaped = shape(document, &sources, &mut lattice, &mut collected)?;
     network::lay(&shaped.roads, &lattice.extent(), &mut collected);
-    let finest = DrawnGround { lattice: &lattice, exaggeration: frame.exaggeration };
-    fences::set(&shaped.lines, finest, &mut collected);
-    buildings::raise(document, &shaped.plots, finest, &mut collected);
+    fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
+    buildings::raise(document, &shaped.plots, frame.scale.ground(&lattice), &mut collected);
     collected.resolve_overlaps();
 
     progress("loading models");
@@ -86,22 +84,29 @@ pub fn build(
     collected.notes.extend(defaulted);
 
     progress("placing labels and cameras");
-    let terrain = terrain(document, lattice)?;
-    let labels = views::labels(&frame, &terrain)?;
-    let cameras = views::cameras(&frame, &terrain)?;
-    collected.notes.extend(views::buried(&cameras, &terrain));
-    let (low, high) = terrain.bounds();
+    let layout = layout(document, &lattice)?;
+    let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
+    let bounds = scale.ground(&lattice).bounds(height_range_m);
+    let labels = views::labels(&frame, &lattice)?;
+    let cameras = views::cameras(&frame, &lattice, bounds)?;
+    collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
-        height_service(document, loaded.source, crs.clone(), Arc::clone(&terrain.lattice), &collected.decks)?;
+        height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),
         heights,
-        ramp: style::ramp(document, terrain.height_range())?,
+        ramp: style::ramp(document, height_range_m)?,
         contours: style::contours(document),
-        lighting: style::lighting(document, (high - low).max_element()),
+        lighting: style::lighting(document, (bounds.1 - bounds.0).max_element()),
         map: OnceLock::new(),
-        terrain,
+        lattice,
+        height_range_m,
+        scale,
+        bounds,
+        tolerance_px: document.terrain.tolerance_px as f32,
+        layout,
+        ground: OnceLock::new(),
         ribbons: collected.ribbons,
         solids: collected.solids,
         uprights: collected.uprights,
@@ -142,8 +147,7 @@ fn shape(
     conform::conform(document, lattice, &mut roads, collected)?;
     let plots = buildings::lay_out(document, sources, lattice, collected)?;
     let lines = fences::lay_out(document, sources, lattice, collected)?;
-    let exaggeration = document.terrain.vertical_exaggeration as f32;
-    bridges::build(document, sources, lattice, exaggeration, &mut roads, collected)?;
+    bridges::build(document, sources, lattice, &mut roads, collected)?;
     Ok(ShapedFeatures { roads, plots, lines })
 }
 
@@ -159,16 +163,9 @@ fn height_service(
     Ok(if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) })
 }
 
-fn terrain(document: &Document, lattice: Lattice) -> Result<SceneTerrain, Diagnostic> {
-    let layout = PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
+fn layout(document: &Document, lattice: &Lattice) -> Result<PatchLayout, Diagnostic> {
+    PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).ok_or_else(|| {
         let size = format!("{}×{} posts", lattice.columns(), lattice.rows());
         document.error(&document.terrain.dem, format!("an elevation model of {size} is too large"))
-    })?;
-    let tolerance_px = document.terrain.tolerance_px as f32;
-    Ok(SceneTerrain::new(
-        Arc::new(lattice),
-        layout,
-        document.terrain.vertical_exaggeration as f32,
-        tolerance_px,
-    ))
+    })
 }

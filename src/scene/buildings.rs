@@ -21,9 +21,9 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::report::BuildingPadRow;
 use crate::scene::sources::{Sourced, Sources};
+use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
 use crate::structure::building::{BuildingLevels, Paint, raise as raised};
 use crate::structure::building_footing::WallFooting;
@@ -200,10 +200,9 @@ pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, colle
             (None, BaseRule::Highest) => under.high_m,
             (None, BaseRule::Mean | BaseRule::Pad) => under.mean_m,
         };
-        let stretch = f64::from(ground.exaggeration);
-        let base_z = base_m * stretch;
-        let ground_z = (base_z, (under.low_m.min(base_m) * stretch) - FOUNDATION_M);
-        raise_parts(building, plot, ground_z, collected, &mut tally);
+        let base_z = ground.scale.world_z(base_m);
+        let foot_z = ground.scale.world_z(under.low_m.min(base_m)) - FOUNDATION_M;
+        raise_parts(building, plot, (base_z, foot_z), collected, &mut tally);
     }
     tally.note(&mut collected.notes);
 }

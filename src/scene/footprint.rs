@@ -175,7 +175,7 @@ mod tests {
         let at = |index: u32| DVec2::new(f64::from(index % 21), f64::from(index / 21)) * 5.0;
         let heights = (0..441).map(|index| (200.0 + at(index).dot(rise)) as f32).collect();
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(5.0), 21, heights).expect("sound");
-        let lattice = lattice.exaggerated(2.0);
+        let lattice = lattice.stretched(2.0);
         let finest = FullResolution { lattice: &lattice };
         for quarter in 0..4 {
             let turn = DVec2::from_angle(0.3 + f64::from(quarter) * std::f64::consts::FRAC_PI_2);

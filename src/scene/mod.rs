@@ -13,7 +13,6 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
-pub mod drawn_ground;
 pub mod fences;
 pub mod footprint;
 pub mod ground;
@@ -27,13 +26,14 @@ pub mod roads;
 pub mod scatter;
 pub mod sources;
 pub mod style;
+pub mod vertical_scale;
 pub mod views;
 pub mod water;
 pub mod world_frame;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
@@ -42,17 +42,15 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
-use crate::roam::culling::PatchHeights;
-use crate::roam::errors::ErrorMap;
 use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
+use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
@@ -65,8 +63,18 @@ pub struct SceneModel {
     pub subtitle: Option<String>,
     /// The map coordinates' system.
     pub crs: Crs,
-    /// The terrain.
-    pub terrain: SceneTerrain,
+    /// The elevations of the ground, true to scale.
+    pub lattice: Arc<Lattice>,
+    /// The lowest and the highest of them, meters.
+    pub height_range_m: (f32, f32),
+    /// How they are drawn.
+    pub scale: VerticalScale,
+    /// The box of the drawn ground in world space: its least and its greatest corner.
+    pub bounds: (Vec3, Vec3),
+    /// The greatest error of the drawn ground in pixels.
+    pub tolerance_px: f32,
+    layout: PatchLayout,
+    ground: OnceLock<MeasuredGround>,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     /// The colors of the ground by height.
@@ -112,74 +120,6 @@ pub struct SceneGround {
     pub heights: HeightService,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
-}
-
-/// The ground with the measures that refinement needs, each made on first use.
-pub struct SceneTerrain {
-    /// The heights.
-    pub lattice: Arc<Lattice>,
-    /// The patches over them.
-    pub layout: PatchLayout,
-    /// The vertical exaggeration of displayed heights.
-    pub exaggeration: f32,
-    /// The greatest error of the displayed ground in pixels.
-    pub tolerance_px: f32,
-    height_range: OnceLock<(f32, f32)>,
-    displayed: OnceLock<Arc<Lattice>>,
-    errors: OnceLock<ErrorMap>,
-    patch_heights: OnceLock<PatchHeights>,
-}
-
-impl SceneTerrain {
-    /// The terrain of `lattice`, displayed `exaggeration` times as high. Nothing is measured yet.
-    pub fn new(lattice: Arc<Lattice>, layout: PatchLayout, exaggeration: f32, tolerance_px: f32) -> Self {
-        Self {
-            lattice,
-            layout,
-            exaggeration,
-            tolerance_px,
-            height_range: OnceLock::new(),
-            displayed: OnceLock::new(),
-            errors: OnceLock::new(),
-            patch_heights: OnceLock::new(),
-        }
-    }
-
-    /// The lowest and the highest height in meters, measured on first use.
-    pub fn height_range(&self) -> (f32, f32) {
-        *self.height_range.get_or_init(|| self.lattice.height_range())
-    }
-
-    /// The heights as they are displayed, made on first use; `lattice` itself without exaggeration.
-    pub fn displayed(&self) -> &Arc<Lattice> {
-        self.displayed.get_or_init(|| match self.exaggeration {
-            1.0 => Arc::clone(&self.lattice),
-            factor => Arc::new(self.lattice.exaggerated(factor)),
-        })
-    }
-
-    /// The patches over the displayed heights.
-    pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: self.displayed(), layout: &self.layout }
-    }
-
-    /// The errors of the displayed heights' vertices, measured on first use.
-    pub fn errors(&self) -> &ErrorMap {
-        self.errors.get_or_init(|| ErrorMap::exact(self.displayed(), &self.layout))
-    }
-
-    /// The range of the displayed heights in each patch, measured on first use.
-    pub fn patch_heights(&self) -> &PatchHeights {
-        self.patch_heights.get_or_init(|| PatchHeights::new(self.ground()))
-    }
-
-    /// The box of the ground in world space, drawn heights.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let (low, high) = self.height_range();
-        let Rect { min, max } = self.lattice.extent();
-        let corner = |plan: DVec2, z: f32| plan.as_vec2().extend(z * self.exaggeration);
-        (corner(min, low), corner(max, high))
-    }
 }
 
 /// The kind of a feature.
@@ -346,13 +286,14 @@ pub struct SceneView {
 }
 
 impl SceneModel {
+    /// The ground as it is drawn, made on first use; what is measured of it is measured when it is first asked for.
+    pub fn ground(&self) -> &MeasuredGround {
+        self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
+    }
+
     /// What the ground looks like, its light computed on first use.
     pub fn map(&self) -> &Arc<GroundMap> {
-        self.map.get_or_init(|| {
-            let map =
-                style::ground_map(&self.terrain, self.lighting.to_sun, self.ramp.clone(), self.contours);
-            Arc::new(map)
-        })
+        self.map.get_or_init(|| Arc::new(style::ground_map(self)))
     }
 
     /// Whether [`SceneModel::map`] has been made.

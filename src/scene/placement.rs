@@ -167,7 +167,7 @@ mod tests {
     use super::*;
     use crate::draw::list::FeatureId;
     use crate::scene::GroundFit;
-    use crate::scene::drawn_ground::DrawnGround;
+    use crate::scene::vertical_scale::VerticalScale;
     use crate::terrain::full_resolution::FullResolution;
     use crate::terrain::lattice::Lattice;
     use crate::terrain::triangle_surface::TriangleSurface;
@@ -296,7 +296,7 @@ mod tests {
             }
         }
         let lattice = ground(|at| at.x);
-        let finest = DrawnGround { lattice: &lattice, exaggeration: 3.0 };
+        let finest = VerticalScale(3.0).ground(&lattice);
         for anchor in [Anchor::Origin, Anchor::Mean] {
             let placed = placement(0.0, GroundFit { anchor, ..GroundFit::default() });
             let found = stand(&placed, &FOOTPRINT, SupportSurface { displayed: &Nothing, ground: &finest })

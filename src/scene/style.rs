@@ -11,7 +11,7 @@ use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::{Haze, Lighting};
-use crate::scene::SceneTerrain;
+use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
@@ -94,25 +94,20 @@ pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
 }
 
 /// The height, slope and light of every post.
-pub fn ground_map(
-    terrain: &SceneTerrain,
-    to_sun: Vec3,
-    ramp: ColorRamp,
-    contours: Option<Contours>,
-) -> GroundMap {
-    let lattice = &terrain.lattice;
-    let light = light::light(terrain.displayed(), to_sun);
-    let filled = filled_heights(lattice, terrain.height_range().0);
+pub fn ground_map(scene: &SceneModel) -> GroundMap {
+    let lattice = &scene.lattice;
+    let light = light::light(scene.ground().lattice(), scene.lighting.to_sun);
+    let filled = filled_heights(lattice, scene.height_range_m.0);
     let posts = lattice
         .posts()
         .zip(filled)
         .zip(light.sun.into_iter().zip(light.sky))
         .map(|((post, height_m), (sun_visibility, sky_visibility))| {
-            let slopes = lattice.slopes(post) * terrain.exaggeration;
+            let slopes = lattice.slopes(post);
             GroundPost {
                 height_m,
-                slope_east: slopes.x,
-                slope_north: slopes.y,
+                slope_east: scene.scale.world_z(slopes.x),
+                slope_north: scene.scale.world_z(slopes.y),
                 sun_visibility,
                 sky_visibility,
             }
@@ -124,8 +119,8 @@ pub fn ground_map(
         columns: lattice.columns(),
         rows: lattice.rows(),
         posts,
-        ramp,
-        contours,
+        ramp: scene.ramp.clone(),
+        contours: scene.contours,
     }
 }
 

@@ -4,19 +4,21 @@ use glam::Vec3;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, LabelTable};
+use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneLabel, SceneTerrain, SceneView};
+use crate::scene::{SceneLabel, SceneView};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in.
 ///
 /// # Errors
 /// A label lies off the ground.
-pub fn labels(frame: &WorldFrame<'_>, terrain: &SceneTerrain) -> Result<Vec<SceneLabel>, Diagnostic> {
+pub fn labels(frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Vec<SceneLabel>, Diagnostic> {
     let label = |table: &LabelTable| {
         let world = frame.point(&table.at, table.crs.as_ref())?;
-        let ground = frame.on_ground(&terrain.lattice, &table.at, world)?;
-        let elevation = whole_meters(ground.z / terrain.exaggeration);
+        let ground = frame.on_ground(lattice, &table.at, world)?;
+        let elevation = whole_meters(frame.scale.elevation_m(ground.z));
         Ok(SceneLabel {
             text: table.text.replace("{height}", &elevation),
             ground,
@@ -33,34 +35,34 @@ pub fn whole_meters(height_m: f32) -> String {
     format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// The document's cameras; without any, one that sees the whole ground.
+/// The document's cameras; without any, one that sees all of the drawn ground's `bounds`.
 ///
 /// # Errors
 /// The eye of a camera without `eye_elevation` lies off the ground, its target does, or the two coincide.
-pub fn cameras(frame: &WorldFrame<'_>, terrain: &SceneTerrain) -> Result<Vec<SceneView>, Diagnostic> {
+pub fn cameras(
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+    bounds: (Vec3, Vec3),
+) -> Result<Vec<SceneView>, Diagnostic> {
     if frame.document.cameras.is_empty() {
-        return Ok(vec![overview(terrain)]);
+        return Ok(vec![overview(bounds)]);
     }
-    frame.document.cameras.iter().map(|table| camera(table, frame, terrain)).collect()
+    frame.document.cameras.iter().map(|table| camera(table, frame, lattice)).collect()
 }
 
-fn camera(
-    table: &CameraTable,
-    frame: &WorldFrame<'_>,
-    terrain: &SceneTerrain,
-) -> Result<SceneView, Diagnostic> {
+fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
     let eye_world = frame.point(&table.eye, table.crs.as_ref())?;
     let eye = match table.eye_elevation {
-        Some(elevation) => eye_world.as_vec2().extend(elevation as f32 * terrain.exaggeration),
+        Some(elevation) => eye_world.as_vec2().extend(frame.scale.world_z(elevation as f32)),
         None => {
-            let ground = frame.on_ground(&terrain.lattice, &table.eye, eye_world).map_err(|error| {
+            let ground = frame.on_ground(lattice, &table.eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
             ground + Vec3::Z * table.eye_height as f32
         }
     };
     let target_world = frame.point(&table.look_at, table.crs.as_ref())?;
-    let target = frame.on_ground(&terrain.lattice, &table.look_at, target_world)?;
+    let target = frame.on_ground(lattice, &table.look_at, target_world)?;
     let target = target + Vec3::Z * table.look_at_height as f32;
     if (target - eye).try_normalize().is_none() {
         let message = "the camera looks at the place where its eye is";
@@ -76,12 +78,12 @@ fn camera(
 }
 
 /// A note for each camera whose eye is under the ground.
-pub fn buried(cameras: &[SceneView], terrain: &SceneTerrain) -> Vec<String> {
-    let lattice = &terrain.lattice;
+pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
+    let lattice = ground.lattice;
     let depth_m = |view: &SceneView| {
         let at = lattice.origin() + view.eye.truncate().as_dvec2();
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
-        Some(height - f64::from(view.eye.z / terrain.exaggeration)).filter(|&depth| depth > 0.0)
+        Some(height - f64::from(ground.scale.elevation_m(view.eye.z))).filter(|&depth| depth > 0.0)
     };
     cameras
         .iter()
@@ -98,8 +100,7 @@ const OVERVIEW_ASPECT: f32 = 4.0 / 3.0;
 const OVERVIEW_MARGIN: f32 = 1.1;
 
 /// A view from the south, 36° down, as near as the whole ground fits in.
-fn overview(terrain: &SceneTerrain) -> SceneView {
-    let (min, max) = terrain.bounds();
+fn overview((min, max): (Vec3, Vec3)) -> SceneView {
     let target = (min + max) / 2.0;
     let back = Vec3::new(0.0, -0.8, 0.6);
     let up = Vec3::new(0.0, 0.6, 0.8);

@@ -7,6 +7,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
+use crate::scene::vertical_scale::VerticalScale;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -20,16 +21,16 @@ pub struct WorldFrame<'a> {
     pub points_crs: Crs,
     /// Map coordinates of world (0, 0).
     pub origin: DVec2,
-    /// The vertical exaggeration of displayed heights.
-    pub exaggeration: f32,
+    /// How elevations are drawn.
+    pub scale: VerticalScale,
 }
 
 impl<'a> WorldFrame<'a> {
     /// The frame of a document whose ground lies in `crs`, from `origin` on.
     pub fn new(document: &'a Document, crs: &'a Crs, origin: DVec2) -> Self {
         let points_crs = document.points_crs.as_ref().unwrap_or(crs).clone();
-        let exaggeration = document.terrain.vertical_exaggeration as f32;
-        Self { document, crs, points_crs, origin, exaggeration }
+        let scale = VerticalScale(document.terrain.vertical_exaggeration as f32);
+        Self { document, crs, points_crs, origin, scale }
     }
 
     /// World X and Y of a point in `from`.
@@ -49,7 +50,7 @@ impl<'a> WorldFrame<'a> {
         world.map_err(|error| self.document.error(at, error))
     }
 
-    /// The ground at a world position, its displayed height as Z.
+    /// The ground at a world position, as it is drawn.
     ///
     /// # Errors
     /// The position lies off the elevation model, or where it holds no data.
@@ -60,7 +61,7 @@ impl<'a> WorldFrame<'a> {
         world: DVec2,
     ) -> Result<Vec3, Diagnostic> {
         match ground_height(lattice, Interpolation::Planar, world + self.origin) {
-            Answer::Height(height) => Ok(world.as_vec2().extend(height as f32 * self.exaggeration)),
+            Answer::Height(height) => Ok(world.as_vec2().extend(self.scale.world_z(height as f32))),
             Answer::NoData => Err(self
                 .document
                 .error(at, "the elevation model holds no data at this point")

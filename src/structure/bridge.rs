@@ -11,8 +11,9 @@
 //!        ╲9───────────8╱         soffit
 //! ```
 //!
-//! Elevations are stretched as the ground is; what is built on them is not. A road may be drawn much wider than any is,
-//! to be seen on a small picture; then what is built for it is magnified as well.
+//! A deck is planned true to scale: [`sections`], [`deck`], [`end_parapets`]. [`build`] takes its sections with elevations
+//! as they are drawn, on which all that is built keeps its own height. A road may be drawn much wider than any is, to be
+//! seen on a small picture; then what is built for it is magnified as well.
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -72,19 +73,15 @@ pub struct BridgeOptions {
     pub across: [Across; 2],
     /// Meters along the carriageway in one repeat of its texture, above 0.
     pub texture_length_m: f64,
-    /// How many times elevations are stretched when drawn.
-    pub exaggeration: f32,
 }
 
-/// The solids of a bridge, in world space with drawn heights.
+/// The solids of a bridge, in world space.
 #[derive(Clone, Debug, Default)]
 pub struct BridgeSolids {
     /// The carriageway, with a road's texture coordinates.
     pub carriageway: DrawMesh,
     /// All the rest.
     pub body: DrawMesh,
-    /// The carriageway's triangles, elevations in meters without exaggeration.
-    pub deck: Vec<SurfaceTriangle>,
     /// How many piers stand.
     pub piers: usize,
 }
@@ -99,29 +96,33 @@ pub fn magnified(width_m: f64) -> f64 {
     (width_m / WIDEST_REAL_M).max(1.0)
 }
 
-/// The carriageway alone of the bridge that [`build`] builds.
-pub fn deck(
-    course: &DeckCourse<'_>,
-    profile: &Profile,
-    options: &BridgeOptions,
-    ground: &GroundHeight<'_>,
-) -> Vec<SurfaceTriangle> {
-    lay_carriageway(&sections(course, profile, options, ground), options).deck
+/// The carriageway over the sections of a course.
+pub fn deck(sections: &[DeckSection]) -> Vec<SurfaceTriangle> {
+    carriageway(sections).map(|corners| corners.map(|(section, side)| section.edges()[side])).collect()
 }
 
-/// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's. Its parapets stop
-/// where one of the other carriageways of `decks` goes on beside it.
+/// Ends the parapets where one of the other carriageways of `decks` goes on beside their own, `width_m` wide.
+pub fn end_parapets(sections: &mut [DeckSection], width_m: f64, decks: &Deck) {
+    let middle = 1.0 + PARAPET_THICK_M * magnified(width_m) / width_m;
+    for section in sections {
+        let goes_on = |side: usize| {
+            let other_m = decks.height_m(section.at + section.aside[side] * middle);
+            other_m.is_some_and(|other_m| (other_m - section.edges_m[side]).abs() <= SAME_DECK_M)
+        };
+        section.parapets = [!goes_on(0), !goes_on(1)];
+    }
+}
+
+/// Builds the bridge over the sections of `course` on `ground`, the elevations of both as they are drawn.
 pub fn build(
     course: &DeckCourse<'_>,
-    profile: &Profile,
+    sections: &[DeckSection],
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
-    decks: &Deck,
 ) -> BridgeSolids {
-    let sections = sections(course, profile, options, ground);
     let mut body = Faces::default();
-    let mut bridge = lay_carriageway(&sections, options);
-    draw_out(&sections, &SectionRings::new(course.width_m, options), decks, &mut body);
+    let mut bridge = BridgeSolids { carriageway: textured(sections, options), ..BridgeSolids::default() };
+    draw_out(sections, &cross_section(course.width_m, options), &mut body);
     for (end, length_m) in options.abutments_m.iter().enumerate() {
         let Some(length_m) = *length_m else { continue };
         let reach = |section: &&DeckSection| {
@@ -137,7 +138,7 @@ pub fn build(
         }
     }
     for &station in &options.piers_m {
-        let section = nearest(&sections, station);
+        let section = nearest(sections, station);
         bridge.piers += usize::from(pier::pier(section, course.width_m, options, ground, &mut body));
     }
     bridge.body = body.into_mesh();
@@ -152,8 +153,9 @@ fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
     if station_m - before.station_m < after.station_m - station_m { before } else { after }
 }
 
-/// The course's sections, turned at its ends as the ground lies across.
-fn sections(
+/// The sections of `course` at the elevations of `profile`, whose stations are the course's, turned at its ends as the
+/// ground lies across.
+pub fn sections(
     course: &DeckCourse<'_>,
     profile: &Profile,
     options: &BridgeOptions,
@@ -210,76 +212,66 @@ pub(in crate::structure) fn quad_corners(quad: [DVec2; 4]) -> [[usize; 3]; 2] {
     if worst(cuts[0]) >= worst(cuts[1]).min(1e-9) { cuts[0] } else { cuts[1] }
 }
 
-fn lay_carriageway(sections: &[DeckSection], options: &BridgeOptions) -> BridgeSolids {
+/// The triangles of the carriageway, their corners as a section and its side.
+fn carriageway(sections: &[DeckSection]) -> impl Iterator<Item = [(&DeckSection, usize); 3]> {
+    sections.windows(2).flat_map(|pair| {
+        let quad = [(&pair[0], 0), (&pair[0], 1), (&pair[1], 1), (&pair[1], 0)];
+        let cut = quad_corners(quad.map(|(section, side)| section.at + section.aside[side]));
+        cut.map(|corners| corners.map(|corner| quad[corner]))
+    })
+}
+
+/// The carriageway with a road's texture coordinates.
+fn textured(sections: &[DeckSection], options: &BridgeOptions) -> DrawMesh {
     let mut faces = Faces::default();
-    let mut deck = Vec::new();
-    for pair in sections.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let at = |section: DeckSection, side: usize| {
-            let v = (section.station_m / options.texture_length_m) as f32;
-            let world = section.edges()[side];
-            (
-                section.at + section.aside[side],
-                section.drawn(side, 1.0, 0.0, options.exaggeration),
-                world,
-                side,
-                v,
-            )
+    for corners in carriageway(sections) {
+        let vertex = |(section, side): (&DeckSection, usize)| {
+            let along = (section.station_m / options.texture_length_m) as f32;
+            (section.point(side, 1.0, 0.0), Vec2::new(side as f32, along))
         };
-        let quad = [at(from, 0), at(from, 1), at(to, 1), at(to, 0)];
-        for triangle in quad_corners(quad.map(|corner| corner.0)) {
-            let corner = |index: usize| (quad[index].1, Vec2::new(quad[index].3 as f32, quad[index].4));
-            faces.textured(triangle.map(corner), Srgba::WHITE);
-            deck.push(triangle.map(|index| quad[index].2));
-        }
+        faces.textured(corners.map(vertex), Srgba::WHITE);
     }
-    BridgeSolids { carriageway: faces.into_mesh(), deck, ..BridgeSolids::default() }
+    faces.into_mesh()
 }
 
-/// The cross-section, as points on a section.
-struct SectionRings {
-    /// Side, part of the way to the carriageway's edge, meters above it.
-    points: [(usize, f64, f64); 12],
-    exaggeration: f32,
+/// A corner of the cross-section.
+#[derive(Clone, Copy)]
+struct RingPoint {
+    side: usize,
+    /// The part of the way to the carriageway's edge.
+    part: f64,
+    /// Meters above that edge.
+    above_m: f64,
 }
 
-impl SectionRings {
-    fn new(width_m: f64, options: &BridgeOptions) -> Self {
-        let by = magnified(width_m);
-        let (parapet, thick) = (PARAPET_M * by, PARAPET_THICK_M * by);
-        let outer = 1.0 + thick / (width_m / 2.0);
-        let (edge, depth) = (-0.4 * options.depth_m, -options.depth_m);
-        let points = [
-            (0, outer, parapet),
-            (0, 1.0, parapet),
-            (0, 1.0, 0.0),
-            (1, 1.0, 0.0),
-            (1, 1.0, parapet),
-            (1, outer, parapet),
-            (1, outer, 0.0),
-            (1, outer, edge),
-            (1, GIRDER, depth),
-            (0, GIRDER, depth),
-            (0, outer, edge),
-            (0, outer, 0.0),
-        ];
-        Self { points, exaggeration: options.exaggeration }
-    }
+fn cross_section(width_m: f64, options: &BridgeOptions) -> [RingPoint; 12] {
+    let by = magnified(width_m);
+    let (parapet, thick) = (PARAPET_M * by, PARAPET_THICK_M * by);
+    let outer = 1.0 + thick / (width_m / 2.0);
+    let (edge, depth) = (-0.4 * options.depth_m, -options.depth_m);
+    [
+        (0, outer, parapet),
+        (0, 1.0, parapet),
+        (0, 1.0, 0.0),
+        (1, 1.0, 0.0),
+        (1, 1.0, parapet),
+        (1, outer, parapet),
+        (1, outer, 0.0),
+        (1, outer, edge),
+        (1, GIRDER, depth),
+        (0, GIRDER, depth),
+        (0, outer, edge),
+        (0, outer, 0.0),
+    ]
+    .map(|(side, part, above_m)| RingPoint { side, part, above_m })
+}
 
-    fn at(&self, section: &DeckSection, decks: &Deck) -> [Vec3; 12] {
-        let stands = [0, 1].map(|side| self.stands(section, side, decks));
-        self.points.map(|(side, part, above)| {
-            let above = if above > 0.0 && !stands[side] { 0.0 } else { above };
-            section.drawn(side, part, above, self.exaggeration)
-        })
-    }
-
-    /// Whether no other carriageway goes on where a parapet would stand.
-    fn stands(&self, section: &DeckSection, side: usize, decks: &Deck) -> bool {
-        let middle = (1.0 + self.points[0].1) / 2.0;
-        let other_m = decks.height_m(section.at + section.aside[side] * middle);
-        other_m.is_none_or(|other_m| (other_m - section.edges_m[side]).abs() > SAME_DECK_M)
-    }
+/// The cross-section at a section, flat where no parapet stands.
+fn ring(points: &[RingPoint; 12], section: &DeckSection) -> [Vec3; 12] {
+    points.map(|RingPoint { side, part, above_m }| {
+        let above_m = if section.parapets[side] { above_m } else { above_m.min(0.0) };
+        section.point(side, part, above_m)
+    })
 }
 
 /// How high parapets stand over the carriageway, in meters.
@@ -290,11 +282,11 @@ pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
 pub(in crate::structure) const GIRDER: f64 = 0.62;
 
 /// Draws the cross-section out along the sections and closes its ends.
-fn draw_out(sections: &[DeckSection], rings: &SectionRings, decks: &Deck, faces: &mut Faces) {
+fn draw_out(sections: &[DeckSection], points: &[RingPoint; 12], faces: &mut Faces) {
     /// The side between points 2 and 3 is the carriageway.
     const CARRIAGEWAY: usize = 2;
     for pair in sections.windows(2) {
-        let (from, to) = (rings.at(&pair[0], decks), rings.at(&pair[1], decks));
+        let (from, to) = (ring(points, &pair[0]), ring(points, &pair[1]));
         for side in (0..12).filter(|&side| side != CARRIAGEWAY) {
             let next = (side + 1) % 12;
             faces.polygon(&[from[side], from[next], to[next], to[side]], CONCRETE);
@@ -302,7 +294,7 @@ fn draw_out(sections: &[DeckSection], rings: &SectionRings, decks: &Deck, faces:
     }
     // Both parapets, and the slab, cut so that no triangle is a line.
     let caps: [&[usize]; 3] = [&[0, 1, 2, 11], &[3, 4, 5, 6], &[8, 9, 10, 11, 2, 3, 6, 7]];
-    let (first, last) = (rings.at(&sections[0], decks), rings.at(&sections[sections.len() - 1], decks));
+    let (first, last) = (ring(points, &sections[0]), ring(points, &sections[sections.len() - 1]));
     for cap in caps {
         let back: Vec<Vec3> = cap.iter().rev().map(|&point| first[point]).collect();
         let front: Vec<Vec3> = cap.iter().map(|&point| last[point]).collect();
@@ -322,9 +314,9 @@ impl BridgeSolids {
     /// # Errors
     /// A sentence that names the first thing out of place.
     pub fn check(&self) -> Result<(), String> {
-        for (index, [a, b, c]) in self.deck.iter().enumerate() {
-            let up = (*b - *a).truncate().perp_dot((*c - *a).truncate());
-            if up < 0.0 {
+        for (index, triangle) in self.carriageway.triangles.iter().enumerate() {
+            let [a, b, c] = triangle.map(|id| Vec3::from(self.carriageway.vertices[id.index()].position));
+            if (b - a).truncate().perp_dot((c - a).truncate()) < 0.0 {
                 return Err(format!("triangle {index} of the deck faces down at {a}"));
             }
         }
@@ -347,7 +339,6 @@ mod tests {
             abutments_m: [Some(6.0), Some(6.0)],
             across: [Across::AsGround; 2],
             texture_length_m: 15.0,
-            exaggeration: 1.5,
         }
     }
 
@@ -355,8 +346,22 @@ mod tests {
         DeckCourse { line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 }
     }
 
-    fn none() -> Deck {
-        Deck::new(&[]).expect("no triangle is wrong")
+    /// The deck, and the bridge with elevations drawn 1.5 times as high.
+    fn built(
+        course: &DeckCourse<'_>,
+        profile: &Profile,
+        options: &BridgeOptions,
+        ground: &GroundHeight<'_>,
+        decks: &[SurfaceTriangle],
+    ) -> (Vec<SurfaceTriangle>, BridgeSolids) {
+        let mut sections = sections(course, profile, options, ground);
+        let deck = deck(&sections);
+        end_parapets(&mut sections, course.width_m, &Deck::new(decks).expect("sound"));
+        for section in &mut sections {
+            section.edges_m = section.edges_m.map(|edge_m| edge_m * 1.5);
+        }
+        let drawn = |at| ground(at).map(|height_m| height_m * 1.5);
+        (deck, build(course, &sections, options, &drawn))
     }
 
     #[test]
@@ -366,9 +371,8 @@ mod tests {
             [[at(20.0, 4.0), at(60.0, 4.0), at(60.0, 9.0)], [at(20.0, 4.0), at(60.0, 9.0), at(20.0, 9.0)]];
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
-        let decks = Deck::new(&beside).expect("sound");
         let level = Profile::straight(90.0, [50.0; 2]);
-        let bridge = build(&course(&line), &level, &options, &|_| Some(50.0), &decks);
+        let (_, bridge) = built(&course(&line), &level, &options, &|_| Some(50.0), &beside);
         bridge.check().expect("sound");
         let highest = |side: f32| {
             let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
@@ -389,7 +393,7 @@ mod tests {
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
             let profile = Profile::straight(120.0, [100.0, 102.4]);
-            let bridge = build(&course(&line), &profile, &options(120.0), &valley, &none());
+            let (_, bridge) = built(&course(&line), &profile, &options(120.0), &valley, &[]);
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
@@ -409,10 +413,10 @@ mod tests {
     fn the_deck_s_ends_lie_as_the_ground_does_across_them() {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
-        let bridge =
-            build(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), &slope, &none());
+        let (deck, _) =
+            built(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), &slope, &[]);
         let height = |x: f32, y: f32| {
-            let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
+            let mut corners = deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
         };
         assert!((height(0.0, 4.0) - 50.4).abs() < 1e-4 && (height(0.0, -4.0) - 49.6).abs() < 1e-4);
@@ -438,10 +442,11 @@ mod tests {
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
-            let bridge = build(&course(&line), &profile, &options(line.length()), &|_| Some(95.0), &none());
+            let (deck, bridge) = built(&course(&line), &profile, &options(line.length()), &|_| Some(95.0), &[]);
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
-            let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;
+            prop_assert!(deck.iter().map(plan).all(|area| area >= 0.0));
+            let area: f32 = deck.iter().map(plan).sum::<f32>() / 2.0;
             prop_assert!(f64::from(area) < 8.0 * line.length() * 1.3, "{} m²", area);
         }
     }

@@ -40,6 +40,8 @@ pub struct DeckSection {
     pub aside: [DVec2; 2],
     /// The elevations of the left and the right edge, in meters.
     pub edges_m: [f64; 2],
+    /// Whether a parapet stands on the left and on the right edge.
+    pub parapets: [bool; 2],
 }
 
 /// What a deck is drawn out along.
@@ -113,20 +115,24 @@ impl DeckCourse<'_> {
 }
 
 fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> DeckSection {
-    DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2] }
+    DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2], parapets: [true; 2] }
 }
 
 impl DeckSection {
-    /// The point at `part` of the way to the left (0) or right (1) edge and `above_m` over that edge, as it is drawn.
-    /// A part above 1 lies beyond the carriageway.
-    pub fn drawn(&self, side: usize, part: f64, above_m: f64, exaggeration: f32) -> Vec3 {
+    /// The point at `part` of the way to the left (0) or right (1) edge and `above_m` over that edge. A part
+    /// above 1 lies beyond the carriageway.
+    pub fn point(&self, side: usize, part: f64, above_m: f64) -> Vec3 {
         let plan = self.at + self.aside[side] * part;
-        let edge = self.edges_m[side] * f64::from(exaggeration);
-        let middle = (self.edges_m[0] + self.edges_m[1]) / 2.0 * f64::from(exaggeration);
-        plan.as_vec2().extend((middle + (edge - middle) * part + above_m) as f32)
+        let middle_m = self.middle_m();
+        plan.as_vec2().extend((middle_m + (self.edges_m[side] - middle_m) * part + above_m) as f32)
     }
 
-    /// The carriageway's left and right edge in the world, elevations in meters.
+    /// The elevation half-way between both edges, in meters.
+    pub fn middle_m(&self) -> f64 {
+        (self.edges_m[0] + self.edges_m[1]) / 2.0
+    }
+
+    /// The carriageway's left and right edge in the world.
     pub fn edges(&self) -> [Vec3; 2] {
         [0, 1].map(|side| (self.at + self.aside[side]).as_vec2().extend(self.edges_m[side] as f32))
     }

@@ -1,7 +1,6 @@
 //! What is built on the ground with a shape of its own: outlines and centerlines with elevations become solids.
 //!
-//! Positions are world space; heights are handed in as they are drawn, times the scene's exaggeration, so that a solid
-//! meets the ground it stands on.
+//! Positions are world space; heights are handed in as they are drawn, so that a solid meets the ground it stands on.
 
 pub mod bands;
 pub mod bridge;

@@ -45,14 +45,12 @@ pub(in crate::structure) fn pier(
     let Some(ground_m) = lowest(ground, [0.0, head, -head].map(|aside| frame.at + across * aside)) else {
         return false;
     };
-    let stretched = f64::from(options.exaggeration);
-    let middle_m = (section.edges_m[0] + section.edges_m[1]) / 2.0;
-    let soffit = middle_m * stretched - options.depth_m;
-    let height = soffit - ground_m * stretched;
+    let soffit = section.middle_m() - options.depth_m;
+    let height = soffit - ground_m;
     if height < LOWEST_M {
         return false;
     }
-    let (top, foot) = (soffit + INTO_DECK_M, ground_m * stretched - FOUNDED_M);
+    let (top, foot) = (soffit + INTO_DECK_M, ground_m - FOUNDED_M);
     let by = magnified(width_m);
     let along = (0.5 + 0.012 * height).clamp(0.5, 1.6) * by;
     let shaft = head * SHAFT;
@@ -85,12 +83,10 @@ pub(in crate::structure) fn abutment(
     // Inside the edge beams' faces, so that they stand out.
     let part = 1.0 + 0.6 * PARAPET_THICK_M * magnified(width_m) / (width_m / 2.0);
     let into = -0.3 * options.depth_m;
-    let tops: Vec<[Vec3; 2]> = under
-        .iter()
-        .map(|section| [0, 1].map(|side| section.drawn(side, part, into, options.exaggeration)))
-        .collect();
+    let tops: Vec<[Vec3; 2]> =
+        under.iter().map(|section| [0, 1].map(|side| section.point(side, part, into))).collect();
     let below = tops.iter().flatten().map(|corner| f64::from(corner.z)).fold(f64::INFINITY, f64::min) - 0.1;
-    let foot = (lowest_m * f64::from(options.exaggeration) - FOUNDED_M).min(below) as f32;
+    let foot = (lowest_m - FOUNDED_M).min(below) as f32;
     let rings: Vec<[Vec3; 4]> = tops
         .iter()
         .map(|&[left, right]| [left, right, right.truncate().extend(foot), left.truncate().extend(foot)])
@@ -111,7 +107,7 @@ pub(in crate::structure) fn end_posts(
         let part = 1.0 + half / (width_m / 2.0);
         let across = section.aside[side].normalize_or(DVec2::X);
         let frame = PierFrame { at: section.at + section.aside[side] * part, across };
-        let road = f64::from(section.drawn(side, part, 0.0, options.exaggeration).z);
+        let road = f64::from(section.point(side, part, 0.0).z);
         let rings =
             [-0.5 * options.depth_m - by, 1.6 * by].map(|above| frame.ring((half, half), road + above));
         faces.stack(&rings, WEATHERED);

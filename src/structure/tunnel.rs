@@ -42,14 +42,12 @@ const DARK: Srgba = Srgba::opaque(22, 21, 22);
 pub struct Portal {
     /// The middle of its mouth in world coordinates.
     pub at: DVec2,
-    /// The road's elevation there in meters.
+    /// The road's elevation there in meters, as it is drawn.
     pub level_m: f64,
     /// The direction out of the tunnel, of length 1.
     pub outward: DVec2,
     /// The carriageway's width in meters, above 0.
     pub width_m: f64,
-    /// How many times elevations are stretched when drawn.
-    pub exaggeration: f32,
 }
 
 impl Portal {
@@ -71,7 +69,7 @@ impl Portal {
     /// How far behind the mouth the hill has risen to the part `share` of the wall's height; `None` where it has not
     /// within what the roof may reach.
     pub fn covered_after_m(&self, share: f64, ground: &GroundHeight<'_>) -> Option<f64> {
-        let wanted = share * self.height_m() / f64::from(self.exaggeration);
+        let wanted = share * self.height_m();
         let longest = LONGEST_ROOF * self.height_m();
         let across = self.outward.perp() * self.halves_m().1;
         (1..=40).map(|step| longest * f64::from(step) / 40.0).find(|&back| {
@@ -81,14 +79,13 @@ impl Portal {
         })
     }
 
-    /// A point in the world, drawn: so far to the right seen from outside, outward, and above the road.
-    fn drawn(&self, right: f64, out: f64, above: f64) -> Vec3 {
+    /// A point in the world: so far to the right seen from outside, outward, and above the road.
+    fn point(&self, right: f64, out: f64, above: f64) -> Vec3 {
         let plan = self.at + self.outward.perp() * right + self.outward * out;
-        let z = self.level_m * f64::from(self.exaggeration) + above;
-        plan.as_vec2().extend(z as f32)
+        plan.as_vec2().extend((self.level_m + above) as f32)
     }
 
-    /// The portal's solids in world space, heights as drawn.
+    /// The portal's solids in world space, on the ground as it is drawn.
     pub fn build(&self, ground: &GroundHeight<'_>) -> DrawMesh {
         let back = self.covered_after_m(1.0, ground).unwrap_or(LONGEST_ROOF * self.height_m());
         let foot = self.foot(ground, back);
@@ -107,7 +104,7 @@ impl Portal {
         let corners = [(-wall, 0.0), (wall, 0.0), (-wall, -back), (wall, -back)];
         let places = corners.map(|(right, out)| self.at + self.outward.perp() * right + self.outward * out);
         let low_m = lowest(ground, places).unwrap_or(self.level_m);
-        (low_m - self.level_m).min(0.0) * f64::from(self.exaggeration) - FOUNDED_M
+        (low_m - self.level_m).min(0.0) - FOUNDED_M
     }
 
     /// The mouth's outline from the right foot over the arch to the left, counter-clockwise seen from outside.
@@ -128,27 +125,27 @@ impl Portal {
         let reveal = -0.8 * magnified(self.width_m);
         for (left, right) in [(-wall, -half), (half, wall)] {
             let corners = [(left, foot), (right, foot), (right, top), (left, top)];
-            faces.polygon(&corners.map(|(x, z)| self.drawn(x, 0.0, z)), STONE);
+            faces.polygon(&corners.map(|(x, z)| self.point(x, 0.0, z)), STONE);
         }
         let mouth = self.mouth();
         for pair in mouth.windows(2) {
             let [(x0, z0), (x1, z1)] = [pair[0], pair[1]];
             faces.polygon(
-                &[(x0, z0), (x0, top), (x1, top), (x1, z1)].map(|(x, z)| self.drawn(x, 0.0, z)),
+                &[(x0, z0), (x0, top), (x1, top), (x1, z1)].map(|(x, z)| self.point(x, 0.0, z)),
                 STONE,
             );
             let inner = [
-                self.drawn(x0, 0.0, z0),
-                self.drawn(x1, 0.0, z1),
-                self.drawn(x1, reveal, z1),
-                self.drawn(x0, reveal, z0),
+                self.point(x0, 0.0, z0),
+                self.point(x1, 0.0, z1),
+                self.point(x1, reveal, z1),
+                self.point(x0, reveal, z0),
             ];
             faces.polygon(&inner, SHADE);
         }
         let below = [(-half, foot), (half, foot)];
         // Without the left foot, which lies on the way back to the first corner.
         let above = &mouth[..mouth.len() - 1];
-        let dark = below.iter().chain(above).map(|&(x, z)| self.drawn(x, reveal, z));
+        let dark = below.iter().chain(above).map(|&(x, z)| self.point(x, reveal, z));
         faces.polygon(&dark.collect::<Vec<_>>(), DARK);
         self.voussoirs(faces);
         self.coping(faces);
@@ -163,7 +160,7 @@ impl Portal {
         for pair in self.mouth().windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let [outer_from, outer_to] = [grown(from), grown(to)];
-            let at = |(x, z): (f64, f64), out: f64| self.drawn(x, out, z);
+            let at = |(x, z): (f64, f64), out: f64| self.point(x, out, z);
             faces.polygon(&[at(from, out), at(outer_from, out), at(outer_to, out), at(to, out)], DRESSED);
             faces.polygon(&[at(from, 0.0), at(from, out), at(to, out), at(to, 0.0)], DRESSED);
             let edge = [at(outer_from, out), at(outer_from, 0.0), at(outer_to, 0.0), at(outer_to, out)];
@@ -185,15 +182,15 @@ impl Portal {
         // On a gentle slope the roof comes down to the ground behind, as a bank does that was heaped over it.
         let corners = [-wall, wall].map(|right| self.at + self.outward.perp() * right - self.outward * back);
         let risen_m = lowest(ground, corners).map_or(0.0, |height| height - self.level_m);
-        let end = (risen_m * f64::from(self.exaggeration)).clamp(0.0, top);
+        let end = risen_m.clamp(0.0, top);
         let ring = [(-wall, 0.0, top), (-wall, -back, end), (wall, -back, end), (wall, 0.0, top)];
         for pair in ring.windows(2) {
             let [(x0, y0, z0), (x1, y1, z1)] = [pair[0], pair[1]];
             let corners = [(x1, y1, foot), (x0, y0, foot), (x0, y0, z0), (x1, y1, z1)];
-            faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), STONE);
+            faces.polygon(&corners.map(|(x, y, z)| self.point(x, y, z)), STONE);
         }
         let lid = [ring[0], ring[3], ring[2], ring[1]];
-        faces.polygon(&lid.map(|(x, y, z)| self.drawn(x, y, z)), ROOF);
+        faces.polygon(&lid.map(|(x, y, z)| self.point(x, y, z)), ROOF);
     }
 
     /// The wall that holds the slope on the left (−1) or right (1) as seen from outside; its top falls outward.
@@ -202,10 +199,9 @@ impl Portal {
         let (_, wall) = self.halves_m();
         let (length, thick) = (0.9 * self.height_m(), 0.5 * by);
         let (inner, flare) = (side * (wall - thick), side * 0.55 * length);
-        let stretched = f64::from(self.exaggeration);
         let above = |right: f64, out: f64| {
             let at = self.at + self.outward.perp() * right + self.outward * out;
-            (ground(at).unwrap_or(self.level_m) - self.level_m) * stretched
+            ground(at).unwrap_or(self.level_m) - self.level_m
         };
         let near = [(inner, 0.0), (inner + side * thick, 0.0)];
         let far = near.map(|(right, out)| (right + flare, out + length));
@@ -220,7 +216,7 @@ impl Portal {
         let ring =
             if side > 0.0 { [near[1], near[0], far[0], far[1]] } else { [near[0], near[1], far[1], far[0]] };
         let top = |index: usize| if index < 2 { tops[0] } else { tops[1] };
-        let corner = |index: usize, z: f64| self.drawn(ring[index].0, ring[index].1, z);
+        let corner = |index: usize, z: f64| self.point(ring[index].0, ring[index].1, z);
         for index in 0..4 {
             let next = (index + 1) % 4;
             let wall = [
@@ -248,10 +244,10 @@ impl Portal {
         for index in 0..4 {
             let [(x0, y0), (x1, y1)] = [ring[index], ring[(index + 1) % 4]];
             let corners = [(x0, y0, low), (x1, y1, low), (x1, y1, high), (x0, y0, high)];
-            faces.polygon(&corners.map(|(x, y, z)| self.drawn(x, y, z)), color);
+            faces.polygon(&corners.map(|(x, y, z)| self.point(x, y, z)), color);
         }
-        faces.polygon(&ring.map(|(x, y)| self.drawn(x, y, high)), color);
+        faces.polygon(&ring.map(|(x, y)| self.point(x, y, high)), color);
         let bottom = [ring[3], ring[2], ring[1], ring[0]];
-        faces.polygon(&bottom.map(|(x, y)| self.drawn(x, y, low)), color);
+        faces.polygon(&bottom.map(|(x, y)| self.point(x, y, low)), color);
     }
 }

@@ -178,8 +178,8 @@ impl Lattice {
         })
     }
 
-    /// The lattice that a vertical exaggeration displays: every height times `factor`, which is above 0.
-    pub fn exaggerated(&self, factor: f32) -> Self {
+    /// The lattice with every height times `factor`, which is above 0.
+    pub fn stretched(&self, factor: f32) -> Self {
         let heights = self.heights.iter().map(|height| height * factor).collect();
         Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
@@ -265,7 +265,7 @@ impl Lattice {
         &self.pinned
     }
 
-    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which an exaggeration multiplies.
+    /// How far drawn ground may be off a pinned post, meters: rounding of heights, which [`Lattice::stretched`] multiplies.
     pub fn pin_slack_m(&self) -> f32 {
         self.pin_slack_m
     }
@@ -326,15 +326,11 @@ impl Lattice {
     }
 
     /// The heights of a cell's corners: south-west, south-east, north-west, north-east.
+    #[inline]
     pub fn corner_heights(&self, cell: Post) -> [f32; 4] {
-        let first = self.index(cell);
         let stride = self.columns as usize;
-        [
-            self.heights[first],
-            self.heights[first + 1],
-            self.heights[first + stride],
-            self.heights[first + stride + 1],
-        ]
+        let heights = &self.heights[self.index(cell)..][..stride + 2];
+        [heights[0], heights[1], heights[stride], heights[stride + 1]]
     }
 
     /// The slopes at a post, rise per meter eastward and northward, by the weights of Horn (1981) over the eight
@@ -405,10 +401,10 @@ mod tests {
     }
 
     #[test]
-    fn an_exaggerated_lattice_has_the_same_posts_and_higher_heights() {
+    fn a_stretched_lattice_has_the_same_posts_and_higher_heights() {
         let mut plain = plane();
         plain.pin(Post { column: 1, row: 2 }, 7.0);
-        let steep = plain.exaggerated(3.0);
+        let steep = plain.stretched(3.0);
         for post in plain.posts() {
             assert_eq!(steep.height(post), plain.height(post) * 3.0);
             assert_eq!(steep.position(post), plain.position(post));

@@ -58,9 +58,7 @@ fn print_forest() {
     }
     let scene = forest(10_000, &["firtree.obj"]);
     let camera = overlook(&scene, (1920, 1080));
-    row("10000 full", &scene, &camera, |scene, camera| {
-        draw_list(scene, &display(&scene.terrain, camera), &|_| ()).0
-    });
+    row("10000 full", &scene, &camera, |scene, camera| draw_list(scene, &display(scene, camera), &|_| ()).0);
 }
 
 fn row(name: &str, scene: &SceneModel, camera: &Camera, listed: impl Fn(&SceneModel, &Camera) -> DrawList) {

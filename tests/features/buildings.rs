@@ -59,7 +59,7 @@ fn a_building_stands_on_the_ground_that_its_rule_names() {
         let scene = scene(&format!(
             "[[building]]\npoints = [[200, 500], [212, 500], [212, 508], [200, 508]]\nheight = 7\nbase = \"{base}\"\n"
         ));
-        let lattice = &scene.terrain.lattice;
+        let lattice = &scene.lattice;
         let heights: Vec<f64> = (0..=40)
             .flat_map(|x| {
                 (0..=40).map(move |y| DVec2::new(200.0 + f64::from(x) * 0.3, 500.0 + f64::from(y) * 0.2))
@@ -88,7 +88,7 @@ fn a_pad_is_level_under_the_whole_footprint_and_its_earth_is_told() {
     let BuildingPadRow { name, level, cut, fill } = &scene.report.building_pads[0];
     assert_eq!(name, "hall");
     assert!(*cut > 100.0 && *fill > 100.0, "{cut} {fill}");
-    let lattice = &scene.terrain.lattice;
+    let lattice = &scene.lattice;
     for (x, y) in [(200.0, 500.0), (230.0, 520.0), (215.0, 510.0), (229.0, 501.0)] {
         let at = lattice.origin() + DVec2::new(x, y);
         let height = ground_height(lattice, Interpolation::Planar, at).height_m().expect("ground");
@@ -122,15 +122,15 @@ proptest! {
         static SCENES: std::sync::LazyLock<Vec<SceneModel>> = std::sync::LazyLock::new(|| {
             [1.0, 15.0, 120.0].into_iter().map(|tolerance_px| {
                 let mut scene = demo();
-                scene.terrain.tolerance_px = tolerance_px;
+                scene.tolerance_px = tolerance_px;
                 scene
             }).collect()
         });
         let scene = &SCENES[tolerance];
         let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), Vec3::new(210.0, 550.0, 50.0), 0.8, (800, 600), (0.5, 9000.0));
         prop_assume!(camera.is_ok());
-        let displayed = display(&scene.terrain, &camera.expect("checked"));
-        let ground = FullResolution { lattice: scene.terrain.displayed() };
+        let displayed = display(scene, &camera.expect("checked"));
+        let ground = FullResolution { lattice: scene.ground().lattice() };
         for standing in &scene.uprights {
             let DrapedSolid::Footing(footing) = &standing.upright else { continue };
             let mesh = standing.upright.mesh(SupportSurface { displayed: &displayed, ground: &ground });

@@ -49,7 +49,7 @@ fn conformed(scene: &SceneModel) -> &ConformedRoadRow {
 }
 
 fn ground(scene: &SceneModel, at: DVec2) -> f64 {
-    let answer = ground_height(&scene.terrain.lattice, Interpolation::Planar, at);
+    let answer = ground_height(&scene.lattice, Interpolation::Planar, at);
     answer.height_m().expect("on the model")
 }
 
@@ -86,8 +86,8 @@ fn the_ground_takes_the_road_s_level_and_its_profile_tells_it() {
 fn far_from_the_road_the_ground_answers_as_before() {
     let road = "[[road]]\nprofile = \"conform\"\nwidth = 8\npoints = [[30, 300], [760, 300]]";
     let [before, after] = ["", road].map(|text| made_up(hills, text).expect("sound"));
-    assert!(after.terrain.lattice.columns() > before.terrain.lattice.columns(), "more posts were put in");
-    assert_eq!(after.terrain.lattice.extent(), before.terrain.lattice.extent());
+    assert!(after.lattice.columns() > before.lattice.columns(), "more posts were put in");
+    assert_eq!(after.lattice.extent(), before.lattice.extent());
     for index in 0..500 {
         let at = DVec2::new(f64::from(index) * 1.6, f64::from(index * 37 % 180));
         assert!((ground(&after, at) - ground(&before, at)).abs() < 1e-4, "at {at}");

@@ -27,7 +27,7 @@ static SCENES: LazyLock<Vec<SceneModel>> = LazyLock::new(|| {
     let path = Path::new(ROOT).join("scenes/lines.toml");
     let load = |tolerance_px: f32| {
         let mut scene = open_scene(&path, &[], &|_| {}).expect("sound");
-        scene.terrain.tolerance_px = tolerance_px;
+        scene.tolerance_px = tolerance_px;
         scene
     };
     [0.5, 5.0, 40.0, 300.0].map(load).into()
@@ -36,11 +36,11 @@ static SCENES: LazyLock<Vec<SceneModel>> = LazyLock::new(|| {
 fn seen(scene: &SceneModel, eye: (f32, f32, f32), target: (f32, f32)) -> Option<DisplayedTerrain> {
     let target = Vec3::new(target.0, target.1, 80.0);
     let camera = Camera::new(Vec3::new(eye.0, eye.1, eye.2), target, 0.8, (800, 600), (0.5, 9000.0)).ok()?;
-    Some(display(&scene.terrain, &camera))
+    Some(display(scene, &camera))
 }
 
 fn finest(scene: &SceneModel) -> FullResolution<'_> {
-    FullResolution { lattice: scene.terrain.displayed() }
+    FullResolution { lattice: scene.ground().lattice() }
 }
 
 proptest! {

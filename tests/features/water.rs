@@ -343,7 +343,7 @@ fn draped_water_moves_no_earth() {
     let text = "[[river]]\npoints = [[50, 150], [250, 150]]\nwater = \"drape\"\n";
     let scene = ramp(text).expect("sound");
     assert!(scene.report.rivers.is_empty());
-    assert!(scene.terrain.lattice.pinned().iter().all(|pinned| !pinned));
+    assert!(scene.lattice.pinned().iter().all(|pinned| !pinned));
 }
 
 #[test]

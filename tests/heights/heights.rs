@@ -12,14 +12,8 @@ use sandtable::dem::raster::{Raster, Samples};
 use sandtable::earthworks::brush::Crater;
 use sandtable::geom::crs::Crs;
 use sandtable::mesh::trimesh::TriMesh;
-use sandtable::roam::criterion::screen::ScreenError;
-use sandtable::roam::culling::{PatchHeights, patches_in_view};
-use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::measured_ground::MeasuredGround;
 use sandtable::terrain::lattice::{Lattice, Post};
 use sandtable::terrain::query::batch::HeightSlices;
 use sandtable::terrain::query::batch::bilinear_ground;
@@ -29,7 +23,6 @@ use sandtable::terrain::query::tiles::HeightTiles;
 use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
 use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
 
 const ALL: [Interpolation; 4] = [
     Interpolation::Planar,
@@ -283,10 +276,7 @@ fn readers_see_whole_epochs_while_the_ground_is_edited() {
 /// A small world that can be seen at any level of detail.
 struct World {
     lattice: Arc<Lattice>,
-    displayed: Arc<Lattice>,
-    layout: PatchLayout,
-    errors: ErrorMap,
-    heights: PatchHeights,
+    measured: MeasuredGround,
     service: HeightService,
     at: Vec<DVec2>,
     ground: Vec<(u64, Status)>,
@@ -306,24 +296,13 @@ impl World {
         let heights = (0..columns * rows).map(height).collect();
         let lattice = Lattice::new(DVec2::new(5e5, 4e6), DVec2::splat(30.0), columns, heights);
         let lattice = Arc::new(lattice.expect("sound"));
-        let layout = PatchLayout::new(columns, rows, 16).expect("sound");
-        let displayed = Arc::new(lattice.exaggerated(EXAGGERATION));
-        let errors = ErrorMap::exact(&displayed, &layout);
-        let heights = PatchHeights::new(PatchedGround { lattice: &displayed, layout: &layout });
+        let measured = MeasuredGround::new(lattice.stretched(EXAGGERATION), 16).expect("sound");
         let service = service_on(&lattice);
         let at = positions(&lattice, 160, 3);
         let epoch = service.snapshot();
         let ground = together(&epoch, Surface::Ground, Interpolation::Planar, &at);
         let source = together(&epoch, Surface::Source, Interpolation::Bilinear, &at);
-        Self { lattice, displayed, layout, errors, heights, service, at, ground, source }
-    }
-
-    fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let ground = PatchedGround { lattice: &self.displayed, layout: &self.layout };
-        let patches = patches_in_view(ground, &self.heights, &Frustum::new(camera));
-        let criterion = ScreenError::new(ground, &self.errors, &self.heights, camera, tolerance_px);
-        let active = rebuild(&self.layout, &criterion, patches.iter().copied());
-        DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)
+        Self { lattice, measured, service, at, ground, source }
     }
 }
 
@@ -340,7 +319,7 @@ proptest! {
         let target = Vec3::new(target.0, target.1, 550.0);
         let camera = Camera::new(Vec3::from(eye), target, 0.8, (800, 600), (0.5, 20_000.0)).ok();
         prop_assume!(camera.is_some());
-        let terrain = Arc::new(WORLD.seen_by(&camera.expect("checked"), tolerance_px));
+        let terrain = Arc::new(WORLD.measured.displayed_to(&camera.expect("checked"), tolerance_px));
         let showing = WORLD.service.displaying(Arc::clone(&terrain) as Arc<dyn TriangleSurface>, f64::from(EXAGGERATION));
         let epoch = showing.snapshot();
         prop_assert!(together(&epoch, Surface::Ground, Interpolation::Planar, &WORLD.at) == WORLD.ground);

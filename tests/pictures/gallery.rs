@@ -97,7 +97,7 @@ fn every_scene_opens_with_a_comment_that_says_what_it_shows() {
 #[test]
 fn every_scene_s_errors_never_shrink_from_a_vertex_to_its_parents() {
     for Exhibit { scene, .. } in exhibits() {
-        scene.terrain.errors().check(&scene.terrain.layout);
+        scene.ground().exact().check(scene.ground().layout());
     }
 }
 
@@ -128,7 +128,7 @@ fn draped(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
 /// What rounding corners to f32 may come to: twice the step between numbers at the far end of the ground, which
 /// is 8 mm at 32 km. A corner is moved aside by half a step each way, and up or down on slopes by as much.
 fn clearance_m(scene: &SceneModel) -> f64 {
-    scene.terrain.lattice.extent().size().max_element() * f64::from(f32::EPSILON) * 2.0
+    scene.lattice.extent().size().max_element() * f64::from(f32::EPSILON) * 2.0
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn built(scratch: &Scratch, place: &Path, text: &str) -> SceneModel {
     let text = text.replace("PLACE", &place.to_string_lossy()).replace("PROJECT", project);
     let allowed = [place.to_path_buf(), Path::new(project).join("assets")];
     let scene = crate::scene(scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
-    scene.terrain.errors().check(&scene.terrain.layout);
+    scene.ground().exact().check(scene.ground().layout());
     for note in scene.notes.iter().take(8) {
         println!("note: {note}");
     }
@@ -127,7 +127,7 @@ ramp = [[1500, "#507050"], [1900, "#b0a070"], [2500, "#ffffff"]]
 interval = 100
 "##,
     );
-    let cell = scene.terrain.lattice.cell();
+    let cell = scene.lattice.cell();
     assert!((cell.x - 20.18225).abs() < 1e-4 && (cell.y - 27.30469).abs() < 1e-4, "{cell}");
     pictured(&scene, "overview", "crater");
 }

@@ -13,7 +13,7 @@ fn built(place: &str) -> Option<SceneModel> {
     let (text, allowed) = text_of(place)?;
     let scratch = Scratch::new();
     let scene = crate::scene(&scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
-    scene.terrain.errors().check(&scene.terrain.layout);
+    scene.ground().exact().check(scene.ground().layout());
     let plans: Vec<_> = scene.ribbons.iter().map(|ribbon| &ribbon.plan).collect();
     let area: f64 = plans.iter().map(|plan| plan.area_m2()).sum();
     let overlap = overlap_m2(plans.iter().copied());

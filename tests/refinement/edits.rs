@@ -144,7 +144,7 @@ proptest! {
         brushes in proptest::collection::vec(brushes(), 1..5),
     ) {
         let options = DynamicOptions { patch, measure, radius, reach: 25.0 };
-        let mut terrain = DynamicTerrain::new(ground(columns, rows, seed, holes).exaggerated(steepness), options).expect("sound");
+        let mut terrain = DynamicTerrain::new(ground(columns, rows, seed, holes).stretched(steepness), options).expect("sound");
         let mut active = all(&terrain, Vec3::from(eye));
         for brush in &brushes {
             let before = terrain.clone();

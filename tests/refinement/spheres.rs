@@ -204,7 +204,7 @@ fn the_check_of_a_map_in_which_a_child_reaches_out_of_its_parent_fails() {
     let lattice = terrain(17, 17, 1, 0);
     let layout = PatchLayout::new(17, 17, 16).expect("sound");
     let ground = PatchedGround { lattice: &lattice, layout: &layout };
-    let steep = lattice.exaggerated(3.0);
+    let steep = lattice.stretched(3.0);
     let [map, ..] = kinds(ground, 5.0);
     let steep = PatchedGround { lattice: &steep, ..ground };
     map.check(steep);

@@ -16,19 +16,13 @@ use sandtable::ribbon::area;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
 use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
-use sandtable::roam::criterion::screen::ScreenError;
-use sandtable::roam::culling::{PatchHeights, patches_in_view};
 use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::rebuild::rebuild;
+use sandtable::roam::measured_ground::MeasuredGround;
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::service::HeightService;
 use sandtable::terrain::query::{Interpolation, Surface};
 use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
 
 const COLUMNS: u32 = 120;
 const ROWS: u32 = 90;
@@ -37,31 +31,19 @@ const CELL_M: f64 = 30.0;
 /// What refinement needs of one lattice.
 struct World {
     lattice: Lattice,
-    displayed: Arc<Lattice>,
-    layout: PatchLayout,
-    errors: ErrorMap,
-    heights: PatchHeights,
+    ground: MeasuredGround,
 }
 
 impl World {
     fn new(lattice: Lattice) -> Self {
-        let layout = PatchLayout::new(lattice.columns(), lattice.rows(), 32).expect("sound");
-        let displayed = Arc::new(lattice.exaggerated(1.5));
-        let errors = ErrorMap::exact(&displayed, &layout);
-        let heights = PatchHeights::new(PatchedGround { lattice: &displayed, layout: &layout });
-        Self { lattice, displayed, layout, errors, heights }
-    }
-
-    fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.displayed, layout: &self.layout }
+        let ground = MeasuredGround::new(lattice.stretched(1.5), 32).expect("sound");
+        Self { lattice, ground }
     }
 
     fn seen_by(&self, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-        let patches = patches_in_view(self.ground(), &self.heights, &Frustum::new(camera));
-        let criterion = ScreenError::new(self.ground(), &self.errors, &self.heights, camera, tolerance_px);
-        let active = rebuild(&self.layout, &criterion, patches.iter().copied());
-        active.check();
-        DisplayedTerrain::new(Arc::clone(&self.displayed), active, patches)
+        let displayed = self.ground.displayed_to(camera, tolerance_px);
+        displayed.active().check();
+        displayed
     }
 }
 

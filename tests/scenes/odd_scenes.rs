@@ -38,7 +38,7 @@ fn the_overview_shows_all_of_the_ground_whatever_its_shape() {
     for (index, (posts, exaggeration)) in cases.into_iter().enumerate() {
         let text = format!("crs = \"EPSG:32616\"\nvertical_exaggeration = {exaggeration}");
         let scene = scene(&format!("overview{index}"), posts, &text).expect("sound");
-        let (min, max) = scene.terrain.bounds();
+        let (min, max) = scene.bounds;
         for (width, height) in [(1920, 1080), (640, 480)] {
             let camera = camera(&scene, &scene.cameras[0], (width, height)).expect("sound");
             for corner in 0..8 {
@@ -90,7 +90,7 @@ fn a_lake_larger_than_the_ground_takes_its_level_from_the_shore_on_it() {
     let text = "[[lake]]\nname = \"sea\"\n\
         points = [[-9e8, -9e8], [9e8, -9e8], [9e8, 305], [500, 305], [100, 305], [-9e8, 305]]\n";
     let scene = scene("sea", (60, 60), text).expect("sound");
-    let (low, _) = scene.terrain.lattice.height_range();
+    let (low, _) = scene.lattice.height_range();
     assert!((69.9..72.0).contains(&low), "the lowest ground of the row, not of the few samples on it: {low}");
 }
 

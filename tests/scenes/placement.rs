@@ -71,7 +71,7 @@ fn the_ground_alone_is_the_scene_s_and_no_scene_is_lit_before_a_picture() {
     let ground = built(pads, build_ground).expect("sound").heights.snapshot();
     let bits =
         |lattice: &Lattice| lattice.heights().iter().map(|height| height.to_bits()).collect::<Vec<_>>();
-    assert!(bits(ground.lattice()) == bits(&scene.terrain.lattice));
+    assert!(bits(ground.lattice()) == bits(&scene.lattice));
     assert!(ground.lattice().pinned().contains(&true), "the pad is there");
 }
 
@@ -99,7 +99,7 @@ fn houses(lines: &str) -> SceneModel {
 /// What a camera somewhere sees at a tolerance, for a few of both.
 fn shots(mut scene: SceneModel, mut check: impl FnMut(&SceneModel, &ViewDraw)) {
     for (index, tolerance_px) in [0.5, 2.0, 8.0, 40.0, 200.0].into_iter().enumerate() {
-        scene.terrain.tolerance_px = tolerance_px;
+        scene.tolerance_px = tolerance_px;
         let turn = index as f32 * 1.3;
         let eye = Vec3::new(1000.0 + 2600.0 * turn.cos(), 1000.0 + 2600.0 * turn.sin(), 1500.0);
         let target = Vec3::new(1000.0, 1000.0, 450.0);
@@ -233,7 +233,7 @@ fn a_pad_is_level_ground_and_what_it_cost_is_told() {
 #[test]
 fn the_report_tells_the_gap_under_each_corner() {
     let scene = houses("");
-    let lattice = &scene.terrain.lattice;
+    let lattice = &scene.lattice;
     assert_eq!(scene.report.models.len(), scene.placements.len());
     for (row, placement) in scene.report.models.iter().zip(&scene.placements) {
         let at = placement.at.as_dvec2();

@@ -9,15 +9,12 @@ use sandtable::draw::list::DrawMesh;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::ribbon::drape::drape;
 use sandtable::ribbon::patches::Drapes;
-use sandtable::roam::criterion::screen::ScreenError;
-use sandtable::roam::culling::patches_in_view;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::coherent::Coherent;
 use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{camera, recut};
 use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
 
 /// f32 world coordinates in a scene of ten kilometers, times the slope of a mountain side.
 const ROUNDING_M: f64 = 5e-3;
@@ -33,18 +30,16 @@ struct Walk<'a> {
 impl Walk<'_> {
     /// One frame; returns what is displayed and how many patches were cut again.
     fn frame(&mut self, camera: &Camera) -> (DisplayedTerrain, usize) {
-        let terrain = &self.scene.terrain;
-        let visible = patches_in_view(terrain.ground(), terrain.patch_heights(), &Frustum::new(camera));
-        let criterion =
-            ScreenError::new(terrain.ground(), terrain.errors(), terrain.patch_heights(), camera, 2.0);
-        let changes = self.coherent.update(&criterion, &visible);
+        let ground = self.scene.ground();
+        let visible = ground.in_view(camera);
+        let changes = self.coherent.update(&ground.screen_error(camera, 2.0), &visible);
         let seen: BTreeSet<usize> =
-            visible.iter().map(|&corner: &Vertex| terrain.layout.patch_index(corner)).collect();
+            visible.iter().map(|&corner: &Vertex| ground.layout().patch_index(corner)).collect();
         let came_or_went = seen.symmetric_difference(&self.seen).copied();
         let stale: BTreeSet<usize> = changes.dirty.iter().copied().chain(came_or_went).collect();
         let stale: Vec<usize> = stale.into_iter().collect();
         let active = self.coherent.active().clone();
-        let displayed = DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, visible);
+        let displayed = DisplayedTerrain::new(Arc::clone(ground.lattice()), active, visible);
         self.drapes.recut(&stale, &displayed);
         self.seen = seen;
         (displayed, stale.len())
@@ -67,7 +62,7 @@ fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give
     let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut walk = Walk {
         scene: &scene,
-        coherent: Coherent::new(scene.terrain.layout),
+        coherent: Coherent::new(*scene.ground().layout()),
         seen: BTreeSet::new(),
         drapes: recut::drapes(&scene),
     };
@@ -87,7 +82,7 @@ fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give
         let clearance = walk.drapes.check(&displayed);
         assert!(clearance < ROUNDING_M, "frame {frame}: {clearance} m");
         let mut kept = vec![0.0; scene.ribbons.len()];
-        for patch in 0..scene.terrain.layout.patch_count() {
+        for patch in 0..scene.ground().layout().patch_count() {
             walk.drapes.in_patch(patch).for_each(|(ribbon, mesh)| kept[ribbon] += plan_area(mesh));
         }
         for (ribbon, kept) in scene.ribbons.iter().zip(kept) {

@@ -51,7 +51,7 @@ const ALL: &str = "[[0, 0], [1000, 0], [1000, 1000], [0, 1000]]";
 
 /// Where trees stand, in map coordinates, as bits, so that they can be told apart and compared.
 fn places(scene: &SceneModel) -> BTreeSet<(u64, u64)> {
-    let map = |at: Vec2| at.as_dvec2() + scene.terrain.lattice.origin();
+    let map = |at: Vec2| at.as_dvec2() + scene.lattice.origin();
     scene
         .placements
         .iter()
@@ -132,7 +132,7 @@ fn nothing_stands_in_a_clearing() {
 #[test]
 fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
     let scene = scene(&table(ALL, "slope = [10, 25]\nelevation = [120, 200]")).expect("sound");
-    let lattice = &scene.terrain.lattice;
+    let lattice = &scene.lattice;
     assert!(scene.placements.len() > 1000);
     for placement in &scene.placements {
         let map = placement.at.as_dvec2() + lattice.origin();
@@ -159,7 +159,7 @@ fn nothing_stands_on_roads_water_or_what_stands_there() {
     let strewn = &scene.placements[1..];
     assert!(strewn.len() > 8000);
     for placement in strewn {
-        let tree = placement.at.as_dvec2() + scene.terrain.lattice.origin();
+        let tree = placement.at.as_dvec2() + scene.lattice.origin();
         // A spruce keeps half its boughs' reach of some 3.7 m.
         assert!((tree - from).dot(across).abs() > 16.5, "{tree} on the road");
         let water = (699.0..901.0).contains(&tree.x) && (199.0..401.0).contains(&tree.y);

@@ -1,9 +1,9 @@
 //! Ground in meters: heights, meshes and viewsheds.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::dem::answer::Answer;
 use crate::geom::crs::Crs;
@@ -13,15 +13,13 @@ use crate::pipeline::api::error::Error;
 use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::ground;
 use crate::pipeline::viewshed::raster;
-use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
-use crate::scene::{SceneTerrain, picture};
+use crate::roam::layout::DEFAULT_PATCH;
+use crate::roam::measured_ground::MeasuredGround;
+use crate::scene::vertical_scale::VerticalScale;
 use crate::terrain::query::service::{HeightService, Snapshot};
 use crate::terrain::query::{Interpolation, Surface};
 use crate::terrain::sight::viewshed::{ViewshedOptions, viewshed};
 use crate::view::camera::Camera;
-
-/// The drawn ground may be off by this many pixels unless a caller states otherwise.
-const TOLERANCE_PX: f32 = 1.0;
 
 /// The vertical field of view of [`Terrain::camera`]: 46°, about that of a camera's normal lens.
 const FOV_Y_RAD: f32 = 0.8;
@@ -35,7 +33,8 @@ const NEAR_M: f32 = 0.5;
 pub struct Terrain {
     heights: HeightService,
     ground: Arc<Snapshot>,
-    terrain: SceneTerrain,
+    measured: MeasuredGround,
+    bounds: OnceLock<(Vec3, Vec3)>,
 }
 
 impl Terrain {
@@ -56,9 +55,9 @@ impl Terrain {
         let ground = heights.snapshot();
         let lattice = Arc::clone(ground.lattice());
         let (columns, rows) = (lattice.columns(), lattice.rows());
-        let layout =
-            PatchLayout::new(columns, rows, DEFAULT_PATCH).ok_or(MeshError::TooLarge { columns, rows })?;
-        Ok(Self { heights, ground, terrain: SceneTerrain::new(lattice, layout, 1.0, TOLERANCE_PX) })
+        let measured =
+            MeasuredGround::new(lattice, DEFAULT_PATCH).ok_or(MeshError::TooLarge { columns, rows })?;
+        Ok(Self { heights, ground, measured, bounds: OnceLock::new() })
     }
 
     /// The coordinate system of positions.
@@ -95,9 +94,11 @@ impl Terrain {
     /// # Errors
     /// [`Error::Camera`].
     pub fn camera(&self, eye: DVec3, target: DVec3, (width, height): (u32, u32)) -> Result<Camera, Error> {
-        let origin = self.ground.lattice().origin().extend(0.0);
+        let lattice = self.ground.lattice();
+        let origin = lattice.origin().extend(0.0);
         let (eye, target) = ((eye - origin).as_vec3(), (target - origin).as_vec3());
-        let (min, max) = self.terrain.bounds();
+        let measure = || VerticalScale(1.0).ground(lattice).bounds(lattice.height_range());
+        let &(min, max) = self.bounds.get_or_init(measure);
         let far_m = 2.0 * (eye.distance(min).max(eye.distance(max)) + 1000.0);
         Ok(Camera::new(eye, target, FOV_Y_RAD, (width, height), (NEAR_M, far_m))?)
     }
@@ -106,7 +107,7 @@ impl Terrain {
     /// more than `tolerance_px` pixels. Positions are meters from the south-west post.
     pub fn mesh_for(&self, camera: &Camera, tolerance_px: f32) -> TriMesh {
         let mut mesh = TriMesh::default();
-        picture::display_within(&self.terrain, camera, tolerance_px).emit(&mut mesh);
+        self.measured.displayed_to(camera, tolerance_px).emit(&mut mesh);
         mesh
     }
 

@@ -4,9 +4,9 @@
 //! they are, triangles beyond the border and over no data included.
 
 use crate::pipeline::lod::follower::LodFollower;
+use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::method::SphereRule;
 use crate::pipeline::lod::patch_lists::{PatchLists, Stale};
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::block::WholeGround;
 use crate::roam::culling::{Culling, InView};
 use crate::roam::refine::deferred::Deferred;
@@ -18,7 +18,7 @@ type Walk<'a> = Deferred<WholeGround<'a>>;
 
 /// The deferred refiner at work.
 pub struct DeferredFollower<'a> {
-    ground: &'a PreparedGround,
+    ground: &'a LodGround,
     spheres: SphereRule,
     walk: Option<Walk<'a>>,
     lists: PatchLists<()>,
@@ -27,14 +27,20 @@ pub struct DeferredFollower<'a> {
 
 impl<'a> DeferredFollower<'a> {
     /// Refines by `spheres`.
-    pub fn new(ground: &'a PreparedGround, spheres: SphereRule) -> Self {
-        Self { ground, spheres, walk: None, lists: PatchLists::new(ground.layout), view: InView::default() }
+    pub fn new(ground: &'a LodGround, spheres: SphereRule) -> Self {
+        Self {
+            ground,
+            spheres,
+            walk: None,
+            lists: PatchLists::new(*ground.measured.layout()),
+            view: InView::default(),
+        }
     }
 }
 
-fn start<'a>(ground: &'a PreparedGround, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
-    let source = WholeGround { ground: ground.patched(), spheres: ground.spheres(spheres, camera) };
-    Deferred::new(source, ground.lattice.cell().min_element())
+fn start<'a>(ground: &'a LodGround, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
+    let source = WholeGround { ground: ground.measured.patched(), spheres: ground.spheres(spheres, camera) };
+    Deferred::new(source, ground.measured.lattice().cell().min_element())
         .expect("patches of the default size are small enough")
 }
 
@@ -45,7 +51,8 @@ impl LodFollower for DeferredFollower<'_> {
 
     fn update(&mut self, camera: &Camera) {
         let ground = self.ground;
-        let view = self.view.update(ground.patched(), &ground.heights, Culling::frustum(camera));
+        let view =
+            self.view.update(ground.measured.patched(), ground.measured.heights(), Culling::frustum(camera));
         let walk = self.walk.get_or_insert_with(|| start(ground, self.spheres, camera));
         walk.update(camera.eye(), view).expect("ground in memory has every patch");
         let stale = Stale::Patches(&walk.changes().dirty);
@@ -61,7 +68,7 @@ impl LodFollower for DeferredFollower<'_> {
         self.lists.shown(|corner, ()| {
             let vertices = |numbers: &[u16; 3]| numbers.map(|number| walk.vertex(corner, number));
             let triangles = walk.indices(corner).iter().map(vertices);
-            PatchList::of_vertices(&ground.layout, corner, triangles)
+            PatchList::of_vertices(ground.measured.layout(), corner, triangles)
         })
     }
 }

@@ -2,8 +2,8 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::method::LodMethod;
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::frames::LastFrame;
 use crate::roam::measure::{HeightDifference, height_difference};
 use crate::roam::shown::PatchList;
@@ -44,7 +44,7 @@ pub struct FlightReport {
 /// A flight to be flown by several methods.
 pub struct FlightPlan<'a> {
     /// The ground.
-    pub ground: &'a PreparedGround,
+    pub ground: &'a LodGround,
     /// A camera for each frame.
     pub cameras: &'a [Camera],
     /// The most triangles, for methods that keep a budget.
@@ -89,7 +89,7 @@ impl FlightPlan<'_> {
     /// The difference of heights at the posts in the picture: a patch can be large, and its part out of view may have
     /// any error.
     fn difference_in_view(&self, camera: &Camera, shown: &[PatchList]) -> HeightDifference {
-        let (lattice, size) = (&self.ground.lattice, UVec2::from(camera.size()).as_vec2());
+        let (lattice, size) = (self.ground.measured.lattice(), UVec2::from(camera.size()).as_vec2());
         let error_px = |post: Post, shown_m: f64| {
             let (at, height_m) = (lattice.position(post), lattice.height(post));
             let pixel = camera.project(at.extend(height_m))?.pixel;
@@ -101,7 +101,7 @@ impl FlightPlan<'_> {
             let shown = camera.project(at.extend(shown_m as f32));
             Some(shown.map_or(0.0, |shown| f64::from(shown.pixel.distance(pixel))))
         };
-        height_difference(lattice, &self.ground.layout, shown, error_px)
+        height_difference(lattice, self.ground.measured.layout(), shown, error_px)
     }
 }
 

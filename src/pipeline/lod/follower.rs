@@ -3,8 +3,8 @@
 use crate::pipeline::lod::deferred::DeferredFollower;
 use crate::pipeline::lod::full::FullFollower;
 use crate::pipeline::lod::geomipmap::GeomipmapFollower;
+use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::method::LodMethod;
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::pipeline::lod::refining::RefiningFollower;
 use crate::roam::shown::PatchList;
 use crate::view::camera::Camera;
@@ -26,9 +26,9 @@ pub trait LodFollower {
 
 impl LodMethod {
     /// The method at work on `ground`. `budget` is the most triangles, for a method that keeps a budget.
-    pub fn follower(self, ground: &PreparedGround, budget: Option<usize>) -> Box<dyn LodFollower + '_> {
+    pub fn follower(self, ground: &LodGround, budget: Option<usize>) -> Box<dyn LodFollower + '_> {
         match self {
-            Self::Full => Box::new(FullFollower::new(ground)),
+            Self::Full => Box::new(FullFollower::new(&ground.measured)),
             Self::Geomipmap => Box::new(GeomipmapFollower::new(ground)),
             Self::Refining { lists, criterion, refiner } => {
                 Box::new(RefiningFollower::new(ground, lists, criterion, refiner, budget))

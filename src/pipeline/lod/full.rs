@@ -6,23 +6,23 @@
 use std::sync::Arc;
 
 use crate::pipeline::lod::follower::LodFollower;
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::culling::{Culling, cull};
 use crate::roam::emit::full;
 use crate::roam::graph::Vertex;
+use crate::roam::measured_ground::MeasuredGround;
 use crate::roam::shown::{LocalTriangle, PatchList};
 use crate::view::camera::Camera;
 
 /// The full mesh.
 pub struct FullFollower<'a> {
-    ground: &'a PreparedGround,
+    ground: &'a MeasuredGround,
     lists: Vec<PatchList>,
     view: Vec<Vertex>,
 }
 
 impl<'a> FullFollower<'a> {
     /// Makes the lists of all patches.
-    pub fn new(ground: &'a PreparedGround) -> Self {
+    pub fn new(ground: &'a MeasuredGround) -> Self {
         let mut whole: Option<Arc<Vec<LocalTriangle>>> = None;
         let list = |corner: Vertex| {
             let triangles = if ground.is_whole(corner) {
@@ -32,19 +32,19 @@ impl<'a> FullFollower<'a> {
             };
             PatchList::of_triangles(corner, triangles)
         };
-        Self { ground, lists: ground.layout.patches().map(list).collect(), view: Vec::new() }
+        Self { ground, lists: ground.layout().patches().map(list).collect(), view: Vec::new() }
     }
 }
 
-fn triangles(ground: &PreparedGround, corner: Vertex) -> Arc<Vec<LocalTriangle>> {
+fn triangles(ground: &MeasuredGround, corner: Vertex) -> Arc<Vec<LocalTriangle>> {
     let (mut list, drawn) = (Vec::new(), ground.drawn_in(corner));
-    full::triangles(&ground.layout, [corner], |corners| list.extend(drawn(corners)));
+    full::triangles(ground.layout(), [corner], |corners| list.extend(drawn(corners)));
     Arc::new(list)
 }
 
 impl LodFollower for FullFollower<'_> {
     fn update(&mut self, camera: &Camera) {
-        cull(self.ground.patched(), &self.ground.heights, &Culling::frustum(camera), &mut self.view);
+        cull(self.ground.patched(), self.ground.heights(), &Culling::frustum(camera), &mut self.view);
     }
 
     fn sent_bytes(&self) -> usize {
@@ -52,6 +52,6 @@ impl LodFollower for FullFollower<'_> {
     }
 
     fn shown(&mut self) -> Vec<PatchList> {
-        self.view.iter().map(|&corner| self.lists[self.ground.layout.patch_index(corner)].clone()).collect()
+        self.view.iter().map(|&corner| self.lists[self.ground.layout().patch_index(corner)].clone()).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! GeoMipMap: a level for each patch; the lists are written where a patch's or a neighbor's level changed.
 
 use crate::pipeline::lod::follower::LodFollower;
+use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::patch_lists::{PatchLists, Stale};
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::culling::{Culling, cull};
 use crate::roam::emit::geomipmap::{PatchLevels, Pyramids, triangles};
 use crate::roam::graph::Vertex;
@@ -12,7 +12,7 @@ use crate::view::camera::Camera;
 
 /// GeoMipMap at work.
 pub struct GeomipmapFollower<'a> {
-    ground: &'a PreparedGround,
+    ground: &'a LodGround,
     pyramids: Pyramids,
     levels: Option<PatchLevels>,
     stale: Vec<usize>,
@@ -22,20 +22,20 @@ pub struct GeomipmapFollower<'a> {
 
 impl<'a> GeomipmapFollower<'a> {
     /// Measures all levels of all patches.
-    pub fn new(ground: &'a PreparedGround) -> Self {
+    pub fn new(ground: &'a LodGround) -> Self {
         Self {
             ground,
-            pyramids: Pyramids::new(&ground.lattice, &ground.layout),
+            pyramids: Pyramids::new(ground.measured.lattice(), ground.measured.layout()),
             levels: None,
             stale: Vec::new(),
-            lists: PatchLists::new(ground.layout),
+            lists: PatchLists::new(*ground.measured.layout()),
             view: Vec::new(),
         }
     }
 
     /// Lists the patches whose level changed and their neighbors, whose stitches may change.
     fn list_stale(&mut self, levels: &PatchLevels) {
-        let (layout, last) = (&self.ground.layout, self.levels.as_ref());
+        let (layout, last) = (self.ground.measured.layout(), self.levels.as_ref());
         let is_same = |corner| last.is_some_and(|last| last.at(layout, corner) == levels.at(layout, corner));
         self.stale.clear();
         for corner in layout.patches().filter(|&corner| !is_same(corner)) {
@@ -53,14 +53,14 @@ fn with_neighbors(layout: &PatchLayout, corner: Vertex) -> impl Iterator<Item = 
 
 impl LodFollower for GeomipmapFollower<'_> {
     fn update(&mut self, camera: &Camera) {
-        let (ground, patched) = (self.ground, self.ground.patched());
-        cull(patched, &ground.heights, &Culling::frustum(camera), &mut self.view);
-        let levels = self.pyramids.for_view(patched, &ground.heights, camera, ground.tolerance_px);
+        let (ground, patched) = (self.ground, self.ground.measured.patched());
+        cull(patched, ground.measured.heights(), &Culling::frustum(camera), &mut self.view);
+        let levels = self.pyramids.for_view(patched, ground.measured.heights(), camera, ground.tolerance_px);
         self.list_stale(&levels);
         self.lists.update(&self.view, Stale::Patches(&self.stale), |corner, list| {
             list.clear();
-            let drawn = ground.drawn_in(corner);
-            triangles(&ground.layout, &levels, [corner], |corners| list.extend(drawn(corners)));
+            let drawn = ground.measured.drawn_in(corner);
+            triangles(ground.measured.layout(), &levels, [corner], |corners| list.extend(drawn(corners)));
             3 * list.len()
         });
         self.levels = Some(levels);

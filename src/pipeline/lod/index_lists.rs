@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use crate::pipeline::lod::method::IndexEmitter;
-use crate::pipeline::lod::prepared::PreparedGround;
 use crate::roam::active::ActiveSet;
 use crate::roam::emit::bintree::VertexBlock;
 use crate::roam::emit::quadtree;
 use crate::roam::emit::strips::{Strips, unstrip};
 use crate::roam::emit::world::drawn_posts;
 use crate::roam::graph::Vertex;
+use crate::roam::measured_ground::MeasuredGround;
 use crate::roam::shown::{LocalTriangle, PatchList, local};
 
 /// The index between two strips of a list, which no vertex has: the primitive restart of graphics adapters.
@@ -24,7 +24,7 @@ pub struct IndexList {
 
 /// Writes index lists.
 pub struct IndexWriter<'a> {
-    ground: &'a PreparedGround,
+    ground: &'a MeasuredGround,
     emitter: IndexEmitter,
     block: VertexBlock,
     strips: Strips,
@@ -32,9 +32,9 @@ pub struct IndexWriter<'a> {
 
 impl<'a> IndexWriter<'a> {
     /// Writes lists by `emitter`.
-    pub fn new(emitter: IndexEmitter, ground: &'a PreparedGround) -> Self {
+    pub fn new(emitter: IndexEmitter, ground: &'a MeasuredGround) -> Self {
         let block =
-            VertexBlock::new(&ground.layout).expect("patches of the default size have 16-bit indices");
+            VertexBlock::new(ground.layout()).expect("patches of the default size have 16-bit indices");
         Self { ground, emitter, block, strips: Strips::default() }
     }
 
@@ -71,7 +71,7 @@ impl<'a> IndexWriter<'a> {
             if !list.is_empty() {
                 list.push(RESTART);
             }
-            list.extend(strip.iter().map(|&vertex| local(&self.ground.layout, corner, vertex)));
+            list.extend(strip.iter().map(|&vertex| local(self.ground.layout(), corner, vertex)));
         }
     }
 
@@ -81,7 +81,7 @@ impl<'a> IndexWriter<'a> {
         for strip in list.strips.split(|&index| index == RESTART) {
             let vertices: Vec<Vertex> = strip.iter().map(|&index| self.block.vertex(corner, index)).collect();
             unstrip(&vertices, |corners| {
-                triangles.push(corners.map(|vertex| local(&self.ground.layout, corner, vertex)));
+                triangles.push(corners.map(|vertex| local(self.ground.layout(), corner, vertex)));
             });
         }
         PatchList::of_triangles(corner, Arc::new(triangles))

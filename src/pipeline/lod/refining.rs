@@ -2,9 +2,9 @@
 
 use crate::pipeline::lod::follower::LodFollower;
 use crate::pipeline::lod::index_lists::{IndexList, IndexWriter};
+use crate::pipeline::lod::lod_ground::{LodGround, WithCriterion};
 use crate::pipeline::lod::method::{CriterionKind, IndexEmitter, Refiner};
 use crate::pipeline::lod::patch_lists::{PatchLists, Stale};
-use crate::pipeline::lod::prepared::{PreparedGround, WithCriterion};
 use crate::roam::active::ActiveSet;
 use crate::roam::criterion::Criterion;
 use crate::roam::culling::{Culling, cull};
@@ -19,7 +19,7 @@ use crate::view::camera::Camera;
 
 /// A refiner at work.
 pub struct RefiningFollower<'a> {
-    ground: &'a PreparedGround,
+    ground: &'a LodGround,
     criterion: CriterionKind,
     state: RefinerState<'a>,
     writer: IndexWriter<'a>,
@@ -57,13 +57,13 @@ impl WithCriterion for RefinerUpdate<'_, '_> {
 }
 
 impl<'a> RefinerState<'a> {
-    fn new(refiner: Refiner, ground: &'a PreparedGround, budget: Option<usize>) -> Self {
+    fn new(refiner: Refiner, ground: &'a LodGround, budget: Option<usize>) -> Self {
         match refiner {
-            Refiner::Rebuild => Self::Rebuild(ActiveSet::new(ground.layout)),
-            Refiner::Coherent => Self::Coherent(Box::new(Coherent::new(ground.layout))),
+            Refiner::Rebuild => Self::Rebuild(ActiveSet::new(*ground.measured.layout())),
+            Refiner::Coherent => Self::Coherent(Box::new(Coherent::new(*ground.measured.layout()))),
             Refiner::Queues => {
                 let goal = budget.map_or(Goal::Tolerance, Goal::Budget);
-                Self::Queues(Box::new(Queues::new(ground.patched(), goal)))
+                Self::Queues(Box::new(Queues::new(ground.measured.patched(), goal)))
             }
         }
     }
@@ -80,7 +80,7 @@ impl<'a> RefinerState<'a> {
 impl<'a> RefiningFollower<'a> {
     /// Refines by `criterion`; queues keep to `budget` triangles where one is given.
     pub fn new(
-        ground: &'a PreparedGround,
+        ground: &'a LodGround,
         lists: IndexEmitter,
         criterion: CriterionKind,
         refiner: Refiner,
@@ -90,8 +90,8 @@ impl<'a> RefiningFollower<'a> {
             ground,
             criterion,
             state: RefinerState::new(refiner, ground, budget),
-            writer: IndexWriter::new(lists, ground),
-            lists: PatchLists::new(ground.layout),
+            writer: IndexWriter::new(lists, &ground.measured),
+            lists: PatchLists::new(*ground.measured.layout()),
             view: Vec::new(),
         }
     }
@@ -104,8 +104,9 @@ impl LodFollower for RefiningFollower<'_> {
 
     fn update(&mut self, camera: &Camera) {
         let ground = self.ground;
-        cull(ground.patched(), &ground.heights, &Culling::frustum(camera), &mut self.view);
-        let update = RefinerUpdate { state: &mut self.state, layout: &ground.layout, patches: &self.view };
+        cull(ground.measured.patched(), ground.measured.heights(), &Culling::frustum(camera), &mut self.view);
+        let update =
+            RefinerUpdate { state: &mut self.state, layout: ground.measured.layout(), patches: &self.view };
         let changes = ground.with_criterion(self.criterion, camera, update);
         let stale = changes.as_ref().map_or(Stale::All, |changes| Stale::Patches(&changes.dirty));
         let (writer, active) = (&mut self.writer, self.state.active());

@@ -128,8 +128,7 @@ fn complete(path: &Path, mut draft: SceneDraft, allowed: &[PathBuf]) -> Result<S
         Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
     };
     let plain = built(&draft)?;
-    let lattice = &plain.terrain.lattice;
-    let (low, high) = lattice.height_range();
+    let (lattice, (low, high)) = (&plain.lattice, plain.height_range_m);
     draft.size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
     draft.crs_name = plain.crs.name().to_owned();
@@ -152,17 +151,16 @@ fn exaggeration(relief: f64) -> f64 {
 /// The default camera of the scene as a table states it; `None` where there is no ground at the center to look at.
 fn camera(scene: &SceneModel) -> Option<CameraDraft> {
     let view = scene.cameras.first()?;
-    let lattice = &scene.terrain.lattice;
-    let exaggeration = f64::from(scene.terrain.exaggeration);
+    let (lattice, scale) = (&scene.lattice, scene.scale);
     let map_position = |world: Vec3| lattice.origin() + world.truncate().as_dvec2();
     let look_at = map_position(view.target);
     let ground_m = ground_height(lattice, Interpolation::Planar, look_at).height_m()?;
     Some(CameraDraft {
         name: view.name.clone(),
         eye: map_position(view.eye),
-        eye_elevation_m: f64::from(view.eye.z) / exaggeration,
+        eye_elevation_m: scale.elevation_m(f64::from(view.eye.z)),
         look_at,
-        look_at_height_m: f64::from(view.target.z) - ground_m * exaggeration,
+        look_at_height_m: f64::from(view.target.z) - scale.world_z(ground_m),
         field_of_view_deg: f64::from(view.fov_y_rad.to_degrees()),
     })
 }

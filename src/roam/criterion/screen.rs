@@ -1,12 +1,12 @@
 //! The screen-space error whose tolerance holds at every post of the picture.
 
-use glam::Vec3;
-
 use crate::roam::criterion::Criterion;
+use crate::roam::criterion::lens::Lens;
 use crate::roam::culling::PatchHeights;
 use crate::roam::errors::ErrorMap;
 use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
+use crate::roam::spheres::reach;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -22,35 +22,7 @@ pub struct ScreenError<'a> {
     errors: &'a ErrorMap,
     heights: &'a PatchHeights,
     frustum: Frustum,
-    reach: ErrorReach,
-}
-
-/// Distances at which errors span the tolerance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct ErrorReach {
-    eye: Vec3,
-    meters_per_meter: f32,
-}
-
-impl ErrorReach {
-    fn new(camera: &Camera, tolerance_px: f32) -> Self {
-        // A length δ at distance d from the eye, θ off the viewing direction, spans at most δ / (d · cos² θ) on the
-        // picture's plane: cos θ since depth is shorter than distance, and once more since the plane is met at a slant.
-        let corner = 1.0 + camera.tan_half_fov().length_squared();
-        let pixels = camera.pixels_per_meter(1.0) * corner;
-        Self { eye: camera.eye(), meters_per_meter: pixels / tolerance_px }
-    }
-
-    /// The distance in meters within which an error of `error_m` must be refined.
-    fn reach_m(&self, error_m: f32) -> f32 {
-        error_m * self.meters_per_meter
-    }
-
-    /// The largest multiple of the tolerance that an error of `error_m` meters inside the box `min..=max` can span.
-    fn excess(&self, error_m: f32, min: Vec3, max: Vec3) -> f32 {
-        let nearest = self.eye.clamp(min, max);
-        self.reach_m(error_m) / nearest.distance(self.eye)
-    }
+    lens: Lens,
 }
 
 impl<'a> ScreenError<'a> {
@@ -62,8 +34,8 @@ impl<'a> ScreenError<'a> {
         camera: &Camera,
         tolerance_px: f32,
     ) -> Self {
-        let reach = ErrorReach::new(camera, tolerance_px);
-        Self { ground, errors, heights, frustum: Frustum::new(camera), reach }
+        let lens = Lens { eye: camera.eye(), scale: reach(camera, tolerance_px) };
+        Self { ground, errors, heights, frustum: Frustum::new(camera), lens }
     }
 }
 
@@ -74,7 +46,10 @@ impl Criterion for ScreenError<'_> {
             return 0.0;
         }
         match self.heights.diamond(self.ground, vertex) {
-            Some((min, max)) if self.frustum.may_see(min, max) => self.reach.excess(error, min, max),
+            Some((min, max)) if self.frustum.may_see(min, max) => {
+                let nearest = self.lens.eye.clamp(min, max);
+                self.lens.excess(error, nearest.distance(self.lens.eye))
+            }
             _ => 0.0,
         }
     }
@@ -83,15 +58,16 @@ impl Criterion for ScreenError<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn an_error_is_refined_up_to_the_distance_where_it_spans_the_tolerance() {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (640, 480), (1.0, 9000.0)).expect("sound");
-        let criterion = ErrorReach::new(&camera, 2.0);
-        let at = |distance: f32| criterion.excess(3.0, Vec3::Y * distance, Vec3::Y * distance) > 1.0;
+        let lens = Lens { eye: camera.eye(), scale: reach(&camera, 2.0) };
+        let at = |distance: f32| lens.excess(3.0, distance) > 1.0;
         let seen_px = |distance: f32| 3.0 * camera.pixels_per_meter(distance);
         assert!(at(500.0) && seen_px(500.0) > 2.0);
-        let reach = criterion.reach_m(3.0);
+        let reach = 3.0 * lens.scale;
         assert!(at(reach * 0.999) && !at(reach * 1.001));
         assert!(seen_px(reach) <= 2.0);
     }

@@ -321,7 +321,7 @@ struct CoveredPosts {
 impl CoveredPosts {
     fn scan(&mut self, lattice: &Lattice, plane: &PostPlane, span: RowSpan) {
         let first = lattice.index(Post { column: span.first, row: span.row });
-        let line = plane.along(span.row);
+        let height_at = plane.along(span.row);
         for offset in 0..=(span.last - span.first) {
             let post = Post { column: span.first + offset, row: span.row };
             let height = lattice.heights()[first + offset as usize];
@@ -330,7 +330,7 @@ impl CoveredPosts {
                 continue;
             }
             self.data = true;
-            let off = (f64::from(height) - line.height(post.column)).abs() as f32;
+            let off = (f64::from(height) - height_at(post.column)).abs() as f32;
             self.worst = self.worst.max(off);
             if lattice.is_pinned(post) {
                 self.worst_pinned = self.worst_pinned.max(off);

@@ -36,54 +36,16 @@ impl PostPlane {
         (self.height + self.per_column + self.per_row).is_finite()
     }
 
-    /// The plane along one row.
+    /// Its height by column along one row, meters.
     #[inline]
-    pub fn along(&self, row: u32) -> RowLine {
+    pub fn along(&self, row: u32) -> impl Fn(u32) -> f64 {
         let start = self.height + self.per_row * (f64::from(row) - self.row);
-        RowLine { column: self.column, start, per_column: self.per_column }
+        move |column| start + self.per_column * (f64::from(column) - self.column)
     }
 
     /// Its height at a post, meters.
     #[inline]
     pub fn height(&self, post: Post) -> f64 {
-        self.along(post.row).height(post.column)
-    }
-}
-
-/// A plane along one row of posts.
-#[derive(Clone, Copy, Debug)]
-pub struct RowLine {
-    column: f64,
-    start: f64,
-    per_column: f64,
-}
-
-impl RowLine {
-    /// Its height at a column, meters.
-    #[inline]
-    pub fn height(&self, column: u32) -> f64 {
-        self.start + self.per_column * (f64::from(column) - self.column)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::DVec2;
-
-    #[test]
-    fn a_plane_has_its_posts_heights_and_none_on_a_line_or_over_no_data() {
-        let mut heights: Vec<f32> = (0..16).map(|at| (at % 4 * 3 + at / 4 * 7) as f32).collect();
-        heights[15] = f32::NAN;
-        let lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 4, heights).expect("sound");
-        let post = |column, row| Post { column, row };
-        let plane = PostPlane::new(&lattice, [post(0, 1), post(2, 0), post(3, 2)]).expect("no line");
-        assert!(plane.has_data());
-        for post in [post(0, 1), post(2, 0), post(3, 2), post(1, 1), post(2, 1), post(0, 3)] {
-            assert!((plane.height(post) - f64::from(lattice.height(post))).abs() < 1e-12, "{post:?}");
-        }
-        assert!(PostPlane::new(&lattice, [post(0, 0), post(1, 1), post(2, 2)]).is_none());
-        let torn = PostPlane::new(&lattice, [post(0, 0), post(1, 0), post(3, 3)]).expect("no line");
-        assert!(!torn.has_data());
+        self.along(post.row)(post.column)
     }
 }

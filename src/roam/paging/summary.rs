@@ -44,7 +44,7 @@ impl PatchSummary {
         let side = ground.layout.patch();
         let z = |x, y| ground.lattice.height(ground.layout.post(corner.moved(x, y)));
         let middle = corner.moved(side / 2, side / 2);
-        let (low, high) = heights.range(ground.layout.patch_index(corner));
+        let (low, high) = heights.range(corner);
         Self {
             corners: [z(0, 0), z(side, 0), z(0, side), z(side, side)],
             middle: ground.position(middle).z,

@@ -9,10 +9,10 @@ use crate::description::words::{Clamp, Footing};
 use crate::earthworks::pad;
 use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::PlacedModels;
 use crate::scene::placement::{outline, stand};
+use crate::scene::vertical_scale::VerticalScale;
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{GroundFit, Placement};
 use crate::terrain::full_resolution::FullResolution;
@@ -56,7 +56,7 @@ pub fn level_pads(
                 if volumes.len() == MAX_PADS {
                     return Err(too_many(frame.document, group.table));
                 }
-                if let Some(moved) = level(placement, footprint, frame.exaggeration, lattice) {
+                if let Some(moved) = level(placement, footprint, frame.scale, lattice) {
                     volumes.insert(index, moved);
                 }
             }
@@ -68,18 +68,18 @@ pub fn level_pads(
 fn level(
     placement: &Placement,
     footprint: &ModelFootprint,
-    exaggeration: f32,
+    scale: VerticalScale,
     lattice: &mut Lattice,
 ) -> Option<Volumes> {
     let upright = Placement { standing: GroundFit { tilt_rad: 0.0, ..placement.standing }, ..*placement };
-    let finest = DrawnGround { lattice, exaggeration };
+    let finest = scale.ground(lattice);
     let found = stand(&upright, footprint, SupportSurface { displayed: &finest, ground: &finest })?;
     let level_z = match placement.clamp {
         Clamp::Absolute => f64::from(found.base(footprint)[0].z),
         Clamp::Ground | Clamp::Relative => found.anchor_z,
     };
     let highest = f64::from(HIGHEST_M);
-    let level_m = (level_z / f64::from(exaggeration)).clamp(-highest, highest);
+    let level_m = scale.elevation_m(level_z).clamp(-highest, highest);
     let ring = outline(placement, &footprint.grown(PAD_REACH));
     Some(pad::build_pad(lattice, &ring, level_m, Batters::default()))
 }

@@ -156,7 +156,7 @@ impl<'a> PlacedModels<'a> {
             at: point.shape.as_vec2(),
             clamp,
             height: match clamp {
-                Clamp::Absolute => height_m * f64::from(frame.exaggeration),
+                Clamp::Absolute => frame.scale.world_z(height_m),
                 Clamp::Ground | Clamp::Relative => height_m,
             },
             heading_rad: heading_deg.to_radians(),

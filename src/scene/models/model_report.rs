@@ -10,11 +10,11 @@ use glam::Vec3;
 use crate::description::words::Clamp;
 use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::{InstanceGroup, PlacedModels};
 use crate::scene::placement::stand;
 use crate::scene::report::{InstancesRow, ModelRow};
+use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::support_surface::SupportSurface;
@@ -30,7 +30,7 @@ pub fn add(
     lattice: &Lattice,
     collected: &mut SceneBuilder,
 ) {
-    let finest = DrawnGround { lattice, exaggeration: frame.exaggeration };
+    let finest = frame.scale.ground(lattice);
     for group in &placed.groups {
         let stand = |index: usize| {
             let placement = &placed.placements[index];
@@ -48,7 +48,7 @@ pub fn add(
     }
 }
 
-/// How one model stands, in meters without exaggeration where a column says elevation.
+/// How one model stands, in meters as they are drawn, but for the anchor's elevation.
 struct StandReport {
     anchor_m: Option<f64>,
     gaps_m: [Option<f64>; 4],
@@ -69,8 +69,7 @@ impl StandReport {
         let gap =
             |corner: Vec3| Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?);
         Some(Self {
-            anchor_m: (placement.clamp != Clamp::Absolute)
-                .then_some(pose.anchor_z / f64::from(finest.exaggeration)),
+            anchor_m: (placement.clamp != Clamp::Absolute).then(|| finest.scale.elevation_m(pose.anchor_z)),
             gaps_m: pose.base(footprint).map(gap),
             tilt_deg: pose.tilt_rad.to_degrees(),
             plinth_m: pose.plinth_height_m(placement, footprint, ground),

@@ -7,7 +7,7 @@ use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use crate::draw::material::{Albedo, Material, NormalSource};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
-use crate::scene::SceneTerrain;
+use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
 use crate::scene::plinth::plinth;
 
@@ -30,10 +30,10 @@ impl MeshSink<Vec3> for GroundSink {
 }
 
 /// Adds the ground and returns the walls below its edge.
-pub(super) fn add(list: &mut DrawList, terrain: &SceneTerrain, displayed: &DisplayedTerrain) -> DrawMesh {
+pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTerrain) -> DrawMesh {
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
-    let walls = plinth(&sink.0, terrain.displayed());
+    let walls = plinth(&sink.0, scene.ground().lattice());
     let material = list.add_material(Material {
         name: "ground".into(),
         normals: NormalSource::Ground,

@@ -13,14 +13,10 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
-use crate::roam::criterion::screen::ScreenError;
-use crate::roam::culling::patches_in_view;
 use crate::roam::displayed::DisplayedTerrain;
-use crate::roam::refine::rebuild::rebuild;
 use crate::scene::picture::detail::Viewer;
-use crate::scene::{SceneModel, SceneTerrain, SceneView};
+use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
-use crate::view::frustum::Frustum;
 
 /// The draw list of a scene for one camera.
 pub struct ViewDraw {
@@ -37,7 +33,7 @@ pub struct ViewDraw {
 /// # Errors
 /// See [`CameraError`].
 pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<Camera, CameraError> {
-    let (min, max) = scene.terrain.bounds();
+    let (min, max) = scene.bounds;
     let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
     let far = view.eye.distance(farthest) * 1.5 + 1000.0;
     Camera::new(view.eye, view.target, view.fov_y_rad, size, (0.5, far))
@@ -46,7 +42,7 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
-    let displayed = Arc::new(display(&scene.terrain, camera));
+    let displayed = Arc::new(display(scene, camera));
     let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
     ViewDraw { list, displayed, ground_triangles }
 }
@@ -72,7 +68,7 @@ fn listed(
     }
     let mut list =
         DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
-    let walls = ground::add(&mut list, &scene.terrain, displayed);
+    let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed);
@@ -84,18 +80,9 @@ fn listed(
     (list, ground_triangles)
 }
 
-/// The terrain as `camera` shows it, off by at most the terrain's own tolerance.
-pub fn display(terrain: &SceneTerrain, camera: &Camera) -> DisplayedTerrain {
-    display_within(terrain, camera, terrain.tolerance_px)
-}
-
-/// The terrain as `camera` shows it, off by at most `tolerance_px` pixels.
-pub fn display_within(terrain: &SceneTerrain, camera: &Camera, tolerance_px: f32) -> DisplayedTerrain {
-    let (ground, heights) = (terrain.ground(), terrain.patch_heights());
-    let patches = patches_in_view(ground, heights, &Frustum::new(camera));
-    let criterion = ScreenError::new(ground, terrain.errors(), heights, camera, tolerance_px);
-    let active = rebuild(&terrain.layout, &criterion, patches.iter().copied());
-    DisplayedTerrain::new(Arc::clone(terrain.displayed()), active, patches)
+/// The ground as `camera` shows it, off by at most the scene's own tolerance.
+pub fn display(scene: &SceneModel, camera: &Camera) -> DisplayedTerrain {
+    scene.ground().displayed_to(camera, scene.tolerance_px)
 }
 
 fn add_mesh(

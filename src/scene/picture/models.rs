@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
-use crate::scene::drawn_ground::DrawnGround;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
@@ -20,7 +19,7 @@ pub(super) fn add(
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
 ) {
-    let finest = DrawnGround { lattice: &scene.terrain.lattice, exaggeration: scene.terrain.exaggeration };
+    let finest = scene.scale.ground(&scene.lattice);
     let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
     let set = |placement: &Placement| -> Option<(PlacedModel, Option<DrawMesh>)> {

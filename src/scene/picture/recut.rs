@@ -2,17 +2,18 @@
 
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::roam::graph::Vertex;
-use crate::scene::{SceneModel, SceneTerrain};
+use crate::roam::patched_ground::PatchedGround;
+use crate::scene::SceneModel;
 
 /// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::PatchLayout::patches`] lists them;
 /// the places of ribbons are those in [`SceneModel::ribbons`].
 pub fn drapes(scene: &SceneModel) -> Drapes {
-    Drapes::new(&borders(&scene.terrain), scene.ribbons.iter().map(|ribbon| &ribbon.plan))
+    Drapes::new(&borders(scene.ground().patched()), scene.ribbons.iter().map(|ribbon| &ribbon.plan))
 }
 
 /// The borders as f32 has them, where the displayed triangles end.
-fn borders(terrain: &SceneTerrain) -> Borders {
-    let (layout, ground) = (&terrain.layout, terrain.ground());
+fn borders(ground: PatchedGround<'_>) -> Borders {
+    let layout = ground.layout;
     let (columns, rows) = layout.patch_grid();
     let at =
         |x: usize, y: usize| ground.plan(Vertex::new(x as i32 * layout.patch(), y as i32 * layout.patch()));

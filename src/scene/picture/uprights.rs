@@ -12,7 +12,7 @@ use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Adds all uprights that have ground under them.
 pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurface) {
-    let ground = FullResolution { lattice: scene.terrain.displayed() };
+    let ground = FullResolution { lattice: scene.ground().lattice() };
     let under = SupportSurface { displayed, ground: &ground };
     let meshes: Vec<DrawMesh> =
         scene.uprights.par_iter().map(|standing| standing.upright.mesh(under)).collect();

@@ -15,6 +15,7 @@ use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
 use crate::scene::roads::crossings::{self, Overpass, PassedLine};
 use crate::scene::roads::spans::RoadSpan;
+use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::bridge::depth_m;
 use crate::structure::deck_profile::{ClearancePoint, clearing};
 use crate::terrain::lattice::Lattice;
@@ -48,14 +49,19 @@ pub struct Site<'a> {
     pub lattice: &'a Lattice,
     /// Where there is water; its heights have no meaning.
     pub water: &'a Deck,
-    /// How many times heights are stretched when drawn.
-    pub exaggeration: f32,
+    /// How elevations are drawn.
+    pub scale: VerticalScale,
 }
 
 impl Site<'_> {
     /// The ground's elevation at a world position in meters, on the finest triangles.
     pub fn ground_m(&self, at: DVec2) -> Option<f64> {
         ground_height(self.lattice, Interpolation::Planar, at + self.lattice.origin()).height_m()
+    }
+
+    /// The same as it is drawn.
+    pub fn ground_z(&self, at: DVec2) -> Option<f64> {
+        self.ground_m(at).map(|height_m| self.scale.world_z(height_m))
     }
 }
 
@@ -79,7 +85,7 @@ pub struct ChainRun {
     pub passages: Vec<Passage>,
     /// The widest span between piers, in meters.
     pub spacing_m: f64,
-    /// How deep its deck is, in meters.
+    /// How deep its deck is drawn, in meters.
     pub depth_m: f64,
 }
 
@@ -239,7 +245,7 @@ impl<'a> Below<'a> {
             if !is_bridge {
                 return straight;
             }
-            let room = CLEARANCE_M + depth_m / f64::from(self.site.exaggeration);
+            let room = CLEARANCE_M + self.site.scale.elevation_m(depth_m);
             let floors = passages.iter().flat_map(|passage| {
                 passage.reach_m.map(|station_m| ClearancePoint { station_m, level_m: passage.level_m + room })
             });

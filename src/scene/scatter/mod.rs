@@ -237,7 +237,7 @@ impl ScatterGround<'_> {
         let [from, to] = self.table.scale;
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
-        let rise = (gradient.0.length() as f32) * self.frame.exaggeration;
+        let rise = self.frame.scale.world_z(gradient.0.length() as f32);
         let standing = GroundFit {
             sink_m: rise * self.library.footprint(model).radius() * scale,
             ..GroundFit::default()

@@ -7,7 +7,7 @@ use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
 use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plan, plane_z};
 
-/// Triangles over the ground; Z is the height in meters, without exaggeration.
+/// Triangles over the ground; Z is the height in meters.
 #[derive(Clone, Debug)]
 pub struct Deck {
     facets: Vec<SurfaceTriangle>,

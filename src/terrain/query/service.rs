@@ -46,7 +46,7 @@ pub struct Snapshot {
 #[derive(Clone)]
 struct Displayed {
     facets: Arc<dyn TriangleSurface>,
-    exaggeration: f64,
+    z_per_m: f64,
 }
 
 impl HeightService {
@@ -88,10 +88,10 @@ impl HeightService {
         Self::from_snapshot(Snapshot { decks: Some(decks), ..Snapshot::clone(&self.snapshot()) })
     }
 
-    /// An independent service on the current snapshot, with a displayed surface whose Z is the height times
-    /// `exaggeration`.
-    pub fn displaying(&self, facets: Arc<dyn TriangleSurface>, exaggeration: f64) -> Self {
-        let displayed = Some(Displayed { facets, exaggeration });
+    /// An independent service on the current snapshot, with a displayed surface whose Z is the height in meters
+    /// times `z_per_m`.
+    pub fn displaying(&self, facets: Arc<dyn TriangleSurface>, z_per_m: f64) -> Self {
+        let displayed = Some(Displayed { facets, z_per_m });
         Self::from_snapshot(Snapshot { displayed, ..Snapshot::clone(&self.snapshot()) })
     }
 
@@ -211,7 +211,7 @@ impl Snapshot {
     fn displayed_height(&self, at: DVec2) -> Answer {
         let world = at - self.lattice.origin();
         let displayed = self.displayed.as_ref().filter(|_| world.is_finite());
-        let z = displayed.and_then(|shown| Some(shown.facets.displayed_z(world)? / shown.exaggeration));
+        let z = displayed.and_then(|shown| Some(shown.facets.displayed_z(world)? / shown.z_per_m));
         z.map_or(Answer::Outside, Answer::Height)
     }
 }

@@ -24,8 +24,8 @@ use std::ops::ControlFlow;
 use glam::DVec2;
 
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::pyramid::{FINEST_BITS, Pyramid};
 use crate::terrain::sight::crossings::{CellEdge, LineCrossing, LinePart, crossing_at, diagonal_between};
-use crate::terrain::sight::pyramid::{FINEST_BITS, Pyramid};
 
 /// A search along a line.
 pub(in crate::terrain) trait Probe {
@@ -114,7 +114,7 @@ impl BlockWalk {
     fn is_ruled_out(&self, lattice: &Lattice, pyramid: &Pyramid, part: LinePart, probe: &impl Probe) -> bool {
         let block = Post { column: self.x.block, row: self.y.block };
         if self.bits == 0 {
-            let [a, b, c, d] = corners(lattice, block);
+            let [a, b, c, d] = lattice.corner_heights(block);
             let highest_m = f64::from(a.max(b).max(c.max(d)));
             probe.rules_out(part, highest_m, || f64::from(a.min(b).min(c.min(d))))
         } else {
@@ -164,15 +164,6 @@ impl BlockWalk {
             self.bits += doublings;
         }
     }
-}
-
-/// [`Lattice::corner_heights`] with one bounds check.
-#[inline]
-fn corners(lattice: &Lattice, cell: Post) -> [f32; 4] {
-    let stride = lattice.columns() as usize;
-    let south = cell.row as usize * stride + cell.column as usize;
-    let heights = &lattice.heights()[south..south + stride + 2];
-    [heights[0], heights[1], heights[stride], heights[stride + 1]]
 }
 
 /// One coordinate of a line, and the block that it is in.

@@ -15,11 +15,11 @@ use rayon::prelude::*;
 use crate::dem::answer::Answer;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
+use crate::terrain::pyramid::Pyramid;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
 use crate::terrain::sight::descent::{Probe, descend};
 use crate::terrain::sight::line::{GroundedSight, Sight, SightEnd};
-use crate::terrain::sight::pyramid::Pyramid;
 use crate::terrain::sight::rise::{Raised, Rise, RiseSearch};
 
 /// Lines of sight per task of a batch: some hundred microseconds' work.

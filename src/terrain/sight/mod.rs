@@ -20,7 +20,6 @@ pub(in crate::terrain) mod descent;
 pub mod ground;
 pub mod line;
 pub mod outlook;
-pub mod pyramid;
 pub mod ray;
 pub mod rise;
 pub mod viewshed;

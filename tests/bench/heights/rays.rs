@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use sandtable::terrain::lattice::Lattice;
+use sandtable::terrain::pyramid::Pyramid;
 use sandtable::terrain::sight::Curvature;
 use sandtable::terrain::sight::ground::SightGround;
 use sandtable::terrain::sight::line::{Sight, SightEnd};
-use sandtable::terrain::sight::pyramid::Pyramid;
 use sandtable::terrain::sight::ray::Ray;
 
 use crate::fields::fractal;

@@ -17,10 +17,10 @@ use sandtable::roam::bintree::Triangle;
 use sandtable::roam::criterion::Criterion;
 use sandtable::roam::criterion::midpoint::Midpoint;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{Culling, PatchHeights, cull};
-use sandtable::roam::errors::ErrorMap;
+use sandtable::roam::culling::{Culling, cull};
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use sandtable::roam::layout::DEFAULT_PATCH;
+use sandtable::roam::measured_ground::MeasuredGround;
 use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::changes::RefinementChanges;
 use sandtable::roam::refine::coherent::Coherent;
@@ -72,36 +72,30 @@ impl Rule {
 }
 
 /// The terrain and what is measured of it once.
-struct World {
-    lattice: Lattice,
-    layout: PatchLayout,
-    errors: ErrorMap,
-    heights: PatchHeights,
-}
+struct World(MeasuredGround);
 
 impl World {
     fn new() -> Self {
         let spacing = DVec2::splat(f64::from(SPACING_M));
         let lattice = Lattice::new(DVec2::ZERO, spacing, POSTS, fractal(POSTS as usize)).expect("sound");
-        let layout = PatchLayout::new(POSTS, POSTS, DEFAULT_PATCH).expect("sound");
-        let errors = ErrorMap::midpoint(&lattice, &layout);
-        let heights = PatchHeights::new(PatchedGround { lattice: &lattice, layout: &layout });
-        Self { lattice, layout, errors, heights }
+        let measured = MeasuredGround::new(lattice, DEFAULT_PATCH).expect("sound");
+        measured.measure_patches();
+        Self(measured)
     }
 
     fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout }
+        self.0.patched()
     }
 
     fn spheres(&self, meters_per_meter: f32) -> SphereMap {
-        let own = self.errors.values().iter().map(|error| error * meters_per_meter).collect();
+        let own = self.0.midpoint().values().iter().map(|error| error * meters_per_meter).collect();
         SphereMap::nested(self.ground(), own)
     }
 
     /// The height in posts at a place in posts.
     fn height(&self, at: Vec2) -> f32 {
         let post = Post { column: at.x as u32, row: at.y as u32 };
-        self.lattice.height(post) / SPACING_M
+        self.0.lattice().height(post) / SPACING_M
     }
 
     /// Along a circle of 0.3 × 512 posts, 30 posts above the ground about it, 8° down, 60° × 47°.
@@ -170,8 +164,8 @@ fn compare(world: &World, rule: Rule, triangles: usize) {
     for _ in 0..ROUNDS {
         for (which, flown) in rounds.iter_mut().enumerate() {
             let mut method = match which {
-                0 => Method::Rebuild(ActiveSet::new(world.layout)),
-                1 => Method::Coherent(Box::new(Coherent::new(world.layout))),
+                0 => Method::Rebuild(ActiveSet::new(*world.0.layout())),
+                1 => Method::Coherent(Box::new(Coherent::new(*world.0.layout()))),
                 _ => Method::Queues(Box::new(Queues::new(world.ground(), Goal::Budget(triangles)))),
             };
             flown.push(fly(world, rule, scale, &spheres, &mut method));
@@ -192,11 +186,11 @@ fn fly(world: &World, rule: Rule, scale: f32, spheres: &SphereMap, method: &mut 
     let (mut flown, mut patches) = (Flown::default(), Vec::new());
     for frame in 0..FRAMES {
         let camera = world.camera(frame);
-        let variance = Midpoint::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+        let variance = Midpoint::with_k(world.ground(), world.0.midpoint(), camera.eye(), k_of(scale));
         let nested = Spheres::new(world.ground(), spheres, camera.eye());
         let mut frame_takes = || {
             let start = Instant::now();
-            cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
+            cull(world.ground(), world.0.heights(), &Culling::frustum(&camera), &mut patches);
             let changes = match rule {
                 Rule::Variance => method.update(&variance, &patches),
                 Rule::Spheres => method.update(&nested, &patches),
@@ -264,12 +258,12 @@ fn scale_for(world: &World, rule: Rule, triangles: usize) -> f32 {
         for frame in (0..FRAMES).step_by((FRAMES / COUNTED) as usize) {
             let camera = world.camera(frame);
             let mut patches = Vec::new();
-            cull(world.ground(), &world.heights, &Culling::frustum(&camera), &mut patches);
-            let variance = Midpoint::with_k(world.ground(), &world.errors, camera.eye(), k_of(scale));
+            cull(world.ground(), world.0.heights(), &Culling::frustum(&camera), &mut patches);
+            let variance = Midpoint::with_k(world.ground(), world.0.midpoint(), camera.eye(), k_of(scale));
             let nested = Spheres::new(world.ground(), &spheres, camera.eye());
             let active = match rule {
-                Rule::Variance => rebuild(&world.layout, &variance, patches.iter().copied()),
-                Rule::Spheres => rebuild(&world.layout, &nested, patches.iter().copied()),
+                Rule::Variance => rebuild(world.0.layout(), &variance, patches.iter().copied()),
+                Rule::Spheres => rebuild(world.0.layout(), &nested, patches.iter().copied()),
             };
             found += leaves(&active, &patches);
         }
@@ -297,7 +291,7 @@ fn culling(world: &World) {
     const TIMES: u32 = 200;
     let ground = world.ground();
     let mut found = Vec::new();
-    println!("culling of {} patches     µs   patches in view", world.layout.patch_count());
+    println!("culling of {} patches     µs   patches in view", world.0.layout().patch_count());
     for (name, culling_of) in
         [("wedge (Lin et al.)", Culling::wedge as fn(&Camera) -> Culling), ("frustum", Culling::frustum)]
     {
@@ -306,7 +300,7 @@ fn culling(world: &World) {
             let culling = culling_of(&world.camera(frame));
             let start = Instant::now();
             for _ in 0..TIMES {
-                cull(ground, &world.heights, &culling, &mut found);
+                cull(ground, world.0.heights(), &culling, &mut found);
             }
             seen += found.len();
             start.elapsed().as_secs_f64() * 1e6 / f64::from(TIMES)

@@ -2,49 +2,40 @@
 
 use sandtable::roam::block::WholeGround;
 use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{Culling, InView, PatchHeights};
+use sandtable::roam::culling::{Culling, InView};
 use sandtable::roam::emit::bintree::VertexBlock;
-use sandtable::roam::errors::ErrorMap;
 use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use sandtable::roam::layout::DEFAULT_PATCH;
+use sandtable::roam::measured_ground::MeasuredGround;
 use sandtable::roam::patched_ground::PatchedGround;
 use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::queues::{Goal, Queues};
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::lattice::Lattice;
 use sandtable::view::camera::Camera;
 
 use crate::flight;
 
 /// A ground measured once.
-pub struct World {
-    lattice: Lattice,
-    layout: PatchLayout,
-    errors: ErrorMap,
-    heights: PatchHeights,
-}
+pub struct World(MeasuredGround);
 
 impl World {
     /// The ground of heights in meters.
     pub fn new(heights: &[f32]) -> Self {
-        let lattice = flight::lattice(heights);
-        let layout =
-            PatchLayout::new(lattice.columns(), lattice.rows(), DEFAULT_PATCH).expect("patches can be laid");
-        let errors = ErrorMap::midpoint(&lattice, &layout);
-        let ground = PatchedGround { lattice: &lattice, layout: &layout };
-        let heights = PatchHeights::new(ground);
-        Self { layout, errors, heights, lattice }
+        let measured =
+            MeasuredGround::new(flight::lattice(heights), DEFAULT_PATCH).expect("patches can be laid");
+        measured.measure_patches();
+        Self(measured)
     }
 
     /// What refinement reads.
     pub fn ground(&self) -> PatchedGround<'_> {
-        PatchedGround { lattice: &self.lattice, layout: &self.layout }
+        self.0.patched()
     }
 
     /// The spheres in which errors show: `reach` meters of distance a meter of error.
     pub fn spheres(&self, reach: f32) -> SphereMap {
-        SphereMap::plain(self.ground(), &self.errors, reach)
+        SphereMap::plain(self.ground(), self.0.midpoint(), reach)
     }
 }
 
@@ -84,7 +75,7 @@ impl<'a> Following<'a> {
 impl Walk for Following<'_> {
     fn update(&mut self, camera: &Camera) {
         let culling = Culling::frustum(camera);
-        let patches = self.seen.update(self.world.ground(), &self.world.heights, culling);
+        let patches = self.seen.update(self.world.ground(), self.world.0.heights(), culling);
         self.walk.update(camera.eye(), patches).expect("in memory");
     }
 
@@ -98,7 +89,7 @@ impl Walk for Following<'_> {
     }
 
     fn upload(&self) -> usize {
-        let corners: Vec<Vertex> = self.world.layout.patches().collect();
+        let corners: Vec<Vertex> = self.world.0.layout().patches().collect();
         let dirty = self.walk.changes().dirty.iter();
         dirty.map(|&patch| 6 * self.walk.indices(corners[patch]).len()).sum()
     }
@@ -116,7 +107,7 @@ pub struct Rebuilding<'a> {
 impl<'a> Rebuilding<'a> {
     /// By these spheres.
     pub fn new(world: &'a World, spheres: &'a SphereMap) -> Self {
-        let block = VertexBlock::new(&world.layout).expect("small patches");
+        let block = VertexBlock::new(world.0.layout()).expect("small patches");
         Self { world, spheres, block, seen: InView::default(), indices: Vec::new() }
     }
 }
@@ -124,9 +115,9 @@ impl<'a> Rebuilding<'a> {
 impl Walk for Rebuilding<'_> {
     fn update(&mut self, camera: &Camera) {
         let ground = self.world.ground();
-        let patches = self.seen.update(ground, &self.world.heights, Culling::frustum(camera));
+        let patches = self.seen.update(ground, self.world.0.heights(), Culling::frustum(camera));
         let criterion = Spheres::new(ground, self.spheres, camera.eye());
-        let active = rebuild(&self.world.layout, &criterion, patches.iter().copied());
+        let active = rebuild(self.world.0.layout(), &criterion, patches.iter().copied());
         self.indices.clear();
         for &corner in patches {
             self.block.append(&active, corner, |_| true, &mut self.indices);
@@ -161,9 +152,9 @@ pub struct Queueing<'a> {
 impl<'a> Queueing<'a> {
     /// With at most `budget` triangles.
     pub fn new(world: &'a World, spheres: &'a SphereMap, budget: usize) -> Self {
-        let block = VertexBlock::new(&world.layout).expect("small patches");
+        let block = VertexBlock::new(world.0.layout()).expect("small patches");
         let queues = Queues::new(world.ground(), Goal::Budget(budget));
-        let corners = world.layout.patches().collect();
+        let corners = world.0.layout().patches().collect();
         Self { world, spheres, block, seen: InView::default(), queues, indices: Vec::new(), work: 0, corners }
     }
 }
@@ -171,7 +162,7 @@ impl<'a> Queueing<'a> {
 impl Walk for Queueing<'_> {
     fn update(&mut self, camera: &Camera) {
         let ground = self.world.ground();
-        let patches = self.seen.update(ground, &self.world.heights, Culling::frustum(camera));
+        let patches = self.seen.update(ground, self.world.0.heights(), Culling::frustum(camera));
         let criterion = Spheres::new(ground, self.spheres, camera.eye());
         let changes = self.queues.update(&criterion, patches);
         self.work = changes.splits + changes.merges;

@@ -22,8 +22,8 @@ pub fn print() {
     println!("{:<12}{:>10}{:>14}{:>14}{:>14}", "view", "patches", "median", "95 %", "all at once");
     for view in &scene.cameras {
         let camera = camera(&scene, view, (1920, 1080)).expect("a sound camera");
-        let displayed = Arc::new(display(&scene.terrain, &camera));
-        let all: Vec<usize> = (0..scene.terrain.layout.patch_count()).collect();
+        let displayed = Arc::new(display(&scene, &camera));
+        let all: Vec<usize> = (0..scene.ground().layout().patch_count()).collect();
         let together = time_ms(|| drapes.recut(&all, &*displayed));
         let occupied: Vec<usize> = all
             .into_iter()

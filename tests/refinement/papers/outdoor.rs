@@ -41,7 +41,7 @@ fn a_height_map_has_two_scales_and_a_slope_at_every_vertex() {
         assert!((lattice.slopes(post) - Vec2::new(0.5, 2.0)).length() < 1e-6, "{post:?}");
     }
     let layout = PatchLayout::new(5, 5, 4).expect("sound");
-    let displayed = lattice.exaggerated(10.0);
+    let displayed = lattice.stretched(10.0);
     let ground = PatchedGround { lattice: &displayed, layout: &layout };
     let post = Post { column: 3, row: 2 };
     assert_eq!((lattice.height(post), ground.position(Vertex::new(3, 2)).z), (17.0, 170.0));

@@ -36,7 +36,7 @@ pub const CELL: DVec2 = DVec2::new(3.0, 4.0);
 
 impl Terrain {
     pub fn new(columns: u32, patch: u32, heights: Vec<f32>) -> Self {
-        let lattice = Lattice::new(DVec2::ZERO, CELL, columns, heights).expect("sound").exaggerated(1.5);
+        let lattice = Lattice::new(DVec2::ZERO, CELL, columns, heights).expect("sound").stretched(1.5);
         let layout = PatchLayout::new(columns, lattice.rows(), patch).expect("sound");
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let midpoint = midpoint_errors(&lattice, &layout);

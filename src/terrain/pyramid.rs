@@ -1,7 +1,8 @@
 //! The highest and lowest ground of blocks of cells: a pyramid of maxima and minima.
 //!
 //! A line that stays above a block's highest post cannot meet the ground in it, and skips the block in one step. Blocks of
-//! the lowest level are 4 cells wide, those of each level above twice as wide; the last level is a single block. A block's
+//! the lowest level are 4 cells wide, or of another width; those of each level above twice as wide; the last level is a
+//! single block. A block's
 //! extremes are those of its posts *with its border*, so that all edges that a line crosses in the block lie between them,
 //! and neighbors share the posts between them:
 //!
@@ -16,14 +17,14 @@
 //! Posts without data are ignored; a block without any data has a maximum of −∞ and a minimum of +∞, which no line meets.
 //! Maxima and minima are stored apart: lines of sight read only the maxima.
 //!
-//! Two f32 for every 16 cells and a third as many again above them: a sixth of the lattice's heights.
+//! With blocks of 4 cells, two f32 for every 16 cells and a third as many again above them: a sixth of the lattice's heights.
 
 use rayon::prelude::*;
 
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 
-/// Cells along a side of a block of level 0, as a power of two. Smaller blocks cost memory (with 1: two thirds of the
+/// Cells along a side of a block of level 0 for lines of sight, as a power of two. Smaller blocks cost memory (with 1: two thirds of the
 /// heights), larger ones more walking where a line passes close over the ground.
 pub(in crate::terrain) const FINEST_BITS: u32 = 2;
 
@@ -32,6 +33,8 @@ pub(in crate::terrain) const FINEST_BITS: u32 = 2;
 pub struct Pyramid {
     columns: u32,
     rows: u32,
+    /// Cells along a side of a block of level 0, as a power of two.
+    finest_bits: u32,
     levels: Vec<PyramidLevel>,
 }
 
@@ -46,22 +49,20 @@ struct PyramidLevel {
     lowest: Vec<f32>,
 }
 
-/// A rectangle of blocks by columns and rows, ends included.
-#[derive(Clone, Copy)]
-struct BlockRect {
-    low: Post,
-    high: Post,
-}
-
 impl Pyramid {
-    /// The pyramid of a lattice; one pass over its heights, on all threads.
+    /// The pyramid of a lattice for lines of sight; one pass over its heights, on all threads.
     pub fn new(lattice: &Lattice) -> Self {
+        Self::with_blocks(lattice, FINEST_BITS)
+    }
+
+    /// The pyramid of a lattice whose smallest blocks have sides of 2^`finest_bits` cells.
+    pub fn with_blocks(lattice: &Lattice, finest_bits: u32) -> Self {
         let (columns, rows) = (lattice.columns(), lattice.rows());
-        let mut levels = vec![PyramidLevel::new(columns - 1, rows - 1, FINEST_BITS)];
+        let mut levels = vec![PyramidLevel::new(columns - 1, rows - 1, finest_bits)];
         while let Some(finer) = levels.last().filter(|level| level.highest.len() > 1) {
             levels.push(PyramidLevel::new(finer.columns, finer.rows, 1));
         }
-        let mut pyramid = Self { columns, rows, levels };
+        let mut pyramid = Self { columns, rows, finest_bits, levels };
         pyramid.update(lattice, PostRect::all(lattice));
         pyramid
     }
@@ -75,22 +76,32 @@ impl Pyramid {
         assert_eq!((self.columns, self.rows), (lattice.columns(), lattice.rows()), "the pyramid's lattice");
         let PostRect { first, last } = edited;
         assert!(last.column < self.columns && last.row < self.rows, "{last:?} is outside the lattice");
+        let bits = self.finest_bits;
         let (finest, coarser) = self.levels.split_first_mut().expect("a pyramid has a level");
         // A post belongs to the cells on both its sides.
-        let block = |cell: u32, count: u32| (cell >> FINEST_BITS).min(count - 1);
+        let block = |cell: u32, count: u32| (cell >> bits).min(count - 1);
         let block = |column: u32, row: u32| Post {
             column: block(column, finest.columns),
             row: block(row, finest.rows),
         };
-        let low = block(first.column.saturating_sub(1), first.row.saturating_sub(1));
-        let mut blocks = BlockRect { low, high: block(last.column, last.row) };
-        finest.gather(lattice, blocks);
+        let first = block(first.column.saturating_sub(1), first.row.saturating_sub(1));
+        let mut blocks = PostRect { first, last: block(last.column, last.row) };
+        finest.gather(lattice, bits, blocks);
         let mut finer = &*finest;
         for level in coarser {
-            let halved = |block: Post| Post { column: block.column >> 1, row: block.row >> 1 };
-            blocks = BlockRect { low: halved(blocks.low), high: halved(blocks.high) };
+            blocks = PostRect { first: halved(blocks.first), last: halved(blocks.last) };
             level.reduce(finer, blocks);
             finer = level;
+        }
+    }
+
+    /// Widens the range of a block of level 0 to hold that of new posts, where none of its extremes was removed.
+    pub fn widen(&mut self, mut block: Post, (low, high): (f32, f32)) {
+        for level in &mut self.levels {
+            let index = level.index(block.column, block.row);
+            level.lowest[index] = level.lowest[index].min(low);
+            level.highest[index] = level.highest[index].max(high);
+            block = halved(block);
         }
     }
 
@@ -106,12 +117,12 @@ impl Pyramid {
     }
 
     /// Cells along the side of the one block of the last level, as a power of two.
-    pub(in crate::terrain) fn top_bits(&self) -> u32 {
-        FINEST_BITS + self.levels.len() as u32 - 1
+    pub fn top_bits(&self) -> u32 {
+        self.finest_bits + self.levels.len() as u32 - 1
     }
 
     fn level(&self, bits: u32) -> &PyramidLevel {
-        &self.levels[(bits - FINEST_BITS) as usize]
+        &self.levels[(bits - self.finest_bits) as usize]
     }
 
     /// The highest post of a block with sides of 2^`bits` cells, −∞ where it has no data.
@@ -128,6 +139,14 @@ impl Pyramid {
         level.lowest[level.index(block.column, block.row)]
     }
 
+    /// The lowest and the highest post of a block with sides of 2^`bits` cells, low above high where it has no data; `None`
+    /// beyond the lattice.
+    pub fn range(&self, bits: u32, block: Post) -> Option<(f32, f32)> {
+        let level = self.level(bits);
+        let is_inside = block.column < level.columns && block.row < level.rows;
+        is_inside.then(|| (self.lowest(bits, block), self.highest(bits, block)))
+    }
+
     /// Checks every block against all its posts.
     ///
     /// # Panics
@@ -138,11 +157,16 @@ impl Pyramid {
                 level.lowest.iter().copied().zip(level.highest.iter().copied()).enumerate()
             {
                 let block = Post { column: index as u32 % level.columns, row: index as u32 / level.columns };
-                let expected = self::extremes(lattice, FINEST_BITS + number as u32, block);
+                let expected = self::extremes(lattice, self.finest_bits + number as u32, block);
                 assert_eq!(extremes, expected, "level {number}, {block:?}, and its posts");
             }
         }
     }
+}
+
+/// The block of twice the size that holds a block.
+fn halved(block: Post) -> Post {
+    Post { column: block.column >> 1, row: block.row >> 1 }
 }
 
 /// The lowest and highest post of a block with sides of 2^`bits` cells, one by one.
@@ -169,15 +193,15 @@ impl PyramidLevel {
         row as usize * self.columns as usize + column as usize
     }
 
-    /// Sets blocks of the finest level from the posts under them.
-    fn gather(&mut self, lattice: &Lattice, blocks: BlockRect) {
+    /// Sets blocks of the finest level, with sides of 2^`bits` cells, from the posts under them.
+    fn gather(&mut self, lattice: &Lattice, bits: u32, blocks: PostRect) {
         let stride = lattice.columns() as usize;
         let (heights, rows) = (lattice.heights(), lattice.rows());
-        let from = (blocks.low.column << FINEST_BITS) as usize;
-        let through = (((blocks.high.column + 1) << FINEST_BITS) as usize).min(stride - 1);
+        let from = (blocks.first.column << bits) as usize;
+        let through = (((blocks.last.column + 1) << bits) as usize).min(stride - 1);
         self.set_rows(blocks, |row, highest, lowest| {
             // Down the columns first, since the compiler vectorizes comparisons of whole rows.
-            let (first, last) = (row << FINEST_BITS, ((row + 1) << FINEST_BITS).min(rows - 1));
+            let (first, last) = (row << bits, ((row + 1) << bits).min(rows - 1));
             let of_row = |row: u32| &heights[row as usize * stride + from..=row as usize * stride + through];
             let mut high = of_row(first).to_vec();
             let mut low = high.clone();
@@ -188,8 +212,8 @@ impl PyramidLevel {
                 }
             }
             for (block, (highest, lowest)) in highest.iter_mut().zip(lowest).enumerate() {
-                let first = block << FINEST_BITS;
-                let last = (first + (1 << FINEST_BITS)).min(high.len() - 1);
+                let first = block << bits;
+                let last = (first + (1 << bits)).min(high.len() - 1);
                 *highest = high[first..=last].iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
                 *lowest = low[first..=last].iter().fold(f32::INFINITY, |a, &b| a.min(b));
             }
@@ -197,10 +221,10 @@ impl PyramidLevel {
     }
 
     /// Sets blocks from those of the level below.
-    fn reduce(&mut self, finer: &Self, blocks: BlockRect) {
+    fn reduce(&mut self, finer: &Self, blocks: PostRect) {
         let below = |block: u32, count: u32| block << 1..((block + 1) << 1).min(count);
         self.set_rows(blocks, |row, highest, lowest| {
-            for (column, (highest, lowest)) in (blocks.low.column..).zip(highest.iter_mut().zip(lowest)) {
+            for (column, (highest, lowest)) in (blocks.first.column..).zip(highest.iter_mut().zip(lowest)) {
                 (*highest, *lowest) = (f32::NEG_INFINITY, f32::INFINITY);
                 for row in below(row, finer.rows) {
                     for index in below(column, finer.columns).map(|column| finer.index(column, row)) {
@@ -213,15 +237,15 @@ impl PyramidLevel {
     }
 
     /// Calls `set` with each row of blocks and the extremes of its blocks, on all threads.
-    fn set_rows(&mut self, blocks: BlockRect, set: impl Fn(u32, &mut [f32], &mut [f32]) + Sync + Send) {
-        let BlockRect { low, high } = blocks;
+    fn set_rows(&mut self, blocks: PostRect, set: impl Fn(u32, &mut [f32], &mut [f32]) + Sync + Send) {
+        let PostRect { first, last } = blocks;
         let columns = self.columns as usize;
-        let rows = low.row as usize * columns..(high.row as usize + 1) * columns;
-        let part = low.column as usize..=high.column as usize;
+        let rows = first.row as usize * columns..(last.row as usize + 1) * columns;
+        let part = first.column as usize..=last.column as usize;
         let highest = self.highest[rows.clone()].par_chunks_exact_mut(columns);
         let lowest = self.lowest[rows].par_chunks_exact_mut(columns);
         highest.zip(lowest).enumerate().for_each(|(row, (highest, lowest))| {
-            set(low.row + row as u32, &mut highest[part.clone()], &mut lowest[part.clone()]);
+            set(first.row + row as u32, &mut highest[part.clone()], &mut lowest[part.clone()]);
         });
     }
 }
