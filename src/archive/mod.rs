@@ -24,27 +24,18 @@ const ENTRY_SIGNATURE: [u8; 4] = *b"PK\x01\x02";
 
 /// Why packed content cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ArchiveError {
-    /// The zip archive is broken, encrypted, or packed by a method other than deflate.
     #[error("the zip archive cannot be read: {0}; unpack it first, or fetch it again")]
     Zip(#[from] ZipError),
-    /// The packed data is broken or ends too early.
     #[error("the {format} is broken: {source}; fetch or pack it again")]
-    Corrupt {
-        /// The format's name.
-        format: &'static str,
-        /// What the decoder found.
-        source: io::Error,
-    },
-    /// The content is larger than the limit.
+    Corrupt { format: &'static str, source: io::Error },
     #[error("the {format} unpacks to more than {limit} bytes; unpack it and cut the content down")]
     TooLarge {
-        /// The format's name.
         format: &'static str,
         /// Most bytes that are unpacked.
         limit: u64,
     },
-    /// The archive has more members than are read.
     #[error("the zip archive has more than {MAX_MEMBERS} members; pack fewer files")]
     TooManyMembers,
 }

@@ -16,12 +16,11 @@ use crate::dem::warp::WarpError;
 use crate::dem::warp::reproject::Resampling;
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
+use crate::message::chain::error_text;
 use crate::pipeline::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert};
 use crate::pipeline::dem::{self, DemOptions};
-use crate::pipeline::error::error_text;
 use crate::pipeline::raster_file;
 
-/// `dem convert`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Cells as large as the file's or finer are bilinear between its samples; from twice as large on they hold the mean\n\
@@ -45,7 +44,6 @@ pub struct ConvertArguments {
     /// Side of a cell in units of the system that it is brought to [default: its own]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write a number above 0"))]
     pub cell: Option<f64>,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }

@@ -13,7 +13,6 @@ use crate::dem::stats::Stats;
 use crate::dem::voids;
 use crate::pipeline::dem;
 
-/// `dem info`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
@@ -25,7 +24,6 @@ pub struct DemInfoArguments {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }

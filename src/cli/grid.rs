@@ -21,7 +21,6 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::gridding::PointSources;
 use crate::pipeline::raster_file;
 
-/// `dem grid`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct GridArguments {

@@ -22,7 +22,6 @@ use crate::pipeline::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
 use crate::pipeline::lod::method::{CriterionKind, Emit, Refine};
 use crate::pipeline::lod::prepared::PreparedGround;
 
-/// `lod`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct LodArguments {
@@ -52,7 +51,6 @@ pub struct LodArguments {
     /// Print a JSON array with one object per method
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }

@@ -35,11 +35,8 @@ const fn refining(lists: IndexEmitter, criterion: CriterionKind, refiner: Refine
 /// The parts that a method must have; `None` admits any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodFilter {
-    /// What emits triangles.
     pub emit: Option<Emit>,
-    /// When an error shows.
     pub criterion: Option<CriterionKind>,
-    /// What refines.
     pub refine: Option<Refine>,
     /// The most triangles, which only queues keep.
     pub budget: Option<u32>,

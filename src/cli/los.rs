@@ -17,14 +17,12 @@ use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, SightEnd};
 use crate::terrain::sight::rise::Rise;
 
-/// `los`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "The exit code is 0 whether the target is visible or not. Ground without data blocks nothing.\n\
                   The line is straight in the ground's coordinate system."
 )]
 pub struct LosArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The position of the observer, and meters above the ground there
@@ -45,7 +43,6 @@ pub struct LosArguments {
     /// Assume a flat Earth
     #[arg(long, conflicts_with = "refraction")]
     pub flat: bool,
-    /// The chart.
     #[command(flatten)]
     pub chart: ChartArguments,
 }

@@ -24,7 +24,6 @@ use crate::pipeline::ground::{GroundError, MetricGround};
 use crate::roam::bound::Deviation;
 use crate::terrain::lattice::Lattice;
 
-/// `mesh`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Coordinates are meters from the south-west post, X east, Y north, Z up; the file says where that is.\n\
@@ -45,7 +44,6 @@ pub struct MeshArguments {
     /// Meters between the posts of an elevation file that does not state it
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }

@@ -10,7 +10,6 @@ use crate::cli::output::{print, print_lines, row};
 use crate::geom::aabb::Aabb;
 use crate::pipeline::model_file;
 
-/// `model info`.
 #[derive(Debug, Args)]
 pub struct ModelArguments {
     /// The file

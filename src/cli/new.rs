@@ -11,7 +11,6 @@ use crate::cli::progress::StepTimer;
 use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
 use crate::pipeline::scene_file::open_scene;
 
-/// `new`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Every layer of the vector files is surveyed: lines with `highway` become roads by class, with `waterway` rivers, with \

@@ -20,7 +20,6 @@ use crate::pipeline::picture::PictureSize;
 pub struct SceneArguments {
     /// The scene file
     pub scene: PathBuf,
-    /// The folders that the scene may read.
     #[command(flatten)]
     pub access: AccessArguments,
 }
@@ -61,15 +60,12 @@ pub struct DatasetArguments {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
-    /// The folders that a scene may read.
     #[command(flatten)]
     pub access: AccessArguments,
 }
 
-/// A chart.
 #[derive(Debug, Args)]
 pub struct ChartArguments {
     /// Write a chart to this file
@@ -81,7 +77,6 @@ pub struct ChartArguments {
 }
 
 impl HeightArguments {
-    /// The options for opening elevation.
     pub fn dem_options(&self) -> DemOptions {
         DemOptions {
             height_scale: self.height_scale,

@@ -20,14 +20,12 @@ use crate::pipeline::profile::{GroundProfile, ProfileError};
 use crate::terrain::profile::{Extreme, ProfileStation, Sampling};
 use crate::terrain::query::Interpolation;
 
-/// `profile`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "The table has station,x,y,height,status a line: meters from the start, the position in the coordinate\n\
                   system of the line, meters. There is a station wherever the ground bends, and on the model's border."
 )]
 pub struct ProfileArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The line: --line X,Y X,Y and so on; in quotes where one begins with a minus sign
@@ -45,7 +43,6 @@ pub struct ProfileArguments {
     /// Also a station every so many meters
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// The chart.
     #[command(flatten)]
     pub chart: ChartArguments,
 }

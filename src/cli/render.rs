@@ -21,10 +21,8 @@ use crate::scene::{SceneModel, SceneView};
 /// The longest text of a label in the summary, in characters.
 const LONGEST_LABEL: usize = 60;
 
-/// `render`.
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Write the picture to this file [default: the scene's name with .png, in the current folder]

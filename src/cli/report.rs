@@ -20,11 +20,9 @@ const SHOWN_ROWS: usize = 20;
 /// The most characters of a name that are printed or become part of a file name.
 const SHOWN_CHARACTERS: usize = 40;
 
-/// `report`.
 #[derive(Debug, Args)]
 #[command(after_help = "Heights are true to scale, whatever exaggeration the scene states.")]
 pub struct ReportArguments {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Print one JSON object with every row

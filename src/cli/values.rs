@@ -79,7 +79,6 @@ impl FromStr for PositionList {
 /// A position, and meters above the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaisedPosition {
-    /// The position.
     pub at: DVec2,
     /// Meters above the ground, where they are stated.
     pub above_m: Option<f64>,

@@ -28,14 +28,12 @@ use crate::terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, Viewshed
 
 const HEIGHT_ADVICE: &str = "write meters as a number from 0 to 100000";
 
-/// `viewshed`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A raster holds 1 where a target can be seen, 0 where it is hidden, and 255, its no-data value, beyond the \
                   range, out of the sector and where there is no elevation."
 )]
 pub struct ViewshedArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The position of the observer

@@ -56,45 +56,30 @@ impl Mosaic {
 
 /// Why tiles are not those of one raster.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum MosaicError {
-    /// There is no tile.
     #[error("there is no elevation file to join")]
     Empty,
-    /// The tile of this name has no georeference.
     #[error("{0} does not state where it lies, so it cannot be joined")]
     NoPlace(String),
-    /// Two tiles are not alike.
     #[error(
         "{first} and {other} are not tiles of one raster: their {what} are {} and {}; bring them to one, for example with: sandtable dem convert",
         .found[0], .found[1]
     )]
-    Differ {
-        /// The first tile.
-        first: String,
-        /// The tile that differs from it.
-        other: String,
-        /// The property that differs.
-        what: &'static str,
-        /// That of the first and that of the other.
-        found: [String; 2],
-    },
-    /// The samples of two tiles do not coincide.
+    Differ { first: String, other: String, what: &'static str, found: [String; 2] },
     #[error(
         "{first} and {other} are not tiles of one raster: the second's samples lie ({:.4}, {:.4}) cells off the first's; bring them to one grid, for example with: gdalwarp -tap",
         .off.x, .off.y
     )]
     Misaligned {
-        /// The first tile.
         first: String,
-        /// The tile that is shifted against it.
         other: String,
-        /// By how many cells, from −0.5 to 0.5.
+        /// In cells, from −0.5 to 0.5.
         off: DVec2,
     },
     /// The tiles hold more samples together than are joined; those up to the tile that is too many.
     #[error("the tiles hold {0} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
     TooMany(u64),
-    /// The rectangle around all tiles has more samples than a raster.
     #[error(
         "the tiles span {} x {} samples, more than the {MOST_SAMPLES} of a raster; join fewer", .0.x, .0.y
     )]

@@ -62,7 +62,6 @@ impl SampleType {
         self.bytes() == 8 || (self.bytes() == 4 && !self.is_float())
     }
 
-    /// Its name, as GDAL names its types.
     pub fn gdal_name(self) -> &'static str {
         TYPES[self as usize].3
     }

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 pub trait Word: Copy + Debug + PartialEq + 'static {
     /// Every value, in the order in which messages list them.
     const ALL: &'static [Self];
-    /// What is declared of each value, in the same order.
+    /// The words of the values, in the same order.
     const DECLARATIONS: &'static [WordDeclaration];
 
     /// The value that a scene file writes as `word`.

@@ -1,3 +1,4 @@
 //! Parts of messages to users.
 
+pub mod chain;
 pub mod suggest;

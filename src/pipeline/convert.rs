@@ -48,24 +48,20 @@ pub struct Converted {
 
 /// Elevation that cannot be converted.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ConvertError {
-    /// The elevation names no coordinate system.
     #[error("it names no coordinate system, so it cannot be brought to {0}")]
     NoCrs(String),
-    /// The cell is too large for a system in degrees.
     #[error(
         "cells of {cell} degrees are too large: cells count in the units of the system, and this one is in degrees"
     )]
     CellInDegrees {
-        /// As given.
         cell: f64,
         /// The UTM zone of the elevation, where it is known.
         zone: Option<String>,
     },
-    /// The elevation cannot be brought to the target.
     #[error(transparent)]
     Warp(#[from] WarpError),
-    /// The datum shift is not known.
     #[error(transparent)]
     Crs(#[from] CrsError),
 }

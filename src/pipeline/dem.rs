@@ -31,17 +31,14 @@ pub struct DemOptions {
 
 /// Elevation that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenDemError {
-    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A file is not elevation that is read.
     #[error(transparent)]
     Format(#[from] FileError<DemErrorKind>),
-    /// A folder has no elevation file.
     #[error("{}: there is no elevation file in this folder", .0.display())]
     NoTiles(PathBuf),
-    /// The files are not tiles of one raster.
     #[error(transparent)]
     Tiles(#[from] MosaicError),
 }

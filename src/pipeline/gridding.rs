@@ -16,26 +16,20 @@ use crate::vector::read;
 
 /// Points that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenPointsError {
-    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A file of points is not one that is read.
     #[error(transparent)]
     Points(#[from] FileError<PointsError>),
-    /// A vector file is not one that is read.
     #[error(transparent)]
     Vector(#[from] FileError<VectorError>),
-    /// A vector file has no elevations for points.
     #[error("{}: no point in it has an elevation; points with a z are needed", .0.display())]
     FlatPoints(PathBuf),
-    /// A vector file has no elevations for breaklines.
     #[error("{}: no line in it has an elevation at every vertex; breaklines with a z are needed", .0.display())]
     FlatLines(PathBuf),
-    /// Positions cannot be brought to the system of the first file.
     #[error(transparent)]
     Crs(#[from] FileError<CrsError>),
-    /// No file is named.
     #[error("name at least one file of points")]
     NoFiles,
 }

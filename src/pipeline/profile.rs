@@ -25,26 +25,16 @@ const LEAST_GAP_M: f64 = 0.5;
 
 /// A line that gives no profile.
 #[derive(Clone, Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ProfileError {
-    /// A vertex or a station has no position in the other coordinate system.
     #[error(transparent)]
     Query(#[from] QueryError),
-    /// The step between stations is not a length.
     #[error("a step of {step_m} m: give meters above 0")]
-    Step {
-        /// As given.
-        step_m: f64,
-    },
-    /// The step between stations is too short for the line.
+    Step { step_m: f64 },
     #[error(
         "a step of {step_m} m: the line is {length_m:.0} m long, and at most {MOST_STEPS} steps are made; take longer ones"
     )]
-    ShortStep {
-        /// As given.
-        step_m: f64,
-        /// The length of the line.
-        length_m: f64,
-    },
+    ShortStep { step_m: f64, length_m: f64 },
 }
 
 /// The ground along a line.

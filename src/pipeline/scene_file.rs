@@ -12,17 +12,14 @@ use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenSceneError {
-    /// The scene file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A folder that the scene may read cannot be opened.
     #[error(transparent)]
     Assets(#[from] AssetError),
-    /// The scene file is wrong: everything that was found.
     #[error("the scene file is wrong")]
     Parse(#[from] Diagnostics),
-    /// The scene cannot be built: the first thing that was found.
     #[error("the scene cannot be built")]
     Build(#[from] Diagnostic),
 }

@@ -20,10 +20,10 @@ use crate::serve::reply::{HttpError, JsonArray, OK};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
 
-/// A profile may have this many times the stations that a request may have points, since the ground bends everywhere.
+/// The limit of a profile's stations, as a multiple of the limit of a request's points, since every edge of a triangle
+/// adds a station.
 const STATIONS_PER_POINT: usize = 10;
 
-/// The ground along a line.
 pub struct ProfileQuery {
     ground: GroundQuery,
     /// The vertices, in the request's coordinates.

@@ -30,7 +30,6 @@ use crate::terrain::sight::viewshed::{self, PostVisibility, Sector, Viewshed, Vi
 /// When to try again while other viewsheds are being computed, seconds.
 const RETRY_AFTER_S: u16 = 2;
 
-/// Which posts can be seen from a point.
 pub struct ViewshedQuery {
     ground: GroundQuery,
     /// The options, with the observer in the request's coordinates.

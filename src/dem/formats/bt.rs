@@ -165,7 +165,6 @@ fn vertical_unit(scale: f64) -> Result<f64, DemErrorKind> {
     Ok(feet.unwrap_or(scale))
 }
 
-/// The coordinate system of a terrain.
 struct BtSystem {
     crs: Option<Crs>,
     /// What extents are multiplied by: 1, or the length of a foot for a local grid in feet.

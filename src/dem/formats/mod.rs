@@ -20,6 +20,8 @@ pub(crate) mod text;
 mod usgs;
 mod xyz;
 
+use std::error::Error;
+
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
@@ -98,11 +100,15 @@ impl DemFormat {
     }
 
     /// A file of this format that a decoder or the file system refuses.
-    pub(crate) fn undecodable(&self, source: impl std::error::Error + Send + Sync + 'static) -> DemErrorKind {
+    pub(crate) fn undecodable(&self, source: impl Error + Send + Sync + 'static) -> DemErrorKind {
         DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
     }
 
-    pub(crate) fn unsupported(&self, what: impl Into<String>, remedy: &'static str) -> DemErrorKind {
+    pub(crate) fn unsupported(
+        &self,
+        what: impl Into<Box<dyn Error + Send + Sync>>,
+        remedy: &'static str,
+    ) -> DemErrorKind {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
 

@@ -34,12 +34,16 @@ pub struct RawLayout {
     nodata: Option<f64>,
 }
 
-/// A text states no layout of a RAW file.
+/// The text is not a layout of a RAW file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are u8 to u64, i8 to i64, f16, f32 and f64, followed by le or be"
-)]
+#[error("{}", Self::REMEDY)]
 pub struct RawLayoutError;
+
+impl RawLayoutError {
+    /// How a layout is written.
+    pub const REMEDY: &str = "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are \
+                              u8 to u64, i8 to i64, f16, f32 and f64, followed by le or be";
+}
 
 impl FromStr for RawLayout {
     type Err = RawLayoutError;

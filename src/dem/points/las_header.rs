@@ -143,7 +143,7 @@ impl<'a> Record<'a> {
 /// A part of LAS and LAZ that is not read.
 pub(super) fn unsupported(what: String) -> PointsError {
     let remedy = "write it again with another program, for example: pdal translate IN OUT.las";
-    DemErrorKind::Unsupported { format: "LAS file", what, remedy }.into()
+    DemErrorKind::Unsupported { format: "LAS file", what: what.into(), remedy }.into()
 }
 
 pub(super) fn broken(reason: impl Into<String>) -> PointsError {

@@ -15,7 +15,6 @@ pub(super) enum GeoKeyValue {
     Text(String),
 }
 
-/// The keys of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct GeoKeys(Vec<(u16, GeoKeyValue)>);
 

@@ -265,7 +265,7 @@ fn expansion(packing: Packing) -> u64 {
 /// The decoder's error in the words of the other readers.
 pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
     match error {
-        TiffError::UnsupportedError(what) => FORMAT.unsupported(what.to_string(), TO_DEFLATE),
+        TiffError::UnsupportedError(what) => FORMAT.unsupported(what, TO_DEFLATE),
         TiffError::LimitsExceeded => FORMAT.broken("a tag claims more than the file holds"),
         other => FORMAT.undecodable(other),
     }

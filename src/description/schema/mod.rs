@@ -1,8 +1,8 @@
 //! A JSON Schema of the scene file, for editors that complete and check while one writes.
 //!
 //! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022) and
-//! uses only what the common TOML editors know. It does not check what one key means for another, nor whether an
-//! expression can be read: `sandtable check` does.
+//! uses only what the common TOML editors know. It checks neither rules between keys nor the syntax of
+//! expressions; `sandtable check` does.
 
 use serde_json::{Map, Value, json};
 
@@ -110,7 +110,7 @@ fn required_keys(keys: &'static [KeyDeclaration]) -> Vec<&'static str> {
     required.map(|key| key.name).collect()
 }
 
-/// What must be there where nothing is included: the required keys of single tables.
+/// The required keys of single tables, for a scene file that includes no other.
 fn completeness(keys: &'static [KeyDeclaration]) -> Value {
     let inner = keys.iter().filter_map(|key| match key.kind {
         KeyKind::Table(inner) => Some((key.name.to_owned(), completeness(inner))),

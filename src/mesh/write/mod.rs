@@ -42,16 +42,10 @@ impl MeshFormat {
 
 /// Why a mesh does not fit a format; the inner error of an [`io::ErrorKind::InvalidInput`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum MeshWriteError {
-    /// More than a 32-bit count can state.
     #[error("{count} {what} exceed the {} that the format can hold; raise the maximum error", u32::MAX)]
-    TooLarge {
-        /// How many there are.
-        count: usize,
-        /// What is counted.
-        what: &'static str,
-    },
-    /// The mesh has no triangles.
+    TooLarge { count: usize, what: &'static str },
     #[error("a glTF mesh needs at least one triangle")]
     Empty,
 }

@@ -63,20 +63,16 @@ pub struct WrittenScene {
 
 /// A scene file that cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum NewSceneError {
-    /// There is a scene file already.
     #[error("{}: there is such a file already; remove it, or name another folder", .0.display())]
     Exists(PathBuf),
-    /// The folder or a file named in the scene is unfit.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// A vector file cannot be read.
     #[error(transparent)]
     Survey(#[from] SurveyError),
-    /// The elevation gives no ground.
     #[error(transparent)]
     Ground(#[from] OpenSceneError),
-    /// The folder cannot be made, or the file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteFileError),
 }

@@ -44,7 +44,6 @@ pub(super) enum FeatureSelection {
 
 /// A table that may be written.
 pub(super) struct TableRule {
-    /// The name of the table.
     pub table: &'static str,
     /// What its features are.
     pub what: &'static str,

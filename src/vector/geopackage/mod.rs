@@ -38,7 +38,6 @@ const FREE_STEPS: u64 = 100_000_000;
 /// Steps for each byte of the file, of which reading takes less than one.
 const STEPS_PER_BYTE: u64 = 10;
 
-/// A table or view of features.
 struct GpkgTable {
     name: String,
     geometry_column: String,
