@@ -14,17 +14,17 @@ use crate::draw::pixels::Pixels;
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);
 /// Hidden ground.
 const DARK: Srgba = Srgba::opaque(0x9c, 0x92, 0x82);
-/// The line up to its end, or to what blocks it.
+/// The line up to its end or the first obstacle.
 const LINE: Srgba = WATER_INK;
-/// What blocks it.
+/// The obstacle.
 const BLOCK: Srgba = Srgba::opaque(0xb0, 0x35, 0x22);
 /// Labels nearer to each other than this share of the plot's width are set one above the other.
 const CROWDED: f32 = 0.15;
 /// Design pixels of a dash and of the gap after it.
 const DASH: (f32, f32) = (10.0, 7.0);
 
-/// What is charted. All heights are lowered by the drop that curvature and refraction cause at their distance, so that
-/// the line of sight is straight.
+/// The content of the chart. All heights are lowered by the drop that curvature and refraction cause at their distance,
+/// so that the line of sight is straight.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SightChart {
     /// The texts around the plot.

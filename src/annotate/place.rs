@@ -110,7 +110,7 @@ mod tests {
 
     use super::*;
 
-    /// What is wrong with a placement; numbers index the requests.
+    /// A fault of a placement; numbers index the requests.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum PlacementFault {
         /// There is not one choice per request, or a choice names no candidate.

@@ -16,7 +16,7 @@ pub const MAX_RASTER_BYTES: u64 = 1 << 30;
 pub const MAX_VECTOR_BYTES: u64 = 512 << 20;
 /// Most members of an archive: as many as fit without the zip64 extension.
 const MAX_MEMBERS: usize = 65_535;
-/// Most bytes that deflate makes of one byte.
+/// The greatest expansion by deflate.
 const DEFLATE_EXPANSION: u64 = 1032;
 /// Bytes of a directory entry without name and extra fields (APPNOTE 6.3, section 4.3.12), and its signature.
 const ENTRY_BYTES: usize = 46;

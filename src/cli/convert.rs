@@ -28,8 +28,8 @@ use crate::pipeline::raster_file;
                   to some meters; one that needs a grid file is refused."
 )]
 pub struct ConvertArguments {
-    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt or
-    /// .png
+    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt
+    /// or .png
     #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
     pub files: Vec<PathBuf>,
     /// Fill voids that samples enclose, with a membrane from their rims; the filled samples are counted

@@ -1,4 +1,4 @@
-//! `sandtable dem info`: what an elevation file or a folder of tiles holds.
+//! `sandtable dem info`: metadata and statistics of an elevation file or a folder of tiles.
 
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
     if arguments.json { print(&format!("{}\n", info.json())) } else { print_lines(&info.table()) }
 }
 
-/// A raster and what is known of it.
+/// A raster and its statistics.
 struct DemInfo {
     raster: Raster,
     stats: Stats,

@@ -108,7 +108,7 @@ impl FromStr for GridExtent {
     }
 }
 
-/// Writes the grid and prints what it was made of.
+/// Writes the grid and prints a summary.
 pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
     let (out, points) =
         arguments.files.split_last().ok_or_else(|| CliError::input("name points and a grid"))?;

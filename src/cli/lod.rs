@@ -135,7 +135,7 @@ fn json(report: &FlightReport) -> Value {
     })
 }
 
-/// The flight, a row for each method, and what the columns are.
+/// The flight, a row for each method, and an explanation of the columns.
 fn table(reports: &[FlightReport], ground: &PreparedGround, arguments: &LodArguments) -> Vec<String> {
     let lattice = &ground.lattice;
     let frames = reports.first().map_or(0, |report| report.frames);

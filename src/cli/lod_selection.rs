@@ -51,8 +51,8 @@ pub struct NoMethod {
 }
 
 impl MethodFilter {
-    /// The methods that pass, in the order in which they are compared: the default selection for an empty filter. Without
-    /// `emit` the lists are those of the bintree, since all emitters show the same triangles.
+    /// The methods that pass, in the order in which they are compared: the default selection for an empty filter.
+    /// Without `emit` the lists are those of the bintree, since all emitters show the same triangles.
     pub fn methods(self) -> Result<Vec<LodMethod>, NoMethod> {
         if self == Self::default() {
             return Ok(SELECTION.to_vec());

@@ -1,4 +1,4 @@
-//! `sandtable los`: whether one point can be seen from another, what stands between, and how much is missing.
+//! `sandtable los`: whether one point can be seen from another, the first obstacle, and the clearance.
 
 use clap::Args;
 use glam::DVec2;

@@ -1,4 +1,4 @@
-//! `sandtable model info`: what a model file holds.
+//! `sandtable model info`: counts and bounds of a model file.
 
 use std::path::PathBuf;
 

@@ -37,7 +37,7 @@ pub struct NewArguments {
     pub crs: Option<String>,
 }
 
-/// Writes the scene file, builds the scene, and prints what it holds and how to render it.
+/// Writes the scene file, builds the scene, and prints its contents and the command that renders it.
 pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);

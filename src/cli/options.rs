@@ -32,7 +32,7 @@ pub struct AccessArguments {
     pub allow: Vec<PathBuf>,
 }
 
-/// What an elevation file does not state about its heights.
+/// Heights of files that do not state their unit or layout.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct HeightArguments {
     /// Meters per gray value of a PNG, which needs it, or of a RAW file [default: 1]
@@ -54,7 +54,8 @@ pub struct HeightArguments {
 pub struct DatasetArguments {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or scene's]
+    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or
+    /// scene's]
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub crs: Option<Crs>,
     /// Print JSON

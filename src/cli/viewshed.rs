@@ -1,4 +1,4 @@
-//! `sandtable viewshed`: what can be seen from a point, as a map, a raster or a few figures.
+//! `sandtable viewshed`: the posts that can be seen from a point, as a map, a raster or a few figures.
 
 use std::fmt::Write;
 use std::ops::Bound;

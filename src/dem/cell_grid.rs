@@ -18,7 +18,7 @@ pub struct CellGrid {
     height: u32,
 }
 
-/// Why there is no lattice of cells.
+/// Why a lattice of cells cannot be made.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum CellGridError {

@@ -17,7 +17,7 @@ pub struct DemError {
     pub kind: DemErrorKind,
 }
 
-/// What was wrong with an elevation file.
+/// The cause of a [`DemError`].
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum DemErrorKind {

@@ -20,7 +20,7 @@ pub const ALIGNMENT: f64 = 1e-3;
 /// The most samples of all tiles together: twice a raster's, since tiles overlap.
 const MOST_OF_ALL: u64 = 2 * MOST_SAMPLES;
 
-/// Tiles joined to one raster, and what was found in joining.
+/// Tiles joined to one raster, with statistics of their overlaps and gaps.
 #[derive(Clone, Debug)]
 pub struct Mosaic {
     /// The smallest rectangle around all tiles.
@@ -161,7 +161,7 @@ impl Tiles {
         {
             return differ("vertical datums", [one.clone(), two.clone()]);
         }
-        // Over the longer of their sides the grids may not run apart.
+        // The axes of both grids must agree over the longest side.
         let axes = first.map_from_grid.matrix2 - tile.map_from_grid.matrix2;
         let longest = f64::from(first.width.max(first.height).max(tile.width).max(tile.height));
         let apart = DVec2::new(axes.x_axis.length(), axes.y_axis.length()) * longest;
@@ -192,7 +192,7 @@ fn cells(raster: &Raster) -> String {
     if b == 0.0 && c == 0.0 { format!("{a} by {d}") } else { format!("({a}, {c}) by ({b}, {d})") }
 }
 
-/// What is added to each tile's x: whole turns of 360° where longitudes continue across ±180°.
+/// The offset of each tile's x: multiples of 360° where longitudes continue across ±180°.
 fn turns(tiles: &[Raster]) -> Vec<f64> {
     let mut turns = vec![0.0; tiles.len()];
     if !tiles[0].crs.as_ref().is_some_and(Crs::is_geographic) {

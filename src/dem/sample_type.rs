@@ -15,7 +15,7 @@ pub(crate) enum SampleType {
     F64,
 }
 
-/// What the bits of a number mean.
+/// The representation of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberKind {
     Unsigned,

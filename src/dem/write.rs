@@ -1,6 +1,6 @@
 //! Rasters to the bytes of files.
 //!
-//! What a format cannot hold is refused with what to do, except where rounding is the format's nature (an SRTM tile has
+//! A raster that a format cannot hold is refused with a remedy, except where the format always rounds (an SRTM tile has
 //! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where
 //! nothing was rounded.
 
@@ -16,7 +16,7 @@ pub struct WrittenDem {
     pub companions: Vec<Companion>,
     /// The type of the stored heights: `float32`, `int16`, `text`.
     pub stored: String,
-    /// What was rounded and how to read the file, for the user.
+    /// Notes for the user: rounding, and how to read the file.
     pub notes: Vec<String>,
 }
 
@@ -65,7 +65,8 @@ pub enum WriteError {
 
 /// Writes `raster` in a format. `stem` is the file's name without its extension: the place of an SRTM tile is its name.
 ///
-/// Heights stay in the raster's vertical unit where the format can name it, and are converted to meters where it cannot.
+/// Heights stay in the raster's vertical unit where the format can name it, and are converted to meters where it
+/// cannot.
 ///
 /// # Errors
 /// [`WriteError`].

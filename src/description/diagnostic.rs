@@ -1,7 +1,7 @@
 //! A message that points at a place in the scene file.
 //!
-//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log and
-//! in a test:
+//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log
+//! and in a test:
 //!
 //! ```text
 //! hill.toml:12:1: error: unknown key `widht` in [[road]]
@@ -12,8 +12,8 @@
 //!    = help: did you mean `width`?
 //! ```
 //!
-//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so they are
-//! replaced before.
+//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so they
+//! are replaced before.
 
 use std::error::Error;
 use std::fmt;

@@ -1,8 +1,8 @@
 //! The scene file's tables, but for those of features ([`crate::description::features`]).
 //!
-//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
-//! coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that states them,
-//! unless the description of a key differs. Unknown keys are errors. Every number is finite.
+//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from
+//! north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that states
+//! them, unless the description of a key differs. Unknown keys are errors. Every number is finite.
 //!
 //! ```toml
 //! title = "The hill"
@@ -27,8 +27,8 @@
 //! look_at = [500000, 4650000]
 //! ```
 //!
-//! The page `scenes/README.md` lists all keys. Values include their defaults. A value that later steps check (the name of a
-//! file, a point on the terrain) is [`Stated`]; [`Document::error`] makes a message that points at it.
+//! The page `scenes/README.md` lists all keys. Values include their defaults. A value that later steps check (the name
+//! of a file, a point on the terrain) is [`Stated`]; [`Document::error`] makes a message that points at it.
 
 use std::collections::BTreeMap;
 use std::error::Error;

@@ -8,11 +8,11 @@
 //! - Keys of single tables (`[terrain]`, `[style.light]`, `[styles.lane]` …) and keys outside tables are defaults: a key of
 //!   the including file replaces them, and so does a key of a file that is included later.
 //!
-//! A file that several files include is merged once, at its first mention. File names in an included file are relative to
-//! that file, so that a folder of styles and models can be moved as a whole.
+//! A file that several files include is merged once, at its first mention. File names in an included file are relative
+//! to that file, so that a folder of styles and models can be moved as a whole.
 //!
-//! A file with an `include` is parsed twice: first for the names of the files that it includes, then for its tables, which
-//! borrow from the concatenated texts.
+//! A file with an `include` is parsed twice: first for the names of the files that it includes, then for its tables,
+//! which borrow from the concatenated texts.
 
 use std::collections::BTreeSet;
 use std::error::Error;

@@ -88,7 +88,8 @@ keys! {
     color() -> Color = KeyKind::Color;
     /// A coordinate pair.
     point() -> [f64; 2] = KeyKind::Point;
-    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the first.
+    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the
+    /// first.
     points(least: usize) -> Vec<[f64; 2]> = KeyKind::Points(least);
     /// The name of a color ramp, or its stops from low to high.
     ramp() -> RampChoice = KeyKind::Ramp;

@@ -14,8 +14,8 @@ use crate::description::source_text::SourceText;
 use crate::description::styles::Styles;
 use crate::message::suggest::quoted;
 
-/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of memory
-/// for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
+/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of
+/// memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
 pub const MAX_BYTES: usize = 4 << 20;
 
 /// The scene that `text` describes; `file_name` is the file's name in messages.
@@ -85,8 +85,8 @@ const DUPLICATE: &str = "duplicate key";
 /// Larger texts have only their first syntax error reported: collecting them costs hundreds of bytes for each.
 const MAX_BYTES_RECOVERED: usize = 256 << 10;
 
-/// The table in `text`, its spans moved by `start`; `None` after any error but duplicate keys. Reports one syntax error a
-/// line, since one error often causes the next.
+/// The table in `text`, its spans moved by `start`; `None` after any error but duplicate keys. Reports one syntax error
+/// a line, since one error often causes the next.
 fn toml_table<'i>(start: usize, text: &'i str, report: &mut DiagnosticSink) -> Option<DeTable<'i>> {
     let recovers = text.len() <= MAX_BYTES_RECOVERED;
     let (table, mut errors) = if recovers {

@@ -1,7 +1,7 @@
 //! Reads the keys of one table and reports unknown and missing ones.
 //!
-//! Hand-written on spanned TOML values: a derived deserializer stops at the first error, loses the span of a value inside
-//! a flattened struct, and cannot suggest the nearest key.
+//! Hand-written on spanned TOML values: a derived deserializer stops at the first error, loses the span of a value
+//! inside a flattened struct, and cannot suggest the nearest key.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -49,8 +49,8 @@ impl SourceText {
         Self { files: vec![file], text: text.into() }
     }
 
-    /// Appends a file and returns the first byte of its text. `folder` is relative to that of the first file; empty, or with
-    /// a `/` at its end.
+    /// Appends a file and returns the first byte of its text. `folder` is relative to that of the first file; empty, or
+    /// with a `/` at its end.
     pub(super) fn append(&mut self, name: String, folder: String, text: &str) -> usize {
         self.text.push('\n');
         let start = self.text.len();
@@ -69,8 +69,8 @@ impl SourceText {
         &self.file_at(offset).name
     }
 
-    /// The folder of the file that contains byte `offset`, relative to that of the first file; empty, or with a `/` at its
-    /// end.
+    /// The folder of the file that contains byte `offset`, relative to that of the first file; empty, or with a `/` at
+    /// its end.
     pub fn folder_at(&self, offset: usize) -> &str {
         &self.file_at(offset).folder
     }
@@ -86,8 +86,8 @@ impl SourceText {
         self.files.iter().zip(ends).map(|(file, end)| (file.start, &self.text[file.start..end]))
     }
 
-    /// Line and column of byte `offset` in its file. An offset past the end counts as the end, one inside a character as its
-    /// first byte.
+    /// Line and column of byte `offset` in its file. An offset past the end counts as the end, one inside a character
+    /// as its first byte.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let offset = self.text.floor_char_boundary(offset);
         let file = self.file_at(offset).start;

@@ -77,7 +77,8 @@ impl<'t> Styles<'t> {
 const WRONG_STYLES: &str = "`styles` must hold tables";
 
 impl<'t> DecodeContext<'t> {
-    /// The keys of a style. Reports an error and returns `None` where there is no such style, or styles add too many bytes.
+    /// The keys of a style. Reports an error and returns `None` where there is no such style, or styles add too many
+    /// bytes.
     pub fn take_style(&mut self, name: &Stated<String>) -> Option<&'t DeTable<'t>> {
         let span = name.span().unwrap_or_default();
         let Some(&style) = self.styles.styles.get(name.as_str()) else {

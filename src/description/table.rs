@@ -11,9 +11,10 @@
 //!   └── the key; `field as "key"` where they differ
 //! ```
 //!
-//! `, unless ["other"]` may follow: a table that states `other` does not take this key from its style. `inline` in place
-//! of `default` puts the keys of a whole group into the table. Checks of several keys together follow the keys, in
-//! `check(reader) { … }`, where every key is an `Option` named as its field: `None` where the key is required and missing.
+//! `, unless ["other"]` may follow: a table that states `other` does not take this key from its style. `inline` in
+//! place of `default` puts the keys of a whole group into the table. Checks of several keys together follow the keys,
+//! in `check(reader) { … }`, where every key is an `Option` named as its field: `None` where the key is required and
+//! missing.
 
 use crate::description::declaration::KeyDeclaration;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};

@@ -1,7 +1,7 @@
 //! The words that a key may take, one enum a key.
 //!
-//! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page and
-//! the messages read it from here.
+//! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page
+//! and the messages read it from here.
 
 use std::fmt::Debug;
 

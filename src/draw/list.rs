@@ -191,8 +191,8 @@ impl DrawList {
         self.items.iter().map(|item| item.triangles.len()).sum()
     }
 
-    /// Checks what a renderer relies on: every index is in range, layers rise, and the ground map is there where it is
-    /// read, and sound.
+    /// Checks the invariants that renderers rely on: every index is in range, layers rise, and the ground map is
+    /// present where it is read, and sound.
     ///
     /// # Errors
     /// The first [`DrawListError`] found.

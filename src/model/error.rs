@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
-/// Why a companion file cannot be loaded; what it is depends on where companions come from.
+/// Why a companion file cannot be loaded; its type depends on the [`Companions`](crate::model::Companions).
 pub type CompanionError = Box<dyn Error + Send + Sync>;
 
 /// Why the bytes of a model file do not become a [`crate::model::Model`].
@@ -62,7 +62,7 @@ impl ModelError {
     }
 }
 
-/// Why the bytes of a glTF buffer or image cannot be had.
+/// Why the bytes of a glTF buffer or image cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum GltfDataError {

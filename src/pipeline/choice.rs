@@ -19,7 +19,7 @@ pub trait Choice: Copy + PartialEq + 'static {
     }
 }
 
-/// A value, its word and what it means.
+/// A value, its word and its meaning.
 pub struct ChoiceWord<T> {
     /// The value.
     pub value: T,

@@ -23,7 +23,7 @@ pub struct ConvertOptions {
     pub voids: VoidHandling,
 }
 
-/// What becomes of voids that samples enclose.
+/// The treatment of voids that samples enclose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoidHandling {
     /// They stay.
@@ -33,7 +33,7 @@ pub enum VoidHandling {
     Fill,
 }
 
-/// Converted elevation and what was done to it.
+/// Converted elevation and its provenance.
 #[derive(Debug)]
 pub struct Converted {
     /// The elevation.
@@ -42,7 +42,7 @@ pub struct Converted {
     pub resampling: Resampling,
     /// How positions were moved between datums; `None` where the system stayed.
     pub datum_shift: Option<String>,
-    /// What the user should know of joining and filling.
+    /// Notes for the user on joining and filling.
     pub notes: Vec<String>,
 }
 

@@ -18,10 +18,10 @@ use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Interpolation, Surface};
 
-/// What a dataset is opened with.
-#[derive(Clone, Debug, Default)]
+/// Options for opening a dataset.
+#[derive(Clone, Default)]
 pub struct DatasetOptions {
-    /// What the caller states about an elevation file.
+    /// Options for an elevation file.
     pub dem: DemOptions,
     /// Folders that a scene may read besides the parent of its own.
     pub allowed: Vec<PathBuf>,

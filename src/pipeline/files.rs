@@ -56,7 +56,7 @@ pub enum WriteFileCause {
     System(#[from] SystemError),
 }
 
-/// What the operating system reports about a file.
+/// An error of the operating system about a file.
 #[derive(Debug, thiserror::Error)]
 pub enum SystemError {
     /// No such file.

@@ -1,6 +1,5 @@
 //! Opening scattered points and breaklines for gridding.
 
-use std::iter::once;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -10,7 +9,7 @@ use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Feature, Geometry, VectorLayer};
+use crate::vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
 
@@ -34,7 +33,7 @@ pub enum OpenPointsError {
     NoFiles,
 }
 
-/// What is opened.
+/// The files of a survey.
 #[derive(Clone, Debug, Default)]
 pub struct PointSources<'a> {
     /// Files of points.
@@ -113,12 +112,11 @@ fn breaklines(feature: &Feature) -> Vec<Vec<DVec3>> {
         Geometry::Points(_) => Vec::new(),
         Geometry::Lines(lines) => lines.iter().map(|part| line(part)).collect(),
         Geometry::Polygons(polygons) => {
-            let rings = polygons.iter().flat_map(|polygon| once(&polygon.exterior).chain(&polygon.holes));
             let closed = |mut ring: Vec<DVec3>| {
                 ring.extend(ring.first().copied());
                 ring
             };
-            rings.map(|ring| closed(line(ring))).collect()
+            polygons.iter().flat_map(Polygon::rings).map(|ring| closed(line(ring))).collect()
         }
     };
     lines.into_iter().filter(|line| line.len() > 1 && line.iter().all(|vertex| vertex.is_finite())).collect()

@@ -26,11 +26,11 @@ impl Choice for RenderBackend {
     ];
 }
 
-/// An annotated picture and what it was made of.
+/// An annotated picture and its draw list.
 pub struct RenderedView {
     /// The picture, opaque.
     pub pixels: Pixels,
-    /// What was drawn.
+    /// The draw list.
     pub drawn: ViewDraw,
     /// Which annotations were placed and which were not.
     pub annotations: AnnotationReport,

@@ -40,7 +40,7 @@ pub struct PositionError;
 /// A CSV table that does not hold positions.
 pub type PositionsError = LineError<PositionFault>;
 
-/// What is wrong with a line of positions, which is quoted.
+/// Why a line, which is quoted, is not a position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PositionFault {
     /// A header does not name the columns of x and y.

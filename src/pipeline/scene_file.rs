@@ -39,8 +39,8 @@ pub fn open_scene(
     Ok(build(&document, &assets, progress)?)
 }
 
-/// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for heights.
-/// Files of features that leave the ground as it is are not read.
+/// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for
+/// heights. Files of features that leave the ground as it is are not read.
 ///
 /// # Errors
 /// See [`OpenSceneError`].

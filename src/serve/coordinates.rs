@@ -69,7 +69,8 @@ impl Coordinates {
         self.pair(text).ok_or_else(|| self.refusal(what, text))
     }
 
-    /// Parses positions: pairs with `|` between, or, for latitude and longitude, an encoded polyline, which has no comma.
+    /// Parses positions: pairs with `|` between, or, for latitude and longitude, an encoded polyline, which has no
+    /// comma.
     pub fn positions(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
         if self.axes == AxisOrder::LatLng && !text.contains(',') {
             let positions = polyline::decode(text, most)?;

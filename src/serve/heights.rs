@@ -1,8 +1,9 @@
 //! `/v1/DATASET`: heights at locations, compatible with the Open Topo Data API.
 //!
 //! All documented parameters of that API are supported: `locations` as `lat,lng|lat,lng` or as an encoded polyline,
-//! `interpolation`, `samples` along the path of the locations, `nodata_value`, `format=json|geojson`, and several datasets
-//! `a,b`, of which the first with a height is used. Unknown parameters are ignored, as in that API. Extensions:
+//! `interpolation`, `samples` along the path of the locations, `nodata_value`, `format=json|geojson`, and several
+//! datasets `a,b`, of which the first with a height is used. Unknown parameters are ignored, as in that API.
+//! Extensions:
 //!
 //! | | |
 //! |---|---|
@@ -29,8 +30,8 @@ use crate::serve::reply::{HttpError, JsonArray, OK, quoted};
 use crate::serve::samples::along_path;
 use crate::terrain::query::{Interpolation, Surface};
 
-/// The most points that the request's own thread queries, in some tens of microseconds. Moving a query to another thread
-/// takes two context switches, about as long.
+/// The most points that the request's own thread queries, in some tens of microseconds. Moving a query to another
+/// thread takes two context switches, about as long.
 const LIGHT_POINTS: usize = 1000;
 
 /// The approximate size of a result in JSON.
@@ -114,13 +115,8 @@ impl Query for HeightsQuery {
             HeightsFormat::GeoJson => self.serialized(
                 "application/geo+json",
                 &FeatureCollection {
-                    kind: "FeatureCollection",
                     features: JsonArray(results.map(|(found, &at)| HeightFeature {
-                        kind: "Feature",
-                        geometry: PointGeometry {
-                            kind: "Point",
-                            coordinates: self.geojson_position(found.answer, at),
-                        },
+                        geometry: PointGeometry { coordinates: self.geojson_position(found.answer, at) },
                         properties: FeatureProperties {
                             status: found.answer.status(),
                             dataset: dataset(found),
@@ -210,8 +206,8 @@ impl HeightsQuery {
         self.surface.unwrap_or_else(|| served.dataset.default_surface())
     }
 
-    /// For each position the height of the first dataset that has one; without any, `NoData` of the first dataset that covers
-    /// the position; without any, `Outside` of the first dataset.
+    /// For each position the height of the first dataset that has one; without any, `NoData` of the first dataset that
+    /// covers the position; without any, `Outside` of the first dataset.
     fn heights(&self, service: &Service) -> Result<Vec<FoundHeight>, HttpError> {
         let first = self.datasets[0];
         let answers = self.answers(service, first, &self.positions)?;
@@ -248,11 +244,8 @@ impl HeightsQuery {
     }
 
     /// A position without a height has two coordinates: GeoJSON has neither null nor NaN there.
-    fn geojson_position(&self, answer: Answer, DVec2 { x, y }: DVec2) -> GeoJsonPosition {
-        match self.elevation(answer) {
-            Some(height) => GeoJsonPosition::Space([x, y, height]),
-            None => GeoJsonPosition::Plane([x, y]),
-        }
+    fn geojson_position(&self, answer: Answer, DVec2 { x, y }: DVec2) -> Vec<f64> {
+        [x, y].into_iter().chain(self.elevation(answer)).collect()
     }
 
     fn serialized(&self, content_type: &'static str, body: &impl Serialize) -> Response {
@@ -291,32 +284,22 @@ struct HeightResult<'a> {
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type")]
 struct FeatureCollection<F> {
-    #[serde(rename = "type")]
-    kind: &'static str,
     features: F,
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type", rename = "Feature")]
 struct HeightFeature<'a> {
-    #[serde(rename = "type")]
-    kind: &'static str,
     geometry: PointGeometry,
     properties: FeatureProperties<'a>,
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type", rename = "Point")]
 struct PointGeometry {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    coordinates: GeoJsonPosition,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum GeoJsonPosition {
-    Plane([f64; 2]),
-    Space([f64; 3]),
+    coordinates: Vec<f64>,
 }
 
 #[derive(Serialize)]

@@ -1,8 +1,8 @@
 //! Limits the number of open connections and the time that an idle one stays open.
 //!
 //! A client that sends its request a byte a minute, or never reads the answer, must not hold a connection forever
-//! (*slowloris*). Neither `axum` nor `tower-http` has access to the bytes of a request's head or to the sockets, so this
-//! module wraps them. A connection is always in one of three phases:
+//! (*slowloris*). Neither `axum` nor `tower-http` has access to the bytes of a request's head or to the sockets, so
+//! this module wraps them. A connection is always in one of three phases:
 //!
 //! ```text
 //!          first byte              blank line                  first byte of the answer
@@ -10,9 +10,9 @@
 //! 60 s                   10 s                    no limit here
 //! ```
 //!
-//! A quiet connection waits for its next request, or its client is still reading the last answer; the time of both counts
-//! from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits its body and
-//! [`router`](crate::serve::router) its answer.
+//! A quiet connection waits for its next request, or its client is still reading the last answer; the time of both
+//! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits
+//! its body and [`router`](crate::serve::router) its answer.
 
 use std::io;
 use std::net::SocketAddr;

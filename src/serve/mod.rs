@@ -9,8 +9,9 @@
 //!         └─ reply, help, health                           writing
 //! ```
 //!
-//! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and its numbers read
-//! back to the same bits. Requests name no files and change no state: the datasets are fixed when the service starts.
+//! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and its numbers
+//! read back to the same bits. Requests name no files and change no state: the datasets are fixed when the service
+//! starts.
 
 mod coordinates;
 mod datasets;
@@ -89,8 +90,8 @@ fn viewsheds_at_once() -> usize {
     (cores() / 2).clamp(1, 4)
 }
 
-/// A runtime with a listening thread per core, and enough threads for heavy queries that one per core is left beside all
-/// viewsheds.
+/// A runtime with a listening thread per core, and enough threads for heavy queries that one per core is left beside
+/// all viewsheds.
 fn runtime() -> io::Result<Runtime> {
     Builder::new_multi_thread().enable_all().max_blocking_threads(cores() + viewsheds_at_once()).build()
 }

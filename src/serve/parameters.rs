@@ -1,7 +1,7 @@
 //! The parameters of a request: from its query and from a body that is a form or a JSON object.
 //!
-//! A JSON object has the same names as a form. Its values are strings, numbers, or lists of strings, which are joined with
-//! `|`. A later value replaces an earlier one, and a value of the body one of the query.
+//! A JSON object has the same names as a form. Its values are strings, numbers, or lists of strings, which are joined
+//! with `|`. A later value replaces an earlier one, and a value of the body one of the query.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -25,8 +25,8 @@ use crate::serve::reply::{HttpError, quoted};
 /// The most parameters: no query has as many.
 const MOST: usize = 32;
 
-/// The longest path and query of a request, in bytes. The HTTP library refuses 65,535 bytes without a reason; this lower
-/// limit allows a reply with one.
+/// The longest path and query of a request, in bytes. The HTTP library refuses 65,535 bytes without a reason; this
+/// lower limit allows a reply with one.
 const LONGEST_URL: usize = 60_000;
 
 const FORM: &str = "application/x-www-form-urlencoded";

@@ -88,8 +88,8 @@ impl Query for ProfileQuery {
     }
 }
 
-/// An upper bound of the stations of a profile along `line`: its vertices, and on every leg each column and row of posts that
-/// it passes and one diagonal for each cell between them.
+/// An upper bound of the stations of a profile along `line`: its vertices, and on every leg each column and row of
+/// posts that it passes and one diagonal for each cell between them.
 fn most_stations(lattice: &Lattice, line: &[DVec2]) -> f64 {
     let size = DVec2::new(f64::from(lattice.columns()), f64::from(lattice.rows()));
     let on_leg = |pair: &[DVec2]| {

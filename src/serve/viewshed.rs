@@ -8,9 +8,9 @@
 //! ```
 //!
 //! `runs` holds a string for each row of posts from the south, each row from the west: a count, and a letter for that
-//! many posts: `v` visible, `h` hidden, `n` no data, `b` beyond the range or out of the sector. The grid is the ground's,
-//! cut to the square around the range; `south_west` is the position of its first post. `format=summary` leaves `runs`
-//! out.
+//! many posts: `v` visible, `h` hidden, `n` no data, `b` beyond the range or out of the sector. The grid is the
+//! ground's, cut to the square around the range; `south_west` is the position of its first post. `format=summary`
+//! leaves `runs` out.
 
 use std::fmt::Write;
 

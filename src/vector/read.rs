@@ -146,7 +146,7 @@ enum VectorFormat {
     Unknown,
 }
 
-/// Returns the format that the content tells, else the extension of the name.
+/// Returns the format by the content, else by the extension of the name.
 fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match () {

@@ -14,7 +14,7 @@ use crate::vector::builder::Vertices;
 /// hundred thousands of polygons take.
 const MAX_STEPS: u64 = 1 << 31;
 
-/// What makes a ring a hole.
+/// The rule by which a ring is a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoleRule {
     /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). A shape without clockwise rings

@@ -5,7 +5,7 @@
 
 use std::str::FromStr;
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};
@@ -84,7 +84,7 @@ fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
     Some((sample, order.or((sample.bytes() == 1).then_some(ByteOrder::Little))?))
 }
 
-/// Heights are the samples, or what a stated scale and offset make of them.
+/// Heights are the samples, times the stated scale plus the stated offset.
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let raw = file.hints.raw.ok_or(DemErrorKind::NoRawLayout)?;
     let (scale, offset) = (file.height_scale()?.unwrap_or(1.0), file.height_offset()?);

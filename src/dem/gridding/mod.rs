@@ -114,10 +114,11 @@ pub enum GridError {
     Collinear(usize),
 }
 
-/// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and datum.
+/// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and
+/// datum.
 ///
-/// Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods take points along them, at most half
-/// a cell apart.
+/// Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods take points along them, at most
+/// half a cell apart.
 ///
 /// # Errors
 /// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.

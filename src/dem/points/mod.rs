@@ -1,7 +1,7 @@
 //! Scattered points of known height, and their readers: text ([`table`]), LAS and LAZ ([`las`]).
 //!
-//! A cloud is what a survey measures: points in no order, lines along which the ground breaks, a system for their x and y
-//! and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
+//! A cloud is the result of a survey: points in no order, lines along which the ground breaks, a system for their x and
+//! y and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
 
 #[cfg(feature = "las")]
 pub mod las;
@@ -34,7 +34,7 @@ pub struct PointCloud {
     pub meters_per_z: f64,
     /// The vertical datum in the file's words; `None` where it is not stated.
     pub vertical_datum: Option<String>,
-    /// What was left out or assumed, for the user.
+    /// Notes for the user on omissions and assumptions.
     pub notes: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ impl PointCloud {
     }
 }
 
-/// What the caller states of a file of points beyond its bytes.
+/// Options for reading a file of points.
 #[derive(Clone, Debug, Default)]
 pub struct PointHints<'a> {
     /// The system of x and y, in place of the file's.

@@ -14,7 +14,7 @@
 //! the plain sum of the quarters before it, which takes no chain: so four shorter chains run side by side and yield
 //! samples as they go.
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::SampleFloat;
 use crate::dem::sample_type::SampleType;
@@ -102,14 +102,10 @@ trait SampleWord: Copy + Default {
 }
 
 macro_rules! words {
-    ($($word:ty: $bytes:literal),*) => {$(
+    ($($word:ident: $bytes:literal),*) => {$(
         impl SampleWord for $word {
             fn from_bytes(bytes: &[u8], order: ByteOrder) -> Self {
-                let bytes = bytes.try_into().unwrap_or_default();
-                match order {
-                    ByteOrder::Little => Self::from_le_bytes(bytes),
-                    ByteOrder::Big => Self::from_be_bytes(bytes),
-                }
+                order.$word(bytes.try_into().unwrap_or_default())
             }
 
             fn plus(self, other: Self) -> Self {

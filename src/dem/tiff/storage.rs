@@ -16,14 +16,14 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::limits::SizeClaim;
 use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::windows::RasterWindow;
 
-/// What to do about a packing that is not read.
+/// The remedy for an unsupported compression.
 pub(crate) const TO_DEFLATE: &str =
     "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
 

@@ -1,4 +1,4 @@
-//! Rasters in whatever system their files use, to other systems and cells, with north up.
+//! Warps rasters to other coordinate systems and cells, with north up.
 
 mod crs_transform;
 mod data_extent;
@@ -72,12 +72,12 @@ pub enum WarpError {
     Crs(#[from] CrsError),
 }
 
-/// The raster in meters, north up, with elevations in meters; borrowed where it is so already.
+/// The raster in a metric system, north up, with elevations in meters; borrowed where nothing changes.
 ///
 /// A raster in meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
 /// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or
-/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the grid
-/// lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
+/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the
+/// grid lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
 ///
 /// A raster without a system is taken to be in `target`, or in plain meters.
 ///
@@ -132,7 +132,7 @@ pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     }
 }
 
-/// Checks that a raster states where it lies, and in what.
+/// Checks that a raster has a georeference and, where it looks like degrees, a coordinate system.
 fn check_source(raster: &Raster) -> Result<(), WarpError> {
     if !raster.georeferenced {
         return Err(WarpError::NoPlace);

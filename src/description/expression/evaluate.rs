@@ -1,7 +1,7 @@
 //! Evaluates an expression for a feature.
 //!
-//! Each node is evaluated with a predicate for usable values, by which `??` decides: in `width ?? 6` a width of `"narrow"`
-//! is not a number, so the result is 6, whereas in `name ?? ref` any text is usable.
+//! Each node is evaluated with a predicate for usable values, by which `??` decides: in `width ?? 6` a width of
+//! `"narrow"` is not a number, so the result is 6, whereas in `name ?? ref` any text is usable.
 
 use std::cmp::Ordering;
 
@@ -27,7 +27,8 @@ fn numeric(value: &Scalar) -> bool {
 }
 
 impl Evaluation<'_> {
-    /// The value of `node`. Only the operands of `??` are tested with `usable`, within branches of `if` and `match` too.
+    /// The value of `node`. Only the operands of `??` are tested with `usable`, within branches of `if` and `match`
+    /// too.
     pub fn value(&self, node: &ExpressionNode, usable: Usable<'_>) -> Option<Scalar> {
         match node {
             ExpressionNode::Literal(value) => Some(value.clone()),

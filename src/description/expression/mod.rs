@@ -44,13 +44,13 @@
 //! where one is needed, one of the key's words where the key takes words.
 //!
 //! **Truth.** A value *holds* where it is true, a number other than 0, or a text other than ``, `no`, `false` and `0`; a
-//! missing value does not hold. `and`, `or`, `not`, `if` and `where` test whether a value holds, so `not bridge` is true of
-//! a road without the property, and `lanes < 2` does not hold for a road without `lanes`.
+//! missing value does not hold. `and`, `or`, `not`, `if` and `where` test whether a value holds, so `not bridge` is
+//! true of a road without the property, and `lanes < 2` does not hold for a road without `lanes`.
 //!
 //! **Texts as numbers.** Where a number is needed, or the other operand of a comparison is one, a text converts to a
-//! number, with a unit of meters (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`). Two texts are equal where their letters are,
-//! and are ordered as numbers where both convert, else by letters. `true` equals a value that holds, `false` one that does
-//! not.
+//! number, with a unit of meters (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`). Two texts are equal where their letters
+//! are, and are ordered as numbers where both convert, else by letters. `true` equals a value that holds, `false` one
+//! that does not.
 //!
 //! Parsing is bounded by [`MAX_TEXT_BYTES`] and [`MAX_DEPTH`]; evaluation takes time in proportion to the text.
 
@@ -103,8 +103,8 @@ impl Expression {
         Self::parse_among(text, &[])
     }
 
-    /// As [`Self::parse`], for an expression whose result is one of `words`. A word of the list without quotes is an error,
-    /// and so is a literal result that is not in the list.
+    /// As [`Self::parse`], for an expression whose result is one of `words`. A word of the list without quotes is an
+    /// error, and so is a literal result that is not in the list.
     ///
     /// # Errors
     /// See [`ExpressionError`].
@@ -112,8 +112,8 @@ impl Expression {
         parser::parse(text, words).map(|root| Self { root })
     }
 
-    /// Whether `text` can only be an expression and not a word: it contains other characters than letters, digits, `_` and
-    /// `-`. An unknown word is thus reported as misspelled and not read as a property.
+    /// Whether `text` can only be an expression and not a word: it contains other characters than letters, digits, `_`
+    /// and `-`. An unknown word is thus reported as misspelled and not read as a property.
     pub fn computes(text: &str) -> bool {
         !text.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
     }

@@ -232,7 +232,8 @@ fn the_properties_that_it_looks_at_are_known() {
     assert_eq!(expression.properties(), ["a b", "lanes", "x", "y"]);
 }
 
-/// How tightly comparisons and negations bind, as operators by their row in [`OPERATORS`], and all that is taken as one.
+/// How tightly comparisons and negations bind, as operators by their row in [`OPERATORS`], and all that is taken as
+/// one.
 const NEGATION: usize = 2;
 const COMPARISON: usize = 3;
 const NEGATIVE: usize = 7;

@@ -1,8 +1,8 @@
 //! A JSON Schema of the scene file, for editors that complete and check while one writes.
 //!
-//! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022) and
-//! uses only what the common TOML editors know. It checks neither rules between keys nor the syntax of
-//! expressions; `sandtable check` does.
+//! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022)
+//! and uses only what the common TOML editors know. It checks neither rules between keys nor the syntax of expressions;
+//! `sandtable check` does.
 
 use serde_json::{Map, Value, json};
 

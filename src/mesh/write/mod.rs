@@ -56,7 +56,7 @@ impl From<MeshWriteError> for io::Error {
     }
 }
 
-/// What a file states about its content.
+/// Remarks about the content of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remarks {
     lines: Vec<String>,
@@ -64,8 +64,8 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no line
-    /// can end a comment.
+    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no
+    /// line can end a comment.
     pub fn new(lines: &[String], short: &str) -> Self {
         let printable = |line: &str| line.replace(char::is_control, "?");
         Self { lines: lines.iter().map(|line| printable(line)).collect(), short: printable(short) }

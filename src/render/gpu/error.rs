@@ -31,7 +31,7 @@ pub enum GpuError {
     Driver { doing: &'static str, adapter: String, source: Arc<DriverError> },
 }
 
-/// What a driver reports.
+/// An error of a driver.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum DriverError {

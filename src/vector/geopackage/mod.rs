@@ -22,9 +22,9 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
 
+use crate::bytes::ByteCursor;
 use crate::geom::crs::Crs;
 use crate::vector::builder::{FeatureParts, LayerBuilder};
-use crate::vector::cursor::ByteCursor;
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::feature::{Properties, VectorLayer};
 use crate::vector::geopackage::wkb::WkbError;

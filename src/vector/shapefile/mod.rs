@@ -20,9 +20,9 @@ mod dbf;
 
 use glam::DVec3;
 
+use crate::bytes::ByteCursor;
 use crate::geom::crs::Crs;
 use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::cursor::ByteCursor;
 use crate::vector::encoding::TextEncoding;
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::feature::{Properties, VectorLayer};
