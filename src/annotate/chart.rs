@@ -281,13 +281,14 @@ pub enum LabelSide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::chart_ground::{ChartGround, ChartPoint};
+    use crate::annotate::chart_ground::ChartPoint;
     use crate::annotate::chart_profile::{ProfileChart, paint};
+    use crate::dem::answer::Answer;
 
     fn chart(heights: &[f64]) -> ProfileChart {
         let point = |(index, &height): (usize, &f64)| ChartPoint {
             along_m: index as f64 * 100.0,
-            ground: if height.is_nan() { ChartGround::NoData } else { ChartGround::Height(height) },
+            ground: if height.is_nan() { Answer::NoData } else { Answer::Height(height) },
         };
         let text = ChartText { title: "Profile".into(), ..ChartText::default() };
         ProfileChart { text, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }

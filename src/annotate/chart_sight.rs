@@ -4,9 +4,10 @@
 use glam::Vec2;
 
 use crate::annotate::chart::{Chart, ChartText, LabelSide};
-use crate::annotate::chart_ground::{ChartGround, ChartPoint, fill, hatch_gaps, height_range, rim};
+use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::annotate::pixel_box::PixelSegment;
 use crate::annotate::sheet::{INK, WATER_INK};
+use crate::dem::answer::Answer;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -83,7 +84,7 @@ fn between(points: &[ChartPoint], from_m: f64, to_m: f64) -> Vec<ChartPoint> {
         let (Some(low), Some(high)) = (a.ground.height_m(), b.ground.height_m()) else { continue };
         let at = |along_m: f64| {
             let share = (along_m - a.along_m) / (b.along_m - a.along_m);
-            ChartPoint { along_m, ground: ChartGround::Height(low + (high - low) * share) }
+            ChartPoint { along_m, ground: Answer::Height(low + (high - low) * share) }
         };
         part.extend([at(a.along_m.max(from_m)), at(b.along_m.min(to_m))]);
     }

@@ -1,4 +1,4 @@
-//! Text made to fit: lines cleaned of what cannot be printed, cut with an ellipsis, broken between words.
+//! Fits text: removes characters that cannot be printed, cuts lines with an ellipsis, breaks lines between words.
 
 use crate::annotate::composer::Composer;
 use crate::annotate::text::{TextStyle, TypesetLine};

@@ -1,4 +1,4 @@
-//! Where labels go: a pure function from boxes to choices.
+//! Placement of labels: a pure function from boxes to choices.
 //!
 //! Labels come in order of importance, each with candidate positions in order of preference. One after the other takes
 //! the first candidate that is free. Greedy placement by priority is what a reader expects (a minor label never

@@ -1,4 +1,4 @@
-//! The candidate positions of one label around its place, the best first.
+//! The candidate positions of a label around its place, the best first.
 //!
 //! ```text
 //!        Name              Name              Name

@@ -1,6 +1,6 @@
 //! Zip archives, gzip files and zlib streams, unpacked in memory within limits.
 //!
-//! The `zip` and `flate2` crates decode. This module bounds what they spend: the members of an archive are counted
+//! The `zip` and `flate2` crates decode. This module bounds their work: the members of an archive are counted
 //! before its directory is read, and no content grows past the caller's limit or past what deflate can make of the
 //! packed bytes. All limits stand here.
 

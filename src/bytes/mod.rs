@@ -1,4 +1,4 @@
-//! Numbers in binary files: at fixed places, and one after the other, never past the end.
+//! Reads numbers of binary files, at fixed places and in sequence, never past the end.
 
 /// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

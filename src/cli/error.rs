@@ -1,4 +1,4 @@
-//! How a command fails: the message on standard error and the exit code.
+//! Errors of commands: the message on standard error and the exit code.
 
 use std::error::Error;
 use std::fmt::Display;

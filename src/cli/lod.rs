@@ -13,7 +13,7 @@ use crate::cli::options::HeightArguments;
 use crate::cli::output::{aligned, print, print_lines, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, number};
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::dem;
 use crate::pipeline::error::FileError;
 use crate::pipeline::ground::MetricGround;

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::lod::method::{
     CriterionKind, Emit, IndexEmitter, LodMethod, Refine, Refiner, SphereRule,
 };

@@ -9,7 +9,7 @@ use crate::annotate::nice;
 use crate::cli::error::CliError;
 use crate::cli::options::{ChartArguments, DatasetArguments};
 use crate::cli::output::{print, print_lines, row};
-use crate::cli::values::{RaisedPosition, number};
+use crate::cli::values::{RaisedPosition, number, raised_position};
 use crate::pipeline::files;
 use crate::pipeline::positions::format_position;
 use crate::pipeline::sight::{GroundedEnd, SightQuery, SightReport};
@@ -26,10 +26,10 @@ pub struct LosArguments {
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The position of the observer, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub from: RaisedPosition,
     /// The position of the target, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub to: RaisedPosition,
     /// Meters of the observer's eye above the ground, where --from states none
     #[arg(long, value_name = "METERS", default_value = "2", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]

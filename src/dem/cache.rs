@@ -1,4 +1,4 @@
-//! A cache of bounded weight: the least recently used value goes first.
+//! A cache of bounded weight that evicts the least recently used value first.
 //!
 //! Two ordered maps, by key and by the time of the last use: nothing depends on hashing, and the order of evictions is
 //! a function of the order of uses alone. Room is made before a value is put in, so that the bound is never exceeded.

@@ -29,12 +29,7 @@ pub enum CellGridError {
     #[error(
         "{columns} x {rows} cells are more than the {MOST_SAMPLES} of a raster; a cell size of {enough:.3} is enough"
     )]
-    TooMany {
-        columns: f64,
-        /// Rows.
-        rows: f64,
-        enough: f64,
-    },
+    TooMany { columns: f64, rows: f64, enough: f64 },
 }
 
 impl CellGrid {

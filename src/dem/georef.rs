@@ -1,4 +1,4 @@
-//! Places of rasters: world files, stated cells, projection files.
+//! Georeferences of rasters: world files, stated cells, projection files.
 
 use glam::{DAffine2, DMat2, DVec2};
 

@@ -1,4 +1,4 @@
-//! Several tiles of one raster, joined.
+//! Joins the tiles of one raster.
 //!
 //! Tiles of one raster have one coordinate system, one vertical unit and one grid: their cells are alike and their
 //! samples coincide, within a thousandth of a cell. Other tiles are refused by name, never resampled.

@@ -1,4 +1,4 @@
-//! Rasters to the bytes of files.
+//! Writes rasters to the bytes of files.
 //!
 //! A raster that a format cannot hold is refused with a remedy, except where the format always rounds (an SRTM tile has
 //! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where

@@ -60,9 +60,9 @@ pub enum KeyKind {
     /// An expression over a feature's properties.
     Expression,
     /// One of some words.
-    Word(&'static [WordDeclaration]),
+    Word(fn() -> Vec<WordDeclaration>),
     /// One of some words, or an expression that gives one for each feature.
-    FeatureWord(&'static [WordDeclaration]),
+    FeatureWord(fn() -> Vec<WordDeclaration>),
     /// A color.
     Color,
     /// A coordinate pair.

@@ -1,4 +1,4 @@
-//! The scene file's tables, but for those of features ([`crate::description::features`]).
+//! The scene file's tables, except those of features ([`crate::description::features`]).
 //!
 //! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from
 //! north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that states

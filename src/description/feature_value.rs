@@ -7,7 +7,7 @@ use crate::description::bounds::Bounds;
 use crate::description::expression::{Expression, PropertyLookup};
 use crate::description::scalar::Scalar;
 use crate::description::stated::Stated;
-use crate::description::words::Word;
+use crate::message::choice::Choice;
 
 /// A type that the result of an expression converts to.
 pub trait FromScalar: Clone + Debug + PartialEq {
@@ -27,7 +27,7 @@ impl FromScalar for f64 {
     }
 }
 
-impl<W: Word> FromScalar for W {
+impl<W: Choice> FromScalar for W {
     type Limits = ();
 
     fn from_scalar(scalar: &Scalar, (): ()) -> Option<Self> {

@@ -15,8 +15,9 @@ use crate::description::features::FeatureSource;
 use crate::description::selection::Selection;
 use crate::description::table::Table;
 use crate::description::value::KeyValue;
-use crate::description::words::Word;
+use crate::description::words::declarations;
 use crate::geom::crs::Crs;
+use crate::message::choice::Choice;
 
 /// The type of a key: its declaration, and the function that reads a value of type `V`.
 pub(super) struct Key<V, A = ()> {
@@ -81,9 +82,9 @@ keys! {
     /// An expression over a feature's properties.
     expression() -> Expression = KeyKind::Expression;
     /// One of the words of `W`.
-    word<W: Word>() -> W = KeyKind::Word(W::DECLARATIONS);
+    word<W: Choice>() -> W = KeyKind::Word(declarations::<W>);
     /// One of the words of `W`, or an expression that gives one for each feature.
-    feature_word<W: Word>() -> FeatureValue<W> = KeyKind::FeatureWord(W::DECLARATIONS);
+    feature_word<W: Choice>() -> FeatureValue<W> = KeyKind::FeatureWord(declarations::<W>);
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     color() -> Color = KeyKind::Color;
     /// A coordinate pair.

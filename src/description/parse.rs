@@ -1,4 +1,4 @@
-//! Text to [`Document`], with every error in the file found in one run.
+//! Parses a scene file to a [`Document`] and reports all of its errors at once.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -13,8 +13,8 @@ use crate::description::expression::{Expression, ExpressionError};
 use crate::description::feature_value::FeatureValue;
 use crate::description::include::joined;
 use crate::description::reader::{DecodeContext, TableName};
-use crate::description::words::Word;
 use crate::geom::crs::Crs;
+use crate::message::choice::Choice;
 use crate::message::suggest::{quoted, remedy};
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
@@ -71,8 +71,8 @@ fn seen_from(folder: &str, name: String) -> String {
     if folder.is_empty() { name } else { joined(folder, &name) }
 }
 
-fn words<W: Word>() -> Vec<&'static str> {
-    W::DECLARATIONS.iter().map(|declared| declared.word).collect()
+fn words<W: Choice>() -> Vec<&'static str> {
+    W::CHOICES.iter().map(|choice| choice.word).collect()
 }
 
 /// The methods that read the types of [`key`](crate::description::key) have the names of these types.
@@ -188,7 +188,7 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn feature_word<W: Word>(mut self) -> Option<FeatureValue<W>> {
+    pub fn feature_word<W: Choice>(mut self) -> Option<FeatureValue<W>> {
         match self.value.get_ref() {
             DeValue::String(text) if W::from_word(text).is_none() && Expression::computes(text) => {
                 let expression = self.expression_among(&words::<W>())?;
@@ -323,7 +323,7 @@ impl<'t> KeyValue<'_, 't> {
         self.wrong(format!("the scene's coordinate system must be metric, but {found}"), CRS_HELP)
     }
 
-    pub fn word<W: Word>(mut self) -> Option<W> {
+    pub fn word<W: Choice>(mut self) -> Option<W> {
         let DeValue::String(text) = self.value.get_ref() else {
             return self.wrong_type("a word in quotes", remedy("", &words::<W>(), "it may be"));
         };

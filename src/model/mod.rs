@@ -1,4 +1,4 @@
-//! Model files (3DS, OBJ with MTL, glTF and GLB) to one [`Model`], Z up; no file system.
+//! Reads model files (3DS, OBJ with MTL, glTF and GLB) to a [`Model`], Z up, without a file system.
 //!
 //! ```text
 //! bytes ── read ──┬─ three_ds ─┐

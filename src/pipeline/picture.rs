@@ -1,9 +1,9 @@
-//! From a view of a scene to an annotated picture in memory: list, draw, annotate.
+//! Renders a view of a scene to an annotated picture in memory.
 
 use crate::annotate::paint::annotate;
 use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
-use crate::pipeline::choice::{Choice, ChoiceWord, word};
+use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};

@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use crate::annotate::chart::ChartText;
-use crate::annotate::chart_ground::{ChartGround, ChartPoint};
+use crate::annotate::chart_ground::ChartPoint;
 use crate::annotate::chart_profile::ProfileChart;
 use crate::annotate::nice;
 use crate::dem::answer::Answer;
@@ -126,9 +126,8 @@ pub fn chart_points(stations: &[ProfileStation], height_m: impl Fn(f64, f64) -> 
     let point = |station: &ProfileStation| ChartPoint {
         along_m: station.station_m,
         ground: match station.ground {
-            Answer::Height(height) => ChartGround::Height(height_m(station.station_m, height)),
-            Answer::NoData => ChartGround::NoData,
-            Answer::Outside => ChartGround::Outside,
+            Answer::Height(height) => Answer::Height(height_m(station.station_m, height)),
+            missing => missing,
         },
     };
     stations.iter().map(point).collect()

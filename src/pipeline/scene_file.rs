@@ -1,4 +1,4 @@
-//! From a scene file to a scene.
+//! Opens scene files.
 
 use std::path::{Path, PathBuf};
 

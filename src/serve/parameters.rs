@@ -17,7 +17,7 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::service::ServiceLimits;
 use crate::serve::query::Service;
 use crate::serve::reply::{HttpError, quoted};

@@ -1,4 +1,4 @@
-//! Reads a vector file, whose content tells its format.
+//! Reads vector files; the format follows from the content.
 //!
 //! | format | layers | coordinate system |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! File formats of elevation: a file each, declared in one list.
+//! File formats of elevation, one file each, declared in one list.
 //!
 //! A new format is a file with a `FORMAT` and its line in [`FORMATS`]: recognition, reading, writing, the extensions of
 //! tiles in folders and archives, and the formats that messages list all come from that declaration.

@@ -1,4 +1,4 @@
-//! The header of a LAS file (ASPRS LAS 1.0 to 1.4 R15), every count and offset in it held against the file.
+//! The header of a LAS file (ASPRS LAS 1.0 to 1.4 R15), with every count and offset checked against the file.
 //!
 //! The `las` crate reads the header's fields, but trusts them: its reader allocates what a forged count states and ends
 //! the process. So its other parts are not used; points and records are slices of the file.

@@ -1,4 +1,5 @@
-//! One unpacked row of a TIFF block to elevations: the predictor undone, the first band taken, no-data made NaN.
+//! Decodes one unpacked row of a TIFF block to elevations: undoes the predictor, takes the first band, turns no data to
+//! NaN.
 //!
 //! Two passes over a row, both short enough to stay in the processor's nearest memory: bytes to words of a sample's
 //! width, then words to elevations. The first is a chain of sums, the second a loop without a branch.

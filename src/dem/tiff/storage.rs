@@ -1,4 +1,4 @@
-//! How the first band of a TIFF image is stored: its tags, held against what the file can hold.
+//! The storage of a TIFF image's first band: its tags, checked against the size of the file.
 //!
 //! Everything that a header can claim is checked here, before anything is allocated for it: the size of the image, of
 //! one tile, and the number of blocks.

@@ -1,4 +1,4 @@
-//! Packed blocks of a TIFF to the bytes of their rows.
+//! Decompresses the blocks of a TIFF to the bytes of their rows.
 //!
 //! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes
 //! values by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that

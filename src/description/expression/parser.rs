@@ -1,4 +1,4 @@
-//! Text to tree, by recursive descent: one function for each line of the grammar.
+//! Parses expressions by recursive descent, with one function for each line of the grammar.
 
 use std::iter;
 use std::ops::Range;

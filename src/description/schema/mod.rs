@@ -1,4 +1,4 @@
-//! A JSON Schema of the scene file, for editors that complete and check while one writes.
+//! A JSON Schema of the scene file, for editors that complete and check text while it is written.
 //!
 //! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022)
 //! and uses only what the common TOML editors know. It checks neither rules between keys nor the syntax of expressions;
@@ -12,7 +12,7 @@ use crate::description::document::Document;
 use crate::description::expression::MAX_TEXT_BYTES;
 use crate::description::styles::STYLE_KEY;
 use crate::description::value::{COORDINATES, MAX_LIST, MAX_POINTS, MAX_TEXT};
-use crate::description::words::{RampName, Word, WordDeclaration};
+use crate::description::words::{RampName, WordDeclaration, declarations};
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
@@ -56,7 +56,7 @@ fn property(key: &KeyDeclaration) -> Value {
 fn description(key: &KeyDeclaration) -> String {
     let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
     let words = match key.kind {
-        KeyKind::Word(words) | KeyKind::FeatureWord(words) => meanings(words),
+        KeyKind::Word(words) | KeyKind::FeatureWord(words) => meanings(&words()),
         _ => String::new(),
     };
     let presence = match key.presence {
@@ -164,8 +164,8 @@ fn shape(key: &KeyDeclaration) -> Value {
             json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": MAX_LIST })
         }
         KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
-        KeyKind::Word(words) => one_of(words),
-        KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(words), reference("computed")] }),
+        KeyKind::Word(words) => one_of(&words()),
+        KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(&words()), reference("computed")] }),
         KeyKind::Color => json!({ "allOf": [reference("color")] }),
         KeyKind::Point => json!({ "allOf": [reference("point")] }),
         KeyKind::Points(least) => list(reference("point"), least, MAX_POINTS),
@@ -174,7 +174,7 @@ fn shape(key: &KeyDeclaration) -> Value {
         KeyKind::Ramp => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [one_of(RampName::DECLARATIONS), list(stop, 2, MAX_LIST)] })
+            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, MAX_LIST)] })
         }
         KeyKind::Selection => {
             let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, MAX_LIST)] });

@@ -1,4 +1,4 @@
-//! Bytes to a document whose indices are all in range.
+//! Parses the bytes of a file to a document whose indices are all in range.
 
 use ::gltf::Document;
 use ::gltf::json::validation::{Checked, Error, Validate};

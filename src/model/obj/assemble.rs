@@ -1,4 +1,4 @@
-//! A parsed OBJ file and its libraries to a [`Model`].
+//! Makes a [`Model`] from a parsed OBJ file and its libraries.
 
 use std::collections::{BTreeMap, BTreeSet};
 

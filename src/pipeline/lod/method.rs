@@ -5,7 +5,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::{Choice, ChoiceWord, word};
+use crate::message::choice::{Choice, ChoiceWord, word};
 
 /// What emits triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

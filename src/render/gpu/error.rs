@@ -1,4 +1,4 @@
-//! Why the GPU renderer gives no picture.
+//! Errors of the GPU renderer.
 
 use std::sync::Arc;
 
