@@ -96,7 +96,7 @@ impl<'a> ZipReader<'a> {
             return Err(ArchiveError::TooManyMembers);
         }
         let archive = ZipArchive::new(Cursor::new(bytes))?;
-        // Lossy: most writers store UTF-8 and leave out the flag that says so.
+        // Lossy: most writers store UTF-8 without setting its flag.
         let names = archive.file_names_raw().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
         Ok(Self { archive, names, limit })
     }

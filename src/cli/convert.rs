@@ -94,8 +94,8 @@ fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
     CliError::input(format!("{}: {}{remedy}", file.display(), error_text(error)))
 }
 
-/// The error of elevation that does not state its place, with the arguments that state it. `crs_option` is the one that
-/// states its coordinate system.
+/// The error of elevation without a place, with the options that state it. `crs_option` is the option of the
+/// coordinate system.
 pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError {
     let reason = match error {
         WarpError::LooksLikeDegrees { min_x, max_x, min_y, max_y } => format!(

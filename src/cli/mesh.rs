@@ -77,7 +77,7 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     print_lines(&summary(arguments, &lattice, &crs, &bounded))
 }
 
-/// That the posts are not those of the file, where they are not.
+/// A note that the elevations were resampled; `None` if the posts are the file's.
 fn resampled(raster: &Raster, lattice: &Lattice, crs: &Crs) -> Option<String> {
     let from = raster.crs.as_ref().map_or("no system", |crs| crs.name());
     let axes = raster.map_from_grid.matrix2;

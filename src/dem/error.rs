@@ -12,7 +12,7 @@ use crate::geom::crs::CrsError;
 pub struct DemError {
     /// The file, as the caller named it.
     pub name: String,
-    /// What was wrong.
+    /// The fault.
     #[source]
     pub kind: DemErrorKind,
 }
@@ -21,7 +21,7 @@ pub struct DemError {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum DemErrorKind {
-    /// Neither the content nor the extension belongs to a known format; the text says what the file seems to be.
+    /// Neither the content nor the extension belongs to a known format; the text names the kind of file it seems to be.
     #[error(
         "{}; elevation is read from {}; convert it, for example with: gdal_translate FILE out.tif",
         .0, formats::list()

@@ -54,7 +54,7 @@ impl Mosaic {
     }
 }
 
-/// Why tiles are not those of one raster.
+/// The reason why tiles do not form one raster.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum MosaicError {

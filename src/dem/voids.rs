@@ -143,7 +143,7 @@ fn weights(raster: &Raster) -> DVec2 {
 
 /// The heights over one void and of its rim.
 struct Membrane {
-    /// Those of the void's samples, then those of the rim, which are fixed.
+    /// First the void's samples, then the rim's, which are fixed.
     heights: Vec<f64>,
     /// Per sample of the void: the indices of its west, east, north and south neighbors in `heights`.
     around: Vec<[u32; 4]>,

@@ -155,7 +155,7 @@ impl fmt::Display for Diagnostics {
 
 impl Error for Diagnostics {}
 
-/// Collects errors while reading goes on.
+/// Collects errors, so that reading continues after the first.
 #[derive(Debug)]
 pub(super) struct DiagnosticSink {
     source: Arc<SourceText>,

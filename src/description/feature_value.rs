@@ -11,7 +11,7 @@ use crate::message::choice::Choice;
 
 /// A type that the result of an expression converts to.
 pub trait FromScalar: Clone + Debug + PartialEq {
-    /// What bounds the values of a key.
+    /// The bounds of a key's values.
     type Limits: Copy + Debug + PartialEq;
 
     /// Converts `scalar`; `None` where it does not convert or is not within `limits`.

@@ -193,7 +193,7 @@ pub(super) fn joined(folder: &str, name: &str) -> String {
     format!("{root}{}", parts.join("/"))
 }
 
-/// Merges the table of a file with those of the files that it includes; takes them out of `tables`, one per file.
+/// Merges the table of a file with the tables of the files that it includes; takes each out of `tables`.
 pub(super) fn merged<'i>(file: usize, tables: &mut [DeTable<'i>], includes: &[Vec<usize>]) -> DeTable<'i> {
     let mut before = DeTable::new();
     for &included in &includes[file] {

@@ -23,7 +23,7 @@ use crate::message::suggest::{listed, nearest, quoted};
 /// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
 const MAX_TABLES: usize = 10_000;
 
-/// What the readers of all tables share.
+/// The state that the readers of all tables share.
 pub(super) struct DecodeContext<'t> {
     pub report: DiagnosticSink,
     pub styles: Styles<'t>,

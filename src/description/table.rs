@@ -73,7 +73,7 @@ impl<T: FromScalar> DefaultedField<FeatureValue<T>> for DefaultedValue<T> {
     }
 }
 
-/// Declares tables; the head of this file says how.
+/// Declares tables; see the head of this file.
 macro_rules! table {
     ($(
         $(#[$attribute:meta])*

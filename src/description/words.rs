@@ -10,7 +10,7 @@ use crate::message::choice::{Choice, ChoiceWord, word};
 pub struct WordDeclaration {
     /// The word as a scene file writes it.
     pub word: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
 }
 

@@ -64,14 +64,14 @@ pub enum QueryError {
     Datum { dataset: String, source: CrsError },
     #[error("{what} {},{}", at.x, at.y)]
     Position {
-        /// What the position is, such as `observer`.
+        /// The role of the position, such as `observer`.
         what: String,
         at: DVec2,
         source: CrsError,
     },
     #[error("{what} {},{}: {}", at.x, at.y, absence(*answer))]
     NoGround {
-        /// What the position is, such as `observer`.
+        /// The role of the position, such as `observer`.
         what: String,
         at: DVec2,
         answer: Answer,

@@ -11,7 +11,7 @@ use crate::pipeline::files::display_name;
 pub struct FileError<E: Error + 'static> {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// Its fault.
     #[source]
     pub cause: E,
 }

@@ -180,7 +180,7 @@ pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), Wri
 /// [`check_output`] for a picture, whose name must end in `.png` or have no extension.
 ///
 /// # Errors
-/// As [`check_output`]; or the name is that of another format.
+/// As [`check_output`], or if the extension is not `png`.
 pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
     check_output(path, inputs)?;
     match path.extension() {

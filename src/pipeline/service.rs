@@ -81,7 +81,7 @@ pub struct NamedFile {
 pub struct DatasetNameError {
     /// The name.
     name: String,
-    /// What is wrong with it.
+    /// Its fault.
     fault: &'static str,
     /// The dataset's file.
     path: PathBuf,

@@ -38,7 +38,7 @@ pub(super) struct LasHeader {
 
 pub(super) struct Record<'a> {
     pub owner: &'a [u8],
-    /// Its number among those of the same owner.
+    /// Its number among the records of the same owner.
     pub id: u16,
     pub content: &'a [u8],
 }

@@ -18,7 +18,7 @@ use crate::dem::windows::RasterWindow;
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;
 
-/// The bytes of the mask that GDAL keeps in a file of its own.
+/// The bytes of the `.msk` file in which GDAL keeps a mask.
 pub(crate) fn file_beside(file: &DemFile) -> Option<Vec<u8>> {
     (file.hints.companions)(&format!("{}.msk", file.name))
 }

@@ -84,7 +84,7 @@ pub struct Expression {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}{}", column.map_or_else(String::new, |column| format!(" at column {column}")))]
 pub struct ExpressionError {
-    /// What is wrong.
+    /// The fault.
     pub message: String,
     /// The remedy.
     pub help: String,

@@ -1,4 +1,4 @@
-//! What expressions mean, what is said of wrong ones, and that no text at all breaks the reader.
+//! Tests: values of expressions, messages of wrong ones, and that no text makes the reader panic.
 
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 

@@ -28,7 +28,7 @@ pub enum StationFileError {
     TooFew { name: String, found: usize },
 }
 
-/// What is wrong with a station.
+/// A fault of a station.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum StationFault {

@@ -45,7 +45,7 @@ pub(super) enum FeatureSelection {
 /// A table that may be written.
 pub(super) struct TableRule {
     pub table: &'static str,
-    /// What its features are.
+    /// The kind of its features.
     pub what: &'static str,
     /// Their shape, as [`Geometry::kind`] names it.
     pub shape: &'static str,

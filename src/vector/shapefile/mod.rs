@@ -14,7 +14,7 @@
 //! is a hole in which ([`rings`](crate::vector::rings)).
 //!
 //! Written by hand. `shapefile` 0.9 refuses two of eighteen real files for their outdated index, allocates 535 MB for a
-//! file of 1000 bytes with a count changed, tells holes by direction only, and builds ten more crates.
+//! file of 1000 bytes with a count changed, recognizes holes by direction only, and builds ten more crates.
 
 mod dbf;
 
