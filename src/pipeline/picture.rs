@@ -1,9 +1,9 @@
-//! From a view of a scene to an annotated picture in memory: list, draw, annotate.
+//! Renders a view of a scene to an annotated picture in memory.
 
 use crate::annotate::paint::annotate;
 use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
-use crate::pipeline::choice::{Choice, ChoiceWord, word};
+use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -26,11 +26,11 @@ impl Choice for RenderBackend {
     ];
 }
 
-/// An annotated picture and what it was made of.
+/// An annotated picture and its draw list.
 pub struct RenderedView {
     /// The picture, opaque.
     pub pixels: Pixels,
-    /// What was drawn.
+    /// The draw list.
     pub drawn: ViewDraw,
     /// Which annotations were placed and which were not.
     pub annotations: AnnotationReport,

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::annotate::nice::NiceNumber;
 use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
 
-/// What is known of the scene; zero and empty where it is not known yet.
+/// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]
 pub(super) struct SceneDraft {
     pub title: String,
@@ -38,7 +38,7 @@ pub(super) struct CameraDraft {
     pub field_of_view_deg: f64,
 }
 
-/// A vector file and what it holds.
+/// A vector file and its layers.
 pub(super) struct VectorDraft {
     /// The file as the scene file names it.
     pub file: String,
