@@ -175,15 +175,16 @@ fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
     use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
     use proptest::prelude::*;
 
     fn ribbon(points: &[(f64, f64)], width_m: f64) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.01).expect("a line");
         let mut plan = PlanMesh::default();
-        let options = StrokeOptions { width_m, ..StrokeOptions::default() };
-        stroke(&line, Continuations::default(), &options, &mut plan);
+        let alignment = Alignment::on_ground(line, width_m);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         plan
     }
 

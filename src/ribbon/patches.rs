@@ -172,8 +172,9 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
     use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 
     fn borders() -> Borders {
         Borders { east: vec![0.0, 40.0, 80.0, 100.0], north: vec![0.0, 40.0, 70.0] }
@@ -182,7 +183,8 @@ mod tests {
     fn road() -> PlanMesh {
         let line = Polyline::new([(5.0, 10.0), (60.0, 38.0), (95.0, 66.0)].map(DVec2::from), 0.0);
         let mut plan = PlanMesh::default();
-        stroke(&line.expect("a line"), Continuations::default(), &StrokeOptions::default(), &mut plan);
+        let alignment = Alignment::on_ground(line.expect("a line"), 6.0);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         plan
     }
 

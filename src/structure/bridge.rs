@@ -18,8 +18,10 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::Continuations;
 use crate::geom::profile::Profile;
-use crate::structure::deck::{DeckCourse, DeckSection};
+use crate::structure::deck::{self, DeckSection};
 use crate::structure::deck_check;
 use crate::structure::faces::Faces;
 use crate::structure::pier;
@@ -70,6 +72,10 @@ pub struct BridgeOptions {
     pub abutments_m: [Option<f64>; 2],
     /// How its start and end lie across.
     pub across: [Across; 2],
+    /// What goes on at its ends.
+    pub beyond: Continuations,
+    /// How long a miter may be, in half widths, at least 1.
+    pub miter_limit: f64,
     /// Meters along the carriageway in one repeat of its texture, above 0.
     pub texture_length_m: f64,
     /// How many times elevations are stretched when drawn.
@@ -101,44 +107,42 @@ pub fn magnified(width_m: f64) -> f64 {
 
 /// The carriageway alone of the bridge that [`build`] builds.
 pub fn deck(
-    course: &DeckCourse<'_>,
-    profile: &Profile,
+    alignment: &Alignment,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
 ) -> Vec<SurfaceTriangle> {
-    lay_carriageway(&sections(course, profile, options, ground), options).deck
+    lay_carriageway(&sections(alignment, options, ground), options).deck
 }
 
-/// Builds the bridge along `course` at the elevations of `profile`, whose stations are the course's. Its parapets stop
-/// where one of the other carriageways of `decks` goes on beside it.
+/// Builds the bridge along an alignment of one width, at its levels. Its parapets stop where one of the other carriageways
+/// of `decks` goes on beside it.
 pub fn build(
-    course: &DeckCourse<'_>,
-    profile: &Profile,
+    alignment: &Alignment,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
     decks: &Deck,
 ) -> BridgeSolids {
-    let sections = sections(course, profile, options, ground);
+    let sections = sections(alignment, options, ground);
+    let (length_m, width_m) = (alignment.line.length(), alignment.width.widest_m());
     let mut body = Faces::default();
     let mut bridge = lay_carriageway(&sections, options);
-    draw_out(&sections, &SectionRings::new(course.width_m, options), decks, &mut body);
-    for (end, length_m) in options.abutments_m.iter().enumerate() {
-        let Some(length_m) = *length_m else { continue };
+    draw_out(&sections, &SectionRings::new(width_m, options), decks, &mut body);
+    for (end, reach_m) in options.abutments_m.iter().enumerate() {
+        let Some(reach_m) = *reach_m else { continue };
         let reach = |section: &&DeckSection| {
-            let from_end =
-                if end == 0 { section.station_m } else { course.line.length() - section.station_m };
-            from_end <= length_m + 1e-6
+            let from_end = if end == 0 { section.station_m } else { length_m - section.station_m };
+            from_end <= reach_m + 1e-6
         };
         let under: Vec<DeckSection> = sections.iter().filter(reach).copied().collect();
-        pier::abutment(&under, course.width_m, options, ground, &mut body);
+        pier::abutment(&under, width_m, options, ground, &mut body);
         let last = if end == 0 { sections.first() } else { sections.last() };
         if let Some(section) = last {
-            pier::end_posts(section, course.width_m, options, &mut body);
+            pier::end_posts(section, width_m, options, &mut body);
         }
     }
     for &station in &options.piers_m {
         let section = nearest(&sections, station);
-        bridge.piers += usize::from(pier::pier(section, course.width_m, options, ground, &mut body));
+        bridge.piers += usize::from(pier::pier(section, width_m, options, ground, &mut body));
     }
     bridge.body = body.into_mesh();
     bridge
@@ -153,33 +157,28 @@ fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
 }
 
 /// The course's sections, turned at its ends as the ground lies across.
-fn sections(
-    course: &DeckCourse<'_>,
-    profile: &Profile,
-    options: &BridgeOptions,
-    ground: &GroundHeight<'_>,
-) -> Vec<DeckSection> {
-    let length_m = course.line.length();
-    let fade_m = (course.width_m * TILT_WIDTHS).min(length_m / 2.0);
+fn sections(alignment: &Alignment, options: &BridgeOptions, ground: &GroundHeight<'_>) -> Vec<DeckSection> {
+    let (length_m, width_m) = (alignment.line.length(), alignment.width.widest_m());
+    let fade_m = (width_m * TILT_WIDTHS).min(length_m / 2.0);
     let abutments = options.abutments_m.map(|length| length.unwrap_or(0.0));
-    let mut breaks: Vec<f64> = profile.stations().to_vec();
+    let mut breaks: Vec<f64> = alignment.level.iter().flat_map(Profile::stations).copied().collect();
     breaks.extend([abutments[0], length_m - abutments[1]]);
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| part * fade_m));
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| length_m - part * fade_m));
     breaks.extend(&options.piers_m);
     for (end, abutment) in options.abutments_m.iter().enumerate() {
         if abutment.is_none() {
-            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * course.width_m / 8.0);
+            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * width_m / 8.0);
             breaks.extend(from_end.map(|from_end| if end == 0 { from_end } else { length_m - from_end }));
         }
     }
-    let mut sections = course.sections(&breaks, &|station| profile.at(station));
+    let mut sections = deck::sections(alignment, options.beyond, options.miter_limit, &breaks);
     let last = sections.len() - 1;
     for (index, end) in [0, last].into_iter().enumerate() {
         if options.across[index] == Across::Level {
             continue;
         }
-        let tilt = tilt(&sections[end], course.width_m, ground);
+        let tilt = tilt(&sections[end], width_m, ground);
         for section in &mut sections {
             let from_end = (section.station_m - if index == 0 { 0.0 } else { length_m }).abs();
             // Smooth at both ends.
@@ -346,13 +345,15 @@ mod tests {
             piers_m: vec![length_m / 3.0, length_m / 1.5],
             abutments_m: [Some(6.0), Some(6.0)],
             across: [Across::AsGround; 2],
+            beyond: Continuations::default(),
+            miter_limit: 2.0,
             texture_length_m: 15.0,
             exaggeration: 1.5,
         }
     }
 
-    fn course(line: &Polyline) -> DeckCourse<'_> {
-        DeckCourse { line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 }
+    fn alignment(line: &Polyline, level: Profile) -> Alignment {
+        Alignment { level: Some(level), ..Alignment::on_ground(line.clone(), 8.0) }
     }
 
     fn none() -> Deck {
@@ -368,7 +369,7 @@ mod tests {
         let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
         let decks = Deck::new(&beside).expect("sound");
         let level = Profile::straight(90.0, [50.0; 2]);
-        let bridge = build(&course(&line), &level, &options, &|_| Some(50.0), &decks);
+        let bridge = build(&alignment(&line, level), &options, &|_| Some(50.0), &decks);
         bridge.check().expect("sound");
         let highest = |side: f32| {
             let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
@@ -389,7 +390,7 @@ mod tests {
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
             let profile = Profile::straight(120.0, [100.0, 102.4]);
-            let bridge = build(&course(&line), &profile, &options(120.0), &valley, &none());
+            let bridge = build(&alignment(&line, profile.clone()), &options(120.0), &valley, &none());
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
@@ -410,7 +411,7 @@ mod tests {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
         let bridge =
-            build(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), &slope, &none());
+            build(&alignment(&line, Profile::straight(90.0, [50.0; 2])), &options(90.0), &slope, &none());
         let height = |x: f32, y: f32| {
             let mut corners = bridge.deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
@@ -438,7 +439,7 @@ mod tests {
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
-            let bridge = build(&course(&line), &profile, &options(line.length()), &|_| Some(95.0), &none());
+            let bridge = build(&alignment(&line, profile), &options(line.length()), &|_| Some(95.0), &none());
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
             let area: f32 = bridge.deck.iter().map(plan).sum::<f32>() / 2.0;

@@ -12,10 +12,11 @@
 use glam::DVec3;
 
 use crate::draw::color::Srgba;
+use crate::geom::profile::Profile;
 use crate::structure::faces::Faces;
 use crate::structure::fence::PostPosition;
 use crate::structure::power_beam::beam;
-use crate::terrain::support_surface::{GroundRun, SupportSurface, ground_runs};
+use crate::terrain::support_surface::{SupportSurface, ground_runs};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
@@ -83,7 +84,7 @@ impl PowerLine {
         &self,
         [from, to]: [PostPosition; 2],
         [from_z, to_z]: [f64; 2],
-        ground: &[GroundRun],
+        ground: &[Profile],
         faces: &mut Faces,
     ) {
         let fastened = |stand: &PostPosition, foot_z: f64, (aside, up): (f64, f64)| {
@@ -182,7 +183,7 @@ fn hanging((from, to): (DVec3, DVec3), sag_m: f64, part: f64) -> DVec3 {
 }
 
 /// The sag of a wire: `wanted_m`, or less over the ground beneath the line, at least 0.
-fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f64) -> f64 {
+fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[Profile], clearance_m: f64) -> f64 {
     let over = |part: f64, z: f64| {
         let room = hanging(ends, 0.0, part).z - z - clearance_m;
         room / (4.0 * part * (1.0 - part))
@@ -191,12 +192,12 @@ fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f
 }
 
 /// Where a span's clearance is looked at: where the ground under it bends, and evenly between, with its height.
-fn looks(ground: &[GroundRun]) -> impl Iterator<Item = (f64, f64)> + '_ {
+fn looks(ground: &[Profile]) -> impl Iterator<Item = (f64, f64)> + '_ {
     ground.iter().flat_map(|run| {
-        let (first, last) = run.span();
-        let bends = run.stations().iter().map(|station| (station.part, station.z));
+        let [first, last] = run.span();
+        let bends = run.stations().iter().copied().zip(run.values().iter().copied());
         let even = (1..LOOKS).map(|step| f64::from(step) / f64::from(LOOKS));
-        let even = even.filter(move |part| (first..=last).contains(part)).map(|part| (part, run.z_at(part)));
+        let even = even.filter(move |part| (first..=last).contains(part)).map(|part| (part, run.at(part)));
         bends.chain(even).filter(|(part, _)| (0.02..=0.98).contains(part))
     })
 }

@@ -119,16 +119,12 @@ impl Ord for Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::NodeId;
+    use crate::earthworks::alignment::network::tests::section;
     use proptest::prelude::*;
 
     /// A star of three sections of the given stations that meet in node 0.
     fn star(stations: [Vec<f64>; 3], max_grade: f64) -> SectionNetwork {
-        let section = |(index, stations_m): (u32, Vec<f64>)| RoadSection {
-            ends: [NodeId(0), NodeId(index)],
-            stations_m,
-            max_grade,
-        };
+        let section = |(index, stations_m): (u32, Vec<f64>)| section([0, index], stations_m, max_grade);
         SectionNetwork { nodes: 4, sections: (1..).zip(stations).map(section).collect() }
     }
 

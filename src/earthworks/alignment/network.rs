@@ -1,6 +1,8 @@
 //! Roads as a graph: sections between the nodes where roads end or meet.
 
+use crate::earthworks::alignment::Support;
 use crate::earthworks::alignment::chain::LineEnd;
+use crate::earthworks::alignment::spans::EarthworkLimits;
 
 /// A place where roads end or meet, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,8 +22,14 @@ pub struct RoadSection {
     pub ends: [NodeId; 2],
     /// Distances from its beginning in meters, from 0, never falling; at least two.
     pub stations_m: Vec<f64>,
+    /// The ground at its stations in meters; NaN where there is none.
+    pub ground_m: Vec<f64>,
     /// The steepest rise along it, meters per meter, above 0.
     pub max_grade: f64,
+    /// What is stated to carry it from end to end; the ground carries it unless it cannot.
+    pub support: Support,
+    /// What an embankment and a cutting may be.
+    pub limits: EarthworkLimits,
 }
 
 impl RoadSection {
@@ -84,5 +92,17 @@ impl SectionNetwork {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+pub(in crate::earthworks) mod tests {
+    use super::*;
+
+    /// A section between two nodes over ground at height 0, without limits.
+    pub fn section(ends: [u32; 2], stations_m: Vec<f64>, max_grade: f64) -> RoadSection {
+        let ground_m = vec![0.0; stations_m.len()];
+        let (support, limits) = (Support::Ground, EarthworkLimits::NONE);
+        RoadSection { ends: ends.map(NodeId), stations_m, ground_m, max_grade, support, limits }
     }
 }

@@ -3,6 +3,7 @@
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
 use crate::earthworks::channel::{ChannelError, Cut, MOST_VISITS};
+use crate::geom::segment;
 use crate::terrain::lattice::{Lattice, Post};
 use glam::DVec2;
 
@@ -36,7 +37,7 @@ impl ChannelBed {
     /// before a lake, no post of the triangles that its centerline crosses stays below it.
     pub fn shaped(
         lattice: &Lattice,
-        courses: &[ChannelCourse],
+        courses: &[ChannelCourse<'_>],
         pieces: &[CenterlinePiece],
     ) -> Result<Self, ChannelError> {
         let wishes = wishes(lattice, courses)?;
@@ -56,7 +57,7 @@ impl ChannelBed {
         };
         let touching = touched.clone().map(|(post, piece)| (post, piece.channel));
         let touching = touching.chain(wishes.iter().map(|wish| (wish.post, wish.channel)));
-        bed.limit(touching.map(|(post, channel)| (post, courses[channel as usize].max_cut_m)));
+        bed.limit(touching.map(|(post, channel)| (post, courses[channel as usize].channel.max_cut_m)));
         let mut levels_m = vec![f64::INFINITY; bed.posts.len()];
         for (post, piece) in touched {
             let place = bed.place(post);
@@ -131,7 +132,7 @@ impl ChannelBed {
 const MOST_WAITING: usize = 4_000_000;
 
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.
-fn wishes(lattice: &Lattice, courses: &[ChannelCourse]) -> Result<Vec<Wish>, ChannelError> {
+fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>, ChannelError> {
     let stretches = || {
         let of_course = |(course, channel): (_, u32)| {
             let pairs = ChannelCourse::pairs(course);
@@ -172,19 +173,19 @@ struct StretchPosts {
 
 impl StretchPosts {
     /// `None` where there is no ground or no post is near.
-    fn of(lattice: &Lattice, course: &ChannelCourse, ends: [CourseStation; 2]) -> Option<Self> {
+    fn of(lattice: &Lattice, course: &ChannelCourse<'_>, ends: [CourseStation; 2]) -> Option<Self> {
         if ends.iter().any(|end| end.level_m.is_nan()) {
             return None;
         }
         let bed_m = ends.map(|end| end.bed_m(lattice)).into_iter().fold(0.0, f64::max);
-        let reach = DVec2::splat(bed_m + course.bank_m) / lattice.cell();
+        let reach = DVec2::splat(bed_m + course.channel.bank_m) / lattice.cell();
         let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
         let low = (ends[0].grid.min(ends[1].grid) - reach).ceil().max(DVec2::ZERO);
         let high = (ends[0].grid.max(ends[1].grid) + reach).floor().min(last);
         low.cmple(high).all().then_some(Self {
             ends,
             bed_m,
-            bank_m: course.bank_m,
+            bank_m: course.channel.bank_m,
             columns: (low.x as u32, high.x as u32),
             rows: (low.y as u32, high.y as u32),
         })
@@ -202,8 +203,8 @@ impl StretchPosts {
             for column in self.columns.0..=self.columns.1 {
                 let post = Post { column, row };
                 let at = lattice.map_position(post) - lattice.origin();
-                let part = (at - from.at).dot(way) / way.length_squared();
-                let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
+                let part = segment::nearest_part((from.at, to.at), at);
+                let part = if part.is_nan() { 0.0 } else { part };
                 let aside_m = at.distance(from.at + way * part);
                 let ground_m = f64::from(lattice.height(post));
                 if aside_m > self.bed_m + self.bank_m || ground_m.is_nan() {

@@ -54,8 +54,8 @@ pub(super) struct CenterlinePiece {
 }
 
 /// All stretches of `courses` over ground, those of the course with the highest source first, each downstream.
-pub(super) fn pieces(lattice: &Lattice, courses: &[ChannelCourse]) -> Vec<CenterlinePiece> {
-    let source = |course: &ChannelCourse| {
+pub(super) fn pieces(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Vec<CenterlinePiece> {
+    let source = |course: &ChannelCourse<'_>| {
         let mut levels = course.stations.iter().map(|station| station.level_m);
         levels.find(|level| !level.is_nan()).unwrap_or(f64::NEG_INFINITY)
     };

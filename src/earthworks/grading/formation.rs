@@ -78,8 +78,9 @@ impl Formation {
         let (index, leg) = self.legs.place(id);
         let strip = &strips[index];
         let margin = lattice.cell().length();
-        let reach = strip.section.half_width_m + strip.section.shoulder_m + margin;
-        let ends = [strip.line.points()[leg], strip.line.points()[leg + 1]];
+        let reach = strip.reach_m() + margin;
+        let points = strip.alignment.line.points();
+        let ends = [points[leg], points[leg + 1]];
         for post in posts_near(lattice, ends, reach) {
             let at = world(lattice, post);
             let beside = strip.beside(leg, at);

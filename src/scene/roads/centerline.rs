@@ -11,6 +11,7 @@ use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::polyline::{Polyline, kept};
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
+use crate::ribbon::junction::Street;
 use crate::ribbon::stroke::StrokeOptions;
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::FeatureKind;
@@ -25,16 +26,10 @@ const REACH_M: f64 = 1000.0;
 /// A road, or the part of one that has one support.
 #[derive(Clone, Debug)]
 pub struct Centerline {
-    /// Its centerline, levels and carriageway.
-    pub alignment: Alignment,
-    /// Its carriageway's joints, and the mean of its width.
-    pub options: StrokeOptions,
+    /// Its carriageway.
+    pub street: Street,
     /// The width of the unpaved strip on either side in meters; 0 for none.
     pub shoulder_m: f64,
-    /// Its pavement.
-    pub surface: RibbonSurface,
-    /// What passes over what: roads of different levels do not meet.
-    pub level: i32,
     /// Its feature.
     pub feature: FeatureId,
     /// The index of its table in the document.
@@ -73,10 +68,11 @@ pub fn collect(
 impl Centerline {
     /// Gives it a width at each vertex.
     fn vary(&mut self, widths_m: &[f64]) {
-        self.options.width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
-        self.options.texture_length_m = texture_length_m(self.surface, self.options.width_m);
-        let widths = Profile::new(self.alignment.line.stations().to_vec(), widths_m.to_vec());
-        self.alignment.width = widths.map_or(Width::Constant(self.options.width_m), Width::Varying);
+        let Street { alignment, width_m, options, surface, .. } = &mut self.street;
+        *width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
+        options.texture_length_m = texture_length_m(*surface, *width_m);
+        let widths = Profile::new(alignment.line.stations().to_vec(), widths_m.to_vec());
+        alignment.width = widths.map_or(Width::Constant(*width_m), Width::Varying);
     }
 }
 
@@ -90,19 +86,21 @@ fn centerline(
     let surface = surface(road, &attributes);
     let width_m = attributes.number(&road.width, &mut collected.default_counts);
     let shoulder_m = attributes.number(&road.shoulder, &mut collected.default_counts);
-    let options = StrokeOptions {
-        width_m,
-        join: road.join,
-        miter_limit: road.miter_limit,
-        texture_length_m: texture_length_m(surface, width_m),
-    };
     let support = support(road, &attributes);
-    Centerline {
-        alignment: Alignment { line, level: None, width: Width::Constant(width_m), support },
-        options,
-        shoulder_m,
-        surface,
+    let street = Street {
+        alignment: Alignment { support, ..Alignment::on_ground(line, width_m) },
+        width_m,
+        options: StrokeOptions {
+            join: road.join,
+            miter_limit: road.miter_limit,
+            ..StrokeOptions::of(surface, width_m)
+        },
         level: level(road, &attributes, support),
+        surface,
+    };
+    Centerline {
+        street,
+        shoulder_m,
         feature: collected.add(FeatureKind::Road, attributes.name(road.name.as_deref())),
         table: 0,
         attributes,
@@ -163,12 +161,16 @@ pub(in crate::scene::roads) mod tests {
     /// A road along these points, six meters wide, from the document's first table.
     pub fn road(points: &[(f64, f64)], support: Support, level: i32) -> Centerline {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
-        Centerline {
-            alignment: Alignment { line, level: None, width: Width::Constant(6.0), support },
+        let street = Street {
+            alignment: Alignment { support, ..Alignment::on_ground(line, 6.0) },
+            width_m: 6.0,
             options: StrokeOptions::default(),
-            shoulder_m: 0.0,
-            surface: RibbonSurface::Asphalt,
             level,
+            surface: RibbonSurface::Asphalt,
+        };
+        Centerline {
+            street,
+            shoulder_m: 0.0,
             feature: FeatureId(2),
             table: 0,
             attributes: Attributes::default(),
