@@ -47,6 +47,14 @@ impl SceneBuilder {
         place.and_then(|place| self.features.get(place as usize)).map_or("", |feature| &feature.name)
     }
 
+    /// Notes how many features of a table were left out, where any were, and why.
+    pub fn note_left_out(&mut self, count: usize, kind: FeatureKind, table: Option<&str>, why: &str) {
+        if count > 0 {
+            let what = table.map(|name| format!(" of '{name}'")).unwrap_or_default();
+            self.notes.push(format!("{count} {}{what} left out: {why}", kind.noun(count)));
+        }
+    }
+
     /// Adds a ribbon over those of its class and below.
     pub fn lay(&mut self, plan: PlanMesh, surface: RibbonSurface, feature: FeatureId) {
         self.lay_tinted(plan, (surface, Srgba::WHITE), feature);

@@ -33,14 +33,7 @@ pub fn lines(
             Some((attributes, line))
         })
         .collect();
-    let off = count - near.len();
-    if off > 0 {
-        let what = name.map(|name| format!(" of '{name}'")).unwrap_or_default();
-        collected.notes.push(format!(
-            "{off} {}{what} left out: off the elevation model or a single point",
-            kind.noun(off)
-        ));
-    }
+    collected.note_left_out(count - near.len(), kind, name, "off the elevation model or a single point");
     near
 }
 

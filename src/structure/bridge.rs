@@ -22,7 +22,7 @@ use crate::earthworks::alignment::Alignment;
 use crate::geom::offset::Continuations;
 use crate::geom::profile::Profile;
 use crate::structure::deck::{self, DeckSection};
-use crate::structure::deck_check;
+use crate::structure::deck_check::{self, OpenSurfaceError};
 use crate::structure::faces::Faces;
 use crate::structure::pier;
 use crate::terrain::query::deck::Deck;
@@ -213,23 +213,15 @@ fn lay_carriageway(sections: &[DeckSection], options: &BridgeOptions) -> BridgeS
     let mut faces = Faces::default();
     let mut deck = Vec::new();
     for pair in sections.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        let at = |section: DeckSection, side: usize| {
-            let v = (section.station_m / options.texture_length_m) as f32;
-            let world = section.edges()[side];
-            (
-                section.at + section.aside[side],
-                section.drawn(side, 1.0, 0.0, options.exaggeration),
-                world,
-                side,
-                v,
-            )
-        };
-        let quad = [at(from, 0), at(from, 1), at(to, 1), at(to, 0)];
-        for triangle in quad_corners(quad.map(|corner| corner.0)) {
-            let corner = |index: usize| (quad[index].1, Vec2::new(quad[index].3 as f32, quad[index].4));
-            faces.textured(triangle.map(corner), Srgba::WHITE);
-            deck.push(triangle.map(|index| quad[index].2));
+        // The corners: a section and its side.
+        let quad = [(&pair[0], 0), (&pair[0], 1), (&pair[1], 1), (&pair[1], 0)];
+        for triangle in quad_corners(quad.map(|(section, side)| section.at + section.aside[side])) {
+            let corner = |(section, side): (&DeckSection, usize)| {
+                let v = (section.station_m / options.texture_length_m) as f32;
+                (section.drawn(side, 1.0, 0.0, options.exaggeration), Vec2::new(side as f32, v))
+            };
+            faces.textured(triangle.map(|index| corner(quad[index])), Srgba::WHITE);
+            deck.push(triangle.map(|index| quad[index].0.edges()[quad[index].1]));
         }
     }
     BridgeSolids { carriageway: faces.into_mesh(), deck, ..BridgeSolids::default() }
@@ -315,19 +307,35 @@ fn rotated(ring: &[Vec3], by: usize) -> Vec<Vec3> {
     ring[by..].iter().chain(&ring[..by]).copied().collect()
 }
 
+/// A fault of a bridge's solids.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BridgeSolidsError {
+    /// A triangle of the deck.
+    #[error("triangle {index} of the deck faces down at {at}")]
+    FacesDown {
+        /// Its place among the deck's.
+        index: usize,
+        /// One of its corners.
+        at: Vec3,
+    },
+    /// The carriageway does not close the body.
+    #[error(transparent)]
+    Open(#[from] OpenSurfaceError),
+}
+
 impl BridgeSolids {
     /// Whether every triangle of the deck faces up, and the carriageway closes the body: nothing shows from inside.
     ///
     /// # Errors
-    /// A sentence that names the first thing out of place.
-    pub fn check(&self) -> Result<(), String> {
+    /// The first thing out of place.
+    pub fn check(&self) -> Result<(), BridgeSolidsError> {
         for (index, [a, b, c]) in self.deck.iter().enumerate() {
             let up = (*b - *a).truncate().perp_dot((*c - *a).truncate());
             if up < 0.0 {
-                return Err(format!("triangle {index} of the deck faces down at {a}"));
+                return Err(BridgeSolidsError::FacesDown { index, at: *a });
             }
         }
-        deck_check::closed(&[&self.carriageway, &self.body])
+        Ok(deck_check::closed(&[&self.carriageway, &self.body])?)
     }
 }
 

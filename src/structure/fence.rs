@@ -1,6 +1,6 @@
 //! The posts of fences, and where things stand along a line.
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::geom::polyline::Polyline;
@@ -17,6 +17,13 @@ pub struct PostPosition {
     pub at: DVec2,
     /// A unit vector along the line.
     pub along: DVec2,
+}
+
+impl PostPosition {
+    /// The point `aside_m` to the left of the line there, at height `z`.
+    pub fn beside(&self, aside_m: f64, z: f64) -> DVec3 {
+        (self.at + self.along.perp() * aside_m).extend(z)
+    }
 }
 
 /// Posts of one size.

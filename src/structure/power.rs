@@ -87,12 +87,9 @@ impl PowerLine {
         ground: &[Profile],
         faces: &mut Faces,
     ) {
-        let fastened = |stand: &PostPosition, foot_z: f64, (aside, up): (f64, f64)| {
-            (stand.at + stand.along.perp() * aside).extend(foot_z + up)
-        };
         let half = self.height_m as f32 * WIRE_HALF;
-        for fastening in fastenings(self) {
-            let ends = (fastened(&from, from_z, fastening), fastened(&to, to_z, fastening));
+        for (aside, up) in fastenings(self) {
+            let ends = (from.beside(aside, from_z + up), to.beside(aside, to_z + up));
             let wanted = self.sag * ends.0.distance(ends.1);
             let sag_m = sag(ends, wanted, ground, self.height_m * CLEARANCE);
             for piece in 0..WIRE_PIECES {
@@ -112,7 +109,7 @@ impl PowerLine {
 
     fn pole(&self, stand: &PostPosition, z: f64, faces: &mut Faces) {
         let height = self.height_m as f32;
-        let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
+        let place = |aside: f64, up: f64| stand.beside(aside, z + up).as_vec3();
         let (foot, top) = (place(0.0, -0.1 * self.height_m), place(0.0, self.height_m));
         beam(faces, (foot, top), (height * 0.014, height * 0.009), WOOD);
         let half = self.width_m / 2.0;
@@ -141,18 +138,10 @@ impl PowerLine {
                 beam(faces, (at(corner, levels[0]), at(corner, levels[1])), (thick, thick * 0.8), STEEL);
             }
             for levels in LEVELS.windows(2) {
-                beam(
-                    faces,
-                    (at(corner, levels[0]), at(corner + 1, levels[1])),
-                    (thick * 0.5, thick * 0.5),
-                    STEEL,
-                );
-                beam(
-                    faces,
-                    (at(corner + 1, levels[0]), at(corner, levels[1])),
-                    (thick * 0.5, thick * 0.5),
-                    STEEL,
-                );
+                for (from, to) in [(corner, corner + 1), (corner + 1, corner)] {
+                    let brace = (at(from, levels[0]), at(to, levels[1]));
+                    beam(faces, brace, (thick * 0.5, thick * 0.5), STEEL);
+                }
             }
         }
         for (reach, up) in [(0.5, LOWEST_WIRE + 0.03), (0.35, 0.85)] {
@@ -163,7 +152,7 @@ impl PowerLine {
     /// An arm to either side: a tie and a strut that meet at its end, and what the wire hangs from.
     fn arm(&self, stand: &PostPosition, z: f64, (reach, up): (f64, f64), faces: &mut Faces) {
         let thick = self.height_m as f32 * 0.006;
-        let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
+        let place = |aside: f64, up: f64| stand.beside(aside, z + up).as_vec3();
         for side in [-1.0, 1.0] {
             let end = place(side * reach, up);
             beam(faces, (place(0.0, up), end), (thick * 1.4, thick), STEEL);

@@ -42,6 +42,18 @@ impl RoadSection {
 /// One number a station of every section, such as heights in meters; NaN where there is none.
 pub type StationLevels = Vec<Vec<f64>>;
 
+/// Levels that no network of roads can have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages name every field")]
+pub enum SectionLevelsError {
+    /// A section is steeper than it may be.
+    #[error("section {section} rises {rise_m} m in {run_m} m at station {station_m} m")]
+    Steep { section: usize, rise_m: f64, run_m: f64, station_m: f64 },
+    /// Two sections disagree where they meet.
+    #[error("{node:?} lies at {before_m} m, and at {level_m} m for section {section}")]
+    Apart { node: NodeId, before_m: f64, level_m: f64, section: usize },
+}
+
 /// A network of sections.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SectionNetwork {
@@ -72,22 +84,22 @@ impl SectionNetwork {
     /// where they meet, to a millimeter. Stations without a level are passed over.
     ///
     /// # Errors
-    /// A sentence that names the first place that does not.
-    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), String> {
+    /// The first place that does not.
+    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), SectionLevelsError> {
         let mut at_node = vec![f64::NAN; self.nodes];
         for (index, (section, levels)) in self.sections.iter().zip(levels).enumerate() {
             for (stations, pair) in section.stations_m.windows(2).zip(levels.windows(2)) {
-                let (run, rise) = (stations[1] - stations[0], (pair[1] - pair[0]).abs());
+                let (run_m, rise_m) = (stations[1] - stations[0], (pair[1] - pair[0]).abs());
                 // A millimeter for stations that rounding has put beside each other.
-                if rise > run * (section.max_grade + slack) + 1e-3 {
-                    let station = stations[0];
-                    return Err(format!("section {index} rises {rise} m in {run} m at station {station} m"));
+                if rise_m > run_m * (section.max_grade + slack) + 1e-3 {
+                    let station_m = stations[0];
+                    return Err(SectionLevelsError::Steep { section: index, rise_m, run_m, station_m });
                 }
             }
-            for (node, level) in section.ends.into_iter().zip([levels[0], levels[levels.len() - 1]]) {
-                let before = std::mem::replace(&mut at_node[node.index()], level);
-                if (before - level).abs() > 1e-3 {
-                    return Err(format!("{node:?} lies at {before} m, and at {level} m for section {index}"));
+            for (node, level_m) in section.ends.into_iter().zip([levels[0], levels[levels.len() - 1]]) {
+                let before_m = std::mem::replace(&mut at_node[node.index()], level_m);
+                if (before_m - level_m).abs() > 1e-3 {
+                    return Err(SectionLevelsError::Apart { node, before_m, level_m, section: index });
                 }
             }
         }

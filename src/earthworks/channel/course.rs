@@ -14,7 +14,7 @@ use glam::DVec2;
 
 use crate::earthworks::alignment::Alignment;
 use crate::earthworks::channel::Channel;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::crossings::crossings;
 
@@ -146,14 +146,8 @@ fn height(lattice: &Lattice, at: DVec2) -> f64 {
 
 /// The level of the lake at a grid position: there the cell's posts are pinned and level.
 fn lake_at(lattice: &Lattice, grid: DVec2) -> Option<f64> {
-    let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-    if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
-        return None;
-    }
-    let low = grid.floor().min(last - 1.0);
-    let cell = Post { column: low.x as u32, row: low.y as u32 };
-    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
-        .map(|(east, north)| Post { column: cell.column + east, row: cell.row + north });
+    let (cell, _) = lattice.cell_at_grid(grid)?;
+    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(east, north)| cell.offset(east, north));
     let level = lattice.height(cell);
     let is_lake = corners.iter().all(|&post| lattice.is_pinned(post) && lattice.height(post) == level);
     is_lake.then_some(f64::from(level))

@@ -83,7 +83,8 @@ fn centerline(
     line: Polyline,
     collected: &mut SceneBuilder,
 ) -> Centerline {
-    let surface = surface(road, &attributes);
+    let word = attributes.value_or_default(&road.surface);
+    let surface = surface(word, attributes.value_or_default(&road.markings));
     let width_m = attributes.number(&road.width, &mut collected.default_counts);
     let shoulder_m = attributes.number(&road.shoulder, &mut collected.default_counts);
     let support = support(road, &attributes);
@@ -115,17 +116,15 @@ fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
     widths_m.filter(|widths_m| widths_m.len() >= 2)
 }
 
-/// What it is paved with and what is painted on it.
-fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
-    match attributes.value_or_default(&road.surface) {
-        words::RoadSurface::Gravel => RibbonSurface::Gravel,
-        words::RoadSurface::Track => RibbonSurface::Track,
-        words::RoadSurface::Asphalt => match attributes.value_or_default(&road.markings) {
-            Markings::Dashed => RibbonSurface::Asphalt,
-            Markings::Solid => RibbonSurface::AsphaltSolid,
-            Markings::Edges => RibbonSurface::AsphaltEdges,
-            Markings::None => RibbonSurface::AsphaltPlain,
-        },
+/// A pavement, with what is painted on asphalt.
+pub(in crate::scene) fn surface(word: words::RoadSurface, markings: Markings) -> RibbonSurface {
+    match (word, markings) {
+        (words::RoadSurface::Gravel, _) => RibbonSurface::Gravel,
+        (words::RoadSurface::Track, _) => RibbonSurface::Track,
+        (words::RoadSurface::Asphalt, Markings::Dashed) => RibbonSurface::Asphalt,
+        (words::RoadSurface::Asphalt, Markings::Solid) => RibbonSurface::AsphaltSolid,
+        (words::RoadSurface::Asphalt, Markings::Edges) => RibbonSurface::AsphaltEdges,
+        (words::RoadSurface::Asphalt, Markings::None) => RibbonSurface::AsphaltPlain,
     }
 }
 

@@ -203,9 +203,8 @@ fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &
     collected.profiles.push(RoadProfile {
         feature: road.feature,
         name,
-        stations_m: route.stations_m().to_vec(),
-        ground_m: ground_m.to_vec(),
-        design_m: design_m.to_vec(),
+        ground: route.ground.clone(),
+        design: route.design.clone(),
         supports,
     });
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::words;
+use crate::description::words::Markings;
 use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::offset::Continuations;
 use crate::geom::polyline::{VertexKey, vertex_key};
@@ -13,7 +13,6 @@ use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::RibbonSurface;
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
@@ -99,14 +98,12 @@ fn road_span(
     let alignment = Alignment { width, ..road.street.alignment.within(extent)? };
     let table = document.roads.get(road.table)?;
     let is_tagged = centerline::support(table, &road.attributes) == support;
-    // Ids of features count from 2.
-    let feature = collected.features.get((road.feature.0 as usize).checked_sub(2)?);
     Some(RoadSpan {
         street: Street { alignment, ..road.street.clone() },
         road: None,
         beyond: Continuations::default(),
         pier_spacing_m: None,
-        name: feature.map(|feature| feature.name.clone()).unwrap_or_default(),
+        name: collected.name(road.feature).to_owned(),
         origin: if is_tagged { SpanOrigin::Tag } else { SpanOrigin::Rule },
         place: table.source.span(),
     })
@@ -126,7 +123,8 @@ fn table_spans(
             if line.range_within(extent).is_none() {
                 continue;
             }
-            let surface = surface(attributes.value_or_default(&bridge.surface));
+            let word = attributes.value_or_default(&bridge.surface);
+            let surface = centerline::surface(word, Markings::Dashed);
             let width_m = attributes.number(&bridge.width, &mut collected.default_counts);
             let deck_m = attributes.value(bridge.deck.as_ref());
             let level = deck_m.map(|level| Profile::straight(line.length(), [level; 2]));
@@ -146,14 +144,6 @@ fn table_spans(
         }
     }
     Ok(all)
-}
-
-fn surface(word: words::RoadSurface) -> RibbonSurface {
-    match word {
-        words::RoadSurface::Asphalt => RibbonSurface::Asphalt,
-        words::RoadSurface::Gravel => RibbonSurface::Gravel,
-        words::RoadSurface::Track => RibbonSurface::Track,
-    }
 }
 
 /// Finds what continues at the spans' ends, so that their edges are those of the ribbons there.

@@ -157,7 +157,7 @@ fn bands(
     (lattice, squares): (&Lattice, &mut usize),
 ) -> Result<Bands, Diagnostic> {
     let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| at + lattice.origin()).collect::<Vec<_>>();
-    let rings: Vec<Vec<DVec2>> = std::iter::once(&area.exterior).chain(&area.holes).map(to_map).collect();
+    let rings: Vec<Vec<DVec2>> = area.rings().map(to_map).collect();
     let extent = lattice.extent();
     let extent = Rect { min: extent.min + lattice.origin(), max: extent.max + lattice.origin() };
     let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, MAX_SQUARES);
