@@ -63,7 +63,6 @@ fn closed(ring: &[DVec2]) -> Option<Polyline> {
     Polyline::new(ring.iter().copied().chain(back), MERGE_M)
 }
 
-/// The line's dashes.
 fn dashed(line: &Polyline, width_m: f64) -> impl Iterator<Item = Polyline> + '_ {
     let count = (line.length() / (DASH * width_m)).round().clamp(1.0, MOST_DASHES);
     let step_m = line.length() / count;

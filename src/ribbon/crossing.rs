@@ -61,7 +61,6 @@ pub fn crossings(
     pieces.par_iter().flat_map_iter(shared).collect()
 }
 
-/// A convex piece of a ribbon.
 struct ConvexPiece {
     outline: Vec<DVec2>,
     ribbon: usize,
@@ -72,7 +71,6 @@ fn crossing([one, other]: [&ConvexPiece; 2]) -> Option<RibbonOverlap> {
     Some(RibbonOverlap { outline, ribbons: [one.ribbon, other.ribbon] })
 }
 
-/// The junctions there are.
 struct Joined<'a> {
     nodes: &'a [JunctionNode],
     tree: RectTree,

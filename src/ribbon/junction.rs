@@ -256,7 +256,6 @@ impl Streets<'_> {
             && LineBend { points, half: half_m }.mitered(limit).is_some()
     }
 
-    /// The junction of several arms.
     fn hull(&self, arms: &[Arm]) -> Vec<DVec2> {
         let points = |arm: &Arm| self.0[arm.street].points();
         let at = points(&arms[0])[arms[0].vertex];

@@ -38,7 +38,6 @@ pub struct Borders {
 }
 
 impl Borders {
-    /// Patches side by side.
     fn columns(&self) -> usize {
         self.east.len().saturating_sub(1)
     }
@@ -162,9 +161,7 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
             let part = patches[row * borders.columns() + column].part(ribbon);
             let ids: Vec<_> =
                 piece.iter().map(|&at| part.vertex(PlanVertex { at, uv: texture.at(at) })).collect();
-            for pair in ids[1..].windows(2) {
-                part.triangle([ids[0], pair[0], pair[1]]);
-            }
+            polygon::fan(&ids).for_each(|corners| part.triangle(corners));
         }
     }
 }

@@ -95,7 +95,6 @@ impl RibbonEdge {
     }
 }
 
-/// A ribbon that is being written.
 struct Stroker<'a, S> {
     path: &'a StrokePath<'a>,
     options: &'a StrokeOptions,

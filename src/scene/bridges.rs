@@ -20,7 +20,7 @@ use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::report::SpanRow;
 use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
@@ -86,7 +86,10 @@ pub fn build(
     let mut bridges: Vec<(BuiltChain<'_>, &ChainLink, BridgeOptions)> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
-            collected.notes.push(format!("{} left out: no ground lies along it", described(&spans, chain)));
+            let span = &spans[chain.links[0].line];
+            let kind = if span.street.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
+            let what = described(kind, &span.name);
+            collected.notes.push(format!("{what} left out: no ground lies along it"));
             continue;
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
@@ -141,12 +144,6 @@ fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
 #[derive(Debug, thiserror::Error)]
 #[error("water under bridges")]
 struct WaterError(#[source] DeckError);
-
-fn described(spans: &[RoadSpan], chain: &SpanChain) -> String {
-    let span = &spans[chain.links[0].line];
-    let kind = if span.street.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
-    if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
-}
 
 /// A chain with its levels and its site.
 #[derive(Clone, Copy)]

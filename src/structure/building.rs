@@ -45,7 +45,6 @@ pub struct Paint {
     pub foundation: Srgba,
 }
 
-/// A foundation of stone.
 const FOUNDATION: Srgba = Srgba::opaque(150, 144, 136);
 
 /// Plasters of which a building takes one by where it stands.
@@ -59,7 +58,6 @@ const PLASTERS: [Srgba; 7] = [
     Srgba::opaque(242, 238, 228),
 ];
 
-/// Roofs of tile and slate.
 const TILES: [Srgba; 6] = [
     Srgba::opaque(178, 98, 72),
     Srgba::opaque(162, 86, 66),
@@ -107,8 +105,8 @@ pub fn raise(
     let rise = levels.top_z - levels.eaves_z;
     let on_roof = |at: &DVec3| DVec3 { z: levels.eaves_z + at.z * rise, ..*at }.as_vec3();
     for ring in &roof.edge {
-        for (index, from) in ring.iter().enumerate() {
-            walls(&mut faces, [*from, ring[(index + 1) % ring.len()]], &on_roof, levels, paint);
+        for (from, to) in polygon::edges(ring) {
+            walls(&mut faces, [from, to], &on_roof, levels, paint);
         }
     }
     for face in &roof.faces {

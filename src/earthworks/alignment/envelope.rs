@@ -41,11 +41,7 @@ pub fn below(network: &SectionNetwork, levels: &StationLevels) -> StationLevels 
 /// The lowest profile that nowhere lies below `levels` and keeps the grade; minus infinity where none of the levels
 /// reaches.
 pub fn above(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
-    let mut turned = below(network, &negated(levels.clone()));
-    for levels in &mut turned {
-        levels.iter_mut().for_each(|level| *level = -*level);
-    }
-    turned
+    negated(below(network, &negated(levels.clone())))
 }
 
 fn negated(mut levels: StationLevels) -> StationLevels {

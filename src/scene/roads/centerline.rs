@@ -1,14 +1,12 @@
 //! The document's roads as centerlines, each with what it is to become.
 
-use glam::DVec2;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RoadTable;
 use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::geom::polyline::{Polyline, kept};
+use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::junction::Street;
@@ -51,7 +49,7 @@ pub fn collect(
     let mut all = Vec::new();
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
-        let widths_m = lines.first().and_then(|line| widths_m(road, &line.shape));
+        let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
         let name = road.name.as_deref();
         for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Road, name, collected) {
             let mut centerline = centerline(road, attributes, line, collected);
@@ -66,7 +64,6 @@ pub fn collect(
 }
 
 impl Centerline {
-    /// Gives it a width at each vertex.
     fn vary(&mut self, widths_m: &[f64]) {
         let Street { alignment, width_m, options, surface, .. } = &mut self.street;
         *width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
@@ -106,14 +103,6 @@ fn centerline(
         table: 0,
         attributes,
     }
-}
-
-/// The widths stated for the points of an inline line, at the vertices that are left of it.
-fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
-    let stated = road.widths.as_ref()?;
-    let widths_m: Option<Vec<f64>> =
-        kept(shape, near::MERGE_M).into_iter().map(|index| stated.get(index).copied()).collect();
-    widths_m.filter(|widths_m| widths_m.len() >= 2)
 }
 
 /// A pavement, with what is painted on asphalt.
@@ -156,6 +145,7 @@ fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
 pub(in crate::scene::roads) mod tests {
     use super::*;
     use crate::description::parse::parse;
+    use glam::DVec2;
 
     /// A road along these points, six meters wide, from the document's first table.
     pub fn road(points: &[(f64, f64)], support: Support, level: i32) -> Centerline {
@@ -186,6 +176,6 @@ pub(in crate::scene::roads) mod tests {
     fn widths_stay_with_their_points_where_points_are_merged() {
         let road = table("points = [[0, 0], [0.001, 0], [9, 0]]\nwidths = [3, 4, 5]");
         let shape = [DVec2::ZERO, DVec2::X * 0.001, DVec2::X * 9.0];
-        assert_eq!(widths_m(&road, &shape), Some(vec![3.0, 5.0]));
+        assert_eq!(near::widths_m(road.widths.as_deref(), &shape), Some(vec![3.0, 5.0]));
     }
 }

@@ -72,7 +72,6 @@ pub fn conform(
     Ok(())
 }
 
-/// The ground to be graded for roads.
 struct Earthworks<'a> {
     roads: &'a [Centerline],
     rules: &'a [Option<Rules>],
@@ -174,7 +173,6 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
     }
 }
 
-/// Reports a road and keeps its profile.
 fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
     let all = route.all_spans();

@@ -72,7 +72,6 @@ pub struct NetworkSurvey {
     surveyed: Vec<SurveyedRoad>,
 }
 
-/// A road with its sections.
 struct SurveyedRoad {
     road: usize,
     sections: Range<usize>,

@@ -52,10 +52,11 @@ pub fn collect(
     let mut drawn: Vec<(&RiverTable, Attributes, Polyline, Option<Profile>)> = Vec::new();
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
-        let shape = lines.first().map(|line| line.shape.clone()).unwrap_or_default();
+        let widths_m = lines.first().and_then(|line| near::widths_m(river.widths.as_deref(), &line.shape));
         let name = river.name.as_deref();
         for (attributes, line) in near::lines(lines, &extent, REACH_M, FeatureKind::River, name, collected) {
-            let widths = river.widths.as_ref().and_then(|widths_m| widths(&line, &shape, widths_m));
+            let widths = widths_m.as_ref();
+            let widths = widths.and_then(|widths_m| Profile::new(line.stations().to_vec(), widths_m.clone()));
             drawn.push((river, attributes, line, widths));
         }
     }
@@ -67,13 +68,6 @@ pub fn collect(
     });
     let stream = |(river, attributes, line, widths)| stream(river, &attributes, line, widths, collected);
     Ok(directed.map(stream).collect())
-}
-
-/// The widths of the vertices that a line kept of its points; `None` where they are not as many.
-fn widths(line: &Polyline, points: &[glam::DVec2], widths_m: &[f64]) -> Option<Profile> {
-    let mut stated = points.iter().zip(widths_m);
-    let mut width = |at: &glam::DVec2| stated.find(|(point, _)| *point == at).map(|(_, &width_m)| width_m);
-    Profile::new(line.stations().to_vec(), line.points().iter().filter_map(&mut width).collect())
 }
 
 fn stream(

@@ -16,6 +16,7 @@ use crate::description::document::Document;
 use crate::description::words::Water;
 use crate::earthworks::channel::{self, Channel, Climb, Cut, Cuts};
 use crate::geom::offset::Continuations;
+use crate::geom::polygon;
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
@@ -96,7 +97,6 @@ fn report_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder)
     ));
 }
 
-/// The greatest of a channel's climbs.
 fn greatest(cut: &Cut) -> Option<&Climb> {
     cut.climbs.iter().max_by(|a, b| a.rise_m.total_cmp(&b.rise_m))
 }
@@ -183,14 +183,12 @@ fn confluences(
 }
 
 fn disc(center: DVec2, radius_m: f64, sink: &mut impl MeshSink<PlanVertex>) {
+    let mut vertex = |at: DVec2| sink.vertex(PlanVertex { at, uv: (at / (4.0 * radius_m)).as_vec2() });
+    let middle = vertex(center);
     let corner = |index: u32| {
         let angle = f64::from(index) * std::f64::consts::TAU / f64::from(DISC_CORNERS);
-        let at = center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m;
-        PlanVertex { at, uv: (at / (4.0 * radius_m)).as_vec2() }
+        vertex(center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m)
     };
-    let middle = sink.vertex(PlanVertex { at: center, uv: (center / (4.0 * radius_m)).as_vec2() });
-    let rim: Vec<_> = (0..DISC_CORNERS).map(|index| sink.vertex(corner(index))).collect();
-    for (index, &from) in rim.iter().enumerate() {
-        sink.triangle([middle, from, rim[(index + 1) % rim.len()]]);
-    }
+    let rim: Vec<_> = (0..DISC_CORNERS).map(corner).collect();
+    polygon::edges(&rim).for_each(|(from, to)| sink.triangle([middle, from, to]));
 }
