@@ -44,6 +44,7 @@ pub type StationLevels = Vec<Vec<f64>>;
 
 /// Levels that no network of roads can have.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum SectionLevelsError {
     /// A section is steeper than it may be.
     #[error("section {section} rises {rise_m} m in {run_m} m at station {station_m} m")]
