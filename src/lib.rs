@@ -57,8 +57,8 @@
 //! # Ok::<(), sandtable::Error>(())
 //! ```
 //!
-//! World space is right-handed: X east, Y north, Z up, meters from the south-west post. Map coordinates are those of the
-//! terrain's or scene's coordinate system. [`architecture`] draws the modules below.
+//! World space is right-handed: X east, Y north, Z up, meters from the south-west post. Map coordinates are those of
+//! the terrain's or scene's coordinate system. [`architecture`] draws the modules below.
 
 #![cfg_attr(
     not(feature = "internals"),
@@ -83,6 +83,7 @@ cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod annotate;
         pub mod archive;
+        pub mod bytes;
         pub mod dem;
         pub mod description;
         pub mod draw;
@@ -104,6 +105,7 @@ cfg_if::cfg_if! {
     } else {
         mod annotate;
         mod archive;
+        mod bytes;
         mod dem;
         mod description;
         mod draw;

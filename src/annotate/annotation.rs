@@ -1,4 +1,4 @@
-//! What to paint on a picture, in picture coordinates.
+//! The annotations of a picture, in picture coordinates.
 //!
 //! The caller has projected places to pixels and tested them against the depth buffer: annotations know neither scene
 //! nor terrain.
@@ -42,6 +42,6 @@ pub struct PictureLabel {
     pub depth_m: f32,
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,
-    /// What it names: decides importance, type and symbol.
+    /// Decides importance, type and symbol.
     pub kind: LabelKind,
 }

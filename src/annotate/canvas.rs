@@ -18,7 +18,7 @@ struct Translucent {
     multiplied: Srgba,
 }
 
-/// Paints `drawings` on `pixels`, in order; what lies outside the picture is cut off.
+/// Paints `drawings` on `pixels`, in order, clipped to the picture.
 pub fn paint<'a>(pixels: &mut Pixels, drawings: impl IntoIterator<Item = &'a Drawing>) {
     let translucent: Vec<_> = (pixels.data().iter().enumerate())
         .filter(|(_, color)| color.0[3] < 255)

@@ -86,9 +86,9 @@ pub struct Chart {
     pub composer: Composer,
     /// The scale.
     pub frame: ChartFrame,
-    /// What lies under the plotted things.
+    /// Drawn below the plot.
     background: Drawing,
-    /// What is plotted.
+    /// The plot.
     pub plotted: Drawing,
 }
 
@@ -257,8 +257,8 @@ fn height_figures(heights_m: (f64, f64), height_px: f32, composer: &mut Composer
     composer.figures(&Ticks::new(heights_m.0, heights_m.1, most.clamp(2, 9)), style)
 }
 
-/// The plot's upper and lower edge: above it titles and the height axis's label, below it figures and the line of start,
-/// axis label and end.
+/// The plot's upper and lower edge: above it titles and the height axis's label, below it figures and the line of
+/// start, axis label and end.
 fn plot_rows(sheet: &Sheet, text: &ChartText) -> (f32, f32) {
     let [title, subtitle] = TITLE_SIZES.map(|size| sheet.type_px(size));
     let figure = sheet.type_px(15.0);
@@ -281,13 +281,14 @@ pub enum LabelSide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::chart_ground::{ChartGround, ChartPoint};
+    use crate::annotate::chart_ground::ChartPoint;
     use crate::annotate::chart_profile::{ProfileChart, paint};
+    use crate::dem::answer::Answer;
 
     fn chart(heights: &[f64]) -> ProfileChart {
         let point = |(index, &height): (usize, &f64)| ChartPoint {
             along_m: index as f64 * 100.0,
-            ground: if height.is_nan() { ChartGround::NoData } else { ChartGround::Height(height) },
+            ground: if height.is_nan() { Answer::NoData } else { Answer::Height(height) },
         };
         let text = ChartText { title: "Profile".into(), ..ChartText::default() };
         ProfileChart { text, points: heights.iter().enumerate().map(point).collect(), bends_m: vec![] }

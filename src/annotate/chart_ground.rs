@@ -7,6 +7,7 @@ use crate::annotate::drawing::{polygon, polyline};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::SOFT_INK;
 use crate::annotate::text::TextStyle;
+use crate::dem::answer::Answer;
 use crate::draw::color::Srgba;
 
 /// The ground's line.
@@ -25,29 +26,8 @@ const POINTS_PER_PIXEL: f32 = 4.0;
 pub struct ChartPoint {
     /// Meters along the line.
     pub along_m: f64,
-    /// The ground there.
-    pub ground: ChartGround,
-}
-
-/// The ground, as far as it is known.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ChartGround {
-    /// Its height in meters.
-    Height(f64),
-    /// The model has no data there.
-    NoData,
-    /// The model does not reach there.
-    Outside,
-}
-
-impl ChartGround {
-    /// The height, where there is one.
-    pub fn height_m(self) -> Option<f64> {
-        match self {
-            Self::Height(height_m) => Some(height_m),
-            Self::NoData | Self::Outside => None,
-        }
-    }
+    /// The ground there, its height as it is drawn.
+    pub ground: Answer,
 }
 
 /// The lowest and highest height of `points`; (0, 1) where there is none.
@@ -129,8 +109,8 @@ fn gaps(points: &[ChartPoint]) -> Vec<GroundGap> {
     for pair in points.windows(2) {
         let [from, to] = [pair[0], pair[1]];
         let reason = match (from.ground, to.ground) {
-            (ChartGround::Height(_), ChartGround::Height(_)) => continue,
-            (ChartGround::Outside, _) | (_, ChartGround::Outside) => "outside the model",
+            (Answer::Height(_), Answer::Height(_)) => continue,
+            (Answer::Outside, _) | (_, Answer::Outside) => "outside the model",
             _ => "no data",
         };
         match gaps.last_mut().filter(|gap| gap.to_m == from.along_m && gap.reason == reason) {

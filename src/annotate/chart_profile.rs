@@ -10,7 +10,7 @@ use crate::draw::pixels::Pixels;
 /// The ground in section.
 const EARTH: Srgba = Srgba::opaque(0xc8, 0xb8, 0x96);
 
-/// What is charted.
+/// The content of the chart.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileChart {
     /// The texts around the plot.

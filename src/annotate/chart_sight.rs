@@ -4,9 +4,10 @@
 use glam::Vec2;
 
 use crate::annotate::chart::{Chart, ChartText, LabelSide};
-use crate::annotate::chart_ground::{ChartGround, ChartPoint, fill, hatch_gaps, height_range, rim};
+use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
 use crate::annotate::pixel_box::PixelSegment;
 use crate::annotate::sheet::{INK, WATER_INK};
+use crate::dem::answer::Answer;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
@@ -14,17 +15,17 @@ use crate::draw::pixels::Pixels;
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);
 /// Hidden ground.
 const DARK: Srgba = Srgba::opaque(0x9c, 0x92, 0x82);
-/// The line up to its end, or to what blocks it.
+/// The line up to its end or the first obstacle.
 const LINE: Srgba = WATER_INK;
-/// What blocks it.
+/// The obstacle.
 const BLOCK: Srgba = Srgba::opaque(0xb0, 0x35, 0x22);
 /// Labels nearer to each other than this share of the plot's width are set one above the other.
 const CROWDED: f32 = 0.15;
 /// Design pixels of a dash and of the gap after it.
 const DASH: (f32, f32) = (10.0, 7.0);
 
-/// What is charted. All heights are lowered by the drop that curvature and refraction cause at their distance, so that
-/// the line of sight is straight.
+/// The content of the chart. All heights are lowered by the drop that curvature and refraction cause at their distance,
+/// so that the line of sight is straight.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SightChart {
     /// The texts around the plot.
@@ -83,7 +84,7 @@ fn between(points: &[ChartPoint], from_m: f64, to_m: f64) -> Vec<ChartPoint> {
         let (Some(low), Some(high)) = (a.ground.height_m(), b.ground.height_m()) else { continue };
         let at = |along_m: f64| {
             let share = (along_m - a.along_m) / (b.along_m - a.along_m);
-            ChartPoint { along_m, ground: ChartGround::Height(low + (high - low) * share) }
+            ChartPoint { along_m, ground: Answer::Height(low + (high - low) * share) }
         };
         part.extend([at(a.along_m.max(from_m)), at(b.along_m.min(to_m))]);
     }

@@ -1,4 +1,4 @@
-//! Labels: which are drawn, how each kind looks, and where they stand.
+//! Labels: selection, style and placement.
 
 use glam::Vec2;
 

@@ -29,7 +29,7 @@ use crate::draw::pixels::Pixels;
 
 /// Width of the column beside the map, in design pixels.
 const COLUMN: f32 = 268.0;
-/// Least height of the column, in design pixels: what the furniture needs.
+/// Least height of the column, in design pixels: that of the furniture.
 const COLUMN_HEIGHT: f32 = 560.0;
 /// Sizes of title and subtitle, in design pixels of type.
 const HEAD: [f32; 2] = [30.0, 17.0];
@@ -40,7 +40,7 @@ const SIGNAL: Srgba = Srgba::opaque(0xc8, 0x1e, 0x2a);
 /// Sides of the polygon that approximates a full circle: no corner shows on a sheet.
 const CIRCLE_SIDES: usize = 720;
 
-/// What stands on the sheet beside the map.
+/// The furniture beside the map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapFurniture {
     /// The title.
@@ -66,7 +66,7 @@ pub struct ObserverOverlay {
     pub sector_deg: Option<(f32, f32)>,
 }
 
-/// Draws the observer, the range and the sector on a map; what lies off it is not drawn.
+/// Draws the observer, the range and the sector on a map, clipped to it.
 pub fn draw_observer(map: &mut Pixels, overlay: &ObserverOverlay, sheet_px: (u32, u32)) {
     let sheet = Sheet::new(sheet_px.0, sheet_px.1);
     let far = Vec2::new(map.width() as f32, map.height() as f32).length() * 2.0;
@@ -163,7 +163,7 @@ fn draw_head(drawing: &mut Drawing, furniture: &MapFurniture, area: PixelBox, co
     }
 }
 
-/// Draws the column beside the map: from the top what fits.
+/// Draws the column beside the map, from the top; pieces that do not fit are left out.
 fn draw_column(drawing: &mut Drawing, furniture: &MapFurniture, column: PixelBox, composer: &mut Composer) {
     let arrow = NorthArrow { direction: Vec2::new(0.0, -1.0), foreshortening: 1.0 };
     let width = column.size().x;

@@ -1,15 +1,15 @@
 //! Names, heights and furniture painted on a finished picture; charts and map sheets.
 //!
-//! [`paint::annotate`] takes a picture and [`annotation::Annotations`] in picture coordinates, paints them, and returns a
-//! [`report::AnnotationReport`] of what it drew and what it left out.
+//! [`paint::annotate`] takes a picture and [`annotation::Annotations`] in picture coordinates, paints them, and returns
+//! a [`report::AnnotationReport`] of the annotations that were drawn and those that were left out.
 //!
 //! ```text
 //! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ──► canvas ──► Pixels
 //!             └─► labels ──► positions ──► place (pure, two dimensions) ──► Drawing ──┘
 //! ```
 //!
-//! Every mark is a filled path, so that the box with which a thing is laid out is the box that it paints. Type is set in
-//! the fonts embedded in the program and never in the machine's: the same input gives the same bytes everywhere.
+//! Every mark is a filled path, so that the box with which a thing is laid out is the box that it paints. Type is set
+//! in the fonts embedded in the program and never in the machine's: the same input gives the same bytes everywhere.
 
 pub mod annotation;
 mod canvas;

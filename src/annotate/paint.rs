@@ -16,7 +16,7 @@ use crate::draw::pixels::Pixels;
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
 const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 
-/// Paints `annotations` on `pixels`; returns what was drawn and what was not.
+/// Paints `annotations` on `pixels`; returns a report.
 ///
 /// Nothing drawn overlaps anything else drawn, or leaves the picture. The same picture and annotations give the same
 /// bytes on every machine. Without annotations the picture is unchanged.

@@ -1,4 +1,4 @@
-//! Text made to fit: lines cleaned of what cannot be printed, cut with an ellipsis, broken between words.
+//! Fits text: removes characters that cannot be printed, cuts lines with an ellipsis, breaks lines between words.
 
 use crate::annotate::composer::Composer;
 use crate::annotate::text::{TextStyle, TypesetLine};
@@ -17,7 +17,7 @@ impl Paragraph {
 }
 
 /// The lines of a text as written: split at line ends, without control characters, spaces single, none empty. At most
-/// `most` lines are returned; the second value tells whether any were dropped.
+/// `most` lines are returned; the second value is true if any were dropped.
 pub fn written_lines(text: &str, most: usize) -> (Vec<String>, bool) {
     let is_end = |c: char| matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{b}' | '\u{c}');
     let mut lines = text.split(is_end).map(single_spaced).filter(|line| !line.is_empty());

@@ -1,4 +1,4 @@
-//! Where labels go: a pure function from boxes to choices.
+//! Placement of labels: a pure function from boxes to choices.
 //!
 //! Labels come in order of importance, each with candidate positions in order of preference. One after the other takes
 //! the first candidate that is free. Greedy placement by priority is what a reader expects (a minor label never
@@ -110,7 +110,7 @@ mod tests {
 
     use super::*;
 
-    /// What is wrong with a placement; numbers index the requests.
+    /// A fault of a placement; numbers index the requests.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     enum PlacementFault {
         /// There is not one choice per request, or a choice names no candidate.

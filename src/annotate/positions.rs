@@ -1,4 +1,4 @@
-//! The candidate positions of one label around its place, the best first.
+//! The candidate positions of a label around its place, the best first.
 //!
 //! ```text
 //!        Name              Name              Name
@@ -17,7 +17,7 @@ use glam::Vec2;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::place::{LabelCandidate, TextAlignment};
 
-/// What the candidates of one label are made from; all lengths in pixels.
+/// The measures from which the candidates of a label are made, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelMetrics {
     pub anchor: Vec2,
@@ -30,7 +30,7 @@ pub struct LabelMetrics {
     /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
     pub longest: f32,
-    /// Whether the text goes on the place itself first, without symbol and leader line.
+    /// Whether the first position is on the place itself, without symbol and leader line.
     pub may_lie_on_place: bool,
 }
 

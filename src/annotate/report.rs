@@ -1,4 +1,4 @@
-//! What annotating drew and what it left out.
+//! The report of annotating a picture.
 
 use crate::annotate::drawing::DrawnText;
 
@@ -17,7 +17,8 @@ pub enum FurnitureKind {
     Credit,
 }
 
-/// What was drawn, and what was not and why. Texts are as given, in the order of the annotations.
+/// The labels and pieces of furniture that were drawn, and the others by reason. Texts are as given, in the order of
+/// the annotations.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AnnotationReport {
     /// Labels drawn.

@@ -1,4 +1,4 @@
-//! Type: one line of text to one outline, in the fonts embedded in the program.
+//! Typesetting: converts a line of text to one outline, in the fonts embedded in the program.
 //!
 //! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the outlines, and the
 //! result is one path whose baseline starts at the origin. The font is Ubuntu Light; Hack provides characters that it

@@ -1,6 +1,6 @@
 //! Zip archives, gzip files and zlib streams, unpacked in memory within limits.
 //!
-//! The `zip` and `flate2` crates decode. This module bounds what they spend: the members of an archive are counted
+//! The `zip` and `flate2` crates decode. This module bounds their work: the members of an archive are counted
 //! before its directory is read, and no content grows past the caller's limit or past what deflate can make of the
 //! packed bytes. All limits stand here.
 
@@ -16,7 +16,7 @@ pub const MAX_RASTER_BYTES: u64 = 1 << 30;
 pub const MAX_VECTOR_BYTES: u64 = 512 << 20;
 /// Most members of an archive: as many as fit without the zip64 extension.
 const MAX_MEMBERS: usize = 65_535;
-/// Most bytes that deflate makes of one byte.
+/// The greatest expansion by deflate.
 const DEFLATE_EXPANSION: u64 = 1032;
 /// Bytes of a directory entry without name and extra fields (APPNOTE 6.3, section 4.3.12), and its signature.
 const ENTRY_BYTES: usize = 46;
@@ -24,27 +24,18 @@ const ENTRY_SIGNATURE: [u8; 4] = *b"PK\x01\x02";
 
 /// Why packed content cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ArchiveError {
-    /// The zip archive is broken, encrypted, or packed by a method other than deflate.
     #[error("the zip archive cannot be read: {0}; unpack it first, or fetch it again")]
     Zip(#[from] ZipError),
-    /// The packed data is broken or ends too early.
     #[error("the {format} is broken: {source}; fetch or pack it again")]
-    Corrupt {
-        /// The format's name.
-        format: &'static str,
-        /// What the decoder found.
-        source: io::Error,
-    },
-    /// The content is larger than the limit.
+    Corrupt { format: &'static str, source: io::Error },
     #[error("the {format} unpacks to more than {limit} bytes; unpack it and cut the content down")]
     TooLarge {
-        /// The format's name.
         format: &'static str,
         /// Most bytes that are unpacked.
         limit: u64,
     },
-    /// The archive has more members than are read.
     #[error("the zip archive has more than {MAX_MEMBERS} members; pack fewer files")]
     TooManyMembers,
 }
@@ -105,7 +96,7 @@ impl<'a> ZipReader<'a> {
             return Err(ArchiveError::TooManyMembers);
         }
         let archive = ZipArchive::new(Cursor::new(bytes))?;
-        // Lossy: most writers store UTF-8 and leave out the flag that says so.
+        // Lossy: most writers store UTF-8 without setting its flag.
         let names = archive.file_names_raw().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
         Ok(Self { archive, names, limit })
     }

@@ -24,12 +24,10 @@ use crate::cli::viewshed::ViewshedArguments;
 #[command(name = "sandtable", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 the input is wrong, 2 wrong usage.")]
 pub struct Arguments {
-    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene file to an annotated PNG
@@ -42,13 +40,11 @@ pub enum Command {
     Schema,
     /// Inspect, convert and make elevation files
     Dem {
-        /// The command.
         #[command(subcommand)]
         command: DemCommand,
     },
     /// Inspect model files
     Model {
-        /// The command.
         #[command(subcommand)]
         command: ModelCommand,
     },

@@ -20,7 +20,7 @@ pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
     print_lines(&lines)
 }
 
-/// What a scene holds, and the notes about it, in lines.
+/// The contents of a scene and its notes, in lines.
 pub fn contents(scene: &SceneModel) -> Vec<String> {
     let lattice = &scene.lattice;
     let (low, high) = scene.height_range_m;

@@ -16,12 +16,11 @@ use crate::dem::warp::WarpError;
 use crate::dem::warp::reproject::Resampling;
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
+use crate::message::chain::error_text;
 use crate::pipeline::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert};
 use crate::pipeline::dem::{self, DemOptions};
-use crate::pipeline::error::error_text;
 use crate::pipeline::raster_file;
 
-/// `dem convert`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Cells as large as the file's or finer are bilinear between its samples; from twice as large on they hold the mean\n\
@@ -29,8 +28,8 @@ use crate::pipeline::raster_file;
                   to some meters; one that needs a grid file is refused."
 )]
 pub struct ConvertArguments {
-    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt or
-    /// .png
+    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt
+    /// or .png
     #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
     pub files: Vec<PathBuf>,
     /// Fill voids that samples enclose, with a membrane from their rims; the filled samples are counted
@@ -45,7 +44,6 @@ pub struct ConvertArguments {
     /// Side of a cell in units of the system that it is brought to [default: its own]
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write a number above 0"))]
     pub cell: Option<f64>,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }
@@ -96,8 +94,8 @@ fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
     CliError::input(format!("{}: {}{remedy}", file.display(), error_text(error)))
 }
 
-/// The error of elevation that does not state its place, with the arguments that state it. `crs_option` is the one that
-/// states its coordinate system.
+/// The error of elevation without a place, with the options that state it. `crs_option` is the option of the
+/// coordinate system.
 pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError {
     let reason = match error {
         WarpError::LooksLikeDegrees { min_x, max_x, min_y, max_y } => format!(

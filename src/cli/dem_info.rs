@@ -1,4 +1,4 @@
-//! `sandtable dem info`: what an elevation file or a folder of tiles holds.
+//! `sandtable dem info`: metadata and statistics of an elevation file or a folder of tiles.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,6 @@ use crate::dem::stats::Stats;
 use crate::dem::voids;
 use crate::pipeline::dem;
 
-/// `dem info`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Where an elevation file is wanted a folder may be named: the elevation files in it, sorted by name, are then tiles of
@@ -25,7 +24,6 @@ pub struct DemInfoArguments {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }
@@ -43,7 +41,7 @@ pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
     if arguments.json { print(&format!("{}\n", info.json())) } else { print_lines(&info.table()) }
 }
 
-/// A raster and what is known of it.
+/// A raster and its statistics.
 struct DemInfo {
     raster: Raster,
     stats: Stats,

@@ -1,4 +1,4 @@
-//! How a command fails: the message on standard error and the exit code.
+//! Errors of commands: the message on standard error and the exit code.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -7,14 +7,13 @@ use std::process::ExitCode;
 
 use crate::cli::output::warn;
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
-use crate::pipeline::error::error_text;
+use crate::message::chain::error_text;
 
 /// Why a command stopped.
 #[derive(Debug)]
 pub enum CliError {
     /// The input is wrong or missing: exit code 1.
     Input {
-        /// What is wrong.
         error: Box<dyn Error + Send + Sync>,
         /// A remedy, after the message.
         hint: Option<String>,
@@ -30,12 +29,10 @@ impl<E: Error + Send + Sync + 'static> From<E> for CliError {
 }
 
 impl CliError {
-    /// Wrong input, with a message.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input { error: message.into().into(), hint: None }
     }
 
-    /// Wrong usage, with a message.
     pub fn usage(message: impl Display) -> Self {
         Self::Usage(message.to_string())
     }

@@ -14,7 +14,6 @@ use crate::cli::values::number;
 use crate::pipeline::export::{ExportFormat, export};
 use crate::pipeline::scene_file::open_scene_true_to_scale;
 
-/// `export`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Lengths and heights are meters from the south-west post, heights without exaggeration; the file says where that\n\
@@ -22,7 +21,6 @@ use crate::pipeline::scene_file::open_scene_true_to_scale;
                   an .obj are written beside it. Light, labels and furniture are not exported."
 )]
 pub struct ExportArguments {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Write the scene to this file; the extension names the format, .glb or .obj

@@ -1,7 +1,6 @@
 //! `sandtable dem grid`: a grid of scattered points.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 use glam::DVec2;
@@ -21,7 +20,6 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::gridding::PointSources;
 use crate::pipeline::raster_file;
 
-/// `dem grid`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct GridArguments {
@@ -44,8 +42,8 @@ pub struct GridArguments {
     #[arg(long, value_name = "CRS")]
     pub crs: Option<String>,
     /// What to cover [default: the points, out to multiples of the cell]
-    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true)]
-    pub extent: Option<GridExtent>,
+    #[arg(long, value_name = "W,S,E,N", allow_hyphen_values = true, value_parser = extent)]
+    pub extent: Option<Rect>,
     /// What cells outside the convex hull of the points hold
     #[arg(long, default_value = "nodata", value_parser = choice::<BeyondHull>())]
     pub beyond_hull: BeyondHull,
@@ -91,25 +89,18 @@ impl MethodWord {
     }
 }
 
-/// West, south, east and north.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GridExtent(Rect);
-
-impl FromStr for GridExtent {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match numbers(text).as_deref() {
-            Some(&[west, south, east, north]) if west < east && south < north => {
-                Ok(Self(Rect { min: DVec2::new(west, south), max: DVec2::new(east, north) }))
-            }
-            Some(&[_, _, _, _]) => Err("west must lie below east and south below north"),
-            _ => Err("write west,south,east,north as in 0,0,1000,500"),
+/// Parses west, south, east and north.
+fn extent(text: &str) -> Result<Rect, &'static str> {
+    match numbers(text).as_deref() {
+        Some(&[west, south, east, north]) if west < east && south < north => {
+            Ok(Rect { min: DVec2::new(west, south), max: DVec2::new(east, north) })
         }
+        Some(&[_, _, _, _]) => Err("west must lie below east and south below north"),
+        _ => Err("write west,south,east,north as in 0,0,1000,500"),
     }
 }
 
-/// Writes the grid and prints what it was made of.
+/// Writes the grid and prints a summary.
 pub fn run(arguments: &GridArguments) -> Result<(), CliError> {
     let (out, points) =
         arguments.files.split_last().ok_or_else(|| CliError::input("name points and a grid"))?;
@@ -158,7 +149,7 @@ fn grid(arguments: &GridArguments, cloud: &PointCloud, method: GriddingMethod) -
     let vertices = cloud.points.iter().chain(cloud.breaklines.iter().flatten());
     let extent = Rect::around(vertices.map(|point| point.truncate()));
     let cells = match arguments.extent {
-        Some(GridExtent(extent)) => CellGrid::within(extent, arguments.cell)?,
+        Some(extent) => CellGrid::within(extent, arguments.cell)?,
         None => CellGrid::around(extent, arguments.cell)?,
     };
     gridding::grid(cloud, &cells, method, arguments.beyond_hull)
@@ -204,9 +195,9 @@ mod tests {
     #[test]
     fn extents_are_west_south_east_north() {
         let rect = Rect { min: DVec2::new(-1.5, 2.0), max: DVec2::new(3.0, 1e3) };
-        assert_eq!("-1.5, 2,3,1e3".parse(), Ok(GridExtent(rect)));
+        assert_eq!(extent("-1.5, 2,3,1e3"), Ok(rect));
         for wrong in ["1,2,3", "3,2,1,4", "1,2,3,north", "0,0,inf,1", "0,nan,1,1", ""] {
-            assert!(wrong.parse::<GridExtent>().is_err(), "{wrong}");
+            assert!(extent(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -16,14 +16,12 @@ use crate::pipeline::files;
 use crate::pipeline::positions::{WrittenPosition, parse_positions};
 use crate::terrain::query::{Interpolation, Surface};
 
-/// `height`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Heights are meters, whatever unit the file has. A point without a height has a status that says why:\n\
                   NoData where the model has a hole, Outside beyond it."
 )]
 pub struct HeightQueryArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// A point; may be given several times

@@ -13,7 +13,7 @@ use crate::cli::options::HeightArguments;
 use crate::cli::output::{aligned, print, print_lines, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, number};
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::dem;
 use crate::pipeline::error::FileError;
 use crate::pipeline::ground::MetricGround;
@@ -22,7 +22,6 @@ use crate::pipeline::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
 use crate::pipeline::lod::lod_ground::LodGround;
 use crate::pipeline::lod::method::{CriterionKind, Emit, Refine};
 
-/// `lod`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct LodArguments {
@@ -52,7 +51,6 @@ pub struct LodArguments {
     /// Print a JSON array with one object per method
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }
@@ -137,7 +135,7 @@ fn json(report: &FlightReport) -> Value {
     })
 }
 
-/// The flight, a row for each method, and what the columns are.
+/// The flight, a row for each method, and an explanation of the columns.
 fn table(reports: &[FlightReport], ground: &LodGround, arguments: &LodArguments) -> Vec<String> {
     let lattice = ground.measured.lattice();
     let frames = reports.first().map_or(0, |report| report.frames);

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::lod::method::{
     CriterionKind, Emit, IndexEmitter, LodMethod, Refine, Refiner, SphereRule,
 };
@@ -35,11 +35,8 @@ const fn refining(lists: IndexEmitter, criterion: CriterionKind, refiner: Refine
 /// The parts that a method must have; `None` admits any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MethodFilter {
-    /// What emits triangles.
     pub emit: Option<Emit>,
-    /// When an error shows.
     pub criterion: Option<CriterionKind>,
-    /// What refines.
     pub refine: Option<Refine>,
     /// The most triangles, which only queues keep.
     pub budget: Option<u32>,
@@ -54,8 +51,8 @@ pub struct NoMethod {
 }
 
 impl MethodFilter {
-    /// The methods that pass, in the order in which they are compared: the default selection for an empty filter. Without
-    /// `emit` the lists are those of the bintree, since all emitters show the same triangles.
+    /// The methods that pass, in the order in which they are compared: the default selection for an empty filter.
+    /// Without `emit` the lists are those of the bintree, since all emitters show the same triangles.
     pub fn methods(self) -> Result<Vec<LodMethod>, NoMethod> {
         if self == Self::default() {
             return Ok(SELECTION.to_vec());

@@ -1,4 +1,4 @@
-//! `sandtable los`: whether one point can be seen from another, what stands between, and how much is missing.
+//! `sandtable los`: whether one point can be seen from another, the first obstacle, and the clearance.
 
 use clap::Args;
 use glam::DVec2;
@@ -9,7 +9,7 @@ use crate::annotate::nice;
 use crate::cli::error::CliError;
 use crate::cli::options::{ChartArguments, DatasetArguments};
 use crate::cli::output::{print, print_lines, row};
-use crate::cli::values::{RaisedPosition, number};
+use crate::cli::values::{RaisedPosition, number, raised_position};
 use crate::pipeline::files;
 use crate::pipeline::positions::format_position;
 use crate::pipeline::sight::{GroundedEnd, SightQuery, SightReport};
@@ -17,21 +17,19 @@ use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, SightEnd};
 use crate::terrain::sight::rise::Rise;
 
-/// `los`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "The exit code is 0 whether the target is visible or not. Ground without data blocks nothing.\n\
                   The line is straight in the ground's coordinate system."
 )]
 pub struct LosArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The position of the observer, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub from: RaisedPosition,
     /// The position of the target, and meters above the ground there
-    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y[,H]", allow_hyphen_values = true, value_parser = raised_position)]
     pub to: RaisedPosition,
     /// Meters of the observer's eye above the ground, where --from states none
     #[arg(long, value_name = "METERS", default_value = "2", allow_negative_numbers = true, value_parser = number::<f64>(.., "write a number"))]
@@ -45,7 +43,6 @@ pub struct LosArguments {
     /// Assume a flat Earth
     #[arg(long, conflicts_with = "refraction")]
     pub flat: bool,
-    /// The chart.
     #[command(flatten)]
     pub chart: ChartArguments,
 }

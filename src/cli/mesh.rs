@@ -24,7 +24,6 @@ use crate::pipeline::ground::{GroundError, MetricGround};
 use crate::roam::bound::Deviation;
 use crate::terrain::lattice::Lattice;
 
-/// `mesh`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Coordinates are meters from the south-west post, X east, Y north, Z up; the file says where that is.\n\
@@ -45,7 +44,6 @@ pub struct MeshArguments {
     /// Meters between the posts of an elevation file that does not state it
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
 }
@@ -79,7 +77,7 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     print_lines(&summary(arguments, &lattice, &crs, &bounded))
 }
 
-/// That the posts are not those of the file, where they are not.
+/// A note that the elevations were resampled; `None` if the posts are the file's.
 fn resampled(raster: &Raster, lattice: &Lattice, crs: &Crs) -> Option<String> {
     let from = raster.crs.as_ref().map_or("no system", |crs| crs.name());
     let axes = raster.map_from_grid.matrix2;

@@ -1,4 +1,4 @@
-//! `sandtable model info`: what a model file holds.
+//! `sandtable model info`: counts and bounds of a model file.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,6 @@ use crate::cli::output::{print, print_lines, row};
 use crate::geom::aabb::Aabb;
 use crate::pipeline::model_file;
 
-/// `model info`.
 #[derive(Debug, Args)]
 pub struct ModelArguments {
     /// The file

@@ -11,7 +11,6 @@ use crate::cli::progress::StepTimer;
 use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
 use crate::pipeline::scene_file::open_scene;
 
-/// `new`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Every layer of the vector files is surveyed: lines with `highway` become roads by class, with `waterway` rivers, with \
@@ -38,7 +37,7 @@ pub struct NewArguments {
     pub crs: Option<String>,
 }
 
-/// Writes the scene file, builds the scene, and prints what it holds and how to render it.
+/// Writes the scene file, builds the scene, and prints its contents and the command that renders it.
 pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);

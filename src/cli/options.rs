@@ -20,7 +20,6 @@ use crate::pipeline::picture::PictureSize;
 pub struct SceneArguments {
     /// The scene file
     pub scene: PathBuf,
-    /// The folders that the scene may read.
     #[command(flatten)]
     pub access: AccessArguments,
 }
@@ -33,7 +32,7 @@ pub struct AccessArguments {
     pub allow: Vec<PathBuf>,
 }
 
-/// What an elevation file does not state about its heights.
+/// Heights of files that do not state their unit or layout.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct HeightArguments {
     /// Meters per gray value of a PNG, which needs it, or of a RAW file [default: 1]
@@ -55,21 +54,19 @@ pub struct HeightArguments {
 pub struct DatasetArguments {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or scene's]
+    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or
+    /// scene's]
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub crs: Option<Crs>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// What the file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
-    /// The folders that a scene may read.
     #[command(flatten)]
     pub access: AccessArguments,
 }
 
-/// A chart.
 #[derive(Debug, Args)]
 pub struct ChartArguments {
     /// Write a chart to this file
@@ -81,7 +78,6 @@ pub struct ChartArguments {
 }
 
 impl HeightArguments {
-    /// The options for opening elevation.
     pub fn dem_options(&self) -> DemOptions {
         DemOptions {
             height_scale: self.height_scale,

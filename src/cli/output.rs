@@ -11,7 +11,6 @@ use crate::cli::error::CliError;
 #[error("standard output")]
 struct StdoutError(#[source] io::Error);
 
-/// Prints `text`.
 pub fn print(text: &str) -> Result<(), CliError> {
     stream(|out| out.write_all(text.as_bytes()))
 }

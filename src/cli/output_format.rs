@@ -6,8 +6,8 @@ use crate::cli::error::CliError;
 use crate::dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
 use crate::pipeline::files;
 
-/// The format that `from_extension` finds for the extension of `path`, where a file could be written there that replaces
-/// none of `inputs`. `written` says of what is written which extensions it has.
+/// The format that `from_extension` finds for the extension of `path`, where a file could be written there that
+/// replaces none of `inputs`. `written` names the extensions in messages.
 pub fn output_format<F>(
     path: &Path,
     inputs: &[PathBuf],

@@ -11,7 +11,7 @@ use crate::annotate::chart_profile::paint;
 use crate::cli::error::CliError;
 use crate::cli::options::{ChartArguments, DatasetArguments};
 use crate::cli::output::{print, stream};
-use crate::cli::values::{PositionList, choice};
+use crate::cli::values::{PositionList, choice, positions};
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{Dataset, QueryError, transform};
 use crate::pipeline::files;
@@ -20,21 +20,19 @@ use crate::pipeline::profile::{GroundProfile, ProfileError};
 use crate::terrain::profile::{Extreme, ProfileStation, Sampling};
 use crate::terrain::query::Interpolation;
 
-/// `profile`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "The table has station,x,y,height,status a line: meters from the start, the position in the coordinate\n\
                   system of the line, meters. There is a station wherever the ground bends, and on the model's border."
 )]
 pub struct ProfileArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The line: --line X,Y X,Y and so on; in quotes where one begins with a minus sign
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points")]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required_unless_present = "points", value_parser = positions)]
     pub line: Vec<PositionList>,
     /// The line's other vertices
-    #[arg(value_name = "X,Y", requires = "line", hide = true)]
+    #[arg(value_name = "X,Y", requires = "line", hide = true, value_parser = positions)]
     pub rest: Vec<PositionList>,
     /// A file with the line: x,y a line of CSV, or the first line of a vector file; - reads CSV from standard input
     #[arg(long, value_name = "FILE", conflicts_with = "line")]
@@ -45,7 +43,6 @@ pub struct ProfileArguments {
     /// Also a station every so many meters
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// The chart.
     #[command(flatten)]
     pub chart: ChartArguments,
 }
@@ -75,8 +72,7 @@ fn line(arguments: &ProfileArguments, dataset: &Dataset) -> Result<InputLine, Cl
     if let Some(path) = &arguments.points {
         return Ok(read_line(path, arguments.dataset.crs.clone(), &dataset.crs())?);
     }
-    let lists = arguments.line.iter().chain(&arguments.rest);
-    let vertices: Vec<DVec2> = lists.flat_map(|list| list.0.clone()).collect();
+    let vertices: Vec<DVec2> = arguments.line.iter().chain(&arguments.rest).flatten().copied().collect();
     if vertices.len() < 2 {
         return Err(CliError::usage("--line needs at least two positions: --line X,Y X,Y"));
     }

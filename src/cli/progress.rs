@@ -22,7 +22,6 @@ impl Default for StepTimer {
 }
 
 impl StepTimer {
-    /// Begins a step.
     pub fn begin(&self, step: &'static str) {
         self.bar.set_message(step);
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));

@@ -25,10 +25,8 @@ use crate::scene::{SceneModel, SceneView};
 /// The longest text of a label in the summary, in characters.
 const LONGEST_LABEL: usize = 60;
 
-/// `render`.
 #[derive(Debug, Args)]
 pub struct RenderArguments {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Write the picture to this file [default: the scene's name with .png, in the current folder]
@@ -100,7 +98,7 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
     Ok(RenderedScene { scene, camera: camera.name, view, statistics })
 }
 
-/// The error, which says `reason` and names the option where the picture would replace an input.
+/// The error with `reason` and the option to change, where the picture would replace an input.
 fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
     match error.cause {
         WriteFileCause::Input => CliError::input(format!("{error}: {reason}; name another with -o")),
@@ -127,7 +125,7 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(scene.file_stem().unwrap_or("scene".as_ref())).with_extension("png")
 }
 
-/// What the picture shows, and which labels it does not, in lines.
+/// The camera, and the labels that were not placed or were shortened, in lines.
 fn summary(rendered: &RenderedScene) -> Vec<String> {
     let drawn = &rendered.view.drawn;
     let (all, ground) = (drawn.list.triangle_count(), drawn.ground_triangles);

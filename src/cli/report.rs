@@ -1,4 +1,4 @@
-//! `sandtable report`: what building a scene found about single features.
+//! `sandtable report`: results of building a scene, feature by feature.
 
 use std::path::{Path, PathBuf};
 
@@ -20,11 +20,9 @@ const SHOWN_ROWS: usize = 20;
 /// The most characters of a name that are printed or become part of a file name.
 const SHOWN_CHARACTERS: usize = 40;
 
-/// `report`.
 #[derive(Debug, Args)]
 #[command(after_help = "Heights are true to scale, whatever exaggeration the scene states.")]
 pub struct ReportArguments {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Print one JSON object with every row
@@ -80,8 +78,8 @@ fn value(cell: &ReportCell) -> Value {
     }
 }
 
-/// Writes a file for each table, `NAME.csv`, and for each road profile, `profile_NUMBER_NAME.csv` with the number of the
-/// road among the scene's features. Returns their paths.
+/// Writes a file for each table, `NAME.csv`, and for each road profile, `profile_NUMBER_NAME.csv` with the number of
+/// the road among the scene's features. Returns their paths.
 fn write_csv_files(scene: &SceneModel, folder: &Path) -> Result<Vec<String>, WriteFileError> {
     let tables = scene.report.tables();
     let tables = tables.iter().map(|table| (table.name.replace(' ', "_"), as_csv(table)));

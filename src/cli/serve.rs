@@ -11,7 +11,6 @@ use crate::cli::output::warn;
 use crate::pipeline::dataset::DatasetOptions;
 use crate::pipeline::service::{NamedFile, RequestLog, ServiceLimits, ServiceOptions};
 
-/// `serve`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Each file is a dataset, queried at /v1/NAME; without a name it is named after the file, less its extension.\n\
@@ -46,10 +45,8 @@ pub struct ServeArguments {
     /// How long the last answers may take when the service stops
     #[arg(long, value_name = "SECONDS", default_value_t = ServiceLimits::default().grace_s, value_parser = clap::value_parser!(u16).range(0..=3600))]
     pub grace: u16,
-    /// What a file does not state about its heights.
     #[command(flatten)]
     pub heights: HeightArguments,
-    /// The folders that a scene may read.
     #[command(flatten)]
     pub access: AccessArguments,
 }

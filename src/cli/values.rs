@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec2;
 
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
@@ -43,57 +43,37 @@ pub fn picture_size(text: &str) -> Result<PictureSize, &'static str> {
     }
 }
 
-/// Two finite numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NumberPair(pub f64, pub f64);
-
-impl FromStr for NumberPair {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match numbers(text).as_deref() {
-            Some(&[first, second]) => Ok(Self(first, second)),
-            _ => Err("write two numbers with a comma between"),
-        }
-    }
+/// Parses two finite numbers.
+pub fn number_pair(text: &str) -> Result<[f64; 2], &'static str> {
+    let pair = numbers(text).and_then(|numbers| numbers.try_into().ok());
+    pair.ok_or("write two numbers with a comma between")
 }
 
-/// One or more positions with spaces between.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PositionList(pub Vec<DVec2>);
+/// One or more positions.
+pub type PositionList = Vec<DVec2>;
 
-impl FromStr for PositionList {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let position = |text: &str| match numbers(text).as_deref() {
-            Some(&[x, y]) => Some(DVec2::new(x, y)),
-            _ => None,
-        };
-        let positions: Option<Vec<DVec2>> = text.split_whitespace().map(position).collect();
-        let positions = positions.filter(|positions| !positions.is_empty());
-        positions.map(Self).ok_or("write positions as X,Y, for example 731500,4017200")
-    }
+/// Parses one or more positions with spaces between.
+pub fn positions(text: &str) -> Result<PositionList, &'static str> {
+    let positions: Option<PositionList> =
+        text.split_whitespace().map(|position| number_pair(position).ok().map(DVec2::from)).collect();
+    let positions = positions.filter(|positions| !positions.is_empty());
+    positions.ok_or("write positions as X,Y, for example 731500,4017200")
 }
 
 /// A position, and meters above the ground there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaisedPosition {
-    /// The position.
     pub at: DVec2,
     /// Meters above the ground, where they are stated.
     pub above_m: Option<f64>,
 }
 
-impl FromStr for RaisedPosition {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match numbers(text).as_deref() {
-            Some(&[x, y]) => Ok(Self { at: DVec2::new(x, y), above_m: None }),
-            Some(&[x, y, above_m]) => Ok(Self { at: DVec2::new(x, y), above_m: Some(above_m) }),
-            _ => Err("write a position as X,Y or, with meters above the ground, X,Y,H"),
-        }
+/// Parses a position with or without meters above the ground.
+pub fn raised_position(text: &str) -> Result<RaisedPosition, &'static str> {
+    match numbers(text).as_deref() {
+        Some(&[x, y]) => Ok(RaisedPosition { at: DVec2::new(x, y), above_m: None }),
+        Some(&[x, y, above_m]) => Ok(RaisedPosition { at: DVec2::new(x, y), above_m: Some(above_m) }),
+        _ => Err("write a position as X,Y or, with meters above the ground, X,Y,H"),
     }
 }
 
@@ -103,14 +83,17 @@ mod tests {
 
     #[test]
     fn positions_are_two_finite_numbers_and_ends_may_have_a_height() {
-        assert_eq!("1.5,-2e3".parse(), Ok(PositionList(vec![DVec2::new(1.5, -2e3)])));
+        assert_eq!(positions("1.5,-2e3"), Ok(vec![DVec2::new(1.5, -2e3)]));
         let two = vec![DVec2::new(-84.1, 36.2), DVec2::new(-84.0, 36.0)];
-        assert_eq!("-84.1,36.2 -84,36".parse(), Ok(PositionList(two)));
-        assert_eq!("1,2,30".parse(), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) }));
-        assert_eq!("1,2".parse(), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: None }));
+        assert_eq!(positions("-84.1,36.2 -84,36"), Ok(two));
+        assert_eq!(
+            raised_position("1,2,30"),
+            Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: Some(30.0) })
+        );
+        assert_eq!(raised_position("1,2"), Ok(RaisedPosition { at: DVec2::new(1.0, 2.0), above_m: None }));
         for wrong in ["", "1", "1,2,3,4", "a,b", "NaN,1", "1,inf", "1;2"] {
-            assert!(wrong.parse::<PositionList>().is_err(), "{wrong}");
-            assert!(wrong.parse::<RaisedPosition>().is_err(), "{wrong}");
+            assert!(positions(wrong).is_err(), "{wrong}");
+            assert!(raised_position(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! `sandtable viewshed`: what can be seen from a point, as a map, a raster or a few figures.
+//! `sandtable viewshed`: the posts that can be seen from a point, as a map, a raster or a few figures.
 
 use std::fmt::Write;
 use std::ops::Bound;
@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use clap::Args;
-use glam::DVec2;
 use serde_json::json;
 
 use crate::cli::error::CliError;
@@ -15,7 +14,7 @@ use crate::cli::options::DatasetArguments;
 use crate::cli::output::{print, print_lines, row};
 use crate::cli::output_format::raster_format;
 use crate::cli::progress::StepTimer;
-use crate::cli::values::{NumberPair, number};
+use crate::cli::values::{number, number_pair};
 use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{Dataset, QueryError, transform};
@@ -28,19 +27,17 @@ use crate::terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, Viewshed
 
 const HEIGHT_ADVICE: &str = "write meters as a number from 0 to 100000";
 
-/// `viewshed`.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A raster holds 1 where a target can be seen, 0 where it is hidden, and 255, its no-data value, beyond the \
                   range, out of the sector and where there is no elevation."
 )]
 pub struct ViewshedArguments {
-    /// The dataset.
     #[command(flatten)]
     pub dataset: DatasetArguments,
     /// The position of the observer
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
-    pub at: NumberPair,
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = number_pair)]
+    pub at: [f64; 2],
     /// Meters of the eye above the ground
     #[arg(long, value_name = "METERS", default_value = "2", value_parser = number::<f64>(0.0..=1e5, HEIGHT_ADVICE))]
     pub observer_height: f64,
@@ -51,8 +48,8 @@ pub struct ViewshedArguments {
     #[arg(long, value_name = "METERS", value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write meters as a number above 0"))]
     pub range: Option<f64>,
     /// Look only between two azimuths, in degrees clockwise from north
-    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true)]
-    pub sector: Option<NumberPair>,
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = number_pair)]
+    pub sector: Option<[f64; 2]>,
     /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for
     #[arg(long, value_name = "K", default_value_t = 1.0 / 7.0, value_parser = number::<f64>(-1.0..1.0, "write a number from -1 to below 1; 0.13 to 0.17 is usual"))]
     pub refraction: f64,
@@ -78,9 +75,10 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     let snapshot = dataset.service()?.snapshot();
     let options = options(arguments, &dataset, snapshot.crs())?;
     steps.begin("looking around");
-    let viewshed = viewshed(snapshot.lattice(), &options).map_err(|answer| {
-        let NumberPair(x, y) = arguments.at;
-        QueryError::NoGround { what: "the observer at".into(), at: DVec2::new(x, y), answer }
+    let viewshed = viewshed(snapshot.lattice(), &options).map_err(|answer| QueryError::NoGround {
+        what: "the observer at".into(),
+        at: arguments.at.into(),
+        answer,
     })?;
     let summary = ViewshedSummary::new(snapshot.lattice(), &viewshed);
     if let Some(output) = output {
@@ -108,13 +106,12 @@ fn options(
     dataset: &Dataset,
     ground: &Crs,
 ) -> Result<ViewshedOptions, QueryError> {
-    let NumberPair(x, y) = arguments.at;
-    let at = transform("the observer at", &arguments.dataset.crs(dataset), ground, DVec2::new(x, y))?;
+    let at = transform("the observer at", &arguments.dataset.crs(dataset), ground, arguments.at.into())?;
     Ok(ViewshedOptions {
         observer: SightEnd { at, above_m: arguments.observer_height },
         target_above_m: arguments.target_height,
         range_m: arguments.range.unwrap_or(f64::INFINITY),
-        sector: arguments.sector.map_or(Sector::ALL, |NumberPair(from, to)| Sector::between(from, to)),
+        sector: arguments.sector.map_or(Sector::ALL, |[from, to]| Sector::between(from, to)),
         curvature: curvature(arguments.flat, Some(arguments.refraction)),
     })
 }
@@ -152,7 +149,7 @@ fn subtitle(arguments: &ViewshedArguments, summary: &ViewshedSummary) -> String 
     if let Some(range) = arguments.range {
         let _ = write!(subtitle, ", within {range} m");
     }
-    if let Some(NumberPair(from, to)) = arguments.sector {
+    if let Some([from, to]) = arguments.sector {
         let _ = write!(subtitle, ", azimuth {from}° to {to}°");
     }
     let _ = write!(subtitle, "; {:.1} % in sight", summary.visible_share * 100.0);
@@ -170,7 +167,7 @@ fn json(
         "observer": { "x": observer.at.x, "y": observer.at.y, "above_m": observer.above_m },
         "target_above_m": options.target_above_m,
         "range_m": arguments.range,
-        "sector_deg": arguments.sector.map(|NumberPair(from, to)| [from, to]),
+        "sector_deg": arguments.sector,
         "refraction": (!arguments.flat).then_some(arguments.refraction),
         "posts": { "visible": visible, "hidden": hidden, "no_data": no_data, "beyond": beyond },
         "visible_m2": summary.visible_m2,

@@ -11,11 +11,11 @@ pub enum Answer {
     Outside,
 }
 
-/// The reason beside a height in a slice of its own.
+/// The reason for a height, in a slice parallel to the heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Status {
-    /// The height holds.
+    /// The height is valid.
     #[default]
     Ok,
     /// The position lies on the model, where it holds no data; the height is NaN.

@@ -1,8 +1,8 @@
-//! A cache of bounded weight: the least recently used value goes first.
+//! A cache of bounded weight that evicts the least recently used value first.
 //!
-//! Two ordered maps, by key and by the time of the last use: nothing depends on hashing, and the order of evictions is a
-//! function of the order of uses alone. Room is made before a value is put in, so that the bound is never exceeded. (The
-//! kept crates bound the number of values, or evict in an order that depends on hashing.)
+//! Two ordered maps, by key and by the time of the last use: nothing depends on hashing, and the order of evictions is
+//! a function of the order of uses alone. Room is made before a value is put in, so that the bound is never exceeded.
+//! (The kept crates bound the number of values, or evict in an order that depends on hashing.)
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ impl<K: Ord + Copy, V> LruCache<K, V> {
         Some(&entry.value)
     }
 
-    /// Whether `key` is cached; this is no use.
+    /// Whether `key` is cached; does not count as a use.
     pub fn contains(&self, key: K) -> bool {
         self.values.contains_key(&key)
     }
@@ -54,8 +54,8 @@ impl<K: Ord + Copy, V> LruCache<K, V> {
         before - self.values.len()
     }
 
-    /// Caches `value` as used now, in place of what `key` had; not at all where `weight` alone exceeds the bound.
-    /// Returns how many other values were evicted for it.
+    /// Caches `value` as the most recently used, in place of the previous value of `key`; does nothing where `weight`
+    /// alone exceeds the bound. Returns how many other values were evicted for it.
     pub fn put(&mut self, key: K, value: V, weight: usize) -> usize {
         if let Some(old) = self.values.remove(&key) {
             self.by_use.remove(&old.used);
@@ -72,7 +72,7 @@ impl<K: Ord + Copy, V> LruCache<K, V> {
         evicted
     }
 
-    /// All values in the order of their keys; this is no use.
+    /// All values in the order of their keys; does not count as a use.
     pub fn iter(&self) -> impl Iterator<Item = (K, &V)> {
         self.values.iter().map(|(key, entry)| (*key, &entry.value))
     }

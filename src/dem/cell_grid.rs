@@ -18,27 +18,18 @@ pub struct CellGrid {
     height: u32,
 }
 
-/// Why there is no lattice of cells.
+/// Why a lattice of cells cannot be made.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum CellGridError {
-    /// The size of a cell is no size.
     #[error("the cell size is {0}; it must be a number above 0")]
     Cell(f64),
-    /// The extent holds nothing.
     #[error("the extent from {}, {} to {}, {} holds nothing: give west, south, east, north", .0.min.x, .0.min.y, .0.max.x, .0.max.y)]
     Empty(Rect),
-    /// There would be more cells than a raster has.
     #[error(
         "{columns} x {rows} cells are more than the {MOST_SAMPLES} of a raster; a cell size of {enough:.3} is enough"
     )]
-    TooMany {
-        /// Cells a row.
-        columns: f64,
-        /// Rows.
-        rows: f64,
-        /// A cell size with fewer cells.
-        enough: f64,
-    },
+    TooMany { columns: f64, rows: f64, enough: f64 },
 }
 
 impl CellGrid {

@@ -1,4 +1,4 @@
-//! Places of rasters: world files, stated cells, projection files.
+//! Georeferences of rasters: world files, stated cells, projection files.
 
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -89,7 +89,7 @@ pub(crate) fn utm_code(geographic: u32, zone: i64) -> Option<u32> {
     (1..=60).contains(&zone.abs()).then_some(base + zone.unsigned_abs() as u32)
 }
 
-/// Geographic systems, and what their UTM zones north and south are numbered from.
+/// Geographic systems with the EPSG codes before their first UTM zones north and south.
 const UTM_BASES: [(u32, u32, Option<u32>); 5] = [
     (4326, 32600, Some(32700)),
     (4322, 32200, Some(32300)),

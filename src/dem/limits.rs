@@ -1,4 +1,4 @@
-//! Caps that a header must keep before anything is allocated for it.
+//! Limits on the size that a header claims, checked before memory is allocated.
 
 use glam::{U64Vec2, UVec2};
 

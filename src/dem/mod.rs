@@ -2,7 +2,6 @@
 //! grids of them.
 
 pub mod answer;
-mod bytes;
 pub mod cache;
 pub mod cell_grid;
 pub mod crop;

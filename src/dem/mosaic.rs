@@ -1,4 +1,4 @@
-//! Several tiles of one raster, joined.
+//! Joins the tiles of one raster.
 //!
 //! Tiles of one raster have one coordinate system, one vertical unit and one grid: their cells are alike and their
 //! samples coincide, within a thousandth of a cell. Other tiles are refused by name, never resampled.
@@ -20,7 +20,7 @@ pub const ALIGNMENT: f64 = 1e-3;
 /// The most samples of all tiles together: twice a raster's, since tiles overlap.
 const MOST_OF_ALL: u64 = 2 * MOST_SAMPLES;
 
-/// Tiles joined to one raster, and what was found in joining.
+/// Tiles joined to one raster, with statistics of their overlaps and gaps.
 #[derive(Clone, Debug)]
 pub struct Mosaic {
     /// The smallest rectangle around all tiles.
@@ -54,47 +54,32 @@ impl Mosaic {
     }
 }
 
-/// Why tiles are not those of one raster.
+/// The reason why tiles do not form one raster.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum MosaicError {
-    /// There is no tile.
     #[error("there is no elevation file to join")]
     Empty,
-    /// The tile of this name has no georeference.
     #[error("{0} does not state where it lies, so it cannot be joined")]
     NoPlace(String),
-    /// Two tiles are not alike.
     #[error(
         "{first} and {other} are not tiles of one raster: their {what} are {} and {}; bring them to one, for example with: sandtable dem convert",
         .found[0], .found[1]
     )]
-    Differ {
-        /// The first tile.
-        first: String,
-        /// The tile that differs from it.
-        other: String,
-        /// The property that differs.
-        what: &'static str,
-        /// That of the first and that of the other.
-        found: [String; 2],
-    },
-    /// The samples of two tiles do not coincide.
+    Differ { first: String, other: String, what: &'static str, found: [String; 2] },
     #[error(
         "{first} and {other} are not tiles of one raster: the second's samples lie ({:.4}, {:.4}) cells off the first's; bring them to one grid, for example with: gdalwarp -tap",
         .off.x, .off.y
     )]
     Misaligned {
-        /// The first tile.
         first: String,
-        /// The tile that is shifted against it.
         other: String,
-        /// By how many cells, from −0.5 to 0.5.
+        /// In cells, from −0.5 to 0.5.
         off: DVec2,
     },
     /// The tiles hold more samples together than are joined; those up to the tile that is too many.
     #[error("the tiles hold {0} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
     TooMany(u64),
-    /// The rectangle around all tiles has more samples than a raster.
     #[error(
         "the tiles span {} x {} samples, more than the {MOST_SAMPLES} of a raster; join fewer", .0.x, .0.y
     )]
@@ -176,7 +161,7 @@ impl Tiles {
         {
             return differ("vertical datums", [one.clone(), two.clone()]);
         }
-        // Over the longer of their sides the grids may not run apart.
+        // The axes of both grids must agree over the longest side.
         let axes = first.map_from_grid.matrix2 - tile.map_from_grid.matrix2;
         let longest = f64::from(first.width.max(first.height).max(tile.width).max(tile.height));
         let apart = DVec2::new(axes.x_axis.length(), axes.y_axis.length()) * longest;
@@ -207,7 +192,7 @@ fn cells(raster: &Raster) -> String {
     if b == 0.0 && c == 0.0 { format!("{a} by {d}") } else { format!("({a}, {c}) by ({b}, {d})") }
 }
 
-/// What is added to each tile's x: whole turns of 360° where longitudes continue across ±180°.
+/// The offset of each tile's x: multiples of 360° where longitudes continue across ±180°.
 fn turns(tiles: &[Raster]) -> Vec<f64> {
     let mut turns = vec![0.0; tiles.len()];
     if !tiles[0].crs.as_ref().is_some_and(Crs::is_geographic) {

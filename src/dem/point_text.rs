@@ -54,7 +54,8 @@ fn lines(text: &str) -> impl Iterator<Item = PointLine<'_>> {
 }
 
 impl<'a> PointLine<'a> {
-    /// The point in three columns, NaN where the height is empty; `None` where one is no number or x or y not finite.
+    /// The point in three columns, with a height of NaN where the field is empty; `None` where a field is not a number
+    /// or x or y is not finite.
     pub fn point(&self, columns: [usize; 3]) -> Option<DVec3> {
         let mut found = [None; 3];
         for (index, field) in self.fields().enumerate() {

@@ -1,4 +1,4 @@
-//! Bytes to a raster: the format by content, else by extension.
+//! Reads rasters from bytes. The format follows from the content, else from the extension.
 
 use crate::archive::{self, MAX_RASTER_BYTES, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
@@ -8,7 +8,7 @@ use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
-/// What the caller states of a file beyond its bytes.
+/// Options for reading an elevation file.
 #[derive(Clone)]
 pub struct DemHints<'a> {
     /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
@@ -60,7 +60,6 @@ pub(crate) struct DemFile<'a> {
     pub name: &'a str,
     /// The content.
     pub bytes: &'a [u8],
-    /// What the caller states.
     pub hints: &'a DemHints<'a>,
 }
 

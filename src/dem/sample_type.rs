@@ -15,7 +15,7 @@ pub(crate) enum SampleType {
     F64,
 }
 
-/// What the bits of a number mean.
+/// The representation of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberKind {
     Unsigned,
@@ -62,7 +62,6 @@ impl SampleType {
         self.bytes() == 8 || (self.bytes() == 4 && !self.is_float())
     }
 
-    /// Its name, as GDAL names its types.
     pub fn gdal_name(self) -> &'static str {
         TYPES[self as usize].3
     }

@@ -1,4 +1,4 @@
-//! The sample type that keeps a raster's heights, and the value for no data in it.
+//! The sample type that stores a raster's heights without loss, and its no-data value.
 //!
 //! A type keeps heights where every bit comes back: integers where all heights are integers in their range (and none is
 //! minus zero), floats otherwise. Readers return integers of 16 bits and 32-bit floats in 32 bits and the others in 64,

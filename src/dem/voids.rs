@@ -6,16 +6,16 @@
 //! Filling stretches a **membrane** over each void from its rim: heights inside solve Laplace's equation, so that each
 //! is the mean of its four neighbors, weighted by nearness where cells are not square. It passes through the rim
 //! without a step, has no hill or hollow inside, and reproduces a plane exactly. Ridges and valleys across a wide void
-//! are lost: voids above a size are left. Solved by successive over-relaxation (Young 1954) in the order of the samples:
-//! the same bits everywhere.
+//! are lost: voids above a size are left. Solved by successive over-relaxation (Young 1954) in the order of the
+//! samples: the same bits everywhere.
 
 use glam::DVec2;
 
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
-/// Voids of more samples than this are left: over three hundred posts a membrane says nothing of the ground. Also bounds
-/// the time, which grows with the power of one and a half.
+/// Voids of more samples than this are not filled: across three hundred posts a membrane is unrelated to the ground.
+/// Also bounds the time, which grows with the power of one and a half.
 pub const MOST_CELLS: u64 = 100_000;
 
 /// At rest no height moves more than this in a sweep, in the vertical unit: far below the resolution of any survey.
@@ -143,7 +143,7 @@ fn weights(raster: &Raster) -> DVec2 {
 
 /// The heights over one void and of its rim.
 struct Membrane {
-    /// Those of the void's samples, then those of the rim, which are fixed.
+    /// First the void's samples, then the rim's, which are fixed.
     heights: Vec<f64>,
     /// Per sample of the void: the indices of its west, east, north and south neighbors in `heights`.
     around: Vec<[u32; 4]>,

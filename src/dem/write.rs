@@ -1,6 +1,6 @@
-//! Rasters to the bytes of files.
+//! Writes rasters to the bytes of files.
 //!
-//! What a format cannot hold is refused with what to do, except where rounding is the format's nature (an SRTM tile has
+//! A raster that a format cannot hold is refused with a remedy, except where the format always rounds (an SRTM tile has
 //! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where
 //! nothing was rounded.
 
@@ -16,7 +16,7 @@ pub struct WrittenDem {
     pub companions: Vec<Companion>,
     /// The type of the stored heights: `float32`, `int16`, `text`.
     pub stored: String,
-    /// What was rounded and how to read the file, for the user.
+    /// Notes for the user: rounding, and how to read the file.
     pub notes: Vec<String>,
 }
 
@@ -38,61 +38,35 @@ impl WrittenDem {
 
 /// Why a raster cannot be written in a format.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum WriteError {
-    /// The format is only read.
     #[error("elevation is not written as {0}; write a GeoTIFF")]
     OnlyRead(&'static str),
-    /// Rows or columns run in another direction than the format's.
     #[error(
         "a {0} has rows that run east, from the northernmost to the southernmost, and this elevation lies otherwise; write a GeoTIFF, or turn it with --crs"
     )]
     NotNorthUp(&'static str),
-    /// The format needs a georeference, and the raster has none.
     #[error("a {0} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG")]
     NoPlace(&'static str),
-    /// The format's value for no data is one of the heights.
     #[error("a {format} writes {value} for no data, and {value} is one of the heights; write a GeoTIFF")]
-    NoDataTaken {
-        /// The format.
-        format: &'static str,
-        /// The value.
-        value: f64,
-    },
-    /// The format cannot hold a height.
+    NoDataTaken { format: &'static str, value: f64 },
     #[error(
         "a {format} holds heights from {least} to {greatest} and this elevation has {found}; write a GeoTIFF"
     )]
-    OutOfRange {
-        /// The format.
-        format: &'static str,
-        /// The lowest that it holds.
-        least: f64,
-        /// The highest that it holds.
-        greatest: f64,
-        /// The height.
-        found: f64,
-    },
-    /// The format has no raster of this shape.
+    OutOfRange { format: &'static str, least: f64, greatest: f64, found: f64 },
     #[error("a {format} has {wanted}, not {found}; write a GeoTIFF")]
-    Shape {
-        /// The format.
-        format: &'static str,
-        /// The shapes of the format.
-        wanted: &'static str,
-        /// The shape of the raster.
-        found: String,
-    },
+    Shape { format: &'static str, wanted: &'static str, found: String },
     /// The file's name states another place than the raster's; the right name, without its extension.
     #[error("an SRTM tile is named by its south-west corner: name this one {0}.hgt")]
     Name(String),
-    /// There is no height to write.
     #[error("a PNG needs at least one height to choose its scale by, and all samples are no data")]
     Empty,
 }
 
 /// Writes `raster` in a format. `stem` is the file's name without its extension: the place of an SRTM tile is its name.
 ///
-/// Heights stay in the raster's vertical unit where the format can name it, and are converted to meters where it cannot.
+/// Heights stay in the raster's vertical unit where the format can name it, and are converted to meters where it
+/// cannot.
 ///
 /// # Errors
 /// [`WriteError`].

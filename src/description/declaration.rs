@@ -1,4 +1,4 @@
-//! What is declared of a key: name, documentation, type, unit, range and default.
+//! The declaration of a key: name, documentation, type, unit, range and default.
 //!
 //! The macro `table!` makes these declarations. The decoder, the JSON schema, the reference
 //! page `scenes/README.md` and the messages read them.
@@ -19,20 +19,20 @@ pub struct KeyDeclaration {
     pub kind: KeyKind,
     /// The unit of a number, such as `m`; empty where it has none.
     pub unit: &'static str,
-    /// Whether the key may be absent, and what holds then.
+    /// Whether the key may be absent, and its default.
     pub presence: Presence,
-    /// Keys that are stated in place of this one: a table that states one of them does not take this one from its style.
+    /// Alternatives to this key: a table that states one of them does not take this one from its style.
     pub rivals: &'static [&'static str],
 }
 
 /// Whether a table may lack a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// It may not.
+    /// The key must be present.
     Required,
-    /// It may; this value then holds, written as in a scene file.
+    /// The default, written as in a scene file.
     Default(&'static str),
-    /// It may; these words say what holds then.
+    /// The default in words.
     Otherwise(&'static str),
     /// The declaration is of several keys in the same table ([`KeyKind::Group`]).
     Inline,
@@ -60,14 +60,14 @@ pub enum KeyKind {
     /// An expression over a feature's properties.
     Expression,
     /// One of some words.
-    Word(&'static [WordDeclaration]),
+    Word(fn() -> Vec<WordDeclaration>),
     /// One of some words, or an expression that gives one for each feature.
-    FeatureWord(&'static [WordDeclaration]),
+    FeatureWord(fn() -> Vec<WordDeclaration>),
     /// A color.
     Color,
     /// A coordinate pair.
     Point,
-    /// A list of coordinate pairs, at least so many.
+    /// A list of at least this many coordinate pairs.
     Points(usize),
     /// Two numbers, from and to.
     NumberRange(Bounds),

@@ -1,7 +1,7 @@
 //! A message that points at a place in the scene file.
 //!
-//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log and
-//! in a test:
+//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log
+//! and in a test:
 //!
 //! ```text
 //! hill.toml:12:1: error: unknown key `widht` in [[road]]
@@ -12,8 +12,8 @@
 //!    = help: did you mean `width`?
 //! ```
 //!
-//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so that all
-//! text is made harmless before.
+//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so they
+//! are replaced before.
 
 use std::error::Error;
 use std::fmt;
@@ -23,6 +23,7 @@ use std::sync::Arc;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use crate::description::source_text::{LineColumn, SourceText};
+use crate::message::chain::error_text;
 
 /// One error in a scene file: its cause, its place, and a remedy.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// `cause`, an error or a sentence, about the bytes `span` of `source`.
+    /// An error about the bytes `span` of `source`; `cause` is an error or a sentence.
     pub fn new(
         source: &Arc<SourceText>,
         span: Range<usize>,
@@ -49,18 +50,9 @@ impl Diagnostic {
         Self { help: Some(help.into()), ..self }
     }
 
-    /// What is wrong, in one sentence: the cause with its own causes, as far as it does not state them itself.
+    /// The cause and its own causes in one sentence.
     pub fn message(&self) -> String {
-        let mut message = self.cause.to_string();
-        let mut cause = self.cause.source();
-        while let Some(error) = cause {
-            let text = error.to_string();
-            if !message.contains(&text) {
-                message = format!("{message}: {text}");
-            }
-            cause = error.source();
-        }
-        message
+        error_text(self.cause.as_ref())
     }
 
     /// The remedy.
@@ -110,7 +102,7 @@ impl Error for Diagnostic {
     }
 }
 
-/// `text` with a visible character for every control and direction mark but the tab, which could steer a terminal.
+/// `text` with a replacement character for every control and direction mark but the tab: they could steer a terminal.
 fn harmless(text: &str) -> String {
     let visible = |character: char| match character {
         '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
@@ -127,8 +119,7 @@ pub struct Diagnostics {
     omitted: usize,
 }
 
-/// The most errors kept of one scene: more than anybody mends before the next run, few enough to bound what a hostile file
-/// can make the program print.
+/// The most errors that are kept of one scene. Bounds the output for a hostile file.
 const MAX_ERRORS: usize = 50;
 
 impl Diagnostics {
@@ -164,7 +155,7 @@ impl fmt::Display for Diagnostics {
 
 impl Error for Diagnostics {}
 
-/// Collects errors while reading goes on.
+/// Collects errors, so that reading continues after the first.
 #[derive(Debug)]
 pub(super) struct DiagnosticSink {
     source: Arc<SourceText>,
@@ -173,12 +164,10 @@ pub(super) struct DiagnosticSink {
 }
 
 impl DiagnosticSink {
-    /// A sink without errors.
     pub fn new(source: Arc<SourceText>) -> Self {
         Self { source, list: Vec::new(), omitted: 0 }
     }
 
-    /// The text that is read.
     pub fn source(&self) -> &Arc<SourceText> {
         &self.source
     }
@@ -188,7 +177,6 @@ impl DiagnosticSink {
         self.list.len() >= MAX_ERRORS
     }
 
-    /// Notes an error.
     pub fn error(
         &mut self,
         span: Range<usize>,
@@ -198,7 +186,7 @@ impl DiagnosticSink {
         self.add(Diagnostic::new(&self.source, span, cause).with_help(help));
     }
 
-    /// Adds an error, unless it is there already: a style is read once for each table that takes its keys.
+    /// Adds an error unless it is a repetition: a style is read for every table that names it.
     pub fn add(&mut self, error: Diagnostic) {
         if self.is_full() {
             self.omitted += 1;

@@ -1,8 +1,8 @@
-//! The scene file's tables, but for those of features ([`crate::description::features`]).
+//! The scene file's tables, except those of features ([`crate::description::features`]).
 //!
-//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
-//! coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in,
-//! unless a key says otherwise. Unknown keys are errors. Every number is finite.
+//! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from
+//! north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that states
+//! them, unless the description of a key differs. Unknown keys are errors. Every number is finite.
 //!
 //! ```toml
 //! title = "The hill"
@@ -27,8 +27,8 @@
 //! look_at = [500000, 4650000]
 //! ```
 //!
-//! The page `scenes/README.md` lists all keys. Values carry their defaults. A value that may turn out wrong later (a file
-//! that is missing, a point off the terrain) is [`Stated`]; [`Document::error`] makes a message that points at it.
+//! The page `scenes/README.md` lists all keys. Values include their defaults. A value that later steps check (the name
+//! of a file, a point on the terrain) is [`Stated`]; [`Document::error`] makes a message that points at it.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -251,18 +251,18 @@ impl Document {
     /// The keys outside tables, and the tables with their keys.
     pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
 
-    /// `cause`, an error or a sentence, about a value.
+    /// An error about a value; `cause` is an error or a sentence.
     pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
         self.error_at(value.span().unwrap_or_default(), cause)
     }
 
-    /// `cause`, an error or a sentence, about the bytes `span` of the scene file.
+    /// An error about the bytes `span` of the scene file; `cause` is an error or a sentence.
     pub fn error_at(&self, span: Range<usize>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
         Diagnostic::new(&self.source, span, cause)
     }
 }
 
-/// Notes cameras that have the name of one before them.
+/// Reports cameras with the name of an earlier one.
 fn check_names(reader: &mut TableReader<'_, '_>, cameras: &[CameraTable]) {
     let (source, mut seen) = (reader.source(), BTreeMap::new());
     for camera in cameras {

@@ -1,4 +1,4 @@
-//! Values that may differ from feature to feature: stated as such, or as an expression over a feature's properties.
+//! Values per feature: constants, or expressions over a feature's properties.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -7,14 +7,14 @@ use crate::description::bounds::Bounds;
 use crate::description::expression::{Expression, PropertyLookup};
 use crate::description::scalar::Scalar;
 use crate::description::stated::Stated;
-use crate::description::words::Word;
+use crate::message::choice::Choice;
 
-/// A type that the result of an expression may be used as.
+/// A type that the result of an expression converts to.
 pub trait FromScalar: Clone + Debug + PartialEq {
-    /// What bounds the values of a key.
+    /// The bounds of a key's values.
     type Limits: Copy + Debug + PartialEq;
 
-    /// The value that `scalar` is, `None` where it is none within `limits`.
+    /// Converts `scalar`; `None` where it does not convert or is not within `limits`.
     fn from_scalar(scalar: &Scalar, limits: Self::Limits) -> Option<Self>;
 }
 
@@ -27,7 +27,7 @@ impl FromScalar for f64 {
     }
 }
 
-impl<W: Word> FromScalar for W {
+impl<W: Choice> FromScalar for W {
     type Limits = ();
 
     fn from_scalar(scalar: &Scalar, (): ()) -> Option<Self> {
@@ -75,7 +75,7 @@ impl<T: FromScalar> FeatureValue<T> {
     }
 }
 
-/// A value of each feature with its default: for a key that is not stated, or whose expression gives no value.
+/// A value per feature with a default, for a key that is absent or whose expression has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DefaultedValue<T: FromScalar> {
     stated: Option<Stated<FeatureValue<T>>>,
@@ -83,12 +83,12 @@ pub struct DefaultedValue<T: FromScalar> {
 }
 
 impl<T: FromScalar> DefaultedValue<T> {
-    /// `stated`, or where that is `None` or gives no value, `default`.
+    /// `stated`; where it is `None` or has no value, `default`.
     pub fn new(stated: Option<Stated<FeatureValue<T>>>, default: T) -> Self {
         Self { stated, default }
     }
 
-    /// What the scene file states; `None` where it does not state the key.
+    /// The value in the scene file; `None` where the key is absent.
     pub fn stated(&self) -> Option<&FeatureValue<T>> {
         self.stated.as_deref()
     }
@@ -98,7 +98,7 @@ impl<T: FromScalar> DefaultedValue<T> {
         &self.default
     }
 
-    /// The bytes that state the value; `None` where it is not stated.
+    /// The bytes of the value in the scene file; `None` where the key is absent.
     pub fn span(&self) -> Option<Range<usize>> {
         self.stated.as_ref().and_then(Stated::span)
     }

@@ -1,4 +1,4 @@
-//! The scene file's tables of features: what lies and stands on the ground.
+//! The scene file's tables of features: roads, bridges, water, land cover, buildings, fences and models.
 //!
 //! A number or word that may differ from feature to feature is stated as such or as an expression over the feature's
 //! properties ([`crate::description::expression`]). Where the properties give no value within its range the default is

@@ -5,14 +5,14 @@
 //! ```
 //!
 //! - Repeated tables (`[[road]]` …) of an included file come before those of the including file.
-//! - Keys of single tables (`[terrain]`, `[style.light]`, `[styles.lane]` …) and keys outside tables are taken where the
-//!   including file does not state them; of several included files the later wins.
+//! - Keys of single tables (`[terrain]`, `[style.light]`, `[styles.lane]` …) and keys outside tables are defaults: a key of
+//!   the including file replaces them, and so does a key of a file that is included later.
 //!
-//! A file that is included more than once counts once, where it is first named. File names in an included file are
-//! relative to that file, so that a folder of styles and models can be moved as a whole.
+//! A file that several files include is merged once, at its first mention. File names in an included file are relative
+//! to that file, so that a folder of styles and models can be moved as a whole.
 //!
-//! A file with an `include` is parsed twice: once for the names of the files that it includes, and once when all texts are
-//! gathered, so that tables can borrow from them.
+//! A file with an `include` is parsed twice: first for the names of the files that it includes, then for its tables,
+//! which borrow from the concatenated texts.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -24,41 +24,38 @@ use toml::de::{DeArray, DeTable, DeValue};
 use crate::description::source_text::SourceText;
 use crate::message::suggest::quoted;
 
-/// How deep files may include files.
+/// The greatest depth of inclusion.
 const MAX_DEPTH: usize = 8;
-/// How many files may be included: more than anybody can keep in mind.
+/// The most files that a scene includes. Arbitrary: it bounds the work, far above any scene in use.
 const MAX_FILES: usize = 64;
 
-/// Gives the bytes of a file that is named relative to the scene file.
+/// Reads a file that is named relative to the scene file.
 pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>>;
 
 /// Why a file cannot be included.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum IncludeError {
-    /// The file is the one that includes it, or includes that one.
-    #[error("'{0}' includes itself by this")]
+    #[error("'{0}' includes itself")]
     Cycle(String),
-    /// More files than the limits allow.
-    #[error("files may include files {MAX_DEPTH} deep, {MAX_FILES} in all")]
+    #[error("a scene may include {MAX_FILES} files, nested {MAX_DEPTH} deep")]
     TooMany,
-    /// The file of this name cannot be read.
     #[error("'{0}' cannot be included")]
     Unreadable(String, #[source] Box<dyn Error + Send + Sync>),
     /// With the file of this name the scene would have more than so many bytes.
     #[error("'{0}' cannot be included: with it the scene has more than {1} bytes")]
     TooLarge(String, usize),
-    /// The file of this name is not text on this line.
     #[error("'{0}' cannot be included: its line {1} is not UTF-8 text")]
     NotText(String, usize),
 }
 
 impl IncludeError {
-    /// What to do about it.
+    /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {
-            Self::Cycle(_) => "take what both need into a third file",
-            Self::TooMany => "name what is needed in the scene file itself",
-            _ => "name a file that is there, relative to the file that includes it",
+            Self::Cycle(_) => "move the tables that both files need to a third one",
+            Self::TooMany => "write the tables in the scene file itself",
+            _ => "name an existing file, relative to the file that includes it",
         }
     }
 }
@@ -67,13 +64,13 @@ impl IncludeError {
 pub(super) struct IncludedTexts {
     /// All texts, that of the scene file first.
     pub source: SourceText,
-    /// The files that cannot be included, each at the bytes that name it.
+    /// The errors, each with the span of the file name.
     pub errors: Vec<(Range<usize>, IncludeError)>,
-    /// For each file the places in the list of files of those that it includes.
+    /// For each file, the indices of the files that it includes.
     pub includes: Vec<Vec<usize>>,
 }
 
-/// The file `name` with `text`, and all that it includes.
+/// Reads all files that the scene file `name` with the text `text` includes.
 pub(super) fn gather(name: &str, text: &str, load: LoadFile<'_>, max_bytes: usize) -> IncludedTexts {
     let gathered = IncludedTexts {
         source: SourceText::alone(name, text),
@@ -99,7 +96,7 @@ struct Gathering<'a> {
 }
 
 impl Gathering<'_> {
-    /// Appends what the text of a file, which begins at `start`, includes.
+    /// Reads the files that `text` includes, the text of `file`, which begins at byte `start`.
     fn follow(&mut self, file: usize, start: usize, text: &str) {
         for named in includes_of(text) {
             match self.include(named.get_ref(), start) {
@@ -120,7 +117,7 @@ impl Gathering<'_> {
         }
     }
 
-    /// The path and the text of a file to include; `None` where it is there already.
+    /// The path and the text of an included file; `None` where it is included already.
     fn include(&mut self, named: &str, from: usize) -> Result<Option<(String, String)>, IncludeError> {
         let source = &self.gathered.source;
         let path = joined(source.folder_at(from), named);
@@ -146,7 +143,7 @@ impl Gathering<'_> {
         Ok(Some((path, text)))
     }
 
-    /// Appends a file to the list and returns where its text starts.
+    /// Appends a file to the list and returns the first byte of its text.
     fn append(&mut self, path: &str, text: &str) -> usize {
         let shown = if path.starts_with('/') { "" } else { &self.shown_folder };
         self.gathered.includes.push(Vec::new());
@@ -159,7 +156,7 @@ fn folder_of(path: &str) -> &str {
     path.rfind('/').map_or("", |slash| &path[..=slash])
 }
 
-/// The file names that a text includes; errors in the text are reported later.
+/// The file names under `include`; [`parse`](crate::description::parse) reports syntax errors later.
 fn includes_of(text: &str) -> Vec<Spanned<String>> {
     if !text.contains("include") {
         return Vec::new();
@@ -178,7 +175,7 @@ fn includes_of(text: &str) -> Vec<Spanned<String>> {
     }
 }
 
-/// The file `name` as seen from where `folder` is seen from; `folder` is empty or ends in `/`.
+/// The path of the file `name` in `folder`, relative to the same place as `folder`, which is empty or ends in `/`.
 pub(super) fn joined(folder: &str, name: &str) -> String {
     let name = name.replace('\\', "/");
     if name.starts_with('/') || name.contains(':') || folder.is_empty() && !name.contains("./") {
@@ -196,7 +193,7 @@ pub(super) fn joined(folder: &str, name: &str) -> String {
     format!("{root}{}", parts.join("/"))
 }
 
-/// The tables of a file and of all that it includes as one, taken out of `tables`, the tables of each file.
+/// Merges the table of a file with the tables of the files that it includes; takes each out of `tables`.
 pub(super) fn merged<'i>(file: usize, tables: &mut [DeTable<'i>], includes: &[Vec<usize>]) -> DeTable<'i> {
     let mut before = DeTable::new();
     for &included in &includes[file] {
@@ -211,7 +208,7 @@ pub(super) fn merged<'i>(file: usize, tables: &mut [DeTable<'i>], includes: &[Ve
 /// How two lists under one key are merged.
 #[derive(Clone, Copy)]
 enum ListMerge {
-    /// The upper list follows the lower one: repeated tables, which stand only at the top.
+    /// The upper list follows the lower one: repeated tables, which occur only at the top level.
     Append,
     /// The upper list replaces the lower one.
     Replace,
@@ -235,7 +232,7 @@ fn lay_over<'i>(lower: &mut DeTable<'i>, upper: DeTable<'i>, lists: ListMerge) {
     }
 }
 
-/// The table with every place moved by `by` bytes.
+/// The table with every span moved by `by` bytes.
 pub(super) fn moved(table: DeTable<'_>, by: usize) -> DeTable<'_> {
     let entry = |(key, value): (Spanned<_>, _)| {
         (Spanned::new(key.span().start + by..key.span().end + by, key.into_inner()), moved_value(value, by))

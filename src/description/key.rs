@@ -15,10 +15,11 @@ use crate::description::features::FeatureSource;
 use crate::description::selection::Selection;
 use crate::description::table::Table;
 use crate::description::value::KeyValue;
-use crate::description::words::Word;
+use crate::description::words::declarations;
 use crate::geom::crs::Crs;
+use crate::message::choice::Choice;
 
-/// The type of a key: what is declared of it, and how a value of type `V` is read.
+/// The type of a key: its declaration, and the function that reads a value of type `V`.
 pub(super) struct Key<V, A = ()> {
     pub kind: KeyKind,
     pub unit: &'static str,
@@ -68,9 +69,9 @@ keys! {
     filled_text() -> String = KeyKind::FilledText;
     /// Text that is not empty, or a list of such texts.
     text_list() -> Vec<String> = KeyKind::TextList;
-    /// The name of a file, as seen from the scene file.
+    /// The name of a file, relative to the scene file.
     file() -> String = KeyKind::FilledText;
-    /// The names of one or more files, as seen from the scene file; a name among `built_in` stays as it is.
+    /// The names of one or more files, relative to the scene file; names among `built_in` are not file names.
     files(built_in: &'static [&'static str]) -> Vec<String> = KeyKind::TextList;
     /// The names of files under names that the user chooses.
     named_files() -> BTreeMap<String, String> = KeyKind::TextTable;
@@ -81,14 +82,15 @@ keys! {
     /// An expression over a feature's properties.
     expression() -> Expression = KeyKind::Expression;
     /// One of the words of `W`.
-    word<W: Word>() -> W = KeyKind::Word(W::DECLARATIONS);
+    word<W: Choice>() -> W = KeyKind::Word(declarations::<W>);
     /// One of the words of `W`, or an expression that gives one for each feature.
-    feature_word<W: Word>() -> FeatureValue<W> = KeyKind::FeatureWord(W::DECLARATIONS);
+    feature_word<W: Choice>() -> FeatureValue<W> = KeyKind::FeatureWord(declarations::<W>);
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     color() -> Color = KeyKind::Color;
     /// A coordinate pair.
     point() -> [f64; 2] = KeyKind::Point;
-    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the first.
+    /// At least `least` coordinate pairs; the last one of a ring, of `least` 3, is not counted where it repeats the
+    /// first.
     points(least: usize) -> Vec<[f64; 2]> = KeyKind::Points(least);
     /// The name of a color ramp, or its stops from low to high.
     ramp() -> RampChoice = KeyKind::Ramp;
@@ -98,7 +100,6 @@ keys! {
     styles() -> Vec<String> = KeyKind::Styles;
 }
 
-/// A table.
 pub(super) const fn table<T: Table>() -> Key<T> {
     Key { kind: KeyKind::Table(T::KEYS), unit: "", arguments: (), read: |value, ()| value.table::<T, 0>() }
 }
@@ -109,7 +110,6 @@ pub(super) const fn source_table<const LEAST: usize>() -> Key<FeatureSource> {
     Key { kind, unit: "", arguments: (), read: |value, ()| value.table::<_, LEAST>() }
 }
 
-/// A list of tables.
 pub(super) const fn tables<T: Table>() -> Key<Vec<T>> {
     let read = |value: KeyValue<'_, '_>, ()| value.tables(Styling::Plain);
     Key { kind: KeyKind::Tables(T::KEYS), unit: "", arguments: (), read }

@@ -1,4 +1,4 @@
-//! Text to [`Document`], with every error in the file found in one run.
+//! Parses a scene file to a [`Document`] and reports all of its errors at once.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,15 +14,14 @@ use crate::description::source_text::SourceText;
 use crate::description::styles::Styles;
 use crate::message::suggest::quoted;
 
-/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of memory
-/// for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
+/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of
+/// memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
 pub const MAX_BYTES: usize = 4 << 20;
 
 /// The scene that `text` describes; `file_name` is the file's name in messages.
 ///
 /// # Errors
-/// Everything wrong in the file as far as it shows without another file. Where the text is not TOML, only that is
-/// reported, since what the rest means is then a guess.
+/// All errors in the file that show without reading another one; where the text is not TOML, only its syntax errors.
 pub fn parse(file_name: &str, text: &str) -> Result<Document, Diagnostics> {
     parse_bytes(file_name, text.as_bytes())
 }
@@ -35,7 +34,7 @@ pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostic
     parse_including(file_name, bytes, &|_| Err("other files are not read here".into()))
 }
 
-/// As [`parse_bytes`], for a scene file that may include others, which `load` gives.
+/// As [`parse_bytes`]; `load` reads included files.
 ///
 /// # Errors
 /// As [`parse_bytes`], of all the files, and where one cannot be included.
@@ -80,14 +79,14 @@ pub fn parse_including(file_name: &str, bytes: &[u8], load: LoadFile<'_>) -> Res
     }
 }
 
-/// The TOML parser's message about a key that is there already.
+/// The TOML parser's message about a key that is stated twice.
 const DUPLICATE: &str = "duplicate key";
 
 /// Larger texts have only their first syntax error reported: collecting them costs hundreds of bytes for each.
 const MAX_BYTES_RECOVERED: usize = 256 << 10;
 
-/// The table that `text` writes, its places counted from `start`; `None` where anything but duplicate keys is wrong. Notes
-/// one syntax error a line, since an error often causes what follows it.
+/// The table in `text`, its spans moved by `start`; `None` after any error but duplicate keys. Reports one syntax error
+/// a line, since one error often causes the next.
 fn toml_table<'i>(start: usize, text: &'i str, report: &mut DiagnosticSink) -> Option<DeTable<'i>> {
     let recovers = text.len() <= MAX_BYTES_RECOVERED;
     let (table, mut errors) = if recovers {

@@ -1,7 +1,7 @@
-//! Reads the keys of one table, and notes unknown and missing ones.
+//! Reads the keys of one table and reports unknown and missing ones.
 //!
-//! Hand-written on spanned TOML values: a derived deserializer stops at the first error, loses the place of a value inside
-//! a flattened struct, and cannot say which key was meant.
+//! Hand-written on spanned TOML values: a derived deserializer stops at the first error, loses the span of a value
+//! inside a flattened struct, and cannot suggest the nearest key.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use crate::message::suggest::{listed, nearest, quoted};
 /// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
 const MAX_TABLES: usize = 10_000;
 
-/// What the readers of all tables share.
+/// The state that the readers of all tables share.
 pub(super) struct DecodeContext<'t> {
     pub report: DiagnosticSink,
     pub styles: Styles<'t>,
@@ -89,27 +89,25 @@ impl<'r, 't> TableReader<'r, 't> {
         value
     }
 
-    /// The text that is read.
     pub fn source(&mut self) -> Arc<SourceText> {
         Arc::clone(self.context.report.source())
     }
 
-    /// Notes an error.
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
         self.context.report.error(span, message.into(), help);
     }
 
-    /// The place of a key, whatever its value; `None` where the key is absent.
+    /// The span of a key; `None` where the key is absent.
     pub fn key_span(&self, key: &str) -> Option<Range<usize>> {
         Some(self.entry(key)?.0.span())
     }
 
-    /// The place of a key's value; `None` where the key is absent.
+    /// The span of a key's value; `None` where the key is absent.
     pub fn value_span(&self, key: &str) -> Option<Range<usize>> {
         Some(self.entry(key)?.1.span())
     }
 
-    /// Notes an error where `key` is stated although `other` is.
+    /// Reports an error where both `key` and `other` are stated.
     pub fn exclude(&mut self, key: &str, other: &str) {
         if let (Some(span), Some(_)) = (self.key_span(key), self.key_span(other)) {
             let message = format!("{} has both `{other}` and `{key}`", self.name.title());
@@ -117,7 +115,7 @@ impl<'r, 't> TableReader<'r, 't> {
         }
     }
 
-    /// Notes an error at each of `keys` that is stated. `reason` completes "has no effect".
+    /// Reports an error at each of `keys` that is stated. `reason` completes "has no effect".
     pub fn without_effect(&mut self, keys: &[&str], reason: &str, help: &str) {
         for key in keys {
             if let Some(span) = self.key_span(key) {
@@ -126,8 +124,7 @@ impl<'r, 't> TableReader<'r, 't> {
         }
     }
 
-    /// Notes an error about the table where it has neither `key` nor `other`, unless an unknown key looks like one of them
-    /// misspelled.
+    /// Reports a table with neither `key` nor `other`, unless an unknown key is near one of them.
     pub fn need_either(&mut self, key: &str, other: &str, help: &str) {
         let misspelled = |unknown: TableEntry<'_>| nearest(unknown.0.get_ref(), [key, other]).is_some();
         let is_there = self.key_span(key).or(self.key_span(other)).is_some();
@@ -137,7 +134,7 @@ impl<'r, 't> TableReader<'r, 't> {
         }
     }
 
-    /// Reads a key that must be there; `None` where it is not, or its value is wrong.
+    /// Reads a required key; `None` where it is missing or its value is wrong.
     pub fn required<V, A: Copy, F: Field<V>>(
         &mut self,
         declared: &'static KeyDeclaration,
@@ -171,7 +168,6 @@ impl<'r, 't> TableReader<'r, 't> {
         Some(F::from_stated_or(stated, default.expect("a declared default has the type of its key")))
     }
 
-    /// Reads the keys of a group.
     pub fn inline<T: Table<N>, const N: usize>(
         &mut self,
         _: &'static KeyDeclaration,
@@ -229,12 +225,12 @@ impl<'r, 't> TableReader<'r, 't> {
         all.filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect()
     }
 
-    /// Notes the unknown keys, and the missing ones unless an unknown one looks like one of them misspelled.
+    /// Reports unknown keys, and missing ones unless an unknown key is near them.
     fn finish(mut self) {
         let (known, mut misspelled) = (self.known(), Vec::new());
         for (key, _) in self.unknown() {
             if self.context.report.is_full() {
-                // Only counted: no thought is given to its wording.
+                // Only counted, so it needs no message.
                 self.error(key.span(), "", "");
                 continue;
             }
@@ -279,13 +275,12 @@ impl<'r, 't> TableReader<'r, 't> {
 }
 
 impl KeyValue<'_, '_> {
-    /// A table.
     pub fn table<T: Table<N>, const N: usize>(mut self) -> Option<T> {
         let name = self.table.inner(self.key, false);
         self.table_named(name, Styling::Plain)
     }
 
-    /// A list of tables; those that are wrong are left out.
+    /// A list of tables without the wrong ones.
     pub fn tables<T: Table>(mut self, styling: Styling) -> Option<Vec<T>> {
         let name = self.table.inner(self.key, true);
         let (key, title) = (self.key, name.title());

@@ -1,4 +1,4 @@
-//! The key `where`: which features of a file are meant, by the values of their properties or by an expression.
+//! The key `where`: selects features of a file by the values of their properties or by an expression.
 
 use std::collections::BTreeMap;
 

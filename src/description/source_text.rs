@@ -1,7 +1,7 @@
-//! A file's name and text, and where in it a byte stands; also several files laid end to end.
+//! The text of a scene file and of the files that it includes; maps a byte offset to file, line and column.
 //!
-//! A scene file may include others. Their texts are laid end to end, each with a line feed after it that belongs to none
-//! of them, so that one plain range of bytes still says of a value both in which file and where in it it stands:
+//! The texts are concatenated with a line feed after each that belongs to no file, so that a byte range identifies both
+//! the file and the place in it:
 //!
 //! ```text
 //!  0            start of the second    start of the third
@@ -12,7 +12,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Text files as they were read, shared by everything that points into them.
+/// The concatenated text files. Diagnostics share it and point into it.
 #[derive(Debug, PartialEq, Eq)]
 pub struct SourceText {
     /// In the order of their texts; never empty, the first starts at 0.
@@ -20,16 +20,15 @@ pub struct SourceText {
     text: String,
 }
 
-/// One of the files.
 #[derive(Debug, PartialEq, Eq)]
 struct SourceFile {
     name: String,
-    /// Its folder as seen from the first file's, empty or with a `/` at its end.
+    /// The folder relative to that of the first file; empty, or with a `/` at its end.
     folder: String,
     start: usize,
 }
 
-/// A place in a text as people count: the first character of a file is line 1, column 1.
+/// A place in a file. The first character is line 1, column 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineColumn {
     /// Counts line feeds.
@@ -39,19 +38,19 @@ pub struct LineColumn {
 }
 
 impl SourceText {
-    /// `text` under the `name` that messages call it by.
+    /// The text of one file; messages call it `name`.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Self> {
         Arc::new(Self::alone(name, text))
     }
 
-    /// As [`Self::new`], for other files to be laid behind it.
+    /// As [`Self::new`], before other files are appended.
     pub(super) fn alone(name: impl Into<String>, text: impl Into<String>) -> Self {
         let file = SourceFile { name: name.into(), folder: String::new(), start: 0 };
         Self { files: vec![file], text: text.into() }
     }
 
-    /// Lays another file behind those that are there; `folder` as seen from the first file's, empty or with a `/` at its
-    /// end. Returns where its text starts.
+    /// Appends a file and returns the first byte of its text. `folder` is relative to that of the first file; empty, or
+    /// with a `/` at its end.
     pub(super) fn append(&mut self, name: String, folder: String, text: &str) -> usize {
         self.text.push('\n');
         let start = self.text.len();
@@ -60,34 +59,35 @@ impl SourceText {
         start
     }
 
-    /// What messages call the first file; usually its path as the user gave it.
+    /// The name of the first file in messages; usually its path as the user gave it.
     pub fn name(&self) -> &str {
         &self.files[0].name
     }
 
-    /// What messages call the file that byte `offset` belongs to.
+    /// The name in messages of the file that contains byte `offset`.
     pub fn name_at(&self, offset: usize) -> &str {
         &self.file_at(offset).name
     }
 
-    /// The folder of the file that byte `offset` belongs to, as seen from the first file's: empty, or with a `/` at its
-    /// end.
+    /// The folder of the file that contains byte `offset`, relative to that of the first file; empty, or with a `/` at
+    /// its end.
     pub fn folder_at(&self, offset: usize) -> &str {
         &self.file_at(offset).folder
     }
 
-    /// The whole text of all files.
+    /// The concatenated text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Each file's text and where it starts.
+    /// The first byte and the text of each file.
     pub(super) fn texts(&self) -> impl Iterator<Item = (usize, &str)> {
         let ends = self.files.iter().skip(1).map(|next| next.start - 1).chain([self.text.len()]);
         self.files.iter().zip(ends).map(|(file, end)| (file.start, &self.text[file.start..end]))
     }
 
-    /// Line and column of byte `offset` in its file; past the end gives the end, inside a character its start.
+    /// Line and column of byte `offset` in its file. An offset past the end counts as the end, one inside a character
+    /// as its first byte.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let offset = self.text.floor_char_boundary(offset);
         let file = self.file_at(offset).start;

@@ -27,7 +27,6 @@ use crate::description::stated::Stated;
 use crate::description::value::KeyValue;
 use crate::message::suggest::{quoted, remedy};
 
-/// The type of the key `style`.
 pub(super) const STYLE_TYPE: Key<String> = filled_text();
 
 /// The key `style` of every table that may name one.
@@ -52,7 +51,7 @@ pub(super) struct Styles<'t> {
 }
 
 impl<'t> Styles<'t> {
-    /// The styles in the root table of a scene file; those that are wrong are noted and left out.
+    /// The styles in the root table of a scene file; reports wrong ones and leaves them out.
     pub fn read(root: &'t DeTable<'t>, report: &mut DiagnosticSink) -> Self {
         let (mut styles, help) = (BTreeMap::new(), "start each with [styles.NAME]");
         let value = root.get("styles");
@@ -78,7 +77,8 @@ impl<'t> Styles<'t> {
 const WRONG_STYLES: &str = "`styles` must hold tables";
 
 impl<'t> DecodeContext<'t> {
-    /// The keys of a style; `None` with an error noted where there is no such style, or styles add too much.
+    /// The keys of a style. Reports an error and returns `None` where there is no such style, or styles add too many
+    /// bytes.
     pub fn take_style(&mut self, name: &Stated<String>) -> Option<&'t DeTable<'t>> {
         let span = name.span().unwrap_or_default();
         let Some(&style) = self.styles.styles.get(name.as_str()) else {

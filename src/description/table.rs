@@ -11,9 +11,10 @@
 //!   └── the key; `field as "key"` where they differ
 //! ```
 //!
-//! After it may stand `, unless ["other"]`: a table that states `other` does not take this key from its style. `inline`
-//! in place of `default` puts the keys of a whole group into the table. What keys mean for each other follows the keys, in
-//! `check(reader) { … }`, where every key is an `Option` named as its field: `None` where the key is required and missing.
+//! `, unless ["other"]` may follow: a table that states `other` does not take this key from its style. `inline` in
+//! place of `default` puts the keys of a whole group into the table. Checks of several keys together follow the keys,
+//! in `check(reader) { … }`, where every key is an `Option` named as its field: `None` where the key is required and
+//! missing.
 
 use crate::description::declaration::KeyDeclaration;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
@@ -25,7 +26,7 @@ pub(super) trait Table<const N: usize = 0>: Sized {
     /// Its keys, in the order of declaration.
     const KEYS: &'static [KeyDeclaration];
 
-    /// Reads the table and notes its errors; `None` where a key that it cannot do without is missing or wrong.
+    /// Reads the table and reports its errors; `None` where a required key is missing or wrong.
     fn read(reader: &mut TableReader<'_, '_>) -> Option<Self>;
 }
 
@@ -72,7 +73,7 @@ impl<T: FromScalar> DefaultedField<FeatureValue<T>> for DefaultedValue<T> {
     }
 }
 
-/// Declares tables; the head of this file says how.
+/// Declares tables; see the head of this file.
 macro_rules! table {
     ($(
         $(#[$attribute:meta])*

@@ -1,4 +1,4 @@
-//! Reads one value of the scene file: checks its type and range, and notes what is wrong with it.
+//! Reads one value of the scene file; checks its type and range and reports errors.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -13,8 +13,8 @@ use crate::description::expression::{Expression, ExpressionError};
 use crate::description::feature_value::FeatureValue;
 use crate::description::include::joined;
 use crate::description::reader::{DecodeContext, TableName};
-use crate::description::words::Word;
 use crate::geom::crs::Crs;
+use crate::message::choice::Choice;
 use crate::message::suggest::{quoted, remedy};
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
@@ -35,7 +35,15 @@ pub(super) struct KeyValue<'k, 't> {
     pub value: &'k Spanned<DeValue<'k>>,
 }
 
-/// A TOML type in the words of messages.
+/// An expression of a key that cannot be parsed.
+#[derive(Debug, thiserror::Error)]
+#[error("`{key}`")]
+struct KeyExpressionError {
+    key: String,
+    source: ExpressionError,
+}
+
+/// The name of a TOML type in messages.
 pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text",
@@ -47,7 +55,7 @@ pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// The number that `value` is; `None` where it is none or is too large for TOML.
+/// `value` as a number; `None` where it is of another type or too large for TOML.
 fn number_of(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Integer(whole) => {
@@ -58,18 +66,18 @@ fn number_of(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// `name`, which is relative to `folder`, as seen from the scene file.
+/// The file `name` in `folder`, relative to the scene file.
 fn seen_from(folder: &str, name: String) -> String {
     if folder.is_empty() { name } else { joined(folder, &name) }
 }
 
-fn words<W: Word>() -> Vec<&'static str> {
-    W::DECLARATIONS.iter().map(|declared| declared.word).collect()
+fn words<W: Choice>() -> Vec<&'static str> {
+    W::CHOICES.iter().map(|choice| choice.word).collect()
 }
 
-/// What reads a value of a type that [`key`](crate::description::key) declares has the name of the type.
+/// The methods that read the types of [`key`](crate::description::key) have the names of these types.
 impl<'t> KeyValue<'_, 't> {
-    /// Notes an error about the value; always `None`.
+    /// Reports an error about the value; always `None`.
     pub fn wrong<T>(
         &mut self,
         message: impl Into<Box<dyn Error + Send + Sync>>,
@@ -79,7 +87,7 @@ impl<'t> KeyValue<'_, 't> {
         None
     }
 
-    /// Notes that the value is not what was `wanted`; always `None`.
+    /// Reports a value of another type than `wanted`; always `None`.
     pub fn wrong_type<T>(&mut self, wanted: &str, help: impl Into<String>) -> Option<T> {
         let found = type_name(self.value.get_ref());
         self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help)
@@ -90,7 +98,7 @@ impl<'t> KeyValue<'_, 't> {
         KeyValue { context: self.context, table: self.table, key: self.key, key_span, value }
     }
 
-    /// Every element of a list, so that all their errors are noted; `None` where one is wrong.
+    /// Reads every element of a list and reports all errors; `None` where one is wrong.
     pub fn each<T>(
         &mut self,
         list: &DeArray<'_>,
@@ -100,7 +108,7 @@ impl<'t> KeyValue<'_, 't> {
         values.into_iter().collect()
     }
 
-    /// As [`Self::each`], of a table with keys of the user's.
+    /// As [`Self::each`], for a table whose keys the user chooses.
     pub fn each_entry<T>(
         &mut self,
         table: &DeTable<'_>,
@@ -180,7 +188,7 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn feature_word<W: Word>(mut self) -> Option<FeatureValue<W>> {
+    pub fn feature_word<W: Choice>(mut self) -> Option<FeatureValue<W>> {
         match self.value.get_ref() {
             DeValue::String(text) if W::from_word(text).is_none() && Expression::computes(text) => {
                 let expression = self.expression_among(&words::<W>())?;
@@ -198,23 +206,25 @@ impl<'t> KeyValue<'_, 't> {
         self.expression_among(&[])
     }
 
-    /// An expression that gives one of `words`, or anything where they are none.
+    /// An expression whose result is one of `words`; any result where `words` is empty.
     fn expression_among(&mut self, words: &[&str]) -> Option<Expression> {
         let text = self.element(self.value).filled_text()?;
         match Expression::parse_among(&text, words) {
             Ok(expression) => Some(expression),
             Err(error) => {
-                let (span, message) = match self.span_in_text(&text, &error) {
-                    Some(span) => (span, error.message),
-                    None => (self.value.span(), error.to_string()),
+                let (span, column) = match self.span_in_text(&text, &error) {
+                    Some(span) => (span, None),
+                    None => (self.value.span(), error.column),
                 };
-                self.context.report.error(span, format!("`{}`: {message}", self.key), error.help);
+                let (key, help) = (self.key.to_owned(), error.help.clone());
+                let source = ExpressionError { column, ..error };
+                self.context.report.error(span, KeyExpressionError { key, source }, help);
                 None
             }
         }
     }
 
-    /// The bytes of the scene file that an error is about; `None` where the text is written with escapes.
+    /// The bytes of the scene file that an error in `text` marks; `None` where the text contains escapes.
     fn span_in_text(&self, text: &str, error: &ExpressionError) -> Option<Range<usize>> {
         let span = self.value.span();
         let written = self.context.report.source().text().get(span.start + 1..span.end.checked_sub(1)?)?;
@@ -252,7 +262,7 @@ impl<'t> KeyValue<'_, 't> {
         self.one_or_more("texts", |text| text.filled_text())
     }
 
-    /// A value, or a list of them; messages call several of them `plural`.
+    /// A value, or a list of values, which messages call `plural`.
     pub fn one_or_more<T>(
         mut self,
         plural: &str,
@@ -292,7 +302,7 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    /// The folder of the file that the value stands in, as seen from the scene file.
+    /// The folder of the file that states the value, relative to the scene file.
     fn folder(&self) -> String {
         self.context.report.source().folder_at(self.value.span().start).to_owned()
     }
@@ -313,7 +323,7 @@ impl<'t> KeyValue<'_, 't> {
         self.wrong(format!("the scene's coordinate system must be metric, but {found}"), CRS_HELP)
     }
 
-    pub fn word<W: Word>(mut self) -> Option<W> {
+    pub fn word<W: Choice>(mut self) -> Option<W> {
         let DeValue::String(text) = self.value.get_ref() else {
             return self.wrong_type("a word in quotes", remedy("", &words::<W>(), "it may be"));
         };

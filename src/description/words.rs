@@ -1,37 +1,22 @@
 //! The words that a key may take, one enum a key.
 //!
-//! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page and
-//! the messages read it from here.
+//! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page
+//! and the messages read it from here.
 
-use std::fmt::Debug;
-
-/// A key's value that is one of a few words.
-pub trait Word: Copy + Debug + PartialEq + 'static {
-    /// Every value, in the order in which messages list them.
-    const ALL: &'static [Self];
-    /// What is declared of each value, in the same order.
-    const DECLARATIONS: &'static [WordDeclaration];
-
-    /// The value that a scene file writes as `word`.
-    fn from_word(word: &str) -> Option<Self> {
-        let place = Self::DECLARATIONS.iter().position(|declared| declared.word == word)?;
-        Self::ALL.get(place).copied()
-    }
-
-    /// The word that a scene file writes for it.
-    fn word(self) -> &'static str {
-        let place = Self::ALL.iter().position(|value| *value == self);
-        place.map_or("", |place| Self::DECLARATIONS[place].word)
-    }
-}
+use crate::message::choice::{Choice, ChoiceWord, word};
 
 /// A word and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordDeclaration {
     /// The word as a scene file writes it.
     pub word: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
+}
+
+/// The words of a key of type `W`, in the order in which messages list them.
+pub fn declarations<W: Choice>() -> Vec<WordDeclaration> {
+    W::CHOICES.iter().map(|choice| WordDeclaration { word: choice.word, doc: choice.meaning }).collect()
 }
 
 /// Declares enums of words: `Variant = "word": "what it means"`. The first is the default.
@@ -48,14 +33,12 @@ macro_rules! words {
 
         impl Default for $name {
             fn default() -> Self {
-                Self::ALL[0]
+                Self::CHOICES[0].value
             }
         }
 
-        impl Word for $name {
-            const ALL: &'static [Self] = &[$(Self::$variant),+];
-            const DECLARATIONS: &'static [WordDeclaration] =
-                &[$(WordDeclaration { word: $word, doc: $doc }),+];
+        impl Choice for $name {
+            const CHOICES: &'static [ChoiceWord<Self>] = &[$(word(Self::$variant, $word, $doc)),+];
         }
     )+};
 }

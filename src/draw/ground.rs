@@ -179,7 +179,7 @@ pub enum GroundMapError {
 }
 
 impl GroundMap {
-    /// Checks what a renderer relies on: one entry per post, positive finite cells, a finite origin.
+    /// Checks the invariants that renderers rely on: one entry per post, positive finite cells, a finite origin.
     ///
     /// # Errors
     /// The first [`GroundMapError`] found.

@@ -137,29 +137,22 @@ pub struct DrawList {
 
 /// Why a draw list cannot be rendered; numbers are indices into the list.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum DrawListError {
-    /// A triangle names a vertex that its mesh lacks.
     #[error("a triangle of mesh {0} names a vertex that the mesh does not hold")]
     MissingVertex(usize),
-    /// A material names a texture that the list lacks.
     #[error("material {0} names a texture that the list does not hold")]
     MissingTexture(usize),
-    /// An item names a mesh that the list lacks.
     #[error("item {0} names a mesh that the list does not hold")]
     MissingMesh(usize),
-    /// An item names triangles that its mesh lacks.
     #[error("item {0} draws triangles that its mesh does not hold")]
     MissingTriangles(usize),
-    /// An item names a material that the list lacks.
     #[error("item {0} names a material that the list does not hold")]
     MissingMaterial(usize),
-    /// An item's material reads the ground map, and the list has none.
     #[error("item {0} takes its color or normals from the ground map, but the draw list has none; add one")]
     MissingGroundMap(usize),
-    /// An item lies in a lower layer than the item before it.
     #[error("item {0} lies in a lower layer than the item before it")]
     LayerOrder(usize),
-    /// The ground map is unsound.
     #[error(transparent)]
     GroundMap(#[from] GroundMapError),
 }
@@ -198,8 +191,8 @@ impl DrawList {
         self.items.iter().map(|item| item.triangles.len()).sum()
     }
 
-    /// Checks what a renderer relies on: every index is in range, layers rise, and the ground map is there where it is
-    /// read, and sound.
+    /// Checks the invariants that renderers rely on: every index is in range, layers rise, and the ground map is
+    /// present where it is read, and sound.
     ///
     /// # Errors
     /// The first [`DrawListError`] found.

@@ -1,4 +1,4 @@
-//! How a surface takes light.
+//! Materials of surfaces.
 
 use crate::draw::color::Srgba;
 

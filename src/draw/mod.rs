@@ -1,4 +1,5 @@
-//! What to draw, never how: the contract between scenes and renderers.
+//! Draw lists: the contract between scenes and renderers. They state the content of a picture, not the method of
+//! drawing.
 
 pub mod color;
 pub mod ground;

@@ -32,14 +32,14 @@ fn is_same_object(a: &DrawItem, b: &DrawItem) -> bool {
     a.feature == b.feature && a.world_from_mesh == b.world_from_mesh && a.layer == b.layer
 }
 
-/// What makes a primitive: a mesh, a range of its triangles and a material.
+/// The key of a primitive: a mesh, a range of its triangles and a material.
 type PrimitiveKey = (MeshId, [u32; 2], MaterialId);
 
 /// A scene under construction, and the index of each of its elements.
 #[derive(Default)]
 struct GlbSceneBuilder {
     scene: GlbScene<'static>,
-    /// Meshes by what they are made of; `None` for those without a triangle.
+    /// Meshes by their primitives; `None` for those without a triangle.
     meshes: BTreeMap<Vec<PrimitiveKey>, Option<usize>>,
     /// Vertices of a mesh, with or without texture coordinates.
     vertices: Numbering<(MeshId, bool)>,

@@ -26,14 +26,14 @@ use crate::draw::pixels::Pixels;
 use crate::mesh::sink::VertexId;
 use crate::mesh::write::Remarks;
 
-/// A prepared draw list ([`prepare::prepare`]) and what its file states about it.
+/// A prepared draw list ([`prepare::prepare`]) with names and remarks for its file.
 #[derive(Clone, Copy)]
 pub struct SceneExport<'a> {
     /// The list.
     pub list: &'a DrawList,
     /// Names features; an empty name is allowed.
     pub name_of: &'a dyn Fn(FeatureId) -> String,
-    /// What the file states.
+    /// Remarks for the file.
     pub remarks: &'a Remarks,
 }
 

@@ -2,6 +2,31 @@
 
 use glam::DVec2;
 
+use crate::geom::polyline::Polyline;
+
+/// The vertices beyond the ends of a line, of the lines that go on where it ends. Two lines of one width that know of each
+/// other end on one edge, as if they were one line.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Continuations {
+    /// Before its first vertex; `None` where nothing goes on there.
+    pub before: Option<DVec2>,
+    /// After its last.
+    pub after: Option<DVec2>,
+}
+
+impl Continuations {
+    /// What goes on at the ends of a line that ends where it begins: the line itself.
+    pub fn around(line: &Polyline) -> Self {
+        let points = line.points();
+        Self { before: Some(points[points.len() - 2]), after: Some(points[1]) }
+    }
+}
+
+/// The vector from a line to the left end of an edge square to a leg, `half` away.
+pub fn square([from, to]: [DVec2; 2], half: f64) -> DVec2 {
+    (to - from).normalize_or_zero().perp() * half
+}
+
 /// A vertex of a line with its neighbors, and the width about it.
 #[derive(Clone, Copy, Debug)]
 pub struct LineBend {
@@ -12,6 +37,13 @@ pub struct LineBend {
 }
 
 impl LineBend {
+    /// The bend at a vertex of a line; `None` at an end where nothing goes on.
+    pub fn at(points: &[DVec2], vertex: usize, beyond: Continuations, half: f64) -> Option<Self> {
+        let before = vertex.checked_sub(1).map(|before| points[before]).or(beyond.before)?;
+        let after = points.get(vertex + 1).copied().or(beyond.after)?;
+        Some(Self { points: [before, points[vertex], after], half })
+    }
+
     /// The directions of the legs before and after the vertex, of length 1.
     pub fn directions(&self) -> [DVec2; 2] {
         let [before, at, after] = self.points;

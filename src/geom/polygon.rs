@@ -16,7 +16,7 @@ pub fn doubled_triangle_area([a, b, c]: [DVec2; 3]) -> f64 {
 }
 
 /// The ring's edges, the closing one last.
-pub fn edges(ring: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
+pub fn edges<T: Copy>(ring: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
     let next = ring.iter().cycle().skip(1);
     ring.iter().copied().zip(next.copied())
 }

@@ -66,6 +66,11 @@ impl Polyline {
         }
     }
 
+    /// Whether it ends where it begins, round something.
+    pub fn is_closed(&self) -> bool {
+        self.points.len() > 3 && self.points.first() == self.points.last()
+    }
+
     /// The first and the last vertex.
     pub fn ends(&self) -> [DVec2; 2] {
         [self.points[0], self.points[self.points.len() - 1]]
@@ -97,8 +102,8 @@ impl Polyline {
         Self::new(self.between(from, to), merge_m)
     }
 
-    /// The parts within `rect`, at least two distinct points each.
-    pub fn clip(&self, rect: &Rect) -> Vec<Vec<DVec2>> {
+    /// The parts within `rect`.
+    pub fn clip(&self, rect: &Rect) -> Vec<Self> {
         let mut parts: Vec<Vec<DVec2>> = Vec::new();
         for [from, to] in self.legs() {
             let Some((from, to)) = rect.clip_line(from, to).filter(|(from, to)| from != to) else { continue };
@@ -107,7 +112,7 @@ impl Polyline {
                 _ => parts.push(vec![from, to]),
             }
         }
-        parts
+        parts.into_iter().filter_map(|part| Self::new(part, 0.0)).collect()
     }
 
     /// The stations at which the line first enters and last leaves `rect`; `None` where it passes by.
@@ -165,7 +170,8 @@ mod tests {
         let line = Polyline::new(zigzag, 0.0).expect("a line");
         let square = Rect { min: DVec2::ZERO, max: DVec2::splat(2.0) };
         let part = |x: [f64; 2], y: f64| x.map(|x| DVec2::new(x, y)).to_vec();
-        assert_eq!(line.clip(&square), [part([0.0, 2.0], 1.0), part([2.0, 0.0], 2.0)]);
+        let parts: Vec<Vec<DVec2>> = line.clip(&square).iter().map(|part| part.points().to_vec()).collect();
+        assert_eq!(parts, [part([0.0, 2.0], 1.0), part([2.0, 0.0], 2.0)]);
         assert_eq!(line.range_within(&square), Some([1.0, 8.0]));
         let south = Rect { min: DVec2::ZERO, max: DVec2::new(2.0, 1.5) };
         assert_eq!(line.range_within(&south), Some([1.0, 3.0]));

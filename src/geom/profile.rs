@@ -30,6 +30,11 @@ impl Profile {
         &self.values
     }
 
+    /// The first and the last station.
+    pub fn span(&self) -> [f64; 2] {
+        [self.stations[0], self.stations[self.stations.len() - 1]]
+    }
+
     /// The value at `station`; see [`value_at`].
     pub fn at(&self, station: f64) -> f64 {
         value_at(&self.stations, &self.values, station)
@@ -62,6 +67,29 @@ impl Profile {
             self.values.insert(place, self.at(station));
             self.stations.insert(place, station);
         }
+    }
+
+    /// The stations, both ends among them, between which straight lines keep within `slack` of the values (Douglas and
+    /// Peucker 1973).
+    pub fn bends(&self, slack: f64) -> Vec<f64> {
+        let (stations, values) = (&self.stations, &self.values);
+        let last = stations.len() - 1;
+        let mut kept = vec![false; stations.len()];
+        (kept[0], kept[last]) = (true, true);
+        let mut open = vec![(0, last)];
+        while let Some((from, to)) = open.pop() {
+            let run = stations[to] - stations[from];
+            let off = |&index: &usize| {
+                let part = if run > 0.0 { (stations[index] - stations[from]) / run } else { 0.0 };
+                (values[index] - (values[from] + (values[to] - values[from]) * part)).abs()
+            };
+            let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
+            if let Some(worst) = worst.filter(|worst| off(worst) > slack) {
+                kept[worst] = true;
+                open.extend([(from, worst), (worst, to)]);
+            }
+        }
+        stations.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&station, _)| station).collect()
     }
 
     /// The steepest rise or fall, of those over more than `least_run`.

@@ -22,49 +22,20 @@ pub struct MeshSummary {
 
 /// The first flaw of a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum Flaw {
-    /// A triangle has an index past the last vertex.
     #[error("triangle {triangle} uses vertex {vertex}, but there are only {count} vertices")]
-    Index {
-        /// The triangle.
-        triangle: usize,
-        /// The index.
-        vertex: usize,
-        /// How many vertices there are.
-        count: usize,
-    },
-    /// A vertex position is NaN or infinite.
+    Index { triangle: usize, vertex: usize, count: usize },
     #[error("vertex {0} is not finite")]
     NotFinite(usize),
-    /// A triangle has no area or faces down.
     #[error("triangle {triangle} has a plan area of {area_m2} m²; it must be positive")]
-    Orientation {
-        /// The triangle.
-        triangle: usize,
-        /// Its signed plan area.
-        area_m2: f64,
-    },
-    /// Two triangles lie on the same side of an edge.
+    Orientation { triangle: usize, area_m2: f64 },
     #[error("the edge from vertex {0} to vertex {1} belongs to two triangles on the same side")]
     Overlap(usize, usize),
-    /// A vertex lies inside an edge that it does not end.
     #[error("vertex {vertex} lies inside the edge from vertex {from} to vertex {to}: a T-junction")]
-    TJunction {
-        /// The vertex.
-        vertex: usize,
-        /// The edge's start.
-        from: usize,
-        /// The edge's end.
-        to: usize,
-    },
-    /// The triangles do not cover the expected area.
+    TJunction { vertex: usize, from: usize, to: usize },
     #[error("the triangles cover {found_m2} m² instead of {expected_m2} m²")]
-    Area {
-        /// The sum of their areas.
-        found_m2: f64,
-        /// The area they should cover.
-        expected_m2: f64,
-    },
+    Area { found_m2: f64, expected_m2: f64 },
 }
 
 /// Checks that `mesh` is conforming and faces up.

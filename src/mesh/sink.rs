@@ -1,4 +1,4 @@
-//! The sink that mesh generators write to: no generator knows how a mesh is stored.
+//! The sink that mesh generators write to; it hides the storage of the mesh.
 
 /// The index of a vertex in one mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, bytemuck::Pod, bytemuck::Zeroable)]

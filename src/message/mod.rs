@@ -1,3 +1,5 @@
 //! Parts of messages to users.
 
+pub mod chain;
+pub mod choice;
 pub mod suggest;

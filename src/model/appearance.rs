@@ -1,4 +1,4 @@
-//! How much the appearance of a surface changes: color, normal and texture coordinates, measured as lengths.
+//! The change in appearance of a surface: of color, normal and texture coordinates, measured as lengths.
 
 use glam::{Vec2, Vec3, Vec4};
 

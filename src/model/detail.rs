@@ -1,4 +1,4 @@
-//! Which form of a model is drawn, by the size at which it is seen.
+//! Chooses the form in which a model is drawn by the size at which it is seen.
 //!
 //! ```text
 //! size               form

@@ -1,4 +1,4 @@
-//! Model files (3DS, OBJ with MTL, glTF and GLB) to one [`Model`], Z up; no file system.
+//! Reads model files (3DS, OBJ with MTL, glTF and GLB) to a [`Model`], Z up, without a file system.
 //!
 //! ```text
 //! bytes ── read ──┬─ three_ds ─┐
@@ -9,8 +9,8 @@
 //! `detail` chooses how a small model is drawn: as it is, as a coarser level (`simplify` collapses edges of a `soup` of
 //! all parts) or as a picture (`impostor`).
 //!
-//! Trees, a shrub and a rock are [`built_in`]. The files that a model names (buffers, textures, material libraries) come
-//! through [`Companions`]. A broken model file is an error; a texture that cannot be loaded is a note.
+//! Trees, a shrub and a rock are [`built_in`]. The files that a model names (buffers, textures, material libraries)
+//! come through [`Companions`]. A broken model file is an error; a texture that cannot be loaded is a note.
 
 mod appearance;
 pub mod built_in;
@@ -50,7 +50,7 @@ pub struct Model {
     pub textures: Vec<Pixels>,
     /// The numbers of elements in the file, counted as its format counts.
     pub census: Census,
-    /// What the file asks for and is not drawn: missing textures, unsupported features.
+    /// Notes on parts of the file that are not drawn: missing textures, unsupported features.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Triangles with corners of their own to parts with shared vertices, one part a material.
+//! Builds parts with shared vertices, one per material, from triangles with separate corners.
 //!
 //! Some formats index positions, normals and texture coordinates separately. Their readers pass whole corners; corners
 //! that are equal in every bit become one vertex.

@@ -1,4 +1,4 @@
-//! Any model file to a [`Model`]: the format is known by its content, else by its extension.
+//! Reads a model file of any format. The format follows from the content, else from the extension.
 
 use std::collections::BTreeSet;
 

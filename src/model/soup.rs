@@ -1,4 +1,4 @@
-//! All parts of a model as one surface with seams: what simplification works on.
+//! All parts of a model as one surface with seams, the input of simplification.
 //!
 //! ```text
 //! point ── a position; vertices of any part that are equal there in every bit
@@ -131,8 +131,8 @@ impl Soup {
         neighbors
     }
 
-    /// Moves the triangles around `from` to `to`, where `targets` replace wedges at `from`; removes those that have both
-    /// points. Returns the third points of the removed triangles.
+    /// Moves the triangles around `from` to `to`, where `targets` replace wedges at `from`; removes those that have
+    /// both points. Returns the third points of the removed triangles.
     pub(super) fn collapse(
         &mut self,
         from: PointId,
@@ -167,8 +167,8 @@ impl Soup {
         self.rings[point.0 as usize] = ring;
     }
 
-    /// The surface as meshes, in the order and with the names and materials of the model's parts. Parts without triangles
-    /// are dropped.
+    /// The surface as meshes, in the order and with the names and materials of the model's parts. Parts without
+    /// triangles are dropped.
     pub(super) fn parts(&self, model: &Model) -> Vec<ModelPart> {
         let mut meshes: Vec<DrawMesh> = vec![DrawMesh::default(); model.parts.len()];
         let mut ids: Vec<Option<VertexId>> = vec![None; self.wedges.len()];

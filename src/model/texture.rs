@@ -8,7 +8,8 @@ use image::{ImageFormat, ImageReader, Limits};
 use crate::draw::color::Srgba;
 use crate::draw::material::TextureId;
 use crate::draw::pixels::Pixels;
-use crate::model::error::{CompanionError, error_chain};
+use crate::message::chain::error_text;
+use crate::model::error::CompanionError;
 use crate::model::{Companions, Model};
 
 /// The longest side of a texture in pixels: the most that every graphics adapter supports.
@@ -54,7 +55,7 @@ impl<'a> Textures<'a> {
         let id = match load_any(self.companions, name) {
             Ok(bytes) => self.decode(name, &bytes),
             Err(error) => {
-                self.notes.push(format!("texture '{name}' is missing: {}", error_chain(&*error)));
+                self.notes.push(format!("texture '{name}' is missing: {}", error_text(&*error)));
                 None
             }
         };
@@ -76,7 +77,7 @@ impl<'a> Textures<'a> {
         name: &str,
         error: &(dyn std::error::Error + 'static),
     ) -> Option<TextureId> {
-        self.notes.push(format!("texture '{name}' cannot be used: {}", error_chain(error)));
+        self.notes.push(format!("texture '{name}' cannot be used: {}", error_text(error)));
         None
     }
 

@@ -1,4 +1,4 @@
-//! A polygon in space to triangles.
+//! Triangulates polygons in space.
 //!
 //! Convex polygons, which nearly all are, become fans. Others are projected along their Newell normal and cut by ear
 //! clipping, which copes with polygons that cross themselves or are folded; where it gives nothing, they become fans too.

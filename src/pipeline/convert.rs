@@ -23,7 +23,7 @@ pub struct ConvertOptions {
     pub voids: VoidHandling,
 }
 
-/// What becomes of voids that samples enclose.
+/// The treatment of voids that samples enclose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoidHandling {
     /// They stay.
@@ -33,7 +33,7 @@ pub enum VoidHandling {
     Fill,
 }
 
-/// Converted elevation and what was done to it.
+/// Converted elevation and its provenance.
 #[derive(Debug)]
 pub struct Converted {
     /// The elevation.
@@ -42,30 +42,26 @@ pub struct Converted {
     pub resampling: Resampling,
     /// How positions were moved between datums; `None` where the system stayed.
     pub datum_shift: Option<String>,
-    /// What the user should know of joining and filling.
+    /// Notes for the user on joining and filling.
     pub notes: Vec<String>,
 }
 
 /// Elevation that cannot be converted.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ConvertError {
-    /// The elevation names no coordinate system.
     #[error("it names no coordinate system, so it cannot be brought to {0}")]
     NoCrs(String),
-    /// The cell is too large for a system in degrees.
     #[error(
         "cells of {cell} degrees are too large: cells count in the units of the system, and this one is in degrees"
     )]
     CellInDegrees {
-        /// As given.
         cell: f64,
         /// The UTM zone of the elevation, where it is known.
         zone: Option<String>,
     },
-    /// The elevation cannot be brought to the target.
     #[error(transparent)]
     Warp(#[from] WarpError),
-    /// The datum shift is not known.
     #[error(transparent)]
     Crs(#[from] CrsError),
 }

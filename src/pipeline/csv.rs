@@ -10,7 +10,7 @@ pub struct LineError<F: Display> {
     pub name: String,
     /// From 1.
     pub line: usize,
-    /// What is wrong.
+    /// The fault.
     pub fault: F,
 }
 

@@ -18,10 +18,10 @@ use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Interpolation, Surface};
 
-/// What a dataset is opened with.
-#[derive(Clone, Debug, Default)]
+/// Options for opening a dataset.
+#[derive(Clone, Default)]
 pub struct DatasetOptions {
-    /// What the caller states about an elevation file.
+    /// Options for an elevation file.
     pub dem: DemOptions,
     /// Folders that a scene may read besides the parent of its own.
     pub allowed: Vec<PathBuf>,
@@ -56,41 +56,24 @@ pub enum OpenError {
 
 /// A query that has no answer.
 #[derive(Clone, Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum QueryError {
-    /// The elevation file has no ground in meters.
     #[error("{dataset}")]
-    Ground {
-        /// The file.
-        dataset: String,
-        /// Why.
-        source: Arc<GroundError>,
-    },
-    /// The shift between the datums of the two coordinate systems is not known.
+    Ground { dataset: String, source: Arc<GroundError> },
     #[error("{dataset}")]
-    Datum {
-        /// The file.
-        dataset: String,
-        /// Which shift.
-        source: CrsError,
-    },
-    /// A position cannot be expressed in the other coordinate system.
+    Datum { dataset: String, source: CrsError },
     #[error("{what} {},{}", at.x, at.y)]
     Position {
-        /// What the position is, such as `observer`.
+        /// The role of the position, such as `observer`.
         what: String,
-        /// As given.
         at: DVec2,
-        /// Why.
         source: CrsError,
     },
-    /// There is no ground at a position.
     #[error("{what} {},{}: {}", at.x, at.y, absence(*answer))]
     NoGround {
-        /// What the position is, such as `observer`.
+        /// The role of the position, such as `observer`.
         what: String,
-        /// As given.
         at: DVec2,
-        /// The answer there.
         answer: Answer,
     },
 }

@@ -3,45 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::dem::formats::raw::RawLayout;
 use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
-use crate::geom::crs::Crs;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 
-/// What the caller states about an elevation file beyond its content.
-#[derive(Clone, Debug, Default)]
-pub struct DemOptions {
-    /// Meters per gray value of a PNG, which needs it, or of a RAW file. Default 1 there.
-    pub height_scale: Option<f64>,
-    /// Height in meters of value 0 of a gray PNG or a RAW file. Default 0.
-    pub height_offset: Option<f64>,
-    /// What the colors of a PNG mean.
-    pub height_encoding: Option<HeightEncoding>,
-    /// The layout of a RAW file.
-    pub raw: Option<RawLayout>,
-    /// Meters between the posts of a file that does not state it.
-    pub cell: Option<f64>,
-    /// The coordinate system, in place of the one that the file states.
-    pub crs: Option<Crs>,
-}
+/// Options for opening elevation. Companions are the files beside the opened one.
+pub type DemOptions = DemHints<'static>;
 
 /// Elevation that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenDemError {
-    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A file is not elevation that is read.
     #[error(transparent)]
     Format(#[from] FileError<DemErrorKind>),
-    /// A folder has no elevation file.
     #[error("{}: there is no elevation file in this folder", .0.display())]
     NoTiles(PathBuf),
-    /// The files are not tiles of one raster.
     #[error(transparent)]
     Tiles(#[from] MosaicError),
 }
@@ -77,16 +57,7 @@ pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<M
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
     let bytes = files::read(path)?;
-    let hints = DemHints {
-        height_scale: options.height_scale,
-        height_offset: options.height_offset,
-        height_encoding: options.height_encoding,
-        raw: options.raw,
-        cell: options.cell,
-        crs: options.crs.clone(),
-        companions: &files::beside(path),
-        ..DemHints::default()
-    };
+    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
     let raster = read::read(&files::file_name(path), &bytes, &hints);
     Ok(raster.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }

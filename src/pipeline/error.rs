@@ -1,7 +1,6 @@
-//! Errors about files, and the text of an error with its causes.
+//! Errors about files.
 
 use std::error::Error;
-use std::iter::successors;
 use std::path::{Path, PathBuf};
 
 use crate::pipeline::files::display_name;
@@ -12,7 +11,7 @@ use crate::pipeline::files::display_name;
 pub struct FileError<E: Error + 'static> {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// Its fault.
     #[source]
     pub cause: E,
 }
@@ -27,14 +26,4 @@ impl<E: Error + 'static> FileError<E> {
     pub fn at(path: &Path) -> impl Fn(E) -> Self + '_ {
         |cause| Self { path: path.to_owned(), cause }
     }
-}
-
-/// The text of `error`, then those of its causes, with colons between.
-///
-/// A cause that the text already quotes is left out.
-pub fn error_text(error: &(dyn Error + 'static)) -> String {
-    let causes = successors(error.source(), |&error| error.source());
-    causes.map(ToString::to_string).fold(error.to_string(), |text, cause| {
-        if text.contains(&cause) { text } else { format!("{text}: {cause}") }
-    })
 }

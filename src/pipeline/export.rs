@@ -31,9 +31,9 @@ impl ExportFormat {
 
 /// An exported scene.
 pub struct ExportedScene {
-    /// The files, the one that was asked for first.
+    /// The files that were written, the requested one first.
     pub files: Vec<PathBuf>,
-    /// What they hold.
+    /// The content.
     pub list: DrawList,
 }
 

@@ -20,17 +20,14 @@ pub type ReadFileError = FileError<ReadFileCause>;
 
 /// Why a file cannot be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ReadFileCause {
-    /// A folder, a pipe or a device.
     #[error("this is not a file")]
     NotAFile,
-    /// The file is larger than the limit.
     #[error("{0} bytes are more than the {MAX_BYTES} that are read")]
     TooLarge(u64),
-    /// The bytes are not UTF-8, from this one on.
     #[error("byte {0} is not UTF-8 text")]
     NotText(usize),
-    /// The system refuses.
     #[error(transparent)]
     System(#[from] SystemError),
 }
@@ -40,31 +37,26 @@ pub type WriteFileError = FileError<WriteFileCause>;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum WriteFileCause {
-    /// The file's folder does not exist.
     #[error("there is no such folder to write to")]
     NoFolder,
-    /// The path names a folder.
     #[error("this is a folder; name a file in it")]
     Folder,
-    /// The path names a pipe or a device.
     #[error("this is a device or a pipe; name a file")]
     Device,
-    /// The path has no file name.
     #[error("this is not the name of a file")]
     NoName,
-    /// The file is one of the inputs.
     #[error("this is a file that is read; name another to write to")]
     Input,
     /// The name has another extension than `.png`.
     #[error("pictures are written as PNG; name one that ends in .png")]
     NotPng,
-    /// The system refuses.
     #[error(transparent)]
     System(#[from] SystemError),
 }
 
-/// What the operating system reports about a file.
+/// An error of the operating system about a file.
 #[derive(Debug, thiserror::Error)]
 pub enum SystemError {
     /// No such file.
@@ -188,7 +180,7 @@ pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), Wri
 /// [`check_output`] for a picture, whose name must end in `.png` or have no extension.
 ///
 /// # Errors
-/// As [`check_output`]; or the name is that of another format.
+/// As [`check_output`], or if the extension is not `png`.
 pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
     check_output(path, inputs)?;
     match path.extension() {

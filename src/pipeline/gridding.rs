@@ -1,6 +1,5 @@
 //! Opening scattered points and breaklines for gridding.
 
-use std::iter::once;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -10,37 +9,31 @@ use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Feature, Geometry, VectorLayer};
+use crate::vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
 
 /// Points that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenPointsError {
-    /// A file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A file of points is not one that is read.
     #[error(transparent)]
     Points(#[from] FileError<PointsError>),
-    /// A vector file is not one that is read.
     #[error(transparent)]
     Vector(#[from] FileError<VectorError>),
-    /// A vector file has no elevations for points.
     #[error("{}: no point in it has an elevation; points with a z are needed", .0.display())]
     FlatPoints(PathBuf),
-    /// A vector file has no elevations for breaklines.
     #[error("{}: no line in it has an elevation at every vertex; breaklines with a z are needed", .0.display())]
     FlatLines(PathBuf),
-    /// Positions cannot be brought to the system of the first file.
     #[error(transparent)]
     Crs(#[from] FileError<CrsError>),
-    /// No file is named.
     #[error("name at least one file of points")]
     NoFiles,
 }
 
-/// What is opened.
+/// The files of a survey.
 #[derive(Clone, Debug, Default)]
 pub struct PointSources<'a> {
     /// Files of points.
@@ -119,12 +112,11 @@ fn breaklines(feature: &Feature) -> Vec<Vec<DVec3>> {
         Geometry::Points(_) => Vec::new(),
         Geometry::Lines(lines) => lines.iter().map(|part| line(part)).collect(),
         Geometry::Polygons(polygons) => {
-            let rings = polygons.iter().flat_map(|polygon| once(&polygon.exterior).chain(&polygon.holes));
             let closed = |mut ring: Vec<DVec3>| {
                 ring.extend(ring.first().copied());
                 ring
             };
-            rings.map(|ring| closed(line(ring))).collect()
+            polygons.iter().flat_map(Polygon::rings).map(|ring| closed(line(ring))).collect()
         }
     };
     lines.into_iter().filter(|line| line.len() > 1 && line.iter().all(|vertex| vertex.is_finite())).collect()

@@ -1,4 +1,4 @@
-//! From a raster to ground in meters, for programs that read no scene file.
+//! Makes ground in meters from a raster, for programs without a scene file.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! From a scene, a camera and a picture to annotations.
+//! Makes the annotations of a picture from its scene and camera.
 
 use glam::Vec2;
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Programs share these steps. No step reads arguments or the clock, and none prints: a step returns values, notes
-//! for the user and typed errors ([`error::error_text`] makes one text of an error and its causes).
+//! for the user and typed errors.
 
 pub mod api;
 pub mod bounded_mesh;

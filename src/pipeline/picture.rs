@@ -1,9 +1,9 @@
-//! From a view of a scene to an annotated picture in memory: list, draw, annotate.
+//! Renders a view of a scene to an annotated picture in memory.
 
 use crate::annotate::paint::annotate;
 use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
-use crate::pipeline::choice::{Choice, ChoiceWord, word};
+use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
@@ -27,7 +27,7 @@ impl Choice for RenderBackend {
     ];
 }
 
-/// A picture without annotations and what it was made of.
+/// A picture without annotations and its draw list.
 pub struct DrawnView {
     /// How it was seen.
     pub camera: Camera,
@@ -37,11 +37,11 @@ pub struct DrawnView {
     pub drawn: ViewDraw,
 }
 
-/// An annotated picture and what it was made of.
+/// An annotated picture and its draw list.
 pub struct RenderedView {
     /// The picture, opaque.
     pub pixels: Pixels,
-    /// What was drawn.
+    /// The draw list.
     pub drawn: ViewDraw,
     /// Which annotations were placed and which were not.
     pub annotations: AnnotationReport,

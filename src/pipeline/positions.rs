@@ -40,7 +40,7 @@ pub struct PositionError;
 /// A CSV table that does not hold positions.
 pub type PositionsError = LineError<PositionFault>;
 
-/// What is wrong with a line of positions, which is quoted.
+/// Why a line, which is quoted, is not a position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PositionFault {
     /// A header does not name the columns of x and y.
@@ -53,25 +53,16 @@ pub enum PositionFault {
 
 /// A file that does not give a line.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ReadLineError {
-    /// The file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// The CSV table does not hold positions.
     #[error(transparent)]
     Table(#[from] PositionsError),
-    /// The CSV table has fewer than two positions.
     #[error("{name}: a line needs at least two positions, found {found}")]
-    TooShort {
-        /// The file.
-        name: String,
-        /// How many it has.
-        found: usize,
-    },
-    /// The vector file cannot be read.
+    TooShort { name: String, found: usize },
     #[error(transparent)]
     Vector(#[from] FileError<VectorError>),
-    /// The vector file has no line.
     #[error("{}: it holds no line; a profile follows the first line of a vector file", .0.display())]
     NoLine(PathBuf),
 }

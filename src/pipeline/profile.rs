@@ -7,7 +7,7 @@
 use glam::DVec2;
 
 use crate::annotate::chart::ChartText;
-use crate::annotate::chart_ground::{ChartGround, ChartPoint};
+use crate::annotate::chart_ground::ChartPoint;
 use crate::annotate::chart_profile::ProfileChart;
 use crate::annotate::nice;
 use crate::dem::answer::Answer;
@@ -25,26 +25,16 @@ const LEAST_GAP_M: f64 = 0.5;
 
 /// A line that gives no profile.
 #[derive(Clone, Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ProfileError {
-    /// A vertex or a station has no position in the other coordinate system.
     #[error(transparent)]
     Query(#[from] QueryError),
-    /// The step between stations is not a length.
     #[error("a step of {step_m} m: give meters above 0")]
-    Step {
-        /// As given.
-        step_m: f64,
-    },
-    /// The step between stations is too short for the line.
+    Step { step_m: f64 },
     #[error(
         "a step of {step_m} m: the line is {length_m:.0} m long, and at most {MOST_STEPS} steps are made; take longer ones"
     )]
-    ShortStep {
-        /// As given.
-        step_m: f64,
-        /// The length of the line.
-        length_m: f64,
-    },
+    ShortStep { step_m: f64, length_m: f64 },
 }
 
 /// The ground along a line.
@@ -136,9 +126,8 @@ pub fn chart_points(stations: &[ProfileStation], height_m: impl Fn(f64, f64) -> 
     let point = |station: &ProfileStation| ChartPoint {
         along_m: station.station_m,
         ground: match station.ground {
-            Answer::Height(height) => ChartGround::Height(height_m(station.station_m, height)),
-            Answer::NoData => ChartGround::NoData,
-            Answer::Outside => ChartGround::Outside,
+            Answer::Height(height) => Answer::Height(height_m(station.station_m, height)),
+            missing => missing,
         },
     };
     stations.iter().map(point).collect()

@@ -10,17 +10,14 @@ use crate::pipeline::files::{self, ReadFileError, WriteFileError};
 
 /// A raster that cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum WriteRasterError {
-    /// The format cannot hold the raster.
     #[error(transparent)]
     Format(#[from] FileError<WriteError>),
-    /// A file beside it belongs to an input and has another content.
     #[error("{}: this belongs to a file that is read and would be replaced; name another to write to", .0.display())]
     Sidecar(PathBuf),
-    /// A file cannot be compared.
     #[error(transparent)]
     Read(#[from] ReadFileError),
-    /// A file cannot be written.
     #[error(transparent)]
     File(#[from] WriteFileError),
 }

@@ -1,4 +1,4 @@
-//! From a scene file to a scene.
+//! Opens scene files.
 
 use std::path::{Path, PathBuf};
 
@@ -12,17 +12,14 @@ use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum OpenSceneError {
-    /// The scene file cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// A folder that the scene may read cannot be opened.
     #[error(transparent)]
     Assets(#[from] AssetError),
-    /// The scene file is wrong: everything that was found.
     #[error("the scene file is wrong")]
     Parse(#[from] Diagnostics),
-    /// The scene cannot be built: the first thing that was found.
     #[error("the scene cannot be built")]
     Build(#[from] Diagnostic),
 }
@@ -42,8 +39,8 @@ pub fn open_scene(
     Ok(build(&document, &assets, progress)?)
 }
 
-/// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for heights.
-/// Files of features that leave the ground as it is are not read.
+/// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for
+/// heights. Files of features that leave the ground as it is are not read.
 ///
 /// # Errors
 /// See [`OpenSceneError`].

@@ -1,4 +1,4 @@
-//! What a height service serves and how much a client may ask of it.
+//! Options of the height service: its datasets, its address and its limits.
 
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -12,12 +12,12 @@ const RESERVED: [&str; 3] = ["los", "profile", "viewshed"];
 /// The longest name, in bytes.
 const LONGEST_NAME: usize = 100;
 
-/// What a service serves, where, and within which limits.
-#[derive(Clone, Debug)]
+/// Options of the height service.
+#[derive(Clone)]
 pub struct ServiceOptions {
     /// The datasets; no two have the same name.
     pub datasets: Vec<NamedFile>,
-    /// What they are opened with.
+    /// Options for opening them.
     pub dataset: DatasetOptions,
     /// The address to listen at; port 0 takes a free one.
     pub listen: SocketAddr,
@@ -29,7 +29,7 @@ pub struct ServiceOptions {
     pub write_line: fn(&str),
 }
 
-/// How much a client may ask.
+/// Limits of requests and connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ServiceLimits {
     /// The most points of one request: locations, samples, vertices.
@@ -81,7 +81,7 @@ pub struct NamedFile {
 pub struct DatasetNameError {
     /// The name.
     name: String,
-    /// What is wrong with it.
+    /// Its fault.
     fault: &'static str,
     /// The dataset's file.
     path: PathBuf,

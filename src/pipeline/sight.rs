@@ -1,4 +1,4 @@
-//! A line of sight between two positions: what blocks it, how much is missing or to spare, and its chart.
+//! A line of sight between two positions: the first obstacle, the clearance, and a chart.
 
 use glam::DVec2;
 
@@ -44,7 +44,7 @@ pub struct GroundedEnd {
 
 /// An examined line of sight. Places are in the query's coordinate system.
 pub struct SightReport {
-    /// What was examined.
+    /// The query.
     pub query: SightQuery,
     /// The observer and the target.
     pub ends: [GroundedEnd; 2],

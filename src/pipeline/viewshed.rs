@@ -1,8 +1,6 @@
 //! The results of a viewshed: figures, and a raster.
 
-use glam::{DAffine2, DMat2, DVec2};
-
-use crate::dem::raster::{Raster, Samples};
+use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::geom::crs::Crs;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCounts};
@@ -43,22 +41,14 @@ pub fn raster(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> Raster {
         PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
     let rows = viewshed.posts.chunks_exact(viewshed.columns as usize).rev();
-    let cell = lattice.cell();
+    let samples = Samples::F32(rows.flatten().map(value).collect());
     let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
+    let place = north_up_nodes(north_west, lattice.cell());
     Raster {
         driver: "viewshed",
         data_type: "Byte",
-        width: viewshed.columns,
-        height: viewshed.rows,
-        samples: Samples::F32(rows.flatten().map(value).collect()),
-        meters_per_z: 1.0,
-        map_from_grid: DAffine2 {
-            matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
-            translation: north_west + DVec2::new(-0.5, 0.5) * cell,
-        },
-        georeferenced: true,
         crs: (*crs != Crs::local()).then(|| crs.clone()),
         nodata: Some(NO_DATA),
-        vertical_datum: None,
+        ..Raster::new(viewshed.columns, samples).placed(place)
     }
 }

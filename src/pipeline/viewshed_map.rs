@@ -32,7 +32,7 @@ const DUSK_SHARE: f32 = 0.66;
 /// The tint of ground that was not looked at, and its share: faded toward paper.
 const FADED: Srgba = Srgba::opaque(0xf4, 0xf2, 0xec);
 const FADED_SHARE: f32 = 0.62;
-/// Where there is no data.
+/// The color of posts without data.
 const EMPTY: Srgba = Srgba::opaque(0xe6, 0xe4, 0xde);
 
 /// The texts of the sheet.

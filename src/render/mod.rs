@@ -1,4 +1,4 @@
-//! Draw lists to pictures, drawn by the processor or by a graphics adapter.
+//! Renders draw lists to pictures, by the processor or by a graphics adapter.
 //!
 //! `cpu/` is deterministic and needs nothing but the processor. `gpu/` needs an adapter and the Cargo feature `gpu`.
 //! Both draw the same list by the same formulas, and read far ground and far textures from the same coarser levels.

@@ -8,10 +8,12 @@
 
 use glam::DVec2;
 
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::Continuations;
 use crate::geom::polyline::Polyline;
 use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 
 /// A dash and the gap after it, in widths of the line.
 const DASH: f64 = 5.0;
@@ -37,16 +39,18 @@ pub enum Dashes {
 /// The line of `width_m` along the outer ring and the holes of an area, in that area's triangles `area`.
 pub fn border(rings: &[&[DVec2]], area: &PlanMesh, width_m: f64, dashes: Dashes) -> PlanMesh {
     let mut strips = PlanMesh::default();
-    let options = StrokeOptions { width_m: 2.0 * width_m, ..StrokeOptions::default() };
-    for ring in rings {
-        let Some(line) = closed(ring) else { continue };
+    let mut add = |line: Polyline, beyond: Continuations| {
+        let alignment = Alignment::on_ground(line, 2.0 * width_m);
+        let path = StrokePath { beyond, ..StrokePath::alone(&alignment) };
+        stroke(&path, &StrokeOptions::default(), &mut strips);
+    };
+    for line in rings.iter().filter_map(|ring| closed(ring)) {
         match dashes {
-            Dashes::Unbroken => stroke(&line, around(&line), &options, &mut strips),
-            Dashes::Dashed => {
-                for dash in dashed(&line, width_m) {
-                    stroke(&dash, Continuations::default(), &options, &mut strips);
-                }
+            Dashes::Unbroken => {
+                let beyond = Continuations::around(&line);
+                add(line, beyond);
             }
+            Dashes::Dashed => dashed(&line, width_m).for_each(|dash| add(dash, Continuations::default())),
         }
     }
     partition::within(&strips, area)
@@ -59,13 +63,6 @@ fn closed(ring: &[DVec2]) -> Option<Polyline> {
     Polyline::new(ring.iter().copied().chain(back), MERGE_M)
 }
 
-/// What goes on at the ends of a line that ends where it begins: the line itself.
-fn around(line: &Polyline) -> Continuations {
-    let points = line.points();
-    Continuations { before: Some(points[points.len() - 2]), after: Some(points[1]) }
-}
-
-/// The line's dashes.
 fn dashed(line: &Polyline, width_m: f64) -> impl Iterator<Item = Polyline> + '_ {
     let count = (line.length() / (DASH * width_m)).round().clamp(1.0, MOST_DASHES);
     let step_m = line.length() / count;

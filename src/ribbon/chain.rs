@@ -5,28 +5,24 @@
 
 use std::collections::BTreeMap;
 
-use crate::earthworks::alignment::chain::LineEnd;
-use crate::ribbon::stroke::Stations;
+use crate::earthworks::alignment::chain::{ChainLink, LineEnd};
 
-/// The stations of every line, given the lines' lengths and which ends continue one another.
-pub fn stations(lengths_m: &[f64], links: &[[LineEnd; 2]]) -> Vec<Stations> {
+/// Every line in its chain, given the lines' lengths and which ends continue one another.
+pub fn chained(lengths_m: &[f64], links: &[[LineEnd; 2]]) -> Vec<ChainLink> {
     let next: BTreeMap<LineEnd, LineEnd> = links.iter().flat_map(|&[a, b]| [(a, b), (b, a)]).collect();
-    let mut stations: Vec<Option<Stations>> = vec![None; lengths_m.len()];
+    let mut chained: Vec<Option<ChainLink>> = vec![None; lengths_m.len()];
     let ends = |end: usize| (0..lengths_m.len()).map(move |line| LineEnd { line, end });
     let free = ends(0).chain(ends(1)).filter(|end| !next.contains_key(end));
     for start in free.chain(ends(0)) {
         let (mut entry, mut station_m) = (Some(start), 0.0);
-        while let Some(at) = entry.filter(|at| stations[at.line].is_none()) {
-            let end_m = station_m + lengths_m[at.line];
-            stations[at.line] = Some(match at.end {
-                0 => Stations { first_m: station_m, per_m: 1.0 },
-                _ => Stations { first_m: end_m, per_m: -1.0 },
-            });
-            station_m = end_m;
+        while let Some(at) = entry.filter(|at| chained[at.line].is_none()) {
+            let link = at.link(station_m, lengths_m[at.line]);
+            station_m = link.end_m();
+            chained[at.line] = Some(link);
             entry = next.get(&at.opposite()).copied();
         }
     }
-    stations.into_iter().map(Option::unwrap_or_default).collect()
+    chained.into_iter().flatten().collect()
 }
 
 #[cfg(test)]
@@ -40,15 +36,17 @@ mod tests {
     #[test]
     fn stations_run_on_whichever_way_a_line_points() {
         let links = [[end(0, 1), end(1, 1)], [end(1, 0), end(2, 0)]];
-        let found = stations(&[10.0, 20.0, 5.0], &links);
-        let expected = [(0.0, 1.0), (30.0, -1.0), (30.0, 1.0)];
-        assert_eq!(found, expected.map(|(first_m, per_m)| Stations { first_m, per_m }));
+        let found: Vec<_> = chained(&[10.0, 20.0, 5.0], &links)
+            .iter()
+            .map(|link| [0.0, 1.0].map(|at| link.station_m(at)))
+            .collect();
+        assert_eq!(found, [[0.0, 1.0], [30.0, 29.0], [30.0, 31.0]]);
     }
 
     #[test]
     fn a_ring_is_walked_once() {
         let links = [[end(0, 1), end(1, 0)], [end(1, 1), end(0, 0)], [end(2, 1), end(2, 0)]];
-        let found = stations(&[10.0, 20.0, 5.0], &links);
-        assert_eq!(found.iter().map(|stations| stations.first_m).collect::<Vec<_>>(), [0.0, 10.0, 0.0]);
+        let found = chained(&[10.0, 20.0, 5.0], &links);
+        assert_eq!(found.iter().map(|link| link.station_m(0.0)).collect::<Vec<_>>(), [0.0, 10.0, 0.0]);
     }
 }

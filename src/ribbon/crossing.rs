@@ -28,12 +28,15 @@ pub struct RibbonOverlap {
     pub ribbons: [usize; 2],
 }
 
-/// What the `ribbons` share that are of one class, outside `nodes`: in the order of the ribbons. Crossings may overlap one
-/// another.
-pub fn crossings<C: PartialEq + Sync>(
-    ribbons: &[(PlanMesh, C)],
+/// What the `ribbons` share that are alike, outside `nodes`: in the order of the ribbons. Crossings may overlap one another.
+pub fn crossings(
+    ribbons: &[PlanMesh],
+    are_alike: impl Fn(usize, usize) -> bool + Sync,
     nodes: &[JunctionNode],
 ) -> Vec<RibbonOverlap> {
+    let pieces_of = |(ribbon, plan): (usize, &PlanMesh)| {
+        plan.convex_parts().into_iter().map(move |outline| ConvexPiece { outline, ribbon })
+    };
     let pieces: Vec<ConvexPiece> = ribbons.par_iter().enumerate().flat_map_iter(pieces_of).collect();
     let rects: Vec<Rect> = pieces.iter().map(|piece| polygon::bounds(&piece.outline)).collect();
     let (tree, joined) = (RectTree::new(&rects), Joined::new(nodes));
@@ -41,7 +44,7 @@ pub fn crossings<C: PartialEq + Sync>(
         let mut found = Vec::new();
         for other in tree.meeting_in_order(&polygon::bounds(&one.outline)) {
             let other = &pieces[other];
-            if other.ribbon < one.ribbon && ribbons[other.ribbon].1 == ribbons[one.ribbon].1 {
+            if other.ribbon < one.ribbon && are_alike(other.ribbon, one.ribbon) {
                 found.extend(crossing([other, one]).filter(|crossing| !joined.holds(&crossing.outline)));
             }
             if found.len() > MOST {
@@ -58,14 +61,9 @@ pub fn crossings<C: PartialEq + Sync>(
     pieces.par_iter().flat_map_iter(shared).collect()
 }
 
-/// A convex piece of a ribbon.
 struct ConvexPiece {
     outline: Vec<DVec2>,
     ribbon: usize,
-}
-
-fn pieces_of<C>((ribbon, (plan, _)): (usize, &(PlanMesh, C))) -> impl Iterator<Item = ConvexPiece> + use<C> {
-    plan.convex_parts().into_iter().map(move |outline| ConvexPiece { outline, ribbon })
 }
 
 fn crossing([one, other]: [&ConvexPiece; 2]) -> Option<RibbonOverlap> {
@@ -73,7 +71,6 @@ fn crossing([one, other]: [&ConvexPiece; 2]) -> Option<RibbonOverlap> {
     Some(RibbonOverlap { outline, ribbons: [one.ribbon, other.ribbon] })
 }
 
-/// The junctions there are.
 struct Joined<'a> {
     nodes: &'a [JunctionNode],
     tree: RectTree,
@@ -95,14 +92,15 @@ impl<'a> Joined<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
     use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 
     fn ribbon(points: [(f64, f64); 2], width_m: f64) -> PlanMesh {
         let line = Polyline::new(points.map(DVec2::from), 0.0).expect("a line");
         let mut plan = PlanMesh::default();
-        let options = StrokeOptions { width_m, ..StrokeOptions::default() };
-        stroke(&line, Continuations::default(), &options, &mut plan);
+        let alignment = Alignment::on_ground(line, width_m);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         plan
     }
 
@@ -112,14 +110,15 @@ mod tests {
             let turn = |point: (f64, f64)| (0..quarter).fold(point, |(x, y), _| (-y, x));
             let along = ribbon([(-50.0, 0.0), (50.0, 0.0)].map(turn), 8.0);
             let across = ribbon([(0.0, -50.0), (0.0, 60.0)].map(turn), 6.0);
-            let found = crossings(&[(along.clone(), 0), (across.clone(), 0)], &[]);
+            let ribbons = [along, across];
+            let found = crossings(&ribbons, |_, _| true, &[]);
             let area: f64 = found.iter().map(|crossing| polygon::doubled_area(&crossing.outline) / 2.0).sum();
             assert!((area - 48.0).abs() < 1e-9, "{area}");
             assert!(found.iter().all(|crossing| crossing.ribbons == [0, 1]));
-            assert!(crossings(&[(along.clone(), 0), (across.clone(), 1)], &[]).is_empty(), "not alike");
+            assert!(crossings(&ribbons, |_, _| false, &[]).is_empty(), "not alike");
             let square = [(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0)].map(DVec2::from).to_vec();
             let node = JunctionNode { outline: square, street: 0, rank: 0 };
-            assert!(crossings(&[(along, 0), (across, 0)], &[node]).is_empty(), "joined already");
+            assert!(crossings(&ribbons, |_, _| true, &[node]).is_empty(), "joined already");
         }
     }
 }

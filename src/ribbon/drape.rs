@@ -54,9 +54,7 @@ fn write_piece(
         })
     };
     let ids: Vec<_> = piece.iter().map(|&at| vertex(at)).collect();
-    for pair in ids[1..].windows(2) {
-        sink.triangle([ids[0], pair[0], pair[1]]);
-    }
+    polygon::fan(&ids).for_each(|corners| sink.triangle(corners));
 }
 
 /// The largest vertical distance in meters between a draped mesh and the displayed ground, at the middle of

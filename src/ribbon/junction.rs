@@ -20,12 +20,13 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::earthworks::alignment::Alignment;
 use crate::earthworks::alignment::chain::LineEnd;
-use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::convex;
-use crate::geom::offset::LineBend;
+use crate::geom::offset::{Continuations, LineBend};
 use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::ribbon::stroke::{Continuations, StrokeOptions};
+use crate::ribbon::stroke::StrokeOptions;
+use crate::ribbon::texture::RibbonSurface;
 
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
@@ -34,30 +35,33 @@ const SAME_WIDTH_M: f64 = 1e-6;
 const LONGEST_REACH: f64 = 2.5;
 
 /// A road or river among those that it may meet.
-#[derive(Clone, Copy, Debug)]
-pub struct Street<'a> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Street {
     /// Its centerline, width and support. Junctions do not reach onto bridges and into tunnels.
-    pub alignment: &'a Alignment,
+    pub alignment: Alignment,
+    /// The mean of its width in meters; of a part of a road that of the whole.
+    pub width_m: f64,
     /// How it is stroked.
     pub options: StrokeOptions,
     /// What passes over what.
     pub level: i32,
-    /// How good its pavement is: where it meets lesser ones it goes through.
-    pub rank: u8,
+    /// Its pavement: where it meets [lesser](RibbonSurface::rank) ones it goes through.
+    pub surface: RibbonSurface,
 }
 
-impl<'a> Street<'a> {
-    /// A street of level and rank 0.
-    pub fn new(alignment: &'a Alignment, options: StrokeOptions) -> Self {
-        Self { alignment, options, level: 0, rank: 0 }
-    }
-
-    fn points(&self) -> &'a [DVec2] {
+impl Street {
+    fn points(&self) -> &[DVec2] {
         self.alignment.line.points()
     }
 
-    fn is_on_ground(&self) -> bool {
-        self.alignment.support == Support::Ground
+    /// Its width and what is more beside it, of another surface.
+    pub fn with_more(&self, more_m: f64, surface: RibbonSurface) -> Self {
+        Self {
+            alignment: self.alignment.widened(more_m),
+            width_m: self.width_m + more_m,
+            surface,
+            ..self.clone()
+        }
     }
 }
 
@@ -94,7 +98,7 @@ struct Arm {
 }
 
 /// Finds which streets go on in one another, and the nodes of those that do not.
-pub fn connect(streets: &[Street<'_>]) -> StreetNetwork {
+pub fn connect(streets: &[&Street]) -> StreetNetwork {
     let streets = Streets(streets);
     let mut arms: Vec<(VertexKey, Arm)> =
         (0..streets.0.len()).flat_map(|street| streets.arms(street)).collect();
@@ -159,7 +163,7 @@ impl StreetNetwork {
     }
 
     fn add_node(&mut self, streets: Streets<'_>, arms: &[Arm], rank: u8) {
-        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].is_on_ground());
+        let on_ground = arms.iter().filter(|arm| streets.0[arm.street].alignment.is_on_ground());
         let widest = on_ground.max_by(|a, b| {
             let by_width = streets.half_m(a).total_cmp(&streets.half_m(b));
             by_width.then(b.street.cmp(&a.street))
@@ -181,7 +185,7 @@ impl Arm {
 
 /// What the arms' numbers mean.
 #[derive(Clone, Copy)]
-struct Streets<'a>(&'a [Street<'a>]);
+struct Streets<'a>(&'a [&'a Street]);
 
 impl Streets<'_> {
     /// The arms of a street, with the place each leaves.
@@ -213,7 +217,8 @@ impl Streets<'_> {
                 passing.iter().copied().filter(same).chain(ends.extract_if(.., |arm| same(arm))).collect()
             })
             .collect();
-        let carrying = |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].is_on_ground());
+        let carrying =
+            |group: &&mut Vec<Arm>| group.iter().any(|arm| self.0[arm.street].alignment.is_on_ground());
         match groups.iter_mut().find(carrying) {
             Some(group) => group.append(&mut ends),
             None => groups.push(ends),
@@ -227,12 +232,12 @@ impl Streets<'_> {
     }
 
     fn half_m(&self, arm: &Arm) -> f64 {
-        let alignment = self.0[arm.street].alignment;
+        let alignment = &self.0[arm.street].alignment;
         alignment.width.at(alignment.line.stations()[arm.vertex]) / 2.0
     }
 
     fn rank(&self, arm: &Arm) -> u8 {
-        self.0[arm.street].rank
+        self.0[arm.street].surface.rank()
     }
 
     fn best(&self, arms: &[Arm]) -> u8 {
@@ -241,7 +246,7 @@ impl Streets<'_> {
 
     /// Whether two ends make one ribbon.
     fn go_on(&self, [a, b]: [Arm; 2]) -> bool {
-        let (one, other) = (&self.0[a.street], &self.0[b.street]);
+        let (one, other) = (self.0[a.street], self.0[b.street]);
         let half_m = self.half_m(&a);
         let limit = one.options.miter_limit.min(other.options.miter_limit);
         let points = [one.points()[a.next], one.points()[a.vertex], other.points()[b.next]];
@@ -251,7 +256,6 @@ impl Streets<'_> {
             && LineBend { points, half: half_m }.mitered(limit).is_some()
     }
 
-    /// The junction of several arms.
     fn hull(&self, arms: &[Arm]) -> Vec<DVec2> {
         let points = |arm: &Arm| self.0[arm.street].points();
         let at = points(&arms[0])[arms[0].vertex];
@@ -262,7 +266,7 @@ impl Streets<'_> {
                 along: way(arm).normalize_or_zero(),
                 half_m: self.half_m(arm),
                 // An arm shorter than the junction lies in it as a whole.
-                longest_m: if self.0[arm.street].is_on_ground() { way(arm).length() } else { 0.0 },
+                longest_m: if self.0[arm.street].alignment.is_on_ground() { way(arm).length() } else { 0.0 },
             })
             .collect();
         let turn = |spoke: &HullArm| libm::atan2(spoke.along.y, spoke.along.x);
@@ -304,29 +308,34 @@ impl HullArm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Width;
+    use crate::earthworks::alignment::Support;
     use crate::geom::polygon;
     use crate::geom::polyline::Polyline;
     use crate::ribbon::plan::PlanMesh;
-    use crate::ribbon::stroke::stroke;
+    use crate::ribbon::stroke::{StrokePath, stroke};
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
-    fn aligned(line: Polyline, width_m: f64) -> Alignment {
-        Alignment { line, level: None, width: Width::Constant(width_m), support: Support::Ground }
+    fn street(line: Polyline, width_m: f64) -> Street {
+        let alignment = Alignment::on_ground(line, width_m);
+        Street {
+            alignment,
+            width_m,
+            options: StrokeOptions::default(),
+            level: 0,
+            surface: RibbonSurface::Track,
+        }
     }
 
-    fn street(alignment: &Alignment) -> Street<'_> {
-        let width_m = alignment.width.at(0.0);
-        Street::new(alignment, StrokeOptions { width_m, ..StrokeOptions::default() })
+    fn connected(streets: &[Street]) -> StreetNetwork {
+        connect(&streets.iter().collect::<Vec<_>>())
     }
 
     fn network(lines: &[Polyline], widths: &[f64]) -> StreetNetwork {
-        let lines: Vec<Alignment> =
-            lines.iter().zip(widths).map(|(line, &width_m)| aligned(line.clone(), width_m)).collect();
-        connect(&lines.iter().map(street).collect::<Vec<_>>())
+        let streets = lines.iter().zip(widths).map(|(line, &width_m)| street(line.clone(), width_m));
+        connected(&streets.collect::<Vec<_>>())
     }
 
     fn area(node: &JunctionNode) -> f64 {
@@ -347,7 +356,9 @@ mod tests {
         let mut area = 0.0;
         for (line, beyond) in lines.iter().zip(&joined.continuations) {
             let mut plan = PlanMesh::default();
-            stroke(line, *beyond, &StrokeOptions { width_m: 6.0, ..StrokeOptions::default() }, &mut plan);
+            let alignment = Alignment::on_ground(line.clone(), 6.0);
+            let path = StrokePath { beyond: *beyond, ..StrokePath::alone(&alignment) };
+            stroke(&path, &StrokeOptions::default(), &mut plan);
             area += plan.area_m2();
         }
         assert!(
@@ -398,15 +409,14 @@ mod tests {
             line(&[(50.0, 0.0), (0.0, 0.0)]),
             line(&[(0.0, 0.0), (0.0, 60.0)]),
         ];
-        let lines = lines.map(|line| aligned(line, 6.0));
-        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
-        streets[0].rank = 2;
-        streets[1].rank = 2;
-        let joined = connect(&streets);
+        let mut streets = lines.map(|line| street(line, 6.0));
+        streets[0].surface = RibbonSurface::Asphalt;
+        streets[1].surface = RibbonSurface::Asphalt;
+        let joined = connected(&streets);
         assert_eq!(joined.continuations[0].after, Some(DVec2::X * 50.0));
         assert_eq!(joined.nodes.iter().map(|node| node.rank).collect::<Vec<_>>(), [0]);
-        streets[1].rank = 0;
-        let joined = connect(&streets);
+        streets[1].surface = RibbonSurface::Track;
+        let joined = connected(&streets);
         assert!(joined.links.is_empty());
         assert_eq!(
             joined.nodes.iter().map(|node| node.rank).collect::<Vec<_>>(),
@@ -422,11 +432,10 @@ mod tests {
             line(&[(0.0, 0.0), (40.0, 5.0), (80.0, 0.0)]),
             line(&[(40.0, -60.0), (40.0, 5.0), (40.0, 60.0)]),
         ];
-        let mut lines = lines.map(|line| aligned(line, 6.0));
-        lines[1].support = Support::Bridge;
-        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
+        let mut streets = lines.map(|line| street(line, 6.0));
+        streets[1].alignment.support = Support::Bridge;
         streets[1].level = 1;
-        let joined = connect(&streets);
+        let joined = connected(&streets);
         assert_eq!(joined.continuations[0].after, Some(DVec2::new(40.0, 5.0)));
         assert_eq!(joined.continuations[1].before, Some(DVec2::X * -50.0));
         assert!(joined.nodes.is_empty(), "an overpass is no junction: {:?}", joined.nodes);
@@ -439,11 +448,10 @@ mod tests {
             line(&[(-50.0, -30.0), (0.0, 0.0)]),
             line(&[(0.0, 0.0), (80.0, 0.0)]),
         ];
-        let mut lines = lines.map(|line| aligned(line, 6.0));
-        lines[2].support = Support::Bridge;
-        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
+        let mut streets = lines.map(|line| street(line, 6.0));
+        streets[2].alignment.support = Support::Bridge;
         streets[2].level = 1;
-        let joined = connect(&streets);
+        let joined = connected(&streets);
         assert_eq!(joined.nodes.len(), 1);
         let farthest = polygon::bounds(&joined.nodes[0].outline).max.x;
         assert!(farthest < 3.1, "{farthest}");
@@ -453,10 +461,9 @@ mod tests {
     fn roads_of_two_levels_that_pass_a_vertex_do_not_meet() {
         let lines =
             [line(&[(-50.0, 0.0), (0.0, 0.0), (50.0, 0.0)]), line(&[(0.0, -50.0), (0.0, 0.0), (0.0, 50.0)])];
-        let lines = lines.map(|line| aligned(line, 6.0));
-        let mut streets: Vec<Street<'_>> = lines.iter().map(street).collect();
-        assert_eq!(connect(&streets).nodes.len(), 1);
+        let mut streets = lines.map(|line| street(line, 6.0));
+        assert_eq!(connected(&streets).nodes.len(), 1);
         streets[1].level = 1;
-        assert_eq!(connect(&streets).nodes, []);
+        assert_eq!(connected(&streets).nodes, []);
     }
 }

@@ -21,7 +21,7 @@ use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
+use crate::ribbon::plan::{PlanMesh, TextureMap};
 
 /// Triangles, overlaps and leftovers smaller than this are rounding, in square meters: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
@@ -54,12 +54,8 @@ pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
     for triangle in plan.corners() {
         let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
         for under in covering.tree.meeting_in_order(&Rect::around(corners)) {
-            let piece =
-                convex::intersection(&corners, &covering.triangles[under], SLIVER_M2).unwrap_or_default();
-            for corners in fan(&piece) {
-                let ids = corners.map(|at| inside.vertex(PlanVertex { at, uv: texture.at(at) }));
-                inside.triangle(ids);
-            }
+            let piece = convex::intersection(&corners, &covering.triangles[under], SLIVER_M2);
+            inside.write(piece.iter().flat_map(|piece| fan(piece)), &texture);
         }
     }
     inside
@@ -86,11 +82,7 @@ fn left_of(plan: &PlanMesh, rests: &mut impl Iterator<Item = Rest>) -> PlanMesh 
                 left.triangle(ids);
             }
             Rest::Pieces(pieces) => {
-                let texture = TextureMap::of(triangle);
-                for corners in pieces.iter().flat_map(|piece| fan(piece)) {
-                    let ids = corners.map(|at| left.vertex(PlanVertex { at, uv: texture.at(at) }));
-                    left.triangle(ids);
-                }
+                left.write(pieces.iter().flat_map(|piece| fan(piece)), &TextureMap::of(triangle));
             }
         }
     }
@@ -162,7 +154,6 @@ fn outside(pieces: Vec<Vec<DVec2>>, window: &[DVec2; 3]) -> Vec<Vec<DVec2>> {
     outside
 }
 
-/// The area that two convex polygons share.
 fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {
     convex::intersection(one, other, 0.0).map_or(0.0, |piece| polygon::doubled_area(&piece) / 2.0)
 }
@@ -175,15 +166,16 @@ fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
     use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
     use proptest::prelude::*;
 
     fn ribbon(points: &[(f64, f64)], width_m: f64) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.01).expect("a line");
         let mut plan = PlanMesh::default();
-        let options = StrokeOptions { width_m, ..StrokeOptions::default() };
-        stroke(&line, Continuations::default(), &options, &mut plan);
+        let alignment = Alignment::on_ground(line, width_m);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         plan
     }
 

@@ -38,7 +38,6 @@ pub struct Borders {
 }
 
 impl Borders {
-    /// Patches side by side.
     fn columns(&self) -> usize {
         self.east.len().saturating_sub(1)
     }
@@ -162,9 +161,7 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
             let part = patches[row * borders.columns() + column].part(ribbon);
             let ids: Vec<_> =
                 piece.iter().map(|&at| part.vertex(PlanVertex { at, uv: texture.at(at) })).collect();
-            for pair in ids[1..].windows(2) {
-                part.triangle([ids[0], pair[0], pair[1]]);
-            }
+            polygon::fan(&ids).for_each(|corners| part.triangle(corners));
         }
     }
 }
@@ -172,8 +169,9 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
     use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 
     fn borders() -> Borders {
         Borders { east: vec![0.0, 40.0, 80.0, 100.0], north: vec![0.0, 40.0, 70.0] }
@@ -182,7 +180,8 @@ mod tests {
     fn road() -> PlanMesh {
         let line = Polyline::new([(5.0, 10.0), (60.0, 38.0), (95.0, 66.0)].map(DVec2::from), 0.0);
         let mut plan = PlanMesh::default();
-        stroke(&line.expect("a line"), Continuations::default(), &StrokeOptions::default(), &mut plan);
+        let alignment = Alignment::on_ground(line.expect("a line"), 6.0);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         plan
     }
 

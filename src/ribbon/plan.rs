@@ -45,6 +45,18 @@ impl PlanMesh {
         parts
     }
 
+    /// Adds convex polygons' triangles, counter-clockwise, that lie on a textured one.
+    pub(in crate::ribbon) fn write(
+        &mut self,
+        triangles: impl Iterator<Item = [DVec2; 3]>,
+        texture: &TextureMap,
+    ) {
+        for corners in triangles {
+            let ids = corners.map(|at| self.vertex(PlanVertex { at, uv: texture.at(at) }));
+            self.triangle(ids);
+        }
+    }
+
     /// The sum of all triangles' areas in square meters.
     pub fn area_m2(&self) -> f64 {
         self.corners().map(|[a, b, c]| (b.at - a.at).perp_dot(c.at - a.at) / 2.0).sum()

@@ -7,12 +7,13 @@
 use glam::{DVec2, Vec2};
 
 use crate::description::words::Join;
-use crate::earthworks::alignment::Width;
-use crate::geom::offset::LineBend;
-use crate::geom::polyline::Polyline;
+use crate::earthworks::alignment::Alignment;
+use crate::earthworks::alignment::chain::{ChainLink, LineEnd};
+use crate::geom::offset::{Continuations, LineBend, square};
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::joint::{JointFan, RibbonJoint};
 use crate::ribbon::plan::PlanVertex;
+use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 
 /// The widest taper between cross-sections, as a ratio: a texture's lines have a kink between a quad's two triangles.
 const TAPER_STEP: f64 = 1.1;
@@ -26,8 +27,6 @@ const NOTHING_M2: f64 = 1e-9;
 /// How a ribbon is stroked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeOptions {
-    /// Width in meters, above 0. Default 6.
-    pub width_m: f64,
     /// How segments meet. Default: mitered.
     pub join: Join,
     /// How long a miter may be, in half widths, at least 1. Default 2: turns of up to 120 degrees keep their
@@ -39,74 +38,46 @@ pub struct StrokeOptions {
 
 impl Default for StrokeOptions {
     fn default() -> Self {
-        Self { width_m: 6.0, join: Join::Miter, miter_limit: 2.0, texture_length_m: 12.0 }
+        Self { join: Join::Miter, miter_limit: 2.0, texture_length_m: 12.0 }
     }
 }
 
-/// The lines that go on where this one ends: the vertex of each beyond the one they share. Two ribbons of one width
-/// that know of each other end on one edge, as if they were one ribbon.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Continuations {
-    /// Before its first vertex; `None` where nothing goes on there.
-    pub before: Option<DVec2>,
-    /// After its last.
-    pub after: Option<DVec2>,
-}
-
-/// Where the texture stands along a line, so that it can go on from one ribbon to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stations {
-    /// The station of the line's first vertex in meters.
-    pub first_m: f64,
-    /// Meters of station for each meter along the line: 1, or −1 where the texture runs against it.
-    pub per_m: f64,
-}
-
-impl Default for Stations {
-    /// From 0 along the line.
-    fn default() -> Self {
-        Self { first_m: 0.0, per_m: 1.0 }
+impl StrokeOptions {
+    /// The default for a ribbon of this surface and width.
+    pub fn of(surface: RibbonSurface, width_m: f64) -> Self {
+        Self { texture_length_m: texture_length_m(surface, width_m), ..Self::default() }
     }
 }
 
 /// The path of a ribbon.
 #[derive(Clone, Copy, Debug)]
 pub struct StrokePath<'a> {
-    /// The centerline.
-    pub line: &'a Polyline,
-    /// Its width; instead of the options' width.
-    pub width: &'a Width,
+    /// The centerline and its width.
+    pub alignment: &'a Alignment,
     /// What continues it at its ends.
     pub beyond: Continuations,
-    /// Where its texture stands.
-    pub stations: Stations,
+    /// The stations of its texture, so that this goes on from one ribbon to the next.
+    pub link: ChainLink,
 }
 
-/// Writes the ribbon of one width along `line` to `sink`, triangles counter-clockwise.
+impl<'a> StrokePath<'a> {
+    /// A path that nothing continues.
+    pub fn alone(alignment: &'a Alignment) -> Self {
+        let link = LineEnd { line: 0, end: 0 }.link(0.0, alignment.line.length());
+        Self { alignment, beyond: Continuations::default(), link }
+    }
+}
+
+/// Writes the ribbon along `path` to `sink`, triangles counter-clockwise.
 ///
 /// Where a sharp turn's inner sides overlap, both quads are there; [`crate::ribbon::partition`] takes them apart.
-pub fn stroke(
-    line: &Polyline,
-    beyond: Continuations,
-    options: &StrokeOptions,
-    sink: &mut impl MeshSink<PlanVertex>,
-) {
-    let width = &Width::Constant(options.width_m);
-    stroke_path(&StrokePath { line, width, beyond, stations: Stations::default() }, options, sink);
-}
-
-/// Writes the ribbon along `path` to `sink`, as [`stroke`] does, with the path's width.
-pub fn stroke_path(path: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
-    let last = path.line.points().len() - 1;
-    let mut start = path.end(0, options, sink);
+pub fn stroke(path: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
+    let last = path.alignment.line.points().len() - 1;
+    let mut stroker = Stroker { path, options, sink };
+    let mut start = stroker.end(0);
     for index in 1..=last {
-        let (closing, opening) = if index == last {
-            let end = path.end(last, options, sink);
-            (end, end)
-        } else {
-            path.bend(index, options, sink)
-        };
-        path.segment(index - 1, [start, closing], sink);
+        let [closing, opening] = if index == last { [stroker.end(last); 2] } else { stroker.bend(index) };
+        stroker.segment(index - 1, [start, closing]);
         start = opening;
     }
 }
@@ -124,100 +95,82 @@ impl RibbonEdge {
     }
 }
 
-impl StrokePath<'_> {
+struct Stroker<'a, S> {
+    path: &'a StrokePath<'a>,
+    options: &'a StrokeOptions,
+    sink: &'a mut S,
+}
+
+impl<S: MeshSink<PlanVertex>> Stroker<'_, S> {
+    fn points(&self) -> &[DVec2] {
+        self.path.alignment.line.points()
+    }
+
     /// The edge at the line's first or last vertex: shared with what goes on there, else square.
-    fn end(&self, index: usize, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) -> RibbonEdge {
-        let points = self.line.points();
-        let half = self.half_m(index);
-        let around = if index == 0 {
-            self.beyond.before.map(|before| [before, points[0], points[1]])
-        } else {
-            self.beyond.after.map(|after| [points[index - 1], points[index], after])
-        };
-        let shared = around.and_then(|points| LineBend { points, half }.mitered(options.miter_limit));
+    fn end(&mut self, index: usize) -> RibbonEdge {
+        let (points, half) = (self.points(), self.half_m(index));
+        let shared = LineBend::at(points, index, self.path.beyond, half)
+            .and_then(|bend| bend.mitered(self.options.miter_limit));
         let segment = index.saturating_sub(1);
-        let square = (points[segment + 1] - points[segment]).normalize_or_zero().perp() * half;
-        let to_left = shared.unwrap_or(square);
-        self.edge(index, [to_left, -to_left], options, sink)
+        let to_left = shared.unwrap_or_else(|| square([points[segment], points[segment + 1]], half));
+        self.edge(index, [to_left, -to_left])
     }
 
     /// What the segments before and after a vertex end on; the fan between them is written too.
-    fn bend(
-        &self,
-        index: usize,
-        options: &StrokeOptions,
-        sink: &mut impl MeshSink<PlanVertex>,
-    ) -> (RibbonEdge, RibbonEdge) {
-        let points = self.line.points();
+    fn bend(&mut self, index: usize) -> [RibbonEdge; 2] {
+        let points = self.points();
         let around = [points[index - 1], points[index], points[index + 1]];
         let bend = LineBend { points: around, half: self.half_m(index) };
-        match RibbonJoint::new(&bend, options.join, options.miter_limit) {
-            RibbonJoint::Shared(to_left) => {
-                let edge = self.edge(index, [to_left, -to_left], options, sink);
-                (edge, edge)
-            }
+        match RibbonJoint::new(&bend, self.options.join, self.options.miter_limit) {
+            RibbonJoint::Shared(to_left) => [self.edge(index, [to_left, -to_left]); 2],
             RibbonJoint::Split { closing, opening, fan } => {
-                self.write_fan(index, &fan, options, sink);
-                let [closing, opening] = [closing, opening].map(|ways| self.edge(index, ways, options, sink));
-                (closing, opening)
+                self.write_fan(index, &fan);
+                [closing, opening].map(|ways| self.edge(index, ways))
             }
         }
     }
 
-    fn edge(
-        &self,
-        index: usize,
-        ways: [DVec2; 2],
-        options: &StrokeOptions,
-        sink: &mut impl MeshSink<PlanVertex>,
-    ) -> RibbonEdge {
-        let (at, v) = (self.line.points()[index], self.v(index, options));
+    fn edge(&mut self, index: usize, ways: [DVec2; 2]) -> RibbonEdge {
+        let (at, v) = (self.points()[index], self.v(index));
         let corner = |side: usize| PlanVertex { at: at + ways[side], uv: Vec2::new(side as f32, v) };
-        RibbonEdge::write([corner(0), corner(1)], sink)
+        RibbonEdge::write([corner(0), corner(1)], self.sink)
     }
 
     fn half_m(&self, index: usize) -> f64 {
-        self.width.at(self.line.stations()[index]) / 2.0
+        let Alignment { line, width, .. } = self.path.alignment;
+        width.at(line.stations()[index]) / 2.0
     }
 
-    fn v(&self, index: usize, options: &StrokeOptions) -> f32 {
-        let station_m = self.stations.first_m + self.stations.per_m * self.line.stations()[index];
-        (station_m / options.texture_length_m) as f32
+    fn v(&self, index: usize) -> f32 {
+        let station_m = self.path.link.station_m(self.path.alignment.line.stations()[index]);
+        (station_m / self.options.texture_length_m) as f32
     }
 
-    fn write_fan(
-        &self,
-        index: usize,
-        fan: &JointFan,
-        options: &StrokeOptions,
-        sink: &mut impl MeshSink<PlanVertex>,
-    ) {
-        let (at, v) = (self.line.points()[index], self.v(index, options));
+    fn write_fan(&mut self, index: usize, fan: &JointFan) {
+        let (at, v) = (self.points()[index], self.v(index));
         let mut corner = |way: DVec2, u: f32| {
             let corner = PlanVertex { at: at + way, uv: Vec2::new(u, v) };
-            (sink.vertex(corner), corner)
+            (self.sink.vertex(corner), corner)
         };
         let center = corner(fan.center, fan.center_u());
         let rim: Vec<_> = fan.rim.iter().map(|&way| corner(way, fan.rim_u())).collect();
         for pair in rim.windows(2) {
-            write_triangle([center, pair[0], pair[1]], sink);
+            write_triangle([center, pair[0], pair[1]], self.sink);
         }
     }
 
     /// Writes the quad of a segment, in as many pieces as its taper needs.
-    fn segment(&self, segment: usize, [from, to]: [RibbonEdge; 2], sink: &mut impl MeshSink<PlanVertex>) {
+    fn segment(&mut self, segment: usize, [from, to]: [RibbonEdge; 2]) {
         let steps = taper_steps(2.0 * self.half_m(segment), 2.0 * self.half_m(segment + 1));
         let mut start = from;
         for step in 1..=steps {
+            let part = f64::from(step) / f64::from(steps);
             let end = if step == steps {
                 to
             } else {
-                RibbonEdge::write(
-                    between([from.corners, to.corners], f64::from(step) / f64::from(steps)),
-                    sink,
-                )
+                RibbonEdge::write(between([from.corners, to.corners], part), self.sink)
             };
-            write_quad([start, end], sink);
+            write_quad([start, end], self.sink);
             start = end;
         }
     }
@@ -253,13 +206,15 @@ fn write_triangle(corners: [(VertexId, PlanVertex); 3], sink: &mut impl MeshSink
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Width;
+    use crate::geom::polyline::Polyline;
     use crate::geom::profile::Profile;
     use crate::ribbon::plan::PlanMesh;
 
-    fn stroked(points: &[(f64, f64)], options: &StrokeOptions) -> PlanMesh {
+    fn stroked(points: &[(f64, f64)], width_m: f64, options: &StrokeOptions) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
         let mut mesh = PlanMesh::default();
-        stroke(&line, Continuations::default(), options, &mut mesh);
+        stroke(&StrokePath::alone(&Alignment::on_ground(line, width_m)), options, &mut mesh);
         mesh
     }
 
@@ -270,9 +225,12 @@ mod tests {
 
     #[test]
     fn a_mitered_bend_covers_length_times_width_however_it_is_turned() {
-        let options = StrokeOptions { width_m: 4.0, ..StrokeOptions::default() };
         for quarter in 0..4 {
-            let mesh = stroked(&turned(&[(0.0, 0.0), (100.0, 0.0), (160.0, 80.0)], quarter), &options);
+            let mesh = stroked(
+                &turned(&[(0.0, 0.0), (100.0, 0.0), (160.0, 80.0)], quarter),
+                4.0,
+                &StrokeOptions::default(),
+            );
             assert!((mesh.area_m2() - 800.0).abs() < 1e-9, "{}", mesh.area_m2());
             assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (6, 4));
         }
@@ -282,7 +240,7 @@ mod tests {
     fn every_triangle_faces_up_on_gentle_and_sharp_turns() {
         let points = [(0.0, 0.0), (50.0, 0.0), (50.5, 30.0), (20.0, 31.0), (48.0, 33.0), (49.0, 80.0)];
         for quarter in 0..4 {
-            let mesh = stroked(&turned(&points, quarter), &StrokeOptions::default());
+            let mesh = stroked(&turned(&points, quarter), 6.0, &StrokeOptions::default());
             for [a, b, c] in mesh.corners() {
                 assert!((b.at - a.at).perp_dot(c.at - a.at) > 0.0);
             }
@@ -291,7 +249,7 @@ mod tests {
 
     #[test]
     fn a_turn_past_the_limit_is_beveled_and_grows_no_spike() {
-        let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0), (0.0, 8.0)], &StrokeOptions::default());
+        let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0), (0.0, 8.0)], 6.0, &StrokeOptions::default());
         let farthest = mesh.vertices.iter().map(|vertex| vertex.at.x).fold(0.0, f64::max);
         assert!(farthest < 103.1, "{farthest}");
     }
@@ -299,7 +257,7 @@ mod tests {
     #[test]
     fn u_runs_across_and_v_along() {
         let options = StrokeOptions { texture_length_m: 25.0, ..StrokeOptions::default() };
-        let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0)], &options);
+        let mesh = stroked(&[(0.0, 0.0), (100.0, 0.0)], 6.0, &options);
         let uvs: Vec<_> = mesh.vertices.iter().map(|vertex| (vertex.at.y > 0.0, vertex.uv)).collect();
         assert!(uvs.contains(&(true, Vec2::new(0.0, 0.0))) && uvs.contains(&(false, Vec2::new(1.0, 4.0))));
     }
@@ -320,8 +278,8 @@ mod tests {
         let points = [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (50.0, 100.0 + 50.0 * 3f64.sqrt())];
         for quarter in 0..4 {
             for (join, slack) in [(Join::Miter, 1e-9), (Join::Bevel, 1e-9), (Join::Round, 0.02)] {
-                let options = StrokeOptions { width_m: 12.0, join, ..StrokeOptions::default() };
-                let mesh = stroked(&turned(&points, quarter), &options);
+                let options = StrokeOptions { join, ..StrokeOptions::default() };
+                let mesh = stroked(&turned(&points, quarter), 12.0, &options);
                 let expected = expected_m2(300.0, 6.0, join);
                 let share = (mesh.area_m2() - expected).abs() / (6.0 * 6.0);
                 assert!(share < slack, "{join:?}: {} where {expected} was expected", mesh.area_m2());
@@ -336,14 +294,10 @@ mod tests {
     #[test]
     fn a_taper_is_a_trapezium_with_its_edges_straight() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 100.0], 0.0).expect("a line");
-        let path = StrokePath {
-            line: &line,
-            width: &Width::Varying(Profile::straight(100.0, [4.0, 12.0])),
-            beyond: Continuations::default(),
-            stations: Stations::default(),
-        };
+        let width = Width::Varying(Profile::straight(100.0, [4.0, 12.0]));
+        let alignment = Alignment { width, ..Alignment::on_ground(line, 1.0) };
         let mut mesh = PlanMesh::default();
-        stroke_path(&path, &StrokeOptions::default(), &mut mesh);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut mesh);
         assert!((mesh.area_m2() - 800.0).abs() < 1e-9, "{}", mesh.area_m2());
         for vertex in &mesh.vertices {
             assert!((vertex.at.y.abs() - (2.0 + 0.04 * vertex.at.x)).abs() < 1e-9, "{vertex:?}");
@@ -354,15 +308,13 @@ mod tests {
     #[test]
     fn a_texture_goes_on_where_its_stations_say() {
         let line = Polyline::new([DVec2::ZERO, DVec2::X * 24.0], 0.0).expect("a line");
-        let stations = Stations { first_m: 36.0, per_m: -1.0 };
+        let alignment = Alignment::on_ground(line, 6.0);
         let path = StrokePath {
-            line: &line,
-            width: &Width::Constant(6.0),
-            beyond: Continuations::default(),
-            stations,
+            link: LineEnd { line: 0, end: 1 }.link(12.0, 24.0),
+            ..StrokePath::alone(&alignment)
         };
         let mut mesh = PlanMesh::default();
-        stroke_path(&path, &StrokeOptions::default(), &mut mesh);
+        stroke(&path, &StrokeOptions::default(), &mut mesh);
         let v = |x: f64| mesh.vertices.iter().find(|vertex| vertex.at.x == x).map(|vertex| vertex.uv.y);
         assert_eq!((v(0.0), v(24.0)), (Some(3.0), Some(1.0)));
     }

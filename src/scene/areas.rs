@@ -48,18 +48,12 @@ pub fn lay(
             let feature = collected.add(FeatureKind::Area, attributes.name(table.name.as_deref()));
             patch.lay(feature, collected);
         }
-        note(table, "off the elevation model or without an area", off, collected);
-        note(table, "their properties name no cover", bare, collected);
+        let name = table.name.as_deref();
+        let why = "off the elevation model or without an area";
+        collected.note_left_out(off, FeatureKind::Area, name, why);
+        collected.note_left_out(bare, FeatureKind::Area, name, "their properties name no cover");
     }
     Ok(())
-}
-
-fn note(table: &AreaTable, why: &str, count: usize, collected: &mut SceneBuilder) {
-    if count > 0 {
-        let what = table.name.as_ref().map(|name| format!(" of '{name}'")).unwrap_or_default();
-        let noun = FeatureKind::Area.noun(count);
-        collected.notes.push(format!("{count} {noun}{what} left out: {why}"));
-    }
 }
 
 /// One area, ready to be laid.
@@ -84,8 +78,7 @@ impl AreaPatch {
             Border::Solid => Some(Dashes::Unbroken),
             Border::Dashed => Some(Dashes::Dashed),
         };
-        let rings: Vec<&[DVec2]> =
-            std::iter::once(&shape.exterior).chain(&shape.holes).map(Vec::as_slice).collect();
+        let rings: Vec<&[DVec2]> = shape.rings().map(Vec::as_slice).collect();
         let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
         let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
         (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, cover, tint })

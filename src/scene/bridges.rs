@@ -14,13 +14,13 @@ use std::collections::BTreeSet;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::earthworks::alignment::Support;
 use crate::earthworks::alignment::chain::{ChainLink, Direction};
+use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::report::SpanRow;
 use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
@@ -29,7 +29,7 @@ use crate::scene::roads::spans::{self, RoadSpan};
 use crate::scene::sources::Sources;
 use crate::scene::{Coat, FeatureKind, Solid};
 use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
-use crate::structure::deck::{DeckCourse, DeckSection};
+use crate::structure::deck::DeckSection;
 use crate::structure::deck_profile::ClearancePoint;
 use crate::structure::tunnel::Portal;
 use crate::terrain::lattice::Lattice;
@@ -80,17 +80,20 @@ pub fn build(
     let runs = levels::settle(&spans, &chains, roads, &site);
     let mouths: BTreeSet<VertexKey> = spans
         .iter()
-        .filter(|span| span.alignment.support == Support::Tunnel)
-        .flat_map(|span| span.alignment.line.ends().map(vertex_key))
+        .filter(|span| span.street.alignment.support == Support::Tunnel)
+        .flat_map(|span| span.street.alignment.line.ends().map(vertex_key))
         .collect();
     let mut bridges: Vec<PlannedBridge<'_>> = Vec::new();
     for (chain, run) in chains.iter().zip(&runs) {
         let Some(run) = run else {
-            collected.notes.push(format!("{} left out: no ground lies along it", described(&spans, chain)));
+            let span = &spans[chain.links[0].line];
+            let kind = if span.street.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
+            let what = described(kind, &span.name);
+            collected.notes.push(format!("{what} left out: no ground lies along it"));
             continue;
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
-        match spans[chain.links[0].line].alignment.support {
+        match spans[chain.links[0].line].street.alignment.support {
             Support::Bridge => bridges.extend(built.planned(&extent)),
             Support::Tunnel => built.tunnel(&extent, roads, collected),
             Support::Ground => {}
@@ -106,9 +109,9 @@ pub fn build(
 
 fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic> {
     let wanted = |span: &&RoadSpan| {
-        span.alignment.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M)
+        span.street.alignment.line.length() / span.pier_spacing_m.unwrap_or(levels::PIER_SPACING_M)
     };
-    let bridges = spans.iter().filter(|span| span.alignment.support == Support::Bridge);
+    let bridges = spans.iter().filter(|span| span.street.alignment.support == Support::Bridge);
     let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
@@ -139,18 +142,11 @@ fn water(collected: &SceneBuilder) -> Result<Deck, DeckError> {
 #[error("water under bridges")]
 struct WaterError(#[source] DeckError);
 
-fn described(spans: &[RoadSpan], chain: &SpanChain) -> String {
-    let span = &spans[chain.links[0].line];
-    let kind = if span.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
-    if span.name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{}'", span.name) }
-}
-
 /// A bridge true to scale.
 struct PlannedBridge<'a> {
     chain: BuiltChain<'a>,
     link: &'a ChainLink,
-    course: DeckCourse<'a>,
-    profile: Profile,
+    alignment: Alignment,
     options: BridgeOptions,
     sections: Vec<DeckSection>,
 }
@@ -158,16 +154,18 @@ struct PlannedBridge<'a> {
 impl PlannedBridge<'_> {
     /// Builds it as it is drawn.
     fn build(mut self, decks: &Deck, collected: &mut SceneBuilder) {
-        let (span, site) = (&self.chain.spans[self.link.line], self.chain.site);
-        bridge::end_parapets(&mut self.sections, self.course.width_m, decks);
+        let (street, site) = (&self.chain.spans[self.link.line].street, self.chain.site);
+        bridge::end_parapets(&mut self.sections, self.alignment.width.widest_m(), decks);
         for section in &mut self.sections {
             section.edges_m = section.edges_m.map(|edge_m| site.scale.world_z(edge_m));
         }
-        let built = bridge::build(&self.course, &self.sections, &self.options, &|at| site.ground_z(at));
-        let feature = collected.add(FeatureKind::Bridge, span.name.clone());
-        collected.solids.push(Solid { mesh: built.carriageway, coat: Coat::Surface(span.surface), feature });
+        let built = bridge::build(&self.alignment, &self.sections, &self.options, &|at| site.ground_z(at));
+        let feature = collected.add(FeatureKind::Bridge, self.chain.spans[self.link.line].name.clone());
+        let coat = Coat::Surface(street.surface);
+        collected.solids.push(Solid { mesh: built.carriageway, coat, feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
-        self.chain.report(self.link, Some(built.piers), None, self.profile.steepest(0.0), collected);
+        let grade = self.chain.level(self.link).steepest(0.0);
+        self.chain.report(self.link, Some(built.piers), None, grade, collected);
     }
 }
 
@@ -186,7 +184,7 @@ impl<'a> BuiltChain<'a> {
     /// The bridges of the chain, one a span.
     fn planned(self, extent: &Rect) -> impl Iterator<Item = PlannedBridge<'a>> {
         let widest =
-            self.chain.links.iter().map(|link| self.spans[link.line].options.width_m).fold(0.0, f64::max);
+            self.chain.links.iter().map(|link| self.spans[link.line].street.width_m).fold(0.0, f64::max);
         let abutments = [0, 1].map(|end| self.abutment_m(end, widest, extent));
         let piers = self.piers(abutments);
         self.chain.links.iter().enumerate().map(move |(index, link)| {
@@ -200,27 +198,28 @@ impl<'a> BuiltChain<'a> {
             let (low, high) = (link.start_m, link.end_m());
             let here = piers.iter().filter(|&&station| station >= low && station < high);
             let across = [0, 1].map(|end| {
-                let is_mouth = self.mouths.contains(&vertex_key(span.alignment.line.ends()[end]));
+                let is_mouth = self.mouths.contains(&vertex_key(span.street.alignment.line.ends()[end]));
                 if of_link[end].is_some() && !is_mouth { Across::AsGround } else { Across::Level }
             });
             let options = BridgeOptions {
                 depth_m: self.run.depth_m,
                 piers_m: here.map(|station| (station - link.reach_m()[0]).abs()).collect(),
                 abutments_m: of_link
-                    .map(|length| length.map(|length| length.min(span.alignment.line.length() / 2.0))),
+                    .map(|length| length.map(|length| length.min(span.street.alignment.line.length() / 2.0))),
                 across,
-                texture_length_m: span.options.texture_length_m,
-            };
-            let course = DeckCourse {
-                line: &span.alignment.line,
                 beyond: span.beyond,
-                width_m: span.options.width_m,
-                miter_limit: span.options.miter_limit,
+                miter_limit: span.street.options.miter_limit,
+                texture_length_m: span.street.options.texture_length_m,
             };
-            let profile = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M);
-            let sections = bridge::sections(&course, &profile, &options, &|at| self.site.ground_m(at));
-            PlannedBridge { chain: self, link, course, profile, options, sections }
+            let alignment = Alignment { level: Some(self.level(link)), ..span.street.alignment.clone() };
+            let sections = bridge::sections(&alignment, &options, &|at| self.site.ground_m(at));
+            PlannedBridge { chain: self, link, alignment, options, sections }
         })
+    }
+
+    /// The elevations of a span.
+    fn level(&self, link: &ChainLink) -> Profile {
+        self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M)
     }
 
     /// How far the abutment at an end of the chain reaches under it; `None` where the chain goes on or leaves the model.
@@ -278,7 +277,7 @@ impl<'a> BuiltChain<'a> {
         if is_shallow && open_ends && self.chain.length_m <= LONGEST_UNDERPASS_M {
             for link in &self.chain.links {
                 if let Some(road) = self.spans[link.line].road {
-                    roads[road].alignment.support = Support::Ground;
+                    roads[road].street.alignment.support = Support::Ground;
                 }
                 self.report(link, None, Some(0), self.run.profile.steepest(0.0), collected);
             }
@@ -295,7 +294,7 @@ impl<'a> BuiltChain<'a> {
                 let mesh = portal.build(&|at| self.site.ground_z(at));
                 collected.solids.push(Solid { mesh, coat: Coat::Painted, feature });
             }
-            let grade = self.run.profile.slice(link.reach_m()[0], link.reach_m()[1], MERGE_M).steepest(0.0);
+            let grade = self.level(link).steepest(0.0);
             self.report(link, None, Some(portals.len()), grade, collected);
         }
     }
@@ -306,17 +305,17 @@ impl<'a> BuiltChain<'a> {
         let station = link.reach_m()[end];
         let corner = if station <= 0.0 { 0 } else { 1 };
         let is_chain_end = station <= 0.0 || station >= self.chain.length_m;
-        let at = span.alignment.line.ends()[end];
+        let at = span.street.alignment.line.ends()[end];
         if !is_chain_end || self.chain.ends[corner] != ChainEnd::Ground || !extent.grown(-1e-3).contains(at) {
             return None;
         }
-        let points = span.alignment.line.points();
+        let points = span.street.alignment.line.points();
         let inner = if end == 0 { points[1] } else { points[points.len() - 2] };
         let portal = Portal {
             at,
             level_m: self.site.scale.world_z(self.run.profile.at(station)),
             outward: (at - inner).normalize_or_zero(),
-            width_m: span.options.width_m,
+            width_m: span.street.width_m,
         };
         portal.covered_after_m(BURIED, &|at| self.site.ground_z(at)).map(|_| portal)
     }
@@ -345,7 +344,7 @@ impl<'a> BuiltChain<'a> {
         let clearance = here
             .flat_map(|passage| passage.reach_m.map(|at| self.run.profile.at(at) - depth_m - passage.level_m))
             .reduce(f64::min);
-        let kind = match (span.alignment.support, portals) {
+        let kind = match (span.street.alignment.support, portals) {
             (Support::Tunnel, Some(0)) if -least < LEAST_COVER_M => "underpass",
             (Support::Tunnel, _) => "tunnel",
             _ => "bridge",
@@ -354,7 +353,7 @@ impl<'a> BuiltChain<'a> {
             name: span.name.clone(),
             kind,
             by: span.origin.word(),
-            length: span.alignment.line.length(),
+            length: span.street.alignment.line.length(),
             greatest_height_above_ground: most,
             greatest_depth_below_ground: -least,
             steepest_grade: grade * 100.0,

@@ -41,10 +41,22 @@ impl SceneBuilder {
         FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
     }
 
+    /// The feature of an id; `None` for the ground and beyond the last.
+    pub fn feature(&self, id: FeatureId) -> Option<&SceneFeature> {
+        self.features.get(id.0.checked_sub(FeatureId::GROUND.0 + 1)? as usize)
+    }
+
     /// The name of a feature; may be empty.
     pub fn name(&self, feature: FeatureId) -> &str {
-        let place = feature.0.checked_sub(FeatureId::GROUND.0 + 1);
-        place.and_then(|place| self.features.get(place as usize)).map_or("", |feature| &feature.name)
+        self.feature(feature).map_or("", |feature| &feature.name)
+    }
+
+    /// Notes how many features of a table were left out, where any were, and why.
+    pub fn note_left_out(&mut self, count: usize, kind: FeatureKind, table: Option<&str>, why: &str) {
+        if count > 0 {
+            let what = table.map(|name| format!(" of '{name}'")).unwrap_or_default();
+            self.notes.push(format!("{count} {}{what} left out: {why}", kind.noun(count)));
+        }
     }
 
     /// Adds a ribbon over those of its class and below.
@@ -74,6 +86,11 @@ impl SceneBuilder {
         }
         self.ribbons.retain(|ribbon| !ribbon.plan.triangles.is_empty());
     }
+}
+
+/// A feature in a note; many have no name.
+pub fn described(kind: &str, name: &str) -> String {
+    if name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{name}'") }
 }
 
 /// The class of a surface; a higher class covers a lower.

@@ -13,11 +13,12 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::BuildingTable;
 use crate::description::scalar::Scalar;
-use crate::description::words::{BaseRule, RoofShape as RoofWord, Word};
+use crate::description::words::{BaseRule, RoofShape as RoofWord};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::earthworks::leveling;
-use crate::geom::rect::Rect;
+use crate::geom::polygon;
+use crate::message::choice::Choice;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
@@ -30,7 +31,8 @@ use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::structure::roof::{UnitRoof, roof};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::pieces::GridRegion;
 use crate::terrain::query::zone::zone;
 use crate::terrain::volumes::Volumes;
@@ -141,15 +143,10 @@ fn pad(
 
 /// Whether any post of the cells round a footprint is shaped for something already.
 fn is_taken(lattice: &Lattice, footprint: &BuildingFootprint) -> bool {
-    let bounds = Rect::around(footprint.exterior().iter().copied());
-    let span = |low: f64, high: f64, posts: u32| {
-        let post = |at: f64| at.clamp(0.0, f64::from(posts - 1)) as u32;
-        post(low.floor())..=post(high.floor() + 1.0)
-    };
-    let (low, high) = (lattice.grid_at(bounds.min), lattice.grid_at(bounds.max));
-    span(low.y, high.y, lattice.rows()).any(|row| {
-        span(low.x, high.x, lattice.columns()).any(|column| lattice.is_pinned(Post { column, row }))
-    })
+    let bounds = polygon::bounds(footprint.exterior());
+    let (low, high) = (lattice.grid_at(bounds.min).floor(), lattice.grid_at(bounds.max).floor() + 1.0);
+    let around = PostRect::between(lattice, low, high);
+    around.is_some_and(|around| around.posts().any(|post| lattice.is_pinned(post)))
 }
 
 /// The heights of the ground under a building, meters.

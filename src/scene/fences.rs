@@ -3,8 +3,6 @@
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
 //! What stands is only planned here; [`crate::structure::draped_solid`] sets it on the displayed ground for every picture.
 
-use glam::DVec2;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::FenceTable;
@@ -12,12 +10,13 @@ use crate::description::scalar::Scalar;
 use crate::description::stated::Stated;
 use crate::description::words::FenceKind;
 use crate::draw::list::FeatureId;
+use crate::earthworks::alignment::Alignment;
 use crate::earthworks::brush::Trench;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{Continuations, StrokeOptions, stroke};
-use crate::ribbon::texture::{RibbonSurface, texture_length_m};
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::{self, Clipped};
@@ -46,10 +45,10 @@ const BOTTOM: f64 = 0.55;
 /// A line of fences, wires or the like.
 pub struct FenceLine {
     kind: FenceKind,
-    /// Its parts on the elevation model, at least two distinct points each.
-    parts: Vec<Vec<DVec2>>,
-    height_m: f64,
+    /// Its parts on the elevation model, with its width.
+    parts: Vec<Alignment>,
     width_m: f64,
+    height_m: f64,
     spacing_m: f64,
     sag: f64,
     feature: FeatureId,
@@ -129,7 +128,7 @@ fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnos
 fn fence_line(
     fence: &FenceTable,
     attributes: &Attributes,
-    parts: Vec<Vec<DVec2>>,
+    parts: Vec<Polyline>,
     feature: FeatureId,
     collected: &mut SceneBuilder,
 ) -> FenceLine {
@@ -138,11 +137,13 @@ fn fence_line(
     let tagged = attributes.get("height").and_then(|height| height.number()).filter(|height| *height > 0.0);
     let tagged = tagged.filter(|height| *height <= 1000.0 && fence.height.is_none());
     let mut size = |key, default: f64| attributes.number_or(key, default, &mut collected.default_counts);
+    let height_m = size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m));
+    let width_m = size(fence.width.as_ref(), sizes.width_m);
     FenceLine {
         kind,
-        parts,
-        height_m: size(fence.height.as_ref(), tagged.unwrap_or(sizes.height_m)),
-        width_m: size(fence.width.as_ref(), sizes.width_m),
+        parts: parts.into_iter().map(|part| Alignment::on_ground(part, width_m)).collect(),
+        width_m,
+        height_m,
         spacing_m: size(fence.spacing.as_deref(), sizes.spacing_m),
         sag: fence.sag,
         feature,
@@ -168,16 +169,14 @@ fn tagged_kind(fence: &FenceTable, attributes: &Attributes) -> FenceKind {
 }
 
 impl FenceLine {
-    fn length_m(&self) -> f64 {
-        let pairs = self.parts.iter().flat_map(|part| part.windows(2));
-        pairs.map(|pair| pair[0].distance(pair[1])).sum()
+    /// The lengths of its legs.
+    fn lengths_m(&self) -> impl Iterator<Item = f64> + '_ {
+        self.parts.iter().flat_map(|part| part.line.legs()).map(|[from, to]| from.distance(to))
     }
 
     /// How many pieces stand along it, before any is made.
     fn pieces(&self) -> f64 {
-        let segments = self.parts.iter().flat_map(|part| part.windows(2));
-        let along: f64 =
-            segments.map(|pair| f64::from(spans(pair[0].distance(pair[1]), self.spacing_m))).sum();
+        let along: f64 = self.lengths_m().map(|length_m| f64::from(spans(length_m, self.spacing_m))).sum();
         match self.kind {
             FenceKind::Obstacles => along * f64::from(obstacle::rows(self.width_m, self.spacing_m)),
             // A pylon has as many triangles as twenty posts, and its wires as many again.
@@ -197,7 +196,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
     let area_m2 = lattice.cell_m2();
     for part in &line.parts {
         let trench = Trench {
-            line: part.clone(),
+            line: part.line.points().to_vec(),
             bottom_m: line.width_m * BOTTOM,
             top_m: line.width_m,
             depth_m: line.height_m,
@@ -215,7 +214,7 @@ fn dig(line: &FenceLine, name: &str, lattice: &mut Lattice, collected: &mut Scen
             }
         }
     }
-    let row = TrenchRow { name: name.to_owned(), length: line.length_m(), cut: volumes.cut_m3 };
+    let row = TrenchRow { name: name.to_owned(), length: line.lengths_m().sum(), cut: volumes.cut_m3 };
     collected.report.trenches.push(row);
     true
 }
@@ -225,19 +224,20 @@ pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBu
     let mut added = 0;
     let extent = ground.lattice.extent();
     for line in lines {
-        for points in &line.parts {
+        for part in &line.parts {
             match line.kind {
                 FenceKind::Boundary => {
-                    let plan = dashes(points, line, &extent);
-                    collected.lay(plan, RibbonSurface::Boundary, line.feature);
+                    collected.lay(dashes(part, line, &extent), RibbonSurface::Boundary, line.feature);
                 }
                 FenceKind::Trench => {
-                    let plan = ribbon(points, bare_m(line.width_m), RibbonSurface::Trench, &extent);
-                    collected.lay(plan, RibbonSurface::Trench, line.feature);
+                    let bare = Alignment::on_ground(part.line.clone(), bare_m(line.width_m));
+                    let mut floor = Clipped { plan: PlanMesh::default(), extent: &extent };
+                    ribbon(&bare, RibbonSurface::Trench, &mut floor);
+                    collected.lay(floor.plan, RibbonSurface::Trench, line.feature);
                 }
                 _ => {}
             }
-            let uprights = uprights(points, line, &ground, &mut added);
+            let uprights = uprights(part, line, &ground, &mut added);
             let feature = line.feature;
             collected.uprights.extend(uprights.into_iter().map(|upright| FeatureSolid { upright, feature }));
         }
@@ -250,66 +250,56 @@ pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBu
 
 /// The uprights along one part of a line; `added` counts the pylons that keep wires off the ground.
 fn uprights(
-    points: &[DVec2],
+    part: &Alignment,
     line: &FenceLine,
     ground: &dyn TriangleSurface,
     added: &mut usize,
 ) -> Vec<DrapedSolid> {
     let FenceLine { height_m, width_m, spacing_m, sag, .. } = *line;
-    let size = BandSize { width_m, height_m, every_m: spacing_m };
+    let size = BandSize { height_m, every_m: spacing_m };
     match line.kind {
         FenceKind::Fence => {
-            let posts = Posts { stands: stands(points, spacing_m), width_m, height_m };
-            let [low, high] = rails(points, width_m, height_m);
+            let posts = Posts { stands: stands(&part.line, spacing_m), width_m, height_m };
+            let [low, high] = rails(part, height_m);
             vec![DrapedSolid::Posts(posts), DrapedSolid::Band(low), DrapedSolid::Band(high)]
         }
-        FenceKind::Wall => vec![DrapedSolid::Band(wall(points, size))],
-        FenceKind::Hedge => vec![DrapedSolid::Band(hedge(points, size))],
+        FenceKind::Wall => vec![DrapedSolid::Band(wall(part, size))],
+        FenceKind::Hedge => vec![DrapedSolid::Band(hedge(part, size))],
         FenceKind::PowerLine => {
-            let (pylons, more) = clear(&stands(points, spacing_m), height_m, ground);
+            let (pylons, more) = clear(&stands(&part.line, spacing_m), height_m, ground);
             *added += more;
             vec![DrapedSolid::PowerLine(PowerLine { pylons, height_m, width_m, sag })]
         }
-        FenceKind::Trench => parapets(points, size).map(DrapedSolid::Band).to_vec(),
+        FenceKind::Trench => parapets(part, size).map(DrapedSolid::Band).to_vec(),
         FenceKind::Obstacles => {
-            let stands = obstacle::belt(points, width_m, spacing_m);
+            let stands = obstacle::belt(part, spacing_m);
             vec![DrapedSolid::Obstacles(Obstacles { stands, height_m })]
         }
         FenceKind::Boundary => Vec::new(),
     }
 }
 
-fn ribbon(points: &[DVec2], width_m: f64, surface: RibbonSurface, extent: &Rect) -> PlanMesh {
-    let mut clipped = Clipped { plan: PlanMesh::default(), extent };
-    if let Some(line) = Polyline::new(points.iter().copied(), 0.0) {
-        let texture_length_m = texture_length_m(surface, width_m);
-        let options = StrokeOptions { width_m, texture_length_m, ..StrokeOptions::default() };
-        stroke(&line, Continuations::default(), &options, &mut clipped);
-    }
-    clipped.plan
+fn ribbon(alignment: &Alignment, surface: RibbonSurface, sink: &mut Clipped<'_>) {
+    let options = StrokeOptions::of(surface, alignment.width.widest_m());
+    stroke(&StrokePath::alone(alignment), &options, sink);
 }
 
 /// A boundary's dashes and dots: in each spacing a dash of a half, and a dot as long as the line is wide.
-fn dashes(points: &[DVec2], line: &FenceLine, extent: &Rect) -> PlanMesh {
-    let mut all = PlanMesh::default();
-    let Some(whole) = Polyline::new(points.iter().copied(), 0.0) else { return all };
-    let count = spans(whole.length(), line.spacing_m);
-    let period_m = whole.length() / f64::from(count);
+fn dashes(part: &Alignment, line: &FenceLine, extent: &Rect) -> PlanMesh {
+    let mut all = Clipped { plan: PlanMesh::default(), extent };
+    let length_m = part.line.length();
+    let count = spans(length_m, line.spacing_m);
+    let period_m = length_m / f64::from(count);
     let dot_m = line.width_m.min(period_m / 6.0);
     for index in 0..count {
         let start_m = f64::from(index) * period_m;
         let dash = (start_m, start_m + period_m / 2.0);
         let dot = (start_m + period_m * 0.75 - dot_m / 2.0, start_m + period_m * 0.75 + dot_m / 2.0);
         for (from, to) in [dash, dot] {
-            append(&mut all, ribbon(&whole.between(from, to), line.width_m, RibbonSurface::Boundary, extent));
+            if let Some(piece) = part.line.slice(from, to, 0.0) {
+                ribbon(&Alignment::on_ground(piece, line.width_m), RibbonSurface::Boundary, &mut all);
+            }
         }
     }
-    all
-}
-
-fn append(all: &mut PlanMesh, more: PlanMesh) {
-    let offset = all.vertices.len();
-    all.vertices.extend(more.vertices);
-    let moved = |id: crate::mesh::sink::VertexId| crate::mesh::sink::VertexId::new(id.index() + offset);
-    all.triangles.extend(more.triangles.into_iter().map(|triangle| triangle.map(moved)));
+    all.plan
 }

@@ -112,7 +112,8 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
 
 fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
     let Some(stated) = &document.terrain.raw else { return Ok(None) };
-    stated.parse().map(Some).map_err(|help: RawLayoutError| {
-        document.error(stated, "this does not say how a RAW file is laid out").with_help(help.to_string())
+    stated.parse().map(Some).map_err(|_: RawLayoutError| {
+        let message = "this does not say how a RAW file is laid out";
+        document.error(stated, message).with_help(RawLayoutError::REMEDY)
     })
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geom::polyline::Polyline;
+use crate::geom::polyline::{Polyline, kept};
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
@@ -33,15 +33,15 @@ pub fn lines(
             Some((attributes, line))
         })
         .collect();
-    let off = count - near.len();
-    if off > 0 {
-        let what = name.map(|name| format!(" of '{name}'")).unwrap_or_default();
-        collected.notes.push(format!(
-            "{off} {}{what} left out: off the elevation model or a single point",
-            kind.noun(off)
-        ));
-    }
+    collected.note_left_out(count - near.len(), kind, name, "off the elevation model or a single point");
     near
+}
+
+/// The widths stated for the points of an inline line, at the vertices that are left of it.
+pub fn widths_m(stated: Option<&Vec<f64>>, shape: &[DVec2]) -> Option<Vec<f64>> {
+    let stated = stated?;
+    let widths_m = kept(shape, MERGE_M).into_iter().map(|index| stated.get(index).copied());
+    widths_m.collect::<Option<Vec<f64>>>().filter(|widths_m| widths_m.len() >= 2)
 }
 
 /// A plan mesh that leaves out triangles that cannot meet the ground.

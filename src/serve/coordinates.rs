@@ -16,7 +16,6 @@ use crate::serve::reply::{HttpError, quoted};
 /// The coordinates of a request.
 #[derive(Clone, Debug)]
 pub struct Coordinates {
-    /// Their system.
     pub crs: Crs,
     /// Their order and names.
     pub axes: AxisOrder,
@@ -27,7 +26,6 @@ pub struct Coordinates {
 pub enum AxisOrder {
     /// Latitude, longitude; `lat` and `lng` in answers.
     LatLng,
-    /// `x`, `y`.
     Xy,
 }
 
@@ -36,12 +34,7 @@ pub enum AxisOrder {
 #[serde(untagged)]
 pub enum Location {
     /// Degrees.
-    LatLng {
-        /// Latitude.
-        lat: f64,
-        /// Longitude.
-        lng: f64,
-    },
+    LatLng { lat: f64, lng: f64 },
     /// Coordinates of a named system.
     Xy {
         /// Easting or longitude.
@@ -52,7 +45,7 @@ pub enum Location {
 }
 
 impl Coordinates {
-    /// Reads `crs`, for a dataset whose own system is `native`.
+    /// Parses the parameter `crs`, for a dataset in the system `native`.
     pub fn read(parameters: &Parameters, native: &Crs, wgs84: &Crs) -> Result<Self, HttpError> {
         let coordinates = match parameters.get("crs") {
             None => Self { crs: wgs84.clone(), axes: AxisOrder::LatLng },
@@ -71,13 +64,13 @@ impl Coordinates {
         Ok(coordinates)
     }
 
-    /// The position in `text`: two numbers with a comma between. `what` is the parameter.
+    /// Parses a position: two numbers with a comma between. `what` is the parameter.
     pub fn position(&self, what: &str, text: &str) -> Result<DVec2, HttpError> {
         self.pair(text).ok_or_else(|| self.refusal(what, text))
     }
 
-    /// The positions in `text`: pairs with `|` between, or an encoded polyline where the coordinates are latitude and
-    /// longitude and there is no comma.
+    /// Parses positions: pairs with `|` between, or, for latitude and longitude, an encoded polyline, which has no
+    /// comma.
     pub fn positions(&self, text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
         if self.axes == AxisOrder::LatLng && !text.contains(',') {
             let positions = polyline::decode(text, most)?;

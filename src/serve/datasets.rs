@@ -1,26 +1,23 @@
 //! The datasets that are served, by name.
 //!
-//! They are opened when the service starts and never again: no request reaches the disk. Their ground in meters, for
-//! which an elevation file in degrees must be warped, is made in the background; a query for it waits.
+//! They are opened when the service starts, so that no request reads from disk. Their ground in meters, for which an
+//! elevation file in degrees must be warped, is made in the background; queries for it wait.
 
 use std::sync::Arc;
 
+use crate::message::chain::error_text;
 use crate::pipeline::dataset::{Dataset, OpenError};
-use crate::pipeline::error::error_text;
 use crate::pipeline::service::{NamedFile, ServiceOptions};
 use crate::serve::reply::{HttpError, quoted};
 use crate::terrain::query::service::Snapshot;
 
-/// A dataset and its name.
 pub struct ServedDataset {
-    /// The name in requests.
     pub name: String,
-    /// The dataset.
     pub dataset: Dataset,
 }
 
 impl ServedDataset {
-    /// The ground as it is now; waits where it is being made.
+    /// The current ground; waits while it is being made.
     pub fn snapshot(&self) -> Result<Arc<Snapshot>, HttpError> {
         let service = self.dataset.service().map_err(|error| {
             let (name, reason) = (quoted(&self.name), error_text(&error));
@@ -34,7 +31,6 @@ impl ServedDataset {
 pub struct Datasets(Vec<ServedDataset>);
 
 impl Datasets {
-    /// Opens all datasets of a service.
     pub fn open(options: &ServiceOptions) -> Result<Self, OpenError> {
         let open = |file: &NamedFile| {
             let dataset = Dataset::open(file.path(), &options.dataset)?;
@@ -45,12 +41,10 @@ impl Datasets {
         options.datasets.iter().map(open).collect::<Result<_, _>>().map(Self)
     }
 
-    /// All datasets.
     pub fn all(&self) -> &[ServedDataset] {
         &self.0
     }
 
-    /// The dataset at an index.
     pub fn at(&self, index: usize) -> &ServedDataset {
         &self.0[index]
     }
@@ -87,7 +81,6 @@ impl Datasets {
         }
     }
 
-    /// All names, for a message.
     pub fn names(&self) -> String {
         let names: Vec<&str> = self.0.iter().map(|served| served.name.as_str()).collect();
         names.join(", ")

@@ -1,10 +1,10 @@
-//! `/health`: whether the service answers, and what it serves.
+//! `/health`: the state of the service and its datasets.
 
 use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::pipeline::error::error_text;
+use crate::message::chain::error_text;
 use crate::serve::datasets::ServedDataset;
 use crate::serve::query::Service;
 use crate::serve::reply::OK;
@@ -36,7 +36,6 @@ struct HealthExtent {
     max_y: f64,
 }
 
-/// The page.
 pub fn page(service: &Service) -> Response {
     let datasets = service.datasets.all().iter().map(dataset_health).collect();
     Json(Health { status: OK, version: env!("CARGO_PKG_VERSION"), datasets }).into_response()

@@ -1,14 +1,15 @@
 //! `/v1/DATASET`: heights at locations, compatible with the Open Topo Data API.
 //!
-//! What that API documents is answered as it documents it: `locations` as `lat,lng|lat,lng` or as an encoded polyline,
-//! `interpolation`, `samples` along the path of the locations, `nodata_value`, `format=json|geojson`, several datasets
-//! `a,b` of which the first with a height answers. Parameters that it does not have are ignored, as it does. Beyond it:
+//! All documented parameters of that API are supported: `locations` as `lat,lng|lat,lng` or as an encoded polyline,
+//! `interpolation`, `samples` along the path of the locations, `nodata_value`, `format=json|geojson`, and several
+//! datasets `a,b`, of which the first with a height is used. Unknown parameters are ignored, as in that API.
+//! Extensions:
 //!
 //! | | |
 //! |---|---|
-//! | `status` per result | `Ok`, `NoData` or `Outside`: a hole is not the edge of the model |
+//! | `status` per result | `Ok`, `NoData` (a hole in the model) or `Outside` (beyond its edge) |
 //! | `surface` | `source` (as read), `ground` (after earthworks), `scene` (decks on top); the default is the source of a file and the ground of a scene |
-//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is refused |
+//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is an error |
 //! | `crs` | coordinates in another system; see [`coordinates`](crate::serve::coordinates) |
 
 use std::io;
@@ -29,14 +30,13 @@ use crate::serve::reply::{HttpError, JsonArray, OK, quoted};
 use crate::serve::samples::along_path;
 use crate::terrain::query::{Interpolation, Surface};
 
-/// The most points that are answered on the thread that read the request: some tens of microseconds. Handing more to
-/// another thread takes two switches between threads, about as long.
+/// The most points that the request's own thread queries, in some tens of microseconds. Moving a query to another
+/// thread takes two context switches, about as long.
 const LIGHT_POINTS: usize = 1000;
 
-/// About the bytes of a result in JSON.
+/// The approximate size of a result in JSON.
 const RESULT_BYTES: usize = 128;
 
-/// Heights at locations.
 pub struct HeightsQuery {
     datasets: Vec<usize>,
     coordinates: Coordinates,
@@ -115,13 +115,8 @@ impl Query for HeightsQuery {
             HeightsFormat::GeoJson => self.serialized(
                 "application/geo+json",
                 &FeatureCollection {
-                    kind: "FeatureCollection",
                     features: JsonArray(results.map(|(found, &at)| HeightFeature {
-                        kind: "Feature",
-                        geometry: PointGeometry {
-                            kind: "Point",
-                            coordinates: self.geojson_position(found.answer, at),
-                        },
+                        geometry: PointGeometry { coordinates: self.geojson_position(found.answer, at) },
                         properties: FeatureProperties {
                             status: found.answer.status(),
                             dataset: dataset(found),
@@ -197,7 +192,7 @@ struct FoundHeight {
     dataset: usize,
 }
 
-/// Orders answers by how much they say.
+/// Orders answers: a height above no data, no data above outside.
 fn rank(answer: Answer) -> u8 {
     match answer {
         Answer::Outside => 0,
@@ -211,8 +206,8 @@ impl HeightsQuery {
         self.surface.unwrap_or_else(|| served.dataset.default_surface())
     }
 
-    /// For each position the height of the first dataset that has one; where none has, the answer of the first dataset
-    /// that holds the position; where none does, that of the first.
+    /// For each position the height of the first dataset that has one; without any, `NoData` of the first dataset that
+    /// covers the position; without any, `Outside` of the first dataset.
     fn heights(&self, service: &Service) -> Result<Vec<FoundHeight>, HttpError> {
         let first = self.datasets[0];
         let answers = self.answers(service, first, &self.positions)?;
@@ -235,7 +230,7 @@ impl HeightsQuery {
         let served = service.datasets.at(index);
         let surface = self.surface_of(served);
         if surface != Surface::Source {
-            // Waits for the ground, and says why there is none.
+            // Waits for the ground, and fails where it cannot be made.
             served.snapshot()?;
         }
         Ok(served.dataset.heights(surface, self.interpolation, &self.coordinates.crs, at)?)
@@ -249,11 +244,8 @@ impl HeightsQuery {
     }
 
     /// A position without a height has two coordinates: GeoJSON has neither null nor NaN there.
-    fn geojson_position(&self, answer: Answer, DVec2 { x, y }: DVec2) -> GeoJsonPosition {
-        match self.elevation(answer) {
-            Some(height) => GeoJsonPosition::Space([x, y, height]),
-            None => GeoJsonPosition::Plane([x, y]),
-        }
+    fn geojson_position(&self, answer: Answer, DVec2 { x, y }: DVec2) -> Vec<f64> {
+        [x, y].into_iter().chain(self.elevation(answer)).collect()
     }
 
     fn serialized(&self, content_type: &'static str, body: &impl Serialize) -> Response {
@@ -266,7 +258,7 @@ impl HeightsQuery {
     }
 }
 
-/// Compact JSON with another word for null, which only elevations can be.
+/// Compact JSON with another word for null. Only elevations are ever null.
 struct HeightsFormatter {
     null: &'static [u8],
 }
@@ -292,32 +284,22 @@ struct HeightResult<'a> {
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type")]
 struct FeatureCollection<F> {
-    #[serde(rename = "type")]
-    kind: &'static str,
     features: F,
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type", rename = "Feature")]
 struct HeightFeature<'a> {
-    #[serde(rename = "type")]
-    kind: &'static str,
     geometry: PointGeometry,
     properties: FeatureProperties<'a>,
 }
 
 #[derive(Serialize)]
+#[serde(tag = "type", rename = "Point")]
 struct PointGeometry {
-    #[serde(rename = "type")]
-    kind: &'static str,
-    coordinates: GeoJsonPosition,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum GeoJsonPosition {
-    Plane([f64; 2]),
-    Space([f64; 3]),
+    coordinates: Vec<f64>,
 }
 
 #[derive(Serialize)]

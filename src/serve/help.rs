@@ -4,7 +4,6 @@ use axum::response::{IntoResponse, Response};
 
 use crate::serve::query::Service;
 
-/// The page.
 pub fn page(service: &Service) -> Response {
     let names = service.datasets.names();
     let first = &service.datasets.at(0).name;

@@ -1,8 +1,8 @@
-//! Connections: how many are open, and how long a silent one stays open.
+//! Limits the number of open connections and the time that an idle one stays open.
 //!
-//! A client that sends its request a byte a minute, or never takes its answer, must not hold a connection forever
-//! (*slowloris*). Neither `axum` nor `tower-http` sees the bytes of a head or the sockets, so they are watched here. A
-//! connection is always in one of three phases:
+//! A client that sends its request a byte a minute, or never reads the answer, must not hold a connection forever
+//! (*slowloris*). Neither `axum` nor `tower-http` has access to the bytes of a request's head or to the sockets, so
+//! this module wraps them. A connection is always in one of three phases:
 //!
 //! ```text
 //!          first byte              blank line                  first byte of the answer
@@ -10,9 +10,9 @@
 //! 60 s                   10 s                    no limit here
 //! ```
 //!
-//! A quiet connection waits for its next request, or its client still takes the last answer; both count from the first
-//! byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits its body and
-//! [`router`](crate::serve::router) its answer.
+//! A quiet connection waits for its next request, or its client is still reading the last answer; the time of both
+//! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits
+//! its body and [`router`](crate::serve::router) its answer.
 
 use std::io;
 use std::net::SocketAddr;
@@ -27,13 +27,13 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep};
 
-/// The limit of a quiet connection: a megabyte over a slow line, and a pause between requests.
+/// The time limit of a quiet connection: a megabyte over a slow line, and a pause between requests.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// The limit of a head, from its first byte on: a few packets.
+/// The time limit of a head, from its first byte on: a few packets.
 const HEAD: Duration = Duration::from_secs(10);
 
-/// The pause after the system gives no connection, mostly for too many open files.
+/// The pause after `accept` fails, mostly because too many files are open.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// The answer to one connection too many.
@@ -65,10 +65,10 @@ impl Listener for Gate {
             match self.listener.accept().await {
                 Ok((stream, from)) => match Arc::clone(&self.permits).try_acquire_owned() {
                     Ok(permit) => return (TimedStream::new(stream, permit), from),
-                    // Does not wait for a client that does not read.
+                    // Does not block on a client that does not read.
                     Err(_) => drop(stream.try_write(FULL)),
                 },
-                // The error of one connection, which is gone.
+                // The error concerns one connection, which is closed.
                 Err(error)
                     if matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset) => {}
                 Err(_) => tokio::time::sleep(PAUSE).await,
@@ -92,7 +92,7 @@ enum ConnectionPhase {
 pub struct TimedStream {
     stream: TcpStream,
     phase: ConnectionPhase,
-    /// The end of the phase; not looked at while busy.
+    /// The end of the phase; not used while busy.
     end: Instant,
     alarm: Pin<Box<Sleep>>,
     _permit: OwnedSemaphorePermit,
@@ -128,7 +128,7 @@ impl TimedStream {
         }
     }
 
-    /// Fails where the client has taken too long; else wakes the task when it has.
+    /// Fails after the end of the phase; before it, wakes the task then.
     fn poll_end<T>(&mut self, context: &mut Context<'_>) -> Poll<io::Result<T>> {
         if self.phase == ConnectionPhase::Busy {
             return Poll::Pending;

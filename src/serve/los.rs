@@ -19,7 +19,6 @@ use crate::serve::reply::{HttpError, OK};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
 
-/// Whether one point can be seen from another.
 pub struct LosQuery {
     ground: GroundQuery,
     /// The observer and the target, in the request's coordinates.

@@ -1,17 +1,17 @@
 //! The height service over HTTP.
 //!
 //! ```text
-//! listener      connections: how many, and how long a silent one is held
+//! listener      connections: their number and time limits
 //!    └─ router  requests: their address, their limits, the thread that answers them
 //!         ├─ parameters, coordinates, polyline, samples    reading
 //!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
-//!         ├─ datasets                                      what is served
+//!         ├─ datasets                                      the rasters and scenes that are served
 //!         └─ reply, help, health                           writing
 //! ```
 //!
-//! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and is written so
-//! that it reads back to the same bits. No request names a file, and none leaves a trace in the service: what is served
-//! is fixed when the service starts.
+//! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and its numbers
+//! read back to the same bits. Requests name no files and change no state: the datasets are fixed when the service
+//! starts.
 
 mod coordinates;
 mod datasets;
@@ -45,21 +45,14 @@ use crate::serve::datasets::Datasets;
 use crate::serve::listener::Gate;
 use crate::serve::query::Service;
 
-/// A service that cannot start or cannot go on.
+/// Why the service cannot start or continue.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ServeError {
-    /// No threads.
     #[error("threads cannot be started")]
     Threads(#[source] io::Error),
-    /// The address cannot be listened at.
     #[error("{address}")]
-    Listen {
-        /// The address.
-        address: SocketAddr,
-        /// Why.
-        source: io::Error,
-    },
-    /// A dataset cannot be opened.
+    Listen { address: SocketAddr, source: io::Error },
     #[error(transparent)]
     Open(#[from] OpenError),
 }
@@ -71,7 +64,7 @@ pub enum ServeError {
 pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
     let at_address = |source| ServeError::Listen { address: options.listen, source };
     let runtime = runtime().map_err(ServeError::Threads)?;
-    // First of all, so that an address in use is reported at once and not after minutes of reading.
+    // First, so that an address in use is reported at once and not after minutes of reading.
     let listener = runtime.block_on(TcpListener::bind(options.listen)).map_err(at_address)?;
     let service = Arc::new(Service {
         datasets: Datasets::open(options)?,
@@ -92,27 +85,27 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A viewshed runs on all cores; with a few at once, a small one passes a large one.
+/// A viewshed uses all cores; with several at once, a small one finishes before a large one.
 fn viewsheds_at_once() -> usize {
     (cores() / 2).clamp(1, 4)
 }
 
-/// A runtime with a listening thread for each core, and as many threads for heavy queries that all viewsheds leave one
-/// for each core.
+/// A runtime with a listening thread per core, and enough threads for heavy queries that one per core is left beside
+/// all viewsheds.
 fn runtime() -> io::Result<Runtime> {
     Builder::new_multi_thread().enable_all().max_blocking_threads(cores() + viewsheds_at_once()).build()
 }
 
-/// Makes the ground of every dataset in the background; queries for elevations as read are answered meanwhile.
+/// Makes the ground of every dataset in the background. Queries for elevations as read do not wait for it.
 fn prepare(service: &Arc<Service>) {
     let service = Arc::clone(service);
     let work = move || service.datasets.all().iter().for_each(|served| drop(served.dataset.service()));
-    // Without this thread, the first query for the ground makes it.
+    // If the thread does not start, the first query for the ground makes it.
     let _ = std::thread::Builder::new().name("ground".into()).spawn(work);
 }
 
-/// Serves until the first signal. Then takes no more connections and waits for the last answers: at most the grace time,
-/// or until a second signal.
+/// Serves until the first signal. Then accepts no more connections and waits for pending answers, until the grace time
+/// ends or a second signal arrives.
 async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> {
     let gate = Gate::new(listener, service.limits.max_connections as usize);
     let address = axum::serve::Listener::local_addr(&gate)?;
@@ -134,7 +127,7 @@ async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> 
     }
 }
 
-/// The signals that end the program, from the moment of its creation.
+/// Listens for the signals that end the program.
 struct StopSignals {
     #[cfg(unix)]
     interrupt: tokio::signal::unix::Signal,

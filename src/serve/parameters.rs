@@ -1,7 +1,7 @@
 //! The parameters of a request: from its query and from a body that is a form or a JSON object.
 //!
-//! A JSON object holds the same names as a form. Its values may be strings, numbers, and lists of strings, which mean the
-//! strings with `|` between. A later value replaces an earlier one, and the body those of the query.
+//! A JSON object has the same names as a form. Its values are strings, numbers, or lists of strings, which are joined
+//! with `|`. A later value replaces an earlier one, and a value of the body one of the query.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,7 +17,7 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
-use crate::pipeline::choice::Choice;
+use crate::message::choice::Choice;
 use crate::pipeline::service::ServiceLimits;
 use crate::serve::query::Service;
 use crate::serve::reply::{HttpError, quoted};
@@ -25,8 +25,8 @@ use crate::serve::reply::{HttpError, quoted};
 /// The most parameters: no query has as many.
 const MOST: usize = 32;
 
-/// The longest path and query of a request, in bytes. HTTP itself refuses 65,535 bytes without a reason; this leaves
-/// space to give one.
+/// The longest path and query of a request, in bytes. The HTTP library refuses 65,535 bytes without a reason; this
+/// lower limit allows a reply with one.
 const LONGEST_URL: usize = 60_000;
 
 const FORM: &str = "application/x-www-form-urlencoded";
@@ -109,7 +109,7 @@ impl FromRequest<Arc<Service>> for Parameters {
     }
 }
 
-/// Refuses a form whose escapes stand for bytes that are no text: what decodes forms would replace them unseen.
+/// Refuses a form whose percent-encoded bytes are not UTF-8: the decoder would replace them silently.
 fn check_utf8(form: &[u8]) -> Result<(), HttpError> {
     for parameter in form.split(|byte| *byte == b'&') {
         if percent_decode(parameter).decode_utf8().is_err() {
@@ -124,7 +124,7 @@ fn check_utf8(form: &[u8]) -> Result<(), HttpError> {
 }
 
 impl Parameters {
-    /// Reads a body. One that is not declared as JSON or as a form is JSON where it begins with a brace.
+    /// Parses a body. Without a content type it is JSON where it begins with a brace, else a form.
     async fn from_body(mut body: Bytes, is_json: Option<bool>) -> Result<Self, HttpError> {
         if is_json.unwrap_or_else(|| body.trim_ascii_start().starts_with(b"{")) {
             let json = Json::<Self>::from_bytes(&body);
@@ -141,17 +141,16 @@ impl Parameters {
         form.map(|Form(parameters)| parameters).map_err(|rejection| HttpError::wrong(rejection.body_text()))
     }
 
-    /// The bytes of all values.
+    /// The number of bytes of all values.
     pub fn len(&self) -> usize {
         self.0.values().map(String::len).sum()
     }
 
-    /// The value of a parameter.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
 
-    /// The value of a parameter that is needed.
+    /// The value of a required parameter.
     pub fn required(&self, name: &str, example: &str) -> Result<&str, HttpError> {
         self.get(name)
             .filter(|value| !value.is_empty())
@@ -189,7 +188,7 @@ impl Parameters {
         Err(HttpError::wrong(format!("{name} is {}; there are {}", quoted(text), known.join(", "))))
     }
 
-    /// Refuses parameters that are not in `known`: a misspelled one would be ignored.
+    /// Refuses parameters that are not in `known`, which are probably misspelled.
     pub fn allow_only(&self, known: &[&str]) -> Result<(), HttpError> {
         match self.0.keys().find(|name| !known.contains(&name.as_str())) {
             None => Ok(()),

@@ -13,10 +13,9 @@ use glam::DVec2;
 
 use crate::serve::reply::{HttpError, quoted};
 
-/// The units in a degree.
 const PER_DEGREE: f64 = 1e5;
 
-/// The most characters of a step: 35 bits, where the longest step on Earth, 360°, needs 27.
+/// The most characters of a step: 35 bits. The longest step on Earth, 360°, needs 27.
 const LONGEST_STEP: u32 = 7;
 
 /// The locations of an encoded polyline: longitude (x) and latitude (y) in degrees, which may be out of range.
@@ -33,7 +32,7 @@ pub fn decode(text: &str, most: usize) -> Result<Vec<DVec2>, HttpError> {
         }
         let step = steps.next().zip(steps.next());
         let (north, east) = step.ok_or_else(|| refusal(text, steps.at))?;
-        // Some ten thousand steps of 35 bits cannot overflow 64.
+        // The sum of ten thousand steps of 35 bits fits in 64 bits.
         (lat, lng) = (lat + north, lng + east);
         locations.push(DVec2::new(lng as f64 / PER_DEGREE, lat as f64 / PER_DEGREE));
     }

@@ -20,10 +20,10 @@ use crate::serve::reply::{HttpError, JsonArray, OK};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
 
-/// A profile may have this many times the stations that a request may have points, since the ground bends everywhere.
+/// The limit of a profile's stations, as a multiple of the limit of a request's points, since every edge of a triangle
+/// adds a station.
 const STATIONS_PER_POINT: usize = 10;
 
-/// The ground along a line.
 pub struct ProfileQuery {
     ground: GroundQuery,
     /// The vertices, in the request's coordinates.
@@ -88,8 +88,8 @@ impl Query for ProfileQuery {
     }
 }
 
-/// An upper bound of the stations of a profile along `line`: its vertices, and on every leg each column and row of posts that
-/// it passes and one diagonal for each cell between them.
+/// An upper bound of the stations of a profile along `line`: its vertices, and on every leg each column and row of
+/// posts that it passes and one diagonal for each cell between them.
 fn most_stations(lattice: &Lattice, line: &[DVec2]) -> f64 {
     let size = DVec2::new(f64::from(lattice.columns()), f64::from(lattice.rows()));
     let on_leg = |pair: &[DVec2]| {

@@ -1,4 +1,4 @@
-//! What the queries share: the service, and how a query is read, weighed and answered.
+//! The trait of all queries, the state of the service, and parameters that several queries have.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::serve::reply::HttpError;
 use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::Curvature;
 
-/// Heights above the ground reach up to where aircraft fly, meters.
+/// The greatest height above the ground, in meters: above all aircraft.
 const HIGHEST_M: f64 = 100_000.0;
 
 /// The default height of an observer's eye, as in GDAL's viewsheds.
@@ -23,9 +23,7 @@ pub const OBSERVER_M: f64 = 2.0;
 
 /// The service, one for the whole program.
 pub struct Service {
-    /// The datasets.
     pub datasets: Datasets,
-    /// How much a client may ask.
     pub limits: ServiceLimits,
     /// WGS 84, the system of most requests.
     pub wgs84: Crs,
@@ -33,32 +31,30 @@ pub struct Service {
     pub requests: Arc<Semaphore>,
     /// Permits for viewsheds that are being computed: each takes all cores and a byte a post.
     pub viewsheds: Semaphore,
-    /// Whether requests are logged.
     pub log: RequestLog,
     /// Writes a line for the user.
     pub write_line: fn(&str),
 }
 
-/// The thread that answers a query.
+/// The thread that executes a query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QueryWeight {
-    /// The one that read it, within microseconds.
+    /// The thread that parsed it; it takes microseconds.
     Light,
-    /// One that may take its time.
+    /// A blocking thread.
     Heavy,
 }
 
-/// A query that an address names.
+/// A query with an address of its own.
 pub trait Query: Sized + Send + 'static {
-    /// Reads it. `datasets` is what the address names after `/v1/`; empty for a query with its own address.
+    /// Parses the query. `datasets` is the part of the address after `/v1/`; empty unless it is a list of datasets.
     fn read(service: &Service, datasets: &str, parameters: &Parameters) -> Result<Self, HttpError>;
 
-    /// The thread that answers it. Heavy by default, since the ground may have to be made first.
+    /// Heavy by default, since the ground may have to be made first.
     fn weight(&self, _: &Service) -> QueryWeight {
         QueryWeight::Heavy
     }
 
-    /// Answers it.
     fn answer(self, service: &Service) -> Result<Response, HttpError>;
 }
 
@@ -66,7 +62,6 @@ pub trait Query: Sized + Send + 'static {
 pub struct GroundQuery {
     /// The index of the dataset.
     dataset: usize,
-    /// The coordinates.
     pub coordinates: Coordinates,
 }
 
@@ -80,7 +75,6 @@ impl GroundQuery {
         Ok(Self { dataset, coordinates })
     }
 
-    /// The dataset.
     pub fn served<'s>(&self, service: &'s Service) -> &'s ServedDataset {
         service.datasets.at(self.dataset)
     }
@@ -103,7 +97,7 @@ pub fn above_m(parameters: &Parameters, name: &str, default: f64) -> Result<f64,
     parameters.number(name, 0.0..=HIGHEST_M, default)
 }
 
-/// What `earth` and `refraction` state; without them, [`Curvature::default`].
+/// The curvature that `earth` and `refraction` state; by default, [`Curvature::default`].
 pub fn curvature(parameters: &Parameters) -> Result<Curvature, HttpError> {
     let round = Curvature::default();
     let refraction = parameters.number("refraction", -1.0..=1.0, round.refraction)?;

@@ -1,7 +1,7 @@
-//! What goes back: an answer, or a refusal with its reason.
+//! Responses: answers, and refusals with a reason.
 //!
 //! Both are always JSON: an answer ends with `"status":"OK"`; a refusal is
-//! `{"status":"INVALID_REQUEST","error":"…"}` where the client can mend it, else `SERVER_ERROR`.
+//! `{"status":"INVALID_REQUEST","error":"…"}` where the request is wrong, else `{"status":"SERVER_ERROR",…}`.
 
 use axum::Json;
 use axum::http::header::{ALLOW, CONNECTION, RETRY_AFTER};
@@ -9,10 +9,9 @@ use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::{Serialize, Serializer};
 
+use crate::message::chain::error_text;
 use crate::pipeline::dataset::QueryError;
-use crate::pipeline::error::error_text;
 
-/// The status of an answer.
 pub const OK: &str = "OK";
 
 /// A JSON array of the items of an iterator, which are serialized one by one.
@@ -32,13 +31,13 @@ pub struct HttpError {
     hint: RefusalHint,
 }
 
-/// What a refusal's headers state.
+/// A header of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RefusalHint {
     None,
     /// Try again after this number of seconds.
     RetryAfter(u16),
-    /// The methods that are answered.
+    /// The supported methods.
     Allow(&'static str),
     /// The rest of the request is not read: the connection ends.
     Close,
@@ -51,17 +50,16 @@ struct RefusalBody<'a> {
 }
 
 impl HttpError {
-    /// A refusal with any status.
     pub fn new(status: StatusCode, reason: impl Into<String>) -> Self {
         Self { status, reason: reason.into(), hint: RefusalHint::None }
     }
 
-    /// The request is wrong: 400. `reason` says what was found and what to write instead.
+    /// The request is wrong: 400. `reason` names the value that was found and the remedy.
     pub fn wrong(reason: impl Into<String>) -> Self {
         Self::new(StatusCode::BAD_REQUEST, reason)
     }
 
-    /// There is nothing of that name: 404.
+    /// There is no such address or dataset: 404.
     pub fn unknown(reason: impl Into<String>) -> Self {
         Self::new(StatusCode::NOT_FOUND, reason)
     }
@@ -72,13 +70,13 @@ impl HttpError {
         Self { hint, ..Self::new(StatusCode::SERVICE_UNAVAILABLE, reason) }
     }
 
-    /// The method is not answered: 405.
+    /// The method is not supported: 405.
     pub fn method(allowed: &'static str) -> Self {
         let reason = format!("this address answers {allowed}");
         Self { hint: RefusalHint::Allow(allowed), ..Self::new(StatusCode::METHOD_NOT_ALLOWED, reason) }
     }
 
-    /// The same, and the rest of the request is not read.
+    /// This refusal, and the rest of the request is not read.
     pub fn closing(self) -> Self {
         Self { hint: RefusalHint::Close, ..self }
     }

@@ -1,12 +1,12 @@
-//! From a request to a response: which address is which query, and which thread answers it.
+//! Dispatches requests: from address to query, and from query to thread.
 //!
 //! ```text
 //! request ─► permit ─► parameters (query, body) ─► read ─► light? ─► answer ─► response
 //!              │ 503     │ 414 413 415 408 400       │ 400   └ no ─► another thread ────┘ 503 in the end
 //! ```
 //!
-//! Answering a few points takes less time than handing them to another thread, so they are answered where they were
-//! read. Longer work must not hold up the threads that listen.
+//! A query of a few points takes less time than moving it to another thread, so the thread that parsed it executes it.
+//! Longer work must not block the threads that listen.
 //!
 //! The limits are here and in [`parameters`](crate::serve::parameters), not in layers of `tower-http`: its body limit
 //! refuses in plain text where this API promises JSON; its body timeout counts from byte to byte, so that a client that
@@ -37,21 +37,18 @@ use crate::serve::query::{Query, QueryWeight, Service};
 use crate::serve::reply::{HttpError, quoted};
 use crate::serve::viewshed::ViewshedQuery;
 
-/// Values longer than this are parsed on another thread, because parsing them takes longer than handing them over.
+/// Values longer than this are parsed on another thread, because parsing takes longer than the move.
 const LIGHT_BYTES: usize = 32 * 1024;
 
 /// The longest path in the log, in characters.
 const LOGGED_PATH: usize = 200;
 
-/// The methods of a query.
 const QUERY_METHODS: &str = "GET, HEAD, POST, OPTIONS";
 
-/// The methods of a page.
 const PAGE_METHODS: &str = "GET, HEAD, OPTIONS";
 
 type Shared = State<Arc<Service>>;
 
-/// The addresses.
 pub fn router(service: Arc<Service>) -> Router {
     let router = Router::new()
         .route("/", page(help::page))
@@ -94,7 +91,7 @@ async fn heights(
     }
 }
 
-/// The response to a method that is neither read nor sent: `OPTIONS`, or one that is refused.
+/// The response to `OPTIONS` and to unsupported methods.
 fn other(method: &Method, allowed: &'static str) -> Response {
     match *method {
         Method::OPTIONS => (StatusCode::NO_CONTENT, [(ALLOW, allowed)]).into_response(),
@@ -120,7 +117,6 @@ async fn log(State(service): Shared, request: Request, next: Next) -> Response {
     response
 }
 
-/// Reads a query and answers it.
 async fn answer<Q: Query>(
     service: &Arc<Service>,
     datasets: &str,
@@ -143,8 +139,8 @@ async fn answer<Q: Query>(
     }
 }
 
-/// Answers on a thread that may take its time, and waits no longer than the limit. The request holds its permit until
-/// the work is done, or dropped because it had not begun.
+/// Executes a query on a blocking thread, with a time limit. The request holds its permit until the work ends, or is
+/// dropped before it begins.
 async fn on_another_thread(
     service: &Arc<Service>,
     permit: OwnedSemaphorePermit,

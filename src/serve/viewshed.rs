@@ -8,9 +8,9 @@
 //! ```
 //!
 //! `runs` holds a string for each row of posts from the south, each row from the west: a count, and a letter for that
-//! many posts: `v` visible, `h` hidden, `n` no data, `b` beyond the range or out of the sector. The grid is the ground's,
-//! cut to the square around the range; `south_west` is the position of its first post. `format=summary` leaves `runs`
-//! out.
+//! many posts: `v` visible, `h` hidden, `n` no data, `b` beyond the range or out of the sector. The grid is the
+//! ground's, cut to the square around the range; `south_west` is the position of its first post. `format=summary`
+//! leaves `runs` out.
 
 use std::fmt::Write;
 
@@ -25,12 +25,13 @@ use crate::serve::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curv
 use crate::serve::reply::{HttpError, OK, quoted};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::line::SightEnd;
-use crate::terrain::sight::viewshed::{self, PostVisibility, Sector, Viewshed, ViewshedOptions};
+use crate::terrain::sight::viewshed::{
+    self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions,
+};
 
 /// When to try again while other viewsheds are being computed, seconds.
 const RETRY_AFTER_S: u16 = 2;
 
-/// Which posts can be seen from a point.
 pub struct ViewshedQuery {
     ground: GroundQuery,
     /// The options, with the observer in the request's coordinates.
@@ -58,19 +59,11 @@ struct ViewshedAnswer<'a> {
     rows: u32,
     south_west: Location,
     cell: Location,
-    counts: PostCounts,
+    counts: ViewshedCounts,
     visible_area_m2: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     runs: Option<Vec<String>>,
     status: &'static str,
-}
-
-#[derive(Serialize)]
-struct PostCounts {
-    visible: usize,
-    hidden: usize,
-    no_data: usize,
-    beyond: usize,
 }
 
 impl Query for ViewshedQuery {
@@ -191,15 +184,10 @@ impl PostWindow {
     }
 
     /// The posts of each kind; all that are not beyond lie in the window.
-    fn counts(&self, viewshed: &Viewshed) -> PostCounts {
+    fn counts(&self, viewshed: &Viewshed) -> ViewshedCounts {
         let all = viewshed.counts();
         let looked_at = all.visible + all.hidden + all.no_data;
-        PostCounts {
-            visible: all.visible,
-            hidden: all.hidden,
-            no_data: all.no_data,
-            beyond: (self.posts() as usize).saturating_sub(looked_at),
-        }
+        ViewshedCounts { beyond: (self.posts() as usize).saturating_sub(looked_at), ..all }
     }
 
     fn runs(&self, viewshed: &Viewshed) -> Vec<String> {

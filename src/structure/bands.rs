@@ -1,10 +1,8 @@
 //! The bands that scenes have: walls, hedges, the banks of earth beside trenches, the rails of fences.
 
-use glam::DVec2;
-
 use crate::draw::color::Srgba;
+use crate::earthworks::alignment::Alignment;
 use crate::structure::fence_band::{BandSection, FenceBand, Ruffle, SectionCorner};
-use crate::structure::fence_track::Track;
 
 const STONE: Srgba = Srgba::opaque(172, 162, 148);
 const COPING: Srgba = Srgba::opaque(196, 188, 174);
@@ -31,8 +29,6 @@ const RAIL_THICKNESS: f64 = 0.45;
 /// The size of a band in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandSize {
-    /// From side to side; of a trench between its edges.
-    pub width_m: f64,
     /// Above the ground; of a trench its depth.
     pub height_m: f64,
     /// From one change of color or surface to the next.
@@ -45,22 +41,22 @@ fn section(corners: &[[f64; 2]], colors: &[Srgba]) -> BandSection {
     BandSection { feet: (-1.0, 1.0), corners: corners.iter().map(corner).collect(), colors: colors.to_vec() }
 }
 
-/// A wall of masonry with a coping along `points`; stones vary in color.
-pub fn wall(points: &[DVec2], size: BandSize) -> FenceBand {
+/// A wall of masonry with a coping along an alignment; stones vary in color.
+pub fn wall(alignment: &Alignment, size: BandSize) -> FenceBand {
     let up = size.height_m;
     FenceBand {
-        track: Track::new(points, size.width_m / 2.0),
+        alignment: alignment.clone(),
         section: section(&[[0.0, 0.0], [0.0, up], [1.0, up], [1.0, 0.0]], &[STONE, COPING, STONE]),
         ruffle: Some(Ruffle { share: 0.0, shade: 9.0, every_m: size.every_m }),
     }
 }
 
-/// A hedge along `points` that narrows to its top and is nowhere quite even.
-pub fn hedge(points: &[DVec2], size: BandSize) -> FenceBand {
+/// A hedge along an alignment that narrows to its top and is nowhere quite even.
+pub fn hedge(alignment: &Alignment, size: BandSize) -> FenceBand {
     let outline = [[0.0, 0.0], [0.02, 0.6], [0.22, 0.96], [0.78, 0.96], [0.98, 0.6], [1.0, 0.0]];
     let corners = outline.map(|[share, up]| [share, up * size.height_m]);
     FenceBand {
-        track: Track::new(points, size.width_m / 2.0),
+        alignment: alignment.clone(),
         section: section(&corners, &[LEAVES, LEAVES, SUNLIT, LEAVES, LEAVES]),
         ruffle: Some(Ruffle { share: HEDGE_RUFFLE, shade: 14.0, every_m: size.every_m }),
     }
@@ -71,25 +67,27 @@ pub fn bare_m(width_m: f64) -> f64 {
     width_m * (1.0 + 2.0 * PARAPET_WIDTH)
 }
 
-/// The banks of earth on either side of a trench along `points`, thrown up from what was dug out.
-pub fn parapets(points: &[DVec2], size: BandSize) -> [FenceBand; 2] {
-    let half_m = size.width_m * (0.5 + PARAPET_WIDTH);
+/// The banks of earth on either side of a trench as wide as an alignment, thrown up from what was dug out.
+pub fn parapets(alignment: &Alignment, size: BandSize) -> [FenceBand; 2] {
+    let width_m = 2.0 * (alignment.width.widest_m() * (0.5 + PARAPET_WIDTH));
+    let track = Alignment::on_ground(alignment.line.clone(), width_m);
     let inner = 0.5 / (0.5 + PARAPET_WIDTH);
     let up = size.height_m * PARAPET_HEIGHT;
     let bank = section(&[[0.0, 0.0], [0.35, up], [0.65, up], [1.0, 0.0]], &[EARTH, CREST, EARTH]);
     [(-1.0, -inner), (inner, 1.0)].map(|feet| FenceBand {
-        track: Track::new(points, half_m),
+        alignment: track.clone(),
         section: BandSection { feet, ..bank.clone() },
         ruffle: Some(Ruffle { share: 0.12, shade: 8.0, every_m: size.every_m }),
     })
 }
 
-/// The rails of a fence along `points` whose posts are `post_m` wide.
-pub fn rails(points: &[DVec2], post_m: f64, height_m: f64) -> [FenceBand; 2] {
+/// The rails of a fence along an alignment as wide as its posts.
+pub fn rails(alignment: &Alignment, height_m: f64) -> [FenceBand; 2] {
+    let width_m = alignment.width.widest_m() * RAIL_THICKNESS;
     RAILS.map(|rail| {
         let [low, high] = rail.map(|share| share * height_m);
         FenceBand {
-            track: Track::new(points, post_m * RAIL_THICKNESS / 2.0),
+            alignment: Alignment::on_ground(alignment.line.clone(), width_m),
             section: section(&[[0.0, low], [0.0, high], [1.0, high], [1.0, low]], &[RAIL; 4]),
             ruffle: None,
         }

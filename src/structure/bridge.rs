@@ -19,9 +19,11 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::Continuations;
 use crate::geom::profile::Profile;
-use crate::structure::deck::{DeckCourse, DeckSection};
-use crate::structure::deck_check;
+use crate::structure::deck::{self, DeckSection};
+use crate::structure::deck_check::{self, OpenSurfaceError};
 use crate::structure::faces::Faces;
 use crate::structure::pier;
 use crate::terrain::query::deck::Deck;
@@ -71,6 +73,10 @@ pub struct BridgeOptions {
     pub abutments_m: [Option<f64>; 2],
     /// How its start and end lie across.
     pub across: [Across; 2],
+    /// What goes on at its ends.
+    pub beyond: Continuations,
+    /// How long a miter may be, in half widths, at least 1.
+    pub miter_limit: f64,
     /// Meters along the carriageway in one repeat of its texture, above 0.
     pub texture_length_m: f64,
 }
@@ -113,33 +119,33 @@ pub fn end_parapets(sections: &mut [DeckSection], width_m: f64, decks: &Deck) {
     }
 }
 
-/// Builds the bridge over the sections of `course` on `ground`, the elevations of both as they are drawn.
+/// Builds the bridge over the sections of an alignment of one width on `ground`, the elevations of both as they are drawn.
 pub fn build(
-    course: &DeckCourse<'_>,
+    alignment: &Alignment,
     sections: &[DeckSection],
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
 ) -> BridgeSolids {
+    let (length_m, width_m) = (alignment.line.length(), alignment.width.widest_m());
     let mut body = Faces::default();
     let mut bridge = BridgeSolids { carriageway: textured(sections, options), ..BridgeSolids::default() };
-    draw_out(sections, &cross_section(course.width_m, options), &mut body);
-    for (end, length_m) in options.abutments_m.iter().enumerate() {
-        let Some(length_m) = *length_m else { continue };
+    draw_out(sections, &cross_section(width_m, options), &mut body);
+    for (end, reach_m) in options.abutments_m.iter().enumerate() {
+        let Some(reach_m) = *reach_m else { continue };
         let reach = |section: &&DeckSection| {
-            let from_end =
-                if end == 0 { section.station_m } else { course.line.length() - section.station_m };
-            from_end <= length_m + 1e-6
+            let from_end = if end == 0 { section.station_m } else { length_m - section.station_m };
+            from_end <= reach_m + 1e-6
         };
         let under: Vec<DeckSection> = sections.iter().filter(reach).copied().collect();
-        pier::abutment(&under, course.width_m, options, ground, &mut body);
+        pier::abutment(&under, width_m, options, ground, &mut body);
         let last = if end == 0 { sections.first() } else { sections.last() };
         if let Some(section) = last {
-            pier::end_posts(section, course.width_m, options, &mut body);
+            pier::end_posts(section, width_m, options, &mut body);
         }
     }
     for &station in &options.piers_m {
         let section = nearest(sections, station);
-        bridge.piers += usize::from(pier::pier(section, course.width_m, options, ground, &mut body));
+        bridge.piers += usize::from(pier::pier(section, width_m, options, ground, &mut body));
     }
     bridge.body = body.into_mesh();
     bridge
@@ -153,35 +159,33 @@ fn nearest(sections: &[DeckSection], station_m: f64) -> &DeckSection {
     if station_m - before.station_m < after.station_m - station_m { before } else { after }
 }
 
-/// The sections of `course` at the elevations of `profile`, whose stations are the course's, turned at its ends as the
-/// ground lies across.
+/// The sections of an alignment at its levels, turned at its ends as the ground lies across.
 pub fn sections(
-    course: &DeckCourse<'_>,
-    profile: &Profile,
+    alignment: &Alignment,
     options: &BridgeOptions,
     ground: &GroundHeight<'_>,
 ) -> Vec<DeckSection> {
-    let length_m = course.line.length();
-    let fade_m = (course.width_m * TILT_WIDTHS).min(length_m / 2.0);
+    let (length_m, width_m) = (alignment.line.length(), alignment.width.widest_m());
+    let fade_m = (width_m * TILT_WIDTHS).min(length_m / 2.0);
     let abutments = options.abutments_m.map(|length| length.unwrap_or(0.0));
-    let mut breaks: Vec<f64> = profile.stations().to_vec();
+    let mut breaks: Vec<f64> = alignment.level.iter().flat_map(Profile::stations).copied().collect();
     breaks.extend([abutments[0], length_m - abutments[1]]);
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| part * fade_m));
     breaks.extend([0.25, 0.5, 0.75, 1.0].map(|part| length_m - part * fade_m));
     breaks.extend(&options.piers_m);
     for (end, abutment) in options.abutments_m.iter().enumerate() {
         if abutment.is_none() {
-            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * course.width_m / 8.0);
+            let from_end = (1..=MEETING_BREAKS).map(|step| f64::from(step) * width_m / 8.0);
             breaks.extend(from_end.map(|from_end| if end == 0 { from_end } else { length_m - from_end }));
         }
     }
-    let mut sections = course.sections(&breaks, &|station| profile.at(station));
+    let mut sections = deck::sections(alignment, options.beyond, options.miter_limit, &breaks);
     let last = sections.len() - 1;
     for (index, end) in [0, last].into_iter().enumerate() {
         if options.across[index] == Across::Level {
             continue;
         }
-        let tilt = tilt(&sections[end], course.width_m, ground);
+        let tilt = tilt(&sections[end], width_m, ground);
         for section in &mut sections {
             let from_end = (section.station_m - if index == 0 { 0.0 } else { length_m }).abs();
             // Smooth at both ends.
@@ -308,19 +312,35 @@ fn rotated(ring: &[Vec3], by: usize) -> Vec<Vec3> {
     ring[by..].iter().chain(&ring[..by]).copied().collect()
 }
 
+/// A fault of a bridge's solids.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BridgeSolidsError {
+    /// A triangle of the deck.
+    #[error("triangle {index} of the deck faces down at {at}")]
+    FacesDown {
+        /// Its place among the deck's.
+        index: usize,
+        /// One of its corners.
+        at: Vec3,
+    },
+    /// The carriageway does not close the body.
+    #[error(transparent)]
+    Open(#[from] OpenSurfaceError),
+}
+
 impl BridgeSolids {
     /// Whether every triangle of the deck faces up, and the carriageway closes the body: nothing shows from inside.
     ///
     /// # Errors
-    /// A sentence that names the first thing out of place.
-    pub fn check(&self) -> Result<(), String> {
+    /// The first thing out of place.
+    pub fn check(&self) -> Result<(), BridgeSolidsError> {
         for (index, triangle) in self.carriageway.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|id| Vec3::from(self.carriageway.vertices[id.index()].position));
             if (b - a).truncate().perp_dot((c - a).truncate()) < 0.0 {
-                return Err(format!("triangle {index} of the deck faces down at {a}"));
+                return Err(BridgeSolidsError::FacesDown { index, at: a });
             }
         }
-        deck_check::closed(&[&self.carriageway, &self.body])
+        Ok(deck_check::closed(&[&self.carriageway, &self.body])?)
     }
 }
 
@@ -338,30 +358,31 @@ mod tests {
             piers_m: vec![length_m / 3.0, length_m / 1.5],
             abutments_m: [Some(6.0), Some(6.0)],
             across: [Across::AsGround; 2],
+            beyond: Continuations::default(),
+            miter_limit: 2.0,
             texture_length_m: 15.0,
         }
     }
 
-    fn course(line: &Polyline) -> DeckCourse<'_> {
-        DeckCourse { line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 }
+    fn alignment(line: &Polyline, level: Profile) -> Alignment {
+        Alignment { level: Some(level), ..Alignment::on_ground(line.clone(), 8.0) }
     }
 
     /// The deck, and the bridge with elevations drawn 1.5 times as high.
     fn built(
-        course: &DeckCourse<'_>,
-        profile: &Profile,
+        alignment: &Alignment,
         options: &BridgeOptions,
         ground: &GroundHeight<'_>,
         decks: &[SurfaceTriangle],
     ) -> (Vec<SurfaceTriangle>, BridgeSolids) {
-        let mut sections = sections(course, profile, options, ground);
+        let mut sections = sections(alignment, options, ground);
         let deck = deck(&sections);
-        end_parapets(&mut sections, course.width_m, &Deck::new(decks).expect("sound"));
+        end_parapets(&mut sections, alignment.width.widest_m(), &Deck::new(decks).expect("sound"));
         for section in &mut sections {
             section.edges_m = section.edges_m.map(|edge_m| edge_m * 1.5);
         }
         let drawn = |at| ground(at).map(|height_m| height_m * 1.5);
-        (deck, build(course, &sections, options, &drawn))
+        (deck, build(alignment, &sections, options, &drawn))
     }
 
     #[test]
@@ -372,7 +393,7 @@ mod tests {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let options = BridgeOptions { piers_m: vec![40.0], ..options(90.0) };
         let level = Profile::straight(90.0, [50.0; 2]);
-        let (_, bridge) = built(&course(&line), &level, &options, &|_| Some(50.0), &beside);
+        let (_, bridge) = built(&alignment(&line, level), &options, &|_| Some(50.0), &beside);
         bridge.check().expect("sound");
         let highest = |side: f32| {
             let corners = bridge.body.vertices.iter().map(|vertex| vertex.position);
@@ -393,7 +414,7 @@ mod tests {
             let points = [DVec2::ZERO, DVec2::new(120.0, 0.0)].map(turn);
             let line = Polyline::new(points, 0.0).expect("a line");
             let profile = Profile::straight(120.0, [100.0, 102.4]);
-            let (_, bridge) = built(&course(&line), &profile, &options(120.0), &valley, &[]);
+            let (_, bridge) = built(&alignment(&line, profile.clone()), &options(120.0), &valley, &[]);
             bridge.check().expect("sound");
             assert_eq!(bridge.piers, 2);
             for station in [40.0, 80.0] {
@@ -413,8 +434,8 @@ mod tests {
     fn the_deck_s_ends_lie_as_the_ground_does_across_them() {
         let line = Polyline::new([DVec2::ZERO, DVec2::new(90.0, 0.0)], 0.0).expect("a line");
         let slope = |at: DVec2| Some(50.0 + at.y * 0.1);
-        let (deck, _) =
-            built(&course(&line), &Profile::straight(90.0, [50.0; 2]), &options(90.0), &slope, &[]);
+        let level = Profile::straight(90.0, [50.0; 2]);
+        let (deck, _) = built(&alignment(&line, level), &options(90.0), &slope, &[]);
         let height = |x: f32, y: f32| {
             let mut corners = deck.iter().flatten().filter(|corner| corner.x == x && corner.y == y);
             corners.next().expect("a corner").z
@@ -442,7 +463,7 @@ mod tests {
                 .map(|(&station_m, &level_m)| ClearancePoint { station_m, level_m }).collect();
             let ends = [floors[0].level_m, floors[floors.len() - 1].level_m];
             let profile = clearing(&Profile::straight(line.length(), ends), &floors, &[], 0.1);
-            let (deck, bridge) = built(&course(&line), &profile, &options(line.length()), &|_| Some(95.0), &[]);
+            let (deck, bridge) = built(&alignment(&line, profile), &options(line.length()), &|_| Some(95.0), &[]);
             prop_assert_eq!(bridge.check(), Ok(()));
             let plan = |facet: &SurfaceTriangle| (facet[1] - facet[0]).truncate().perp_dot((facet[2] - facet[0]).truncate());
             prop_assert!(deck.iter().map(plan).all(|area| area >= 0.0));

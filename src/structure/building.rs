@@ -9,14 +9,14 @@
 //!          └────┘        foot_z
 //! ```
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
+use crate::mesh::sink::VertexId;
 use crate::structure::building_footprint::BuildingFootprint;
+use crate::structure::deck_check::{OpenSurfaceError, open_edges};
 use crate::structure::faces::Faces;
 use crate::structure::fence_band::{noise, shaded};
 use crate::structure::roof::{UnitRoof, centroid};
@@ -45,7 +45,6 @@ pub struct Paint {
     pub foundation: Srgba,
 }
 
-/// A foundation of stone.
 const FOUNDATION: Srgba = Srgba::opaque(150, 144, 136);
 
 /// Plasters of which a building takes one by where it stands.
@@ -59,7 +58,6 @@ const PLASTERS: [Srgba; 7] = [
     Srgba::opaque(242, 238, 228),
 ];
 
-/// Roofs of tile and slate.
 const TILES: [Srgba; 6] = [
     Srgba::opaque(178, 98, 72),
     Srgba::opaque(162, 86, 66),
@@ -107,8 +105,8 @@ pub fn raise(
     let rise = levels.top_z - levels.eaves_z;
     let on_roof = |at: &DVec3| DVec3 { z: levels.eaves_z + at.z * rise, ..*at }.as_vec3();
     for ring in &roof.edge {
-        for (index, from) in ring.iter().enumerate() {
-            walls(&mut faces, [*from, ring[(index + 1) % ring.len()]], &on_roof, levels, paint);
+        for (from, to) in polygon::edges(ring) {
+            walls(&mut faces, [from, to], &on_roof, levels, paint);
         }
     }
     for face in &roof.faces {
@@ -169,34 +167,42 @@ pub struct Measures {
     pub roof_m2: f64,
 }
 
+/// A fault of a building's solid.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BuildingSolidError {
+    /// An edge belongs to one side only.
+    #[error(transparent)]
+    Open(#[from] OpenSurfaceError),
+    /// Its faces look inward.
+    #[error("it holds {volume_m3} m³: its faces look inward")]
+    Inward {
+        /// What they enclose, not above 0.
+        volume_m3: f64,
+    },
+}
+
 /// Checks that a building's mesh is closed: every edge of a triangle is that of another, the other way round; and faces
 /// outward.
 ///
 /// # Errors
-/// A sentence about the first fault found.
-pub fn check(mesh: &DrawMesh) -> Result<Measures, String> {
-    let bits = |at: Vec3| at.to_array().map(f32::to_bits);
-    let mut open: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();
+/// The first fault found.
+pub fn check(mesh: &DrawMesh) -> Result<Measures, BuildingSolidError> {
+    if let Some((from, to)) = open_edges(&[mesh]).find(|(from, to)| from != to) {
+        return Err(OpenSurfaceError { from, to }.into());
+    }
     let (mut volume_m3, mut roof_m2) = (0.0, 0.0);
     let middle = mesh.vertices.first().map_or(DVec3::ZERO, |vertex| Vec3::from(vertex.position).as_dvec3());
     for triangle in &mesh.triangles {
-        let corners = triangle.map(|id| Vec3::from(mesh.vertices[id.index()].position));
-        for side in 0..3 {
-            let (from, to) = (bits(corners[side]), bits(corners[(side + 1) % 3]));
-            *open.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
-        }
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3() - middle);
+        let corner = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position).as_dvec3() - middle;
+        let [a, b, c] = triangle.map(corner);
         volume_m3 += a.cross(b).dot(c) / 6.0;
         roof_m2 += ((b - a).truncate().perp_dot((c - a).truncate()) / 2.0).max(0.0);
     }
-    if let Some((edge, _)) = open.iter().find(|(edge, uses)| edge[0] != edge[1] && **uses != 0) {
-        let [from, to] = edge.map(|end| Vec3::from(end.map(f32::from_bits)));
-        return Err(format!("the edge from {from} to {to} belongs to one side only"));
+    if volume_m3 > 0.0 {
+        Ok(Measures { volume_m3, roof_m2 })
+    } else {
+        Err(BuildingSolidError::Inward { volume_m3 })
     }
-    if volume_m3 <= 0.0 {
-        return Err(format!("it holds {volume_m3} m³: its faces look inward"));
-    }
-    Ok(Measures { volume_m3, roof_m2 })
 }
 
 #[cfg(test)]

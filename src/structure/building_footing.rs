@@ -39,7 +39,7 @@ impl WallFooting {
         for ring in &self.rings {
             let lowest = polygon::edges(ring)
                 .flat_map(|(from, to)| ground_runs(ground, from, to))
-                .flat_map(|run| run.stations().iter().map(|station| station.z).reduce(f64::min))
+                .flat_map(|run| run.values().iter().copied().reduce(f64::min))
                 .fold(f64::INFINITY, f64::min) as f32;
             if lowest < self.foot_z {
                 faces.walls(ring, (lowest, self.foot_z), self.color);

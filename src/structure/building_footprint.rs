@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use crate::geom::convex;
 use crate::geom::polygon;
+use crate::geom::polyline::kept;
 use crate::geom::region;
 
 /// Vertices nearer to each other or to their neighbors' line are dropped: less than plaster, more than f32 rounding.
@@ -80,12 +81,7 @@ impl BuildingFootprint {
 
 /// A ring without the vertices that lie on their neighbors or on the line between them.
 fn without_needless(ring: &[DVec2]) -> Vec<DVec2> {
-    let mut kept: Vec<DVec2> = Vec::with_capacity(ring.len());
-    for &at in ring {
-        if kept.last().is_none_or(|last| last.distance(at) > MERGE_M) {
-            kept.push(at);
-        }
-    }
+    let mut kept: Vec<DVec2> = kept(ring, MERGE_M).into_iter().map(|index| ring[index]).collect();
     while kept.len() > 1 && kept[0].distance(kept[kept.len() - 1]) <= MERGE_M {
         kept.pop();
     }

@@ -16,8 +16,8 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::geom::offset::LineBend;
-use crate::geom::polyline::Polyline;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::{self, Continuations, LineBend};
 use crate::structure::bridge::{PARAPET_THICK_M, magnified};
 
 /// How far along a leg the inner corner of a miter may reach, as a part of it: two of them do not meet.
@@ -44,78 +44,67 @@ pub struct DeckSection {
     pub parapets: [bool; 2],
 }
 
-/// What a deck is drawn out along.
-#[derive(Clone, Copy, Debug)]
-pub struct DeckCourse<'a> {
-    /// The centerline in world coordinates.
-    pub line: &'a Polyline,
-    /// The vertices beyond its first and its last one, of the roads that go on there.
-    pub beyond: [Option<DVec2>; 2],
-    /// From edge to edge of the carriageway, in meters, above 0.
-    pub width_m: f64,
-    /// How long a miter may be, in half widths, at least 1.
-    pub miter_limit: f64,
-}
-
-impl DeckCourse<'_> {
-    /// Sections at every vertex and, where they do not come in the way of a miter, at the stations `breaks_m`, stations
-    /// rising. `level_m` gives the elevation at a station.
-    pub fn sections(&self, breaks_m: &[f64], level_m: &dyn Fn(f64) -> f64) -> Vec<DeckSection> {
-        let mut breaks: Vec<f64> = breaks_m.iter().copied().take(MOST_BREAKS).collect();
-        breaks.sort_by(f64::total_cmp);
-        let (points, stations) = (self.line.points(), self.line.stations());
-        let asides: Vec<[DVec2; 2]> = (0..points.len()).map(|index| self.aside(index)).collect();
-        let mut sections = Vec::with_capacity(points.len() + breaks.len());
-        for (index, &at) in points.iter().enumerate() {
-            sections.push(section(stations[index], at, asides[index], level_m));
-            let (Some(&next), Some(&end_m)) = (points.get(index + 1), stations.get(index + 1)) else {
-                continue;
-            };
-            let along = (next - at).normalize_or_zero();
-            // Parapets stand beside the carriageway, and on a bend their inner corners reach further along it.
-            let outermost = 1.0 + 2.0 * PARAPET_THICK_M * magnified(self.width_m) / self.width_m;
-            let reach = |index: usize| {
-                let of_aside = asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max);
-                of_aside * outermost + self.width_m * LEAST_APART
-            };
-            let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
-            let square = along.perp() * (self.width_m / 2.0);
-            let first = breaks.partition_point(|&station| station <= from_m);
-            let mut last_m = from_m;
-            for &station in breaks[first..].iter().take_while(|&&station| station < to_m) {
-                if station - last_m > self.width_m * LEAST_APART {
-                    let at = at + along * (station - stations[index]);
-                    sections.push(section(station, at, [square, -square], level_m));
-                    last_m = station;
-                }
+/// The sections of a deck at every vertex of its line and, where they do not come in the way of a miter, at the stations
+/// `breaks_m`, stations rising. A miter is at most `miter_limit` half widths long, at least 1.
+pub fn sections(
+    alignment: &Alignment,
+    beyond: Continuations,
+    miter_limit: f64,
+    breaks_m: &[f64],
+) -> Vec<DeckSection> {
+    let mut breaks: Vec<f64> = breaks_m.iter().copied().take(MOST_BREAKS).collect();
+    breaks.sort_by(f64::total_cmp);
+    let (points, stations) = (alignment.line.points(), alignment.line.stations());
+    let width_m = alignment.width.widest_m();
+    let aside = |index| aside(points, index, beyond, width_m / 2.0, miter_limit);
+    let asides: Vec<[DVec2; 2]> = (0..points.len()).map(aside).collect();
+    let section = |station_m: f64, at: DVec2, aside: [DVec2; 2]| DeckSection {
+        station_m,
+        at,
+        aside,
+        edges_m: [alignment.level_m(station_m); 2],
+        parapets: [true; 2],
+    };
+    let mut sections = Vec::with_capacity(points.len() + breaks.len());
+    for (index, &at) in points.iter().enumerate() {
+        sections.push(section(stations[index], at, asides[index]));
+        let (Some(&next), Some(&end_m)) = (points.get(index + 1), stations.get(index + 1)) else {
+            continue;
+        };
+        let along = (next - at).normalize_or_zero();
+        // Parapets stand beside the carriageway, and on a bend their inner corners reach further along it.
+        let outermost = 1.0 + 2.0 * PARAPET_THICK_M * magnified(width_m) / width_m;
+        let reach = |index: usize| {
+            let of_aside = asides[index].iter().map(|aside| aside.dot(along).abs()).fold(0.0, f64::max);
+            of_aside * outermost + width_m * LEAST_APART
+        };
+        let (from_m, to_m) = (stations[index] + reach(index), end_m - reach(index + 1));
+        let square = along.perp() * (width_m / 2.0);
+        let first = breaks.partition_point(|&station| station <= from_m);
+        let mut last_m = from_m;
+        for &station in breaks[first..].iter().take_while(|&&station| station < to_m) {
+            if station - last_m > width_m * LEAST_APART {
+                let at = at + along * (station - stations[index]);
+                sections.push(section(station, at, [square, -square]));
+                last_m = station;
             }
         }
-        sections
     }
-
-    /// The vectors from a vertex to both edges.
-    fn aside(&self, index: usize) -> [DVec2; 2] {
-        let points = self.line.points();
-        let at = points[index];
-        let before = if index > 0 { Some(points[index - 1]) } else { self.beyond[0] };
-        let after = points.get(index + 1).copied().or(self.beyond[1]);
-        let half = self.width_m / 2.0;
-        let leg = index.saturating_sub(1);
-        let to_left = (points[leg + 1] - points[leg]).normalize_or_zero().perp() * half;
-        let square = [to_left, -to_left];
-        let (Some(before), Some(after)) = (before, after) else { return square };
-        let bend = LineBend { points: [before, at, after], half };
-        if let Some(miter) = bend.mitered(self.miter_limit) {
-            return [miter, -miter];
-        }
-        // What continues beyond an end does so with an edge of its own; see `ribbon::stroke`.
-        let is_end = index == 0 || index + 1 == points.len();
-        bend.limited(self.miter_limit, LONGEST_INNER).filter(|_| !is_end).unwrap_or(square)
-    }
+    sections
 }
 
-fn section(station_m: f64, at: DVec2, aside: [DVec2; 2], level_m: &dyn Fn(f64) -> f64) -> DeckSection {
-    DeckSection { station_m, at, aside, edges_m: [level_m(station_m); 2], parapets: [true; 2] }
+/// The vectors from a vertex to both edges.
+fn aside(points: &[DVec2], index: usize, beyond: Continuations, half: f64, miter_limit: f64) -> [DVec2; 2] {
+    let leg = index.saturating_sub(1);
+    let to_left = offset::square([points[leg], points[leg + 1]], half);
+    let square = [to_left, -to_left];
+    let Some(bend) = LineBend::at(points, index, beyond, half) else { return square };
+    if let Some(miter) = bend.mitered(miter_limit) {
+        return [miter, -miter];
+    }
+    // What continues beyond an end does so with an edge of its own; see `ribbon::stroke`.
+    let is_end = index == 0 || index + 1 == points.len();
+    bend.limited(miter_limit, LONGEST_INNER).filter(|_| !is_end).unwrap_or(square)
 }
 
 impl DeckSection {
@@ -141,6 +130,7 @@ impl DeckSection {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::polyline::Polyline;
     use proptest::prelude::*;
 
     fn turned(points: &[(f64, f64)], quarter: u32) -> Polyline {
@@ -164,21 +154,20 @@ mod tests {
     fn a_gentle_course_covers_width_times_length_however_it_is_turned() {
         for quarter in 0..4 {
             let line = turned(&[(0.0, 0.0), (80.0, 0.0), (150.0, 30.0), (190.0, 90.0)], quarter);
-            let course = DeckCourse { line: &line, beyond: [None; 2], width_m: 8.0, miter_limit: 2.0 };
+            let alignment = Alignment::on_ground(line, 8.0);
             let breaks: Vec<f64> = (0..40).map(|index| f64::from(index) * 7.0).collect();
-            let sections = course.sections(&breaks, &|_| 0.0);
+            let sections = sections(&alignment, Continuations::default(), 2.0, &breaks);
             assert!(sections.len() > 25);
             let area: f64 = doubled_areas(&sections).iter().sum::<f64>() / 2.0;
-            assert!((area - 8.0 * line.length()).abs() < 1e-9, "{area}");
+            assert!((area - 8.0 * alignment.line.length()).abs() < 1e-9, "{area}");
         }
     }
 
     #[test]
     fn an_end_is_mitered_with_what_goes_on_there() {
         let line = turned(&[(0.0, 0.0), (50.0, 0.0)], 0);
-        let beyond = [Some(DVec2::new(-30.0, 30.0)), None];
-        let sections =
-            DeckCourse { line: &line, beyond, width_m: 6.0, miter_limit: 2.0 }.sections(&[], &|_| 0.0);
+        let beyond = Continuations { before: Some(DVec2::new(-30.0, 30.0)), after: None };
+        let sections = sections(&Alignment::on_ground(line, 6.0), beyond, 2.0, &[]);
         let [left, right] = sections[0].aside;
         assert_eq!(left, -right);
         assert!((left.y - 3.0).abs() < 1e-12 && left.x > 1.0 || left.x < -1.0, "{left}");
@@ -199,10 +188,9 @@ mod tests {
                 at += DVec2::new(libm::cos(heading), libm::sin(heading)) * length;
                 points.push((at.x, at.y));
             }
-            let line = turned(&points, quarter);
-            let course = DeckCourse { line: &line, beyond: [None; 2], width_m, miter_limit: 2.0 };
+            let alignment = Alignment::on_ground(turned(&points, quarter), width_m);
             let breaks: Vec<f64> = (0..200).map(|index| f64::from(index) * 3.0).collect();
-            let sections = course.sections(&breaks, &|_| 0.0);
+            let sections = sections(&alignment, Continuations::default(), 2.0, &breaks);
             for pair in sections.windows(2) {
                 prop_assert!(pair[0].station_m < pair[1].station_m);
             }

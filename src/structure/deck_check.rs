@@ -12,13 +12,28 @@ type CornerBits = [u32; 3];
 /// Edges nearer than this to each other are one, in meters: computed twice, they are rounded to f32 twice.
 const SAME_M: f32 = 1e-3;
 
+/// An edge along which a surface is open.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the surface is open along the edge from {from} to {to}")]
+pub struct OpenSurfaceError {
+    /// Where the edge begins, in the world.
+    pub from: Vec3,
+    /// Where it ends.
+    pub to: Vec3,
+}
+
 /// Whether every edge of a triangle is run along once in each direction, or as often in one as in the other: then the
 /// meshes are the whole surface of one or several solids. Positions are compared whichever mesh and vertex they belong
 /// to: bit by bit, and where that leaves edges over, to a millimeter.
 ///
 /// # Errors
-/// A sentence that names an edge where the surface is open.
-pub fn closed(meshes: &[&DrawMesh]) -> Result<(), String> {
+/// An edge where the surface is open.
+pub fn closed(meshes: &[&DrawMesh]) -> Result<(), OpenSurfaceError> {
+    unmatched(open_edges(meshes)).map_or(Ok(()), |(from, to)| Err(OpenSurfaceError { from, to }))
+}
+
+/// The edges that triangles run along more often in this direction than in the other, compared bit by bit.
+pub(in crate::structure) fn open_edges(meshes: &[&DrawMesh]) -> impl Iterator<Item = (Vec3, Vec3)> {
     let mut edges: BTreeMap<(CornerBits, CornerBits), i32> = BTreeMap::new();
     for mesh in meshes {
         for triangle in &mesh.triangles {
@@ -30,15 +45,11 @@ pub fn closed(meshes: &[&DrawMesh]) -> Result<(), String> {
             }
         }
     }
-    let open = edges.into_iter().flat_map(|((from, to), count)| {
+    edges.into_iter().flat_map(|((from, to), count)| {
         let [from, to] = [from, to].map(|corner| Vec3::from(corner.map(f32::from_bits)));
         let edge = if count > 0 { (from, to) } else { (to, from) };
         std::iter::repeat_n(edge, count.unsigned_abs() as usize)
-    });
-    match unmatched(open) {
-        None => Ok(()),
-        Some((from, to)) => Err(format!("the surface is open along the edge from {from} to {to}")),
-    }
+    })
 }
 
 /// The first of some directed edges that has a length and no other runs back along.

@@ -4,6 +4,7 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex};
+use crate::geom::polygon;
 use crate::mesh::sink::{MeshSink, VertexId};
 
 /// Collects faces; each has vertices of its own, so that its edges are sharp.
@@ -25,25 +26,24 @@ impl Faces {
 
     /// As [`Self::polygon`], with texture coordinates.
     pub fn textured(&mut self, corners: impl IntoIterator<Item = (Vec3, Vec2)>, color: Srgba) {
-        let corners: Vec<(Vec3, Vec2)> = corners.into_iter().collect();
-        let Some(normal) = normal(&corners) else { return };
-        let vertex = |&(at, uv): &(Vec3, Vec2)| DrawVertex {
-            position: at.to_array(),
-            normal: normal.to_array(),
-            uv: uv.to_array(),
-            color,
+        let ids = self.vertices(&corners.into_iter().collect::<Vec<_>>(), color);
+        polygon::fan(&ids).for_each(|triangle| self.mesh.triangle(triangle));
+    }
+
+    /// Adds the corners of a flat polygon with its normal; none where it has no area.
+    fn vertices(&mut self, corners: &[(Vec3, Vec2)], color: Srgba) -> Vec<VertexId> {
+        let Some(normal) = normal(corners) else { return Vec::new() };
+        let vertex = |&(at, uv): &(Vec3, Vec2)| {
+            let (position, normal, uv) = (at.to_array(), normal.to_array(), uv.to_array());
+            self.mesh.vertex(DrawVertex { position, normal, uv, color })
         };
-        let ids: Vec<VertexId> = corners.iter().map(|corner| self.mesh.vertex(vertex(corner))).collect();
-        for pair in ids[1..].windows(2) {
-            self.mesh.triangle([ids[0], pair[0], pair[1]]);
-        }
+        corners.iter().map(vertex).collect()
     }
 
     /// Adds the quads between two rings of as many corners, the second counter-clockwise about the first seen from outside.
     pub fn tube(&mut self, near: &[Vec3], far: &[Vec3], color: Srgba) {
-        for (side, &corner) in near.iter().enumerate() {
-            let next = (side + 1) % near.len();
-            self.polygon(&[corner, near[next], far[next], far[side]], color);
+        for ((a, b), (d, c)) in polygon::edges(near).zip(polygon::edges(far)) {
+            self.polygon(&[a, b, c, d], color);
         }
     }
 
@@ -62,24 +62,18 @@ impl Faces {
     /// where it faces; nothing where it has no area.
     pub fn flat(&mut self, corners: &[Vec3], triangles: &[[usize; 3]], color: Srgba) {
         let around: Vec<(Vec3, Vec2)> = corners.iter().map(|&at| (at, Vec2::ZERO)).collect();
-        let Some(normal) = normal(&around) else { return };
-        let vertex = |&at: &Vec3| DrawVertex {
-            position: at.to_array(),
-            normal: normal.to_array(),
-            uv: [0.0; 2],
-            color,
-        };
-        let ids: Vec<VertexId> = corners.iter().map(|at| self.mesh.vertex(vertex(at))).collect();
-        triangles.iter().for_each(|triangle| self.mesh.triangle(triangle.map(|index| ids[index])));
+        let ids = self.vertices(&around, color);
+        if !ids.is_empty() {
+            triangles.iter().for_each(|triangle| self.mesh.triangle(triangle.map(|index| ids[index])));
+        }
     }
 
     /// Adds upright walls under a closed ring, counter-clockwise in plan, facing outward: from `foot` to `top`, both
     /// drawn heights.
     pub fn walls(&mut self, ring: &[DVec2], (foot, top): (f32, f32), color: Srgba) {
-        for (index, from) in ring.iter().enumerate() {
-            let to = ring[(index + 1) % ring.len()];
-            let at = |plan: DVec2, z: f32| plan.as_vec2().extend(z);
-            self.polygon(&[at(*from, foot), at(to, foot), at(to, top), at(*from, top)], color);
+        let at = |plan: DVec2, z: f32| plan.as_vec2().extend(z);
+        for (from, to) in polygon::edges(ring) {
+            self.polygon(&[at(from, foot), at(to, foot), at(to, top), at(from, top)], color);
         }
     }
 }

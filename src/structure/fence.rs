@@ -1,8 +1,9 @@
 //! The posts of fences, and where things stand along a line.
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::geom::polyline::Polyline;
 use crate::structure::faces::Faces;
 use crate::structure::power_beam::square;
 use crate::terrain::support_surface::SupportSurface;
@@ -16,6 +17,13 @@ pub struct PostPosition {
     pub at: DVec2,
     /// A unit vector along the line.
     pub along: DVec2,
+}
+
+impl PostPosition {
+    /// The point `aside_m` to the left of the line there, at height `z`.
+    pub fn beside(&self, aside_m: f64, z: f64) -> DVec3 {
+        (self.at + self.along.perp() * aside_m).extend(z)
+    }
 }
 
 /// Posts of one size.
@@ -44,22 +52,21 @@ impl Posts {
     }
 }
 
-/// Where posts stand along a line of distinct points: at every vertex and, evenly in between, no more than `spacing_m`
+/// Where posts stand along a line: at every vertex and, evenly in between, no more than `spacing_m`
 /// apart. Each stands along the bisector of the line at it.
-pub fn stands(points: &[DVec2], spacing_m: f64) -> Vec<PostPosition> {
-    let mut stands = Vec::new();
+pub fn stands(line: &Polyline, spacing_m: f64) -> Vec<PostPosition> {
+    let (points, round, mut stands) = (line.points(), line.is_closed(), Vec::new());
     let direction = |from: DVec2, to: DVec2| (to - from).normalize_or(DVec2::X);
-    let round = points.len() > 3 && points.first() == points.last();
-    for (index, pair) in points.windows(2).enumerate() {
-        let along = direction(pair[0], pair[1]);
+    for (index, [from, to]) in line.legs().enumerate() {
+        let along = direction(from, to);
         let before = match index {
             0 if round => direction(points[points.len() - 2], points[0]),
             0 => along,
-            _ => direction(points[index - 1], pair[0]),
+            _ => direction(points[index - 1], from),
         };
-        stands.push(PostPosition { at: pair[0], along: (before + along).normalize_or(along) });
-        let count = spans(pair[0].distance(pair[1]), spacing_m);
-        let between = (1..count).map(|step| pair[0].lerp(pair[1], f64::from(step) / f64::from(count)));
+        stands.push(PostPosition { at: from, along: (before + along).normalize_or(along) });
+        let count = spans(from.distance(to), spacing_m);
+        let between = (1..count).map(|step| from.lerp(to, f64::from(step) / f64::from(count)));
         stands.extend(between.map(|at| PostPosition { at, along }));
     }
     if let ([.., before, last], false) = (points, round) {
@@ -81,7 +88,7 @@ mod tests {
     #[test]
     fn posts_stand_at_vertices_and_no_further_apart_than_they_may() {
         let points = [DVec2::ZERO, DVec2::X * 10.0, DVec2::new(10.0, 7.0)];
-        let stands = stands(&points, 3.0);
+        let stands = stands(&Polyline::new(points, 0.0).expect("a line"), 3.0);
         assert_eq!(stands.len(), 4 + 3 + 1);
         assert!(points.iter().all(|&point| stands.iter().any(|stand| stand.at == point)));
         assert!(stands.windows(2).all(|pair| pair[0].at.distance(pair[1].at) <= 3.0 + 1e-9));
@@ -92,6 +99,6 @@ mod tests {
     #[test]
     fn a_fence_that_runs_round_has_one_post_where_it_begins() {
         let ring = [DVec2::ZERO, DVec2::X * 4.0, DVec2::splat(4.0), DVec2::Y * 4.0, DVec2::ZERO];
-        assert_eq!(stands(&ring, 2.0).len(), 8);
+        assert_eq!(stands(&Polyline::new(ring, 0.0).expect("a line"), 2.0).len(), 8);
     }
 }

@@ -15,10 +15,11 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::profile::Profile;
 use crate::structure::faces::Faces;
-use crate::structure::fence_track::{Ends, Track, TrackJoint, TrackStretch};
+use crate::structure::fence_track::{self, Ends, TrackJoint, TrackStretch};
 use crate::terrain::support_surface;
-use crate::terrain::support_surface::GroundRun;
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// A corner of a cross-section.
@@ -56,8 +57,8 @@ pub struct Ruffle {
 /// A cross-section carried along a track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FenceBand {
-    /// The way it takes.
-    pub track: Track,
+    /// The track's centerline and width.
+    pub alignment: Alignment,
     /// What it looks like across.
     pub section: BandSection,
     /// How its surface departs from that; `None` for an even one.
@@ -85,7 +86,10 @@ pub struct FenceRows {
 impl FenceBand {
     /// The feet of the band on a ground, in stretches where there are gaps in it.
     pub fn rows(&self, ground: &dyn TriangleSurface) -> Vec<FenceRows> {
-        self.track.stretches.iter().flat_map(|stretch| self.rows_along(stretch, ground)).collect()
+        fence_track::stretches(&self.alignment)
+            .iter()
+            .flat_map(|stretch| self.rows_along(stretch, ground))
+            .collect()
     }
 
     /// Adds the band, set on a ground, to `faces`.
@@ -137,15 +141,15 @@ impl FenceBand {
         let mut found = Vec::new();
         for right_run in &right.runs {
             for left_run in &left.runs {
-                let low = right_run.span().0.max(left_run.span().0);
-                let high = right_run.span().1.min(left_run.span().1);
+                let ([right_low, right_high], [left_low, left_high]) = (right_run.span(), left_run.span());
+                let (low, high) = (right_low.max(left_low), right_high.min(left_high));
                 if high - low <= SAME_PART {
                     continue;
                 }
                 let parts = self.parts([right_run, left_run], (low, high), right.from.distance(right.to));
                 let row = |&part: &f64| BandRow {
-                    right: right.from.lerp(right.to, part).extend(right_run.z_at(part)),
-                    left: left.from.lerp(left.to, part).extend(left_run.z_at(part)),
+                    right: right.from.lerp(right.to, part).extend(right_run.at(part)),
+                    left: left.from.lerp(left.to, part).extend(left_run.at(part)),
                 };
                 let rows = parts.iter().map(row).collect();
                 found.push(BandSegment { rows, begins: low <= SAME_PART, ends: high >= 1.0 - SAME_PART });
@@ -155,9 +159,9 @@ impl FenceBand {
     }
 
     /// Where along a segment rows stand: where either foot is cut, and where the ruffle needs more.
-    fn parts(&self, runs: [&GroundRun; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
+    fn parts(&self, runs: [&Profile; 2], (low, high): (f64, f64), length_m: f64) -> Vec<f64> {
         let inside = |part: &f64| *part > low + SAME_PART && *part < high - SAME_PART;
-        let cuts = runs.into_iter().flat_map(GroundRun::stations).map(|station| station.part);
+        let cuts = runs.into_iter().flat_map(Profile::stations).copied();
         let mut parts: Vec<f64> = cuts.filter(inside).collect();
         if let Some(ruffle) = &self.ruffle {
             let steps = (length_m / ruffle.every_m).min(MOST_STEPS) as u32;
@@ -206,7 +210,7 @@ const MOST_STEPS: f64 = 10_000.0;
 struct Foot {
     from: DVec2,
     to: DVec2,
-    runs: Vec<GroundRun>,
+    runs: Vec<Profile>,
 }
 
 impl Foot {
@@ -216,7 +220,7 @@ impl Foot {
     }
 
     fn reaches_end(&self) -> bool {
-        self.runs.last().is_some_and(|run| run.span().1 >= 1.0 - SAME_PART)
+        self.runs.last().is_some_and(|run| run.span()[1] >= 1.0 - SAME_PART)
     }
 }
 

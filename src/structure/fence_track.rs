@@ -12,7 +12,8 @@
 
 use glam::DVec2;
 
-use crate::geom::offset::LineBend;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::{self, Continuations, LineBend};
 
 /// How long a miter may be in half widths: turns of up to 120 degrees keep theirs.
 const MITER_LIMIT: f64 = 2.0;
@@ -51,48 +52,43 @@ pub struct TrackStretch {
     pub ends: Ends,
 }
 
-/// A line with a width.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Track {
-    /// In the order of the line.
-    pub stretches: Vec<TrackStretch>,
-}
-
-impl Track {
-    /// The track along `points`, no two neighbors the same, `half_width_m` to either side. It runs round where the last
-    /// point is the first.
-    pub fn new(points: &[DVec2], half_width_m: f64) -> Self {
-        let last = points.len().saturating_sub(1);
-        let round = last >= 3 && points[0] == points[last];
-        let miter = |points: [DVec2; 3]| LineBend { points, half: half_width_m }.mitered(MITER_LIMIT);
-        let around = round.then(|| miter([points[last - 1], points[0], points[1]])).flatten();
-        let square = |from: DVec2, to: DVec2| (to - from).normalize_or_zero().perp() * half_width_m;
-        let mut stretches = Vec::new();
-        let mut joints = Vec::new();
-        for index in 0..points.len() {
-            let at = points[index];
-            let end = |to_left: DVec2| TrackJoint { at, to_left };
-            if index == 0 && last > 0 {
-                joints.push(end(around.unwrap_or_else(|| square(at, points[1]))));
-            } else if index == last && last > 0 {
-                joints.push(end(around.unwrap_or_else(|| square(points[last - 1], at))));
-            } else if let Some(to_left) = miter([points[index - 1], at, points[index + 1]]) {
-                joints.push(end(to_left));
-            } else {
-                joints.push(end(square(points[index - 1], at)));
-                stretches.push(TrackStretch { joints: std::mem::take(&mut joints), ends: Ends::Two });
-                joints.push(end(square(at, points[index + 1])));
+/// The stretches of the track along an alignment of one width, in order. It runs round where the line is closed.
+pub fn stretches(alignment: &Alignment) -> Vec<TrackStretch> {
+    let (line, half_m) = (&alignment.line, alignment.width.widest_m() / 2.0);
+    let points = line.points();
+    let beyond = if line.is_closed() { Continuations::around(line) } else { Continuations::default() };
+    let (mut stretches, mut joints, mut ends) = (Vec::new(), Vec::new(), Ends::Two);
+    for (index, &at) in points.iter().enumerate() {
+        let joint = |to_left: DVec2| TrackJoint { at, to_left };
+        let square = |leg: usize| joint(offset::square([points[leg], points[leg + 1]], half_m));
+        let bend = LineBend::at(points, index, beyond, half_m);
+        if let Some(to_left) = bend.and_then(|bend| bend.mitered(MITER_LIMIT)) {
+            if index == 0 {
+                ends = Ends::None;
             }
+            joints.push(joint(to_left));
+            continue;
         }
-        let ends = if around.is_some() && stretches.is_empty() { Ends::None } else { Ends::Two };
-        stretches.extend((joints.len() > 1).then_some(TrackStretch { joints, ends }));
-        Self { stretches }
+        joints.push(square(index.saturating_sub(1)));
+        if index > 0 && index + 1 < points.len() {
+            stretches.push(TrackStretch { joints: std::mem::take(&mut joints), ends: Ends::Two });
+            joints.push(square(index));
+        }
     }
+    let ends = if stretches.is_empty() { ends } else { Ends::Two };
+    stretches.push(TrackStretch { joints, ends });
+    stretches
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::polyline::Polyline;
+
+    fn track(points: &[DVec2]) -> Vec<TrackStretch> {
+        let line = Polyline::new(points.iter().copied(), 0.0).expect("a line");
+        stretches(&Alignment::on_ground(line, 2.0))
+    }
 
     fn turned(points: &[(f64, f64)], quarter: u32) -> Vec<DVec2> {
         let turn = |&(x, y): &(f64, f64)| (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp());
@@ -103,9 +99,9 @@ mod tests {
     fn both_sides_keep_their_distance_round_a_corner() {
         for quarter in 0..4 {
             let points = turned(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)], quarter);
-            let track = Track::new(&points, 1.0);
-            assert_eq!(track.stretches.len(), 1);
-            let joint = track.stretches[0].joints[1];
+            let track = track(&points);
+            assert_eq!(track.len(), 1);
+            let joint = track[0].joints[1];
             let inner = turned(&[(9.0, 1.0)], quarter)[0];
             assert!(joint.across(1.0).distance(inner) < 1e-12, "{joint:?}");
         }
@@ -113,10 +109,9 @@ mod tests {
 
     #[test]
     fn a_line_that_turns_back_ends_square_and_begins_anew() {
-        let track = Track::new(&turned(&[(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)], 0), 1.0);
-        assert_eq!(track.stretches.len(), 2);
-        let lengths =
-            track.stretches.iter().flat_map(|stretch| &stretch.joints).map(|joint| joint.to_left.length());
+        let track = track(&turned(&[(0.0, 0.0), (10.0, 0.0), (0.0, 1.0)], 0));
+        assert_eq!(track.len(), 2);
+        let lengths = track.iter().flat_map(|stretch| &stretch.joints).map(|joint| joint.to_left.length());
         assert!(
             lengths.clone().all(|length| (length - 1.0).abs() < 1e-12),
             "{:?}",
@@ -127,9 +122,9 @@ mod tests {
     #[test]
     fn a_ring_has_no_ends() {
         let ring = turned(&[(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)], 0);
-        let track = Track::new(&ring, 1.0);
-        assert_eq!((track.stretches.len(), track.stretches[0].ends), (1, Ends::None));
-        let joints = &track.stretches[0].joints;
+        let track = track(&ring);
+        assert_eq!((track.len(), track[0].ends), (1, Ends::None));
+        let joints = &track[0].joints;
         assert_eq!(joints[0], joints[4]);
         assert_eq!(joints[0].across(1.0), DVec2::ONE);
     }

@@ -7,9 +7,10 @@
 //!  ─────────────────► the line runs along the middle
 //! ```
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::draw::color::Srgba;
+use crate::earthworks::alignment::Alignment;
 use crate::structure::faces::Faces;
 use crate::structure::fence::{PostPosition, spans};
 use crate::structure::power_beam::{beam, square};
@@ -80,20 +81,20 @@ pub fn rows(width_m: f64, spacing_m: f64) -> u32 {
     (width_m / spacing_m).floor().min(f64::from(u32::MAX - 1)) as u32 + 1
 }
 
-/// Where the obstacles of a belt stand: along every segment of the line in rows across its width, every other row moved
+/// Where the obstacles of a belt stand: along every leg of an alignment in rows across its width, every other row moved
 /// on by half a spacing.
-pub fn belt(points: &[DVec2], width_m: f64, spacing_m: f64) -> Vec<(PostPosition, Obstacle)> {
-    let rows = rows(width_m, spacing_m);
+pub fn belt(alignment: &Alignment, spacing_m: f64) -> Vec<(PostPosition, Obstacle)> {
+    let rows = rows(alignment.width.widest_m(), spacing_m);
     let mut stands = Vec::new();
-    for pair in points.windows(2) {
-        let Some(along) = (pair[1] - pair[0]).try_normalize() else { continue };
-        let count = spans(pair[0].distance(pair[1]), spacing_m);
+    for [from, to] in alignment.line.legs() {
+        let Some(along) = (to - from).try_normalize() else { continue };
+        let count = spans(from.distance(to), spacing_m);
         for row in 0..rows {
             let aside_m = (f64::from(row) - f64::from(rows - 1) / 2.0) * spacing_m;
             let (shift, obstacle) =
                 if row % 2 == 0 { (0.25, Obstacle::Tooth) } else { (0.75, Obstacle::Hedgehog) };
             stands.extend((0..count).map(|index| {
-                let at = pair[0].lerp(pair[1], (f64::from(index) + shift) / f64::from(count));
+                let at = from.lerp(to, (f64::from(index) + shift) / f64::from(count));
                 (PostPosition { at: at + along.perp() * aside_m, along }, obstacle)
             }));
         }
@@ -104,10 +105,13 @@ pub fn belt(points: &[DVec2], width_m: f64, spacing_m: f64) -> Vec<(PostPosition
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::polyline::Polyline;
+    use glam::DVec2;
 
     #[test]
     fn rows_lie_across_the_width_and_every_other_is_moved_on() {
-        let stands = belt(&[DVec2::ZERO, DVec2::X * 12.0], 6.0, 3.0);
+        let line = Polyline::new([DVec2::ZERO, DVec2::X * 12.0], 0.0);
+        let stands = belt(&Alignment::on_ground(line.expect("a line"), 6.0), 3.0);
         assert_eq!(stands.len(), 3 * 4);
         let of = |y: f64| -> Vec<f64> {
             stands.iter().filter(|(stand, _)| stand.at.y == y).map(|(stand, _)| stand.at.x).collect()

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
+use crate::geom::polygon;
 use crate::structure::faces::Faces;
 
 /// Weathered concrete, and its lit top.
@@ -15,8 +16,7 @@ const TOP: Srgba = Srgba::opaque(182, 178, 168);
 pub fn block(top: &[Vec3; 4], foot_z: f32) -> DrawMesh {
     let mut faces = Faces::default();
     faces.polygon(top, TOP);
-    for (index, &from) in top.iter().enumerate() {
-        let to = top[(index + 1) % top.len()];
+    for (from, to) in polygon::edges(top) {
         faces.polygon(&[from.with_z(foot_z), to.with_z(foot_z), to, from], WALL);
     }
     faces.into_mesh()

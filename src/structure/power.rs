@@ -12,10 +12,11 @@
 use glam::DVec3;
 
 use crate::draw::color::Srgba;
+use crate::geom::profile::Profile;
 use crate::structure::faces::Faces;
 use crate::structure::fence::PostPosition;
 use crate::structure::power_beam::beam;
-use crate::terrain::support_surface::{GroundRun, SupportSurface, ground_runs};
+use crate::terrain::support_surface::{SupportSurface, ground_runs};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
@@ -83,15 +84,12 @@ impl PowerLine {
         &self,
         [from, to]: [PostPosition; 2],
         [from_z, to_z]: [f64; 2],
-        ground: &[GroundRun],
+        ground: &[Profile],
         faces: &mut Faces,
     ) {
-        let fastened = |stand: &PostPosition, foot_z: f64, (aside, up): (f64, f64)| {
-            (stand.at + stand.along.perp() * aside).extend(foot_z + up)
-        };
         let half = self.height_m as f32 * WIRE_HALF;
-        for fastening in fastenings(self) {
-            let ends = (fastened(&from, from_z, fastening), fastened(&to, to_z, fastening));
+        for (aside, up) in fastenings(self) {
+            let ends = (from.beside(aside, from_z + up), to.beside(aside, to_z + up));
             let wanted = self.sag * ends.0.distance(ends.1);
             let sag_m = sag(ends, wanted, ground, self.height_m * CLEARANCE);
             for piece in 0..WIRE_PIECES {
@@ -111,7 +109,7 @@ impl PowerLine {
 
     fn pole(&self, stand: &PostPosition, z: f64, faces: &mut Faces) {
         let height = self.height_m as f32;
-        let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
+        let place = |aside: f64, up: f64| stand.beside(aside, z + up).as_vec3();
         let (foot, top) = (place(0.0, -0.1 * self.height_m), place(0.0, self.height_m));
         beam(faces, (foot, top), (height * 0.014, height * 0.009), WOOD);
         let half = self.width_m / 2.0;
@@ -140,18 +138,10 @@ impl PowerLine {
                 beam(faces, (at(corner, levels[0]), at(corner, levels[1])), (thick, thick * 0.8), STEEL);
             }
             for levels in LEVELS.windows(2) {
-                beam(
-                    faces,
-                    (at(corner, levels[0]), at(corner + 1, levels[1])),
-                    (thick * 0.5, thick * 0.5),
-                    STEEL,
-                );
-                beam(
-                    faces,
-                    (at(corner + 1, levels[0]), at(corner, levels[1])),
-                    (thick * 0.5, thick * 0.5),
-                    STEEL,
-                );
+                for (from, to) in [(corner, corner + 1), (corner + 1, corner)] {
+                    let brace = (at(from, levels[0]), at(to, levels[1]));
+                    beam(faces, brace, (thick * 0.5, thick * 0.5), STEEL);
+                }
             }
         }
         for (reach, up) in [(0.5, LOWEST_WIRE + 0.03), (0.35, 0.85)] {
@@ -162,7 +152,7 @@ impl PowerLine {
     /// An arm to either side: a tie and a strut that meet at its end, and what the wire hangs from.
     fn arm(&self, stand: &PostPosition, z: f64, (reach, up): (f64, f64), faces: &mut Faces) {
         let thick = self.height_m as f32 * 0.006;
-        let place = |aside: f64, up: f64| (stand.at + stand.along.perp() * aside).extend(z + up).as_vec3();
+        let place = |aside: f64, up: f64| stand.beside(aside, z + up).as_vec3();
         for side in [-1.0, 1.0] {
             let end = place(side * reach, up);
             beam(faces, (place(0.0, up), end), (thick * 1.4, thick), STEEL);
@@ -182,7 +172,7 @@ fn hanging((from, to): (DVec3, DVec3), sag_m: f64, part: f64) -> DVec3 {
 }
 
 /// The sag of a wire: `wanted_m`, or less over the ground beneath the line, at least 0.
-fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f64) -> f64 {
+fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[Profile], clearance_m: f64) -> f64 {
     let over = |part: f64, z: f64| {
         let room = hanging(ends, 0.0, part).z - z - clearance_m;
         room / (4.0 * part * (1.0 - part))
@@ -191,12 +181,12 @@ fn sag(ends: (DVec3, DVec3), wanted_m: f64, ground: &[GroundRun], clearance_m: f
 }
 
 /// Where a span's clearance is looked at: where the ground under it bends, and evenly between, with its height.
-fn looks(ground: &[GroundRun]) -> impl Iterator<Item = (f64, f64)> + '_ {
+fn looks(ground: &[Profile]) -> impl Iterator<Item = (f64, f64)> + '_ {
     ground.iter().flat_map(|run| {
-        let (first, last) = run.span();
-        let bends = run.stations().iter().map(|station| (station.part, station.z));
+        let [first, last] = run.span();
+        let bends = run.stations().iter().copied().zip(run.values().iter().copied());
         let even = (1..LOOKS).map(|step| f64::from(step) / f64::from(LOOKS));
-        let even = even.filter(move |part| (first..=last).contains(part)).map(|part| (part, run.z_at(part)));
+        let even = even.filter(move |part| (first..=last).contains(part)).map(|part| (part, run.at(part)));
         bends.chain(even).filter(|(part, _)| (0.02..=0.98).contains(part))
     })
 }

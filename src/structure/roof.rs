@@ -181,17 +181,29 @@ impl RoofRectangle {
     }
 }
 
+/// A face of a roof that does not face up.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("face {face} of a {shape:?} roof covers {area_m2} m²")]
+pub struct UnitRoofError {
+    /// Its place among the roof's faces.
+    pub face: usize,
+    /// The roof's shape.
+    pub shape: words::RoofShape,
+    /// What it covers in plan, not above 0.
+    pub area_m2: f64,
+}
+
 /// The area in plan that a roof's faces cover, in square meters; each must face up.
 ///
 /// # Errors
-/// A sentence about the first face that does not.
-pub fn check(roof: &UnitRoof) -> Result<f64, String> {
+/// The first face that does not.
+pub fn check(roof: &UnitRoof) -> Result<f64, UnitRoofError> {
     let mut sum = 0.0;
-    for (index, face) in roof.faces.iter().enumerate() {
-        let ring: Vec<DVec2> = face.iter().map(|at| at.truncate()).collect();
+    for (face, corners) in roof.faces.iter().enumerate() {
+        let ring: Vec<DVec2> = corners.iter().map(|at| at.truncate()).collect();
         let area_m2 = polygon::doubled_area(&ring) / 2.0;
         if area_m2 <= 0.0 {
-            return Err(format!("face {index} of a {:?} roof covers {area_m2} m²", roof.shape));
+            return Err(UnitRoofError { face, shape: roof.shape, area_m2 });
         }
         sum += area_m2;
     }

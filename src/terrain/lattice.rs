@@ -293,6 +293,12 @@ impl Lattice {
         post.row as usize * self.columns as usize + post.column as usize
     }
 
+    /// The post of an [index](Self::index).
+    pub fn post_at(&self, index: usize) -> Post {
+        let columns = self.columns as usize;
+        Post { column: (index % columns) as u32, row: (index / columns) as u32 }
+    }
+
     /// The lowest and highest height; finite unless the lattice is a part without data.
     pub fn height_range(&self) -> (f32, f32) {
         let start = (f32::INFINITY, f32::NEG_INFINITY);
@@ -316,7 +322,11 @@ impl Lattice {
 
     /// The cell that holds a world position and the position within it, 0..=1 east and north; `None` outside.
     pub fn cell_at(&self, world: DVec2) -> Option<(Post, DVec2)> {
-        let grid = self.grid_at(world);
+        self.cell_at_grid(self.grid_at(world))
+    }
+
+    /// [`Self::cell_at`] of a grid position.
+    pub fn cell_at_grid(&self, grid: DVec2) -> Option<(Post, DVec2)> {
         let last = self.last_grid();
         if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
             return None;

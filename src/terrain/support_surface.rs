@@ -11,6 +11,7 @@
 use glam::DVec2;
 
 use crate::geom::convex;
+use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::terrain::triangle_surface::{TriangleSurface, plan, plane_z};
 
@@ -25,46 +26,9 @@ const MOST_PIECES: f64 = 64.0;
 /// The length of a piece in meters, before [`MOST_PIECES`] limits their number.
 const PIECE_M: f64 = 100.0;
 
-/// A position on a line with the ground there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineStation {
-    /// How far along the line, 0 at its start and 1 at its end.
-    pub part: f64,
-    /// World Z of the ground there.
-    pub z: f64,
-}
-
-/// A stretch of a line with ground under it: stations in ascending order, at least two; straight in between.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GroundRun {
-    stations: Vec<LineStation>,
-}
-
-impl GroundRun {
-    /// The stations.
-    pub fn stations(&self) -> &[LineStation] {
-        &self.stations
-    }
-
-    /// Its first and last part of the line.
-    pub fn span(&self) -> (f64, f64) {
-        (self.stations[0].part, self.stations[self.stations.len() - 1].part)
-    }
-
-    /// World Z of the ground at a part of the line; beyond the run that at its nearer end.
-    pub fn z_at(&self, part: f64) -> f64 {
-        let after = self.stations.partition_point(|station| station.part < part);
-        let to = self.stations[after.min(self.stations.len() - 1)];
-        let from = self.stations[after.max(1).min(self.stations.len() - 1) - 1];
-        let length = to.part - from.part;
-        let along = if length > 0.0 { ((part - from.part) / length).clamp(0.0, 1.0) } else { 1.0 };
-        from.z + (to.z - from.z) * along
-    }
-}
-
-/// The line `from`..`to` draped on `ground`, cut at the edges of its triangles: several runs where the ground has gaps,
-/// none where there is no ground or the line is a point.
-pub fn ground_runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<GroundRun> {
+/// World Z along the line `from`..`to` draped on `ground`, with a station, 0 at its start and 1 at its end, at every edge of
+/// the ground's triangles: several profiles where the ground has gaps, none where there is no ground or the line is a point.
+pub fn ground_runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<Profile> {
     let length = from.distance(to);
     if !(length.is_finite() && length > BESIDE_M) {
         return Vec::new();
@@ -77,28 +41,31 @@ pub fn ground_runs(ground: &dyn TriangleSurface, from: DVec2, to: DVec2) -> Vec<
         ground.visit_facets(&rect, &mut |facet| {
             if let Some((enter, leave)) = convex::clip_line(&plan(facet), (from, to), BESIDE_M) {
                 let z = |part: f64| plane_z(facet, from.lerp(to, part));
-                over.push([enter.max(low), leave.min(high)].map(|part| LineStation { part, z: z(part) }));
+                over.push([enter.max(low), leave.min(high)].map(|part| DVec2::new(part, z(part))));
             }
         });
     }
-    over.retain(|[enter, leave]| enter.part < leave.part);
-    over.sort_by(|a, b| a[0].part.total_cmp(&b[0].part).then(a[1].part.total_cmp(&b[1].part)));
+    over.retain(|[enter, leave]| enter.x < leave.x);
+    over.sort_by(|a, b| a[0].x.total_cmp(&b[0].x).then(a[1].x.total_cmp(&b[1].x)));
     joined(&over, 4.0 * BESIDE_M / length)
 }
 
-/// Joins the stretches over single triangles, in ascending order, to runs; gaps up to `gap` are rounding.
-fn joined(over: &[[LineStation; 2]], gap: f64) -> Vec<GroundRun> {
-    let mut runs: Vec<GroundRun> = Vec::new();
+/// Joins the stretches over single triangles, parts and heights in ascending order, to runs; gaps up to `gap` are rounding.
+fn joined(over: &[[DVec2; 2]], gap: f64) -> Vec<Profile> {
+    let mut runs: Vec<Vec<DVec2>> = Vec::new();
     for &[enter, leave] in over {
-        if let Some(run) = runs.last_mut().filter(|run| enter.part <= run.span().1 + gap) {
-            if leave.part > run.span().1 + gap {
-                run.stations.push(leave);
-            }
-        } else if leave.part - enter.part > gap {
-            runs.push(GroundRun { stations: vec![enter, leave] });
+        let reached = runs.last().and_then(|run| run.last()).map_or(f64::NEG_INFINITY, |end| end.x);
+        match runs.last_mut() {
+            Some(run) if enter.x <= reached + gap => run.extend((leave.x > reached + gap).then_some(leave)),
+            _ if leave.x - enter.x > gap => runs.push(vec![enter, leave]),
+            _ => {}
         }
     }
-    runs
+    let profile = |run: Vec<DVec2>| {
+        let (parts, heights) = run.into_iter().map(|at| (at.x, at.y)).unzip();
+        Profile::new(parts, heights)
+    };
+    runs.into_iter().filter_map(profile).collect()
 }
 
 /// The ground that a picture's structures stand on: as displayed, or at full resolution where that ground is out of view,
@@ -155,9 +122,9 @@ mod tests {
                     continue;
                 };
                 if from == to || part == 0.0 || part == 1.0 { continue }
-                let run = found.iter().find(|run| (run.span().0 - 1e-6..=run.span().1 + 1e-6).contains(&part));
+                let run = found.iter().find(|run| (run.span()[0] - 1e-6..=run.span()[1] + 1e-6).contains(&part));
                 prop_assert!(run.is_some(), "nothing at {part} of {found:?}");
-                let off = (run.expect("checked").z_at(part) - z).abs();
+                let off = (run.expect("checked").at(part) - z).abs();
                 prop_assert!(off < 1e-4, "{off} m at {part}");
             }
             prop_assert!(found.len() <= 1);
@@ -170,7 +137,7 @@ mod tests {
         let ground = FullResolution { lattice: &lattice };
         let found = ground_runs(&ground, DVec2::new(0.0, 71.0), DVec2::new(190.0, 71.0));
         assert_eq!(found.len(), 2);
-        assert!(found[0].span().1 < 0.55 && found[1].span().0 > 0.5);
+        assert!(found[0].span()[1] < 0.55 && found[1].span()[0] > 0.5);
     }
 
     #[test]

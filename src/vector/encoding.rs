@@ -6,7 +6,7 @@ use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 use oem_cp::code_table::DECODING_TABLE_CP_MAP;
 use oem_cp::code_table_type::TableType;
 
-/// How bytes become text; what an encoding leaves undefined becomes U+FFFD or a control character.
+/// An encoding of text. Undefined bytes decode to U+FFFD or a control character.
 #[derive(Clone, Copy)]
 pub(crate) enum TextEncoding {
     /// UTF-8 where the bytes are valid, else Windows-1252: for files that state nothing.
@@ -32,8 +32,8 @@ impl TextEncoding {
 
     /// Returns the encoding that a `.cpg` file or an XML declaration names, or `None` where it is unknown.
     ///
-    /// Names are labels of the WHATWG standard, and what ends in the number of a code page or of a part of ISO 8859:
-    /// `ANSI 1251`, `OEM 850`, `88591`.
+    /// Names are labels of the WHATWG standard, and names that end in the number of a code page or of a part of ISO
+    /// 8859: `ANSI 1251`, `OEM 850`, `88591`.
     pub fn from_name(name: &str) -> Option<Self> {
         let name = name.trim();
         if name.eq_ignore_ascii_case("ascii") || name.eq_ignore_ascii_case("us-ascii") {

@@ -15,57 +15,23 @@ pub(crate) const MAX_NAME_CHARS: usize = 60;
 
 /// Why a vector file cannot be read. The caller adds the file's name.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum VectorError {
-    /// The file is larger than is read into memory.
     #[error(
         "{bytes} bytes exceed the limit of {limit}; cut the file down with 'ogr2ogr -clipsrc' or '-where'"
     )]
-    TooLarge {
-        /// The file's size.
-        bytes: usize,
-        /// The largest size that is read.
-        limit: usize,
-    },
-    /// The file is packed and cannot be unpacked.
+    TooLarge { bytes: usize, limit: usize },
     #[error(transparent)]
     Archive(#[from] ArchiveError),
-    /// The JSON is of another kind.
     #[error("its \"type\" is \"{found}\", not a feature, a collection of features or a geometry; {remedy}")]
-    NotGeoJson {
-        /// The `type` of the top object.
-        found: String,
-        /// What to do.
-        remedy: &'static str,
-    },
+    NotGeoJson { found: String, remedy: &'static str },
     /// The file contradicts itself, ends too early, or is refused by the library that reads its format.
     #[error("the {format} is broken at {place}: {source}; fetch or export the file again")]
-    Broken {
-        /// The format's name.
-        format: &'static str,
-        /// A byte, a line, a record.
-        place: String,
-        /// What was found.
-        source: Box<dyn Error + Send + Sync>,
-    },
-    /// The format is read, but not this kind of it.
+    Broken { format: &'static str, place: String, source: Box<dyn Error + Send + Sync> },
     #[error("this {format} holds {content}, which cannot be read; {remedy}")]
-    Unsupported {
-        /// The format's name.
-        format: &'static str,
-        /// What cannot be read.
-        content: Cow<'static, str>,
-        /// What to do.
-        remedy: &'static str,
-    },
-    /// The file names no coordinate system, and its format has no default.
+    Unsupported { format: &'static str, content: Cow<'static, str>, remedy: &'static str },
     #[error("this {format} {reason}, so its coordinate system is unknown; state it with the key 'crs'")]
-    NoCrs {
-        /// The format's name.
-        format: &'static str,
-        /// What is missing.
-        reason: &'static str,
-    },
-    /// The file's coordinate system is not understood.
+    NoCrs { format: &'static str, reason: &'static str },
     #[error("its coordinate system cannot be used: {0}; state the right one with the key 'crs'")]
     Crs(#[from] CrsError),
     /// The `crs` member of a GeoJSON file is not understood.
@@ -76,43 +42,22 @@ pub enum VectorError {
         /// Why its name is not understood; `None` where it has none.
         source: Option<Box<CrsError>>,
     },
-    /// The file holds several layers, and none was requested.
     #[error("it holds {} layers; choose one with 'layer': {}", names.len(), list(names))]
-    WhichLayer {
-        /// The names of all layers.
-        names: Vec<String>,
-    },
-    /// The requested layer does not exist.
+    WhichLayer { names: Vec<String> },
     #[error("it has no layer '{wanted}'{}; its layers are {}", did_you_mean(suggestion), list(names))]
     NoSuchLayer {
         /// The requested name, shortened.
         wanted: String,
         /// The most similar name, where one is similar.
         suggestion: Option<String>,
-        /// The names of all layers.
         names: Vec<String>,
     },
-    /// The format is known but cannot be read.
     #[error("this is {format}, which cannot be read; convert it: {command}")]
-    OtherFormat {
-        /// The format's name.
-        format: &'static str,
-        /// A command that converts it.
-        command: String,
-    },
-    /// The format needs a feature that this program was built without.
+    OtherFormat { format: &'static str, command: String },
     #[error(
         "this is a {format}, which needs the Cargo feature '{feature}'; build sandtable with it, or convert the file: {command}"
     )]
-    FeatureDisabled {
-        /// The format's name.
-        format: &'static str,
-        /// The Cargo feature.
-        feature: &'static str,
-        /// A command that converts it.
-        command: String,
-    },
-    /// The format is unknown.
+    FeatureDisabled { format: &'static str, feature: &'static str, command: String },
     #[error(
         "neither its content nor its name tells its format; GeoJSON is read, and ESRI shapefiles, GeoPackage, FlatGeobuf, GPX, KML, KMZ and OpenStreetMap (.osm, .osm.pbf)"
     )]
@@ -124,11 +69,8 @@ pub enum VectorError {
     NotDegrees {
         /// Counts from 1, in the file's order.
         feature: usize,
-        /// Longitude as read.
         x: f64,
-        /// Latitude as read.
         y: f64,
-        /// The name of the assumed system.
         crs: String,
     },
 }

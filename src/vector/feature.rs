@@ -17,7 +17,7 @@ pub struct VectorLayer {
     pub features: Vec<Feature>,
     /// The system of all coordinates: the file's own, else its format's default.
     pub crs: Crs,
-    /// What was left out of the layer or looks wrong in the file, for the user.
+    /// Notes for the user on omissions, and on errors in the file.
     pub notes: Vec<String>,
 }
 

@@ -12,9 +12,9 @@
 use flatgeobuf::{Column, ColumnType, Feature, Geometry, GeometryType, Header};
 use serde_json::{Number, Value};
 
+use crate::bytes::ByteCursor;
 use crate::geom::crs::Crs;
 use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::cursor::ByteCursor;
 use crate::vector::error::VectorError;
 use crate::vector::feature::{Properties, VectorLayer};
 use crate::vector::hints::VectorHints;

@@ -1,4 +1,4 @@
-//! GPX 1.0 and 1.1 (Topografix, 2002 and 2004): what receivers record and planners draw, on WGS 84.
+//! GPX 1.0 and 1.1 (Topografix, 2002 and 2004): waypoints, routes and tracks on WGS 84.
 //!
 //! ```text
 //! gpx ─┬─ wpt                    layer waypoints

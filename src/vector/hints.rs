@@ -1,9 +1,9 @@
-//! What the caller knows of a vector file beyond its bytes.
+//! Options for reading vector files.
 
 use crate::geom::crs::{Crs, CrsError};
 use crate::vector::error::VectorError;
 
-/// What the caller knows of a vector file, and which of its layers it wants.
+/// Options for reading a vector file.
 #[derive(Clone, Copy)]
 pub struct VectorHints<'a> {
     /// The coordinate system; overrides what the file states.

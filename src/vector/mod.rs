@@ -1,7 +1,6 @@
 //! Lines, polygons and points with properties, read from vector files: one file or folder for each format.
 
 mod builder;
-mod cursor;
 mod encoding;
 pub mod error;
 pub mod feature;

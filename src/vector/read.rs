@@ -1,4 +1,4 @@
-//! Reads a vector file, whose content tells its format.
+//! Reads vector files; the format follows from the content.
 //!
 //! | format | layers | coordinate system |
 //! |---|---|---|
@@ -27,8 +27,8 @@ const XML_HEAD_BYTES: usize = 4096;
 
 /// Reads all features of a vector file, or of one of its layers.
 ///
-/// The content tells the format. `name` is used where the content does not tell it, for the names of companions, and
-/// for messages.
+/// The content decides the format; `name` is used where it does not, for the names of companions and in
+/// messages.
 ///
 /// # Errors
 /// [`VectorError`]; for a format that cannot be read with the command that converts it.
@@ -146,7 +146,7 @@ enum VectorFormat {
     Unknown,
 }
 
-/// Returns the format that the content tells, else the extension of the name.
+/// Returns the format by the content, else by the extension of the name.
 fn format_of(name: &str, bytes: &[u8]) -> VectorFormat {
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     match () {
@@ -191,7 +191,7 @@ fn xml_format(bytes: &[u8]) -> Option<VectorFormat> {
     })
 }
 
-/// Returns the format that the name's extension tells.
+/// Returns the format that the name's extension means.
 fn format_by_name(name: &str) -> Option<VectorFormat> {
     let extension = name.rsplit_once('.')?.1.to_ascii_lowercase();
     Some(match extension.as_str() {

@@ -1,4 +1,4 @@
-//! Sorts rings that come in no order into polygons: which are outer rings, and which is a hole in which.
+//! Sorts unordered rings into polygons: finds the outer rings and the holes of each.
 //!
 //! A ring lies inside another where at least two of three of its vertices do, since rings that touch share vertices.
 //! A hole belongs to the smallest ring around it. The search takes time that grows with the square of the number of
@@ -14,7 +14,7 @@ use crate::vector::builder::Vertices;
 /// hundred thousands of polygons take.
 const MAX_STEPS: u64 = 1 << 31;
 
-/// What makes a ring a hole.
+/// The rule by which a ring is a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HoleRule {
     /// It runs counter-clockwise inside one that runs clockwise (ESRI shapefiles). A shape without clockwise rings

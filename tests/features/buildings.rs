@@ -143,8 +143,8 @@ proptest! {
 
 fn lowest_along(ring: &[DVec2], ground: &dyn TriangleSurface) -> f64 {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-    let stations = edges.flat_map(|(from, to)| ground_runs(ground, *from, *to));
-    stations.flat_map(|run| run.stations().to_vec()).map(|station| station.z).fold(f64::INFINITY, f64::min)
+    let runs = edges.flat_map(|(from, to)| ground_runs(ground, *from, *to));
+    runs.flat_map(|run| run.values().to_vec()).fold(f64::INFINITY, f64::min)
 }
 
 /// Buildings of a real place, each with every roof that is asked for.

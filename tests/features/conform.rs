@@ -54,7 +54,7 @@ fn ground(scene: &SceneModel, at: DVec2) -> f64 {
 }
 
 fn steepest(profile: &RoadProfile) -> f64 {
-    let pairs = profile.stations_m.windows(2).zip(profile.design_m.windows(2));
+    let pairs = profile.design.stations().windows(2).zip(profile.design.values().windows(2));
     let grades = pairs
         .filter(|(at, _)| at[1] - at[0] > 1e-3)
         .map(|(at, level)| (level[1] - level[0]).abs() / (at[1] - at[0]));
@@ -66,12 +66,12 @@ fn the_ground_takes_the_road_s_level_and_its_profile_tells_it() {
     let road = "[[road]]\nname = \"lane\"\nprofile = \"conform\"\nwidth = 8\nmax_grade = 6\npoints = [[30, 300], [760, 300]]";
     let scene = made_up(hills, road).expect("sound");
     let [profile] = &scene.profiles[..] else { panic!("one road") };
-    assert_eq!((profile.name.as_str(), profile.stations_m[0]), ("lane", 0.0));
+    assert_eq!((profile.name.as_str(), profile.design.stations()[0]), ("lane", 0.0));
     assert!(steepest(profile) <= 0.06 + 1e-6, "{}", steepest(profile));
     let moved = conformed(&scene).cut + conformed(&scene).fill;
     assert!(moved > 10_000.0, "{moved} m³");
     for (station, (before, design)) in
-        profile.stations_m.iter().zip(profile.ground_m.iter().zip(&profile.design_m))
+        profile.design.stations().iter().zip(profile.ground.values().iter().zip(profile.design.values()))
     {
         let x = 30.0 + station;
         assert!((before - hills(x, 300.0)).abs() < 1.0, "the ground as it was at {x}");
@@ -105,8 +105,9 @@ fn roads_that_meet_agree_on_their_level_whether_or_not_they_share_a_vertex() {
     let scene = made_up(hills, &text).expect("sound");
     let level = |road: usize, station: f64| {
         let profile = &scene.profiles[road];
-        let place = profile.stations_m.iter().position(|at| (at - station).abs() < 1e-6).expect("a station");
-        profile.design_m[place]
+        let place =
+            profile.design.stations().iter().position(|at| (at - station).abs() < 1e-6).expect("a station");
+        profile.design.values()[place]
     };
     let first = DVec2::new(40.0, 200.0).distance(DVec2::new(400.0, 240.0));
     assert_eq!(level(0, first), level(1, 0.0));

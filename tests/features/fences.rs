@@ -5,6 +5,8 @@ use std::sync::LazyLock;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
+use sandtable::earthworks::alignment::Alignment;
+use sandtable::geom::polyline::Polyline;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::scene::SceneModel;
@@ -58,11 +60,13 @@ proptest! {
         let displayed = seen(scene, eye, target);
         prop_assume!(displayed.is_some());
         let displayed = displayed.expect("checked");
-        let points: Vec<DVec2> = points.into_iter().map(DVec2::from).collect();
-        let bands: Vec<FenceBand> = [wall(&points, BandSize { width_m, height_m: 3.0, every_m: 4.0 }), hedge(&points, BandSize { width_m, height_m: 3.0, every_m: 3.0 })]
+        let line = Polyline::new(points.into_iter().map(DVec2::from), 0.0);
+        prop_assume!(line.is_some());
+        let along = Alignment::on_ground(line.expect("checked"), width_m);
+        let bands: Vec<FenceBand> = [wall(&along, BandSize { height_m: 3.0, every_m: 4.0 }), hedge(&along, BandSize { height_m: 3.0, every_m: 3.0 })]
             .into_iter()
-            .chain(rails(&points, width_m, 2.0))
-            .chain(parapets(&points, BandSize { width_m, height_m: 2.0, every_m: 5.0 }))
+            .chain(rails(&along, 2.0))
+            .chain(parapets(&along, BandSize { height_m: 2.0, every_m: 5.0 }))
             .collect();
         for band in &bands {
             let off = check_feet(band, &displayed);
@@ -132,7 +136,8 @@ fn a_wall_holds_what_its_length_width_and_height_make() {
             (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp()) + DVec2::new(262.0, 455.0)
         };
         let points = [turn(-30.0, 0.0), turn(0.0, 0.0), turn(0.0, 25.0)];
-        let mesh = DrapedSolid::Band(wall(&points, BandSize { width_m: 2.0, height_m: 3.0, every_m: 50.0 }))
+        let along = Alignment::on_ground(Polyline::new(points, 0.0).expect("a line"), 2.0);
+        let mesh = DrapedSolid::Band(wall(&along, BandSize { height_m: 3.0, every_m: 50.0 }))
             .mesh(SupportSurface { displayed: &displayed, ground: &finest(scene) });
         let at = |position: [f32; 3]| Vec3::from(position).as_dvec3() - DVec2::new(262.0, 455.0).extend(0.0);
         // Between ground and top every upright prism is as high as the wall: the sides and the top tell its volume.
@@ -189,7 +194,7 @@ fn a_trench_is_dug_where_the_cells_are_fine_enough_and_tells_its_volume() {
 #[test]
 fn pylons_stand_no_further_apart_than_the_spacing() {
     let line = [DVec2::ZERO, DVec2::new(1000.0, 0.0), DVec2::new(1000.0, 450.0)];
-    let pylons = stands(&line, 300.0);
+    let pylons = stands(&Polyline::new(line, 0.0).expect("a line"), 300.0);
     assert!(pylons.windows(2).all(|pair| pair[0].at.distance(pair[1].at) <= 300.0));
     assert_eq!(pylons.len(), 4 + 2 + 1);
 }

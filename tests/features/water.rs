@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use sandtable::dem::read as dem;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::DepthLayer;
-use sandtable::earthworks::alignment::Width;
+use sandtable::earthworks::alignment::Alignment;
 use sandtable::earthworks::channel;
 use sandtable::earthworks::channel::flow;
 use sandtable::earthworks::channel::flow::Flow;
@@ -61,7 +61,11 @@ fn channels(lattice: &Lattice, network: &[(Polyline, f64)]) -> Vec<Channel> {
     let flows = flow::directions(lattice, &lines);
     let channel = |((line, width_m), flow): (&(Polyline, f64), Flow)| {
         let line = if flow == Flow::AsDrawn { line.clone() } else { line.reversed() };
-        Channel { line, width: Width::Constant(*width_m), bank_m: width_m / 3.0, max_cut_m: f64::INFINITY }
+        Channel {
+            alignment: Alignment::on_ground(line, *width_m),
+            bank_m: width_m / 3.0,
+            max_cut_m: f64::INFINITY,
+        }
     };
     network.iter().zip(flows).map(channel).collect()
 }
@@ -76,7 +80,7 @@ proptest! {
         let cuts = channel::cut(&mut lattice, &channels).expect("narrow enough");
         prop_assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
         for channel in &channels {
-            let rise_m = check_rise(&lattice, &channel.line, &[]);
+            let rise_m = check_rise(&lattice, &channel.alignment.line, &[]);
             prop_assert!(rise_m < ROUNDING_M, "{rise_m}");
         }
     }
@@ -96,7 +100,7 @@ proptest! {
             prop_assert!(f64::from((after - before).abs()) < max_cut_m + ROUNDING_M, "{before} {after}");
         }
         for (channel, cut) in channels.iter().zip(&cuts.cuts) {
-            let rise_m = check_rise(&lattice, &channel.line, &cut.climbs);
+            let rise_m = check_rise(&lattice, &channel.alignment.line, &cut.climbs);
             prop_assert!(rise_m < ROUNDING_M, "{rise_m} {:?}", cut.climbs);
             prop_assert!(cut.climbs.windows(2).all(|pair| pair[0].to_m < pair[1].from_m));
         }
@@ -116,7 +120,7 @@ proptest! {
         prop_assert!(lake.iter().all(|&post| lattice.height(post) == level_m));
         prop_assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
         for channel in &channels {
-            let rise_m = check_rise(&lattice, &channel.line, &[]);
+            let rise_m = check_rise(&lattice, &channel.alignment.line, &[]);
             prop_assert!(rise_m < ROUNDING_M, "{rise_m}");
         }
     }
@@ -149,7 +153,7 @@ fn ridge(height_m: f64) -> Lattice {
 
 fn across_the_ridge() -> [Channel; 1] {
     let line = Polyline::new([(20.0, 233.0), (450.0, 236.0)].map(DVec2::from), 0.0).expect("a line");
-    [Channel { line, width: Width::Constant(6.0), bank_m: 2.0, max_cut_m: 10.0 }]
+    [Channel { alignment: Alignment::on_ground(line, 6.0), bank_m: 2.0, max_cut_m: 10.0 }]
 }
 
 #[test]
@@ -215,7 +219,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
     let zigzag = (0..20_000)
         .map(|index| DVec2::new(200.0 + f64::from(index % 2) * 90.0, 230.0 + f64::from(index) * 1e-3));
     let line = Polyline::new(zigzag, 0.0).expect("a line");
-    let channel = Channel { line, width: Width::Constant(9000.0), bank_m: 1000.0, max_cut_m: 10.0 };
+    let channel = Channel { alignment: Alignment::on_ground(line, 9000.0), bank_m: 1000.0, max_cut_m: 10.0 };
     let before = lattice.heights().to_vec();
     assert!(channel::cut(&mut lattice, &[channel]).is_err());
     assert_eq!(lattice.heights(), before);
@@ -374,7 +378,7 @@ fn thousands_of_real_streams_fall_all_the_way() {
     println!("{} streams cut in {:.2} s", channels.len(), start.elapsed().as_secs_f64());
     assert!(cuts.cuts.iter().all(|cut| cut.climbs.is_empty()));
     for channel in &channels {
-        let rise_m = check_rise(&lattice, &channel.line, &[]);
+        let rise_m = check_rise(&lattice, &channel.alignment.line, &[]);
         assert!(rise_m < ROUNDING_M, "{rise_m}");
     }
     let deepest = cuts.cuts.iter().map(|cut| cut.deepest_m).fold(0.0, f64::max);

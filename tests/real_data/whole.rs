@@ -44,7 +44,12 @@ fn swellendam_has_all_its_roads_and_buildings() {
     let conformed = scene.report.conformed_roads.len();
     assert!(conformed >= 100 && scene.profiles.len() == conformed, "{conformed}");
     let steepest = scene.profiles.iter().flat_map(|profile| {
-        let on_ground = profile.stations_m.windows(2).zip(profile.design_m.windows(2)).zip(&profile.supports);
+        let on_ground = profile
+            .design
+            .stations()
+            .windows(2)
+            .zip(profile.design.values().windows(2))
+            .zip(&profile.supports);
         on_ground
             .filter(|((stations, _), carried)| **carried == Support::Ground && stations[1] > stations[0])
             .map(|((stations, design), _)| (design[1] - design[0]).abs() / (stations[1] - stations[0]))

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use sandtable::dem::answer::Answer;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::draw::list::DrawMesh;
+use sandtable::earthworks::alignment::Alignment;
 use sandtable::earthworks::leveling;
 use sandtable::geom::crs::Crs;
 use sandtable::geom::polyline::Polyline;
@@ -15,7 +16,7 @@ use sandtable::mesh::trimesh::TriMesh;
 use sandtable::ribbon::area;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+use sandtable::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::measured_ground::MeasuredGround;
 use sandtable::terrain::lattice::Lattice;
@@ -87,7 +88,8 @@ proptest! {
         prop_assume!(camera.is_some() && line.is_some());
         let terrain = WORLD.seen_by(&camera.expect("checked"), tolerance_px);
         let mut plan = PlanMesh::default();
-        stroke(&line.expect("checked"), Continuations::default(), &StrokeOptions { width_m, ..StrokeOptions::default() }, &mut plan);
+        let alignment = Alignment::on_ground(line.expect("checked"), width_m);
+        stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
         let clearance = check_clearance(&draped(&plan, &terrain), &terrain);
         prop_assert!(clearance < 2e-3, "{clearance} m");
     }

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 use sandtable::geom::aabb::Aabb;
-use sandtable::model::error::{CompanionError, ModelError, error_chain};
+use sandtable::message::chain::error_text;
+use sandtable::model::error::{CompanionError, ModelError};
 use sandtable::model::read::read;
 use sandtable::model::{Companions, Model};
 use serde_json::Value;
@@ -227,7 +228,7 @@ fn hostile_files_are_refused_or_read_without_harm() {
             Ok(model) if model.parts.is_empty() => assert!(!model.notes.is_empty(), "{name}"),
             Ok(_) => drawn.push(name),
             Err(error) => {
-                let message = error_chain(&error);
+                let message = error_text(&error);
                 assert!(message.len() > 20, "{name}: {message}");
                 refused += 1;
             }

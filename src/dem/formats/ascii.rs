@@ -74,7 +74,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     })
 }
 
-/// The fields up to the first word that is no key.
+/// The fields up to the first word that is not a key.
 fn header(words: &mut TextWords) -> Result<HeaderFields, DemErrorKind> {
     let mut header = HeaderFields::new(FORMAT.name);
     while let Some(key) = words.next_if(is_key) {
@@ -161,7 +161,7 @@ fn write_rows<T: SampleFloat>(text: &mut String, values: &[T], width: u32, nodat
     }
 }
 
-/// A value that is no height. It is always stated: readers take −9999 where none is.
+/// A value that no sample has. It is always stated: readers assume −9999 where none is.
 fn nodata_to_write(raster: &Raster) -> Result<f64, WriteError> {
     let own = raster.nodata.filter(|value| value.is_finite());
     let is_free = |nodata: &f64| raster.samples.iter().all(|value| value != *nodata);

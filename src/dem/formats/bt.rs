@@ -23,7 +23,7 @@
 
 use glam::DVec2;
 
-use crate::dem::bytes::{ByteFields, ByteOrder};
+use crate::bytes::{ByteFields, ByteOrder};
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};
@@ -165,10 +165,9 @@ fn vertical_unit(scale: f64) -> Result<f64, DemErrorKind> {
     Ok(feet.unwrap_or(scale))
 }
 
-/// The coordinate system of a terrain.
 struct BtSystem {
     crs: Option<Crs>,
-    /// What extents are multiplied by: 1, or the length of a foot for a local grid in feet.
+    /// The factor of extents: 1, or the length of a foot for a local grid in feet.
     meters_per_unit: f64,
 }
 

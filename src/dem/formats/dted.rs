@@ -15,7 +15,7 @@
 
 use glam::DVec2;
 
-use crate::dem::bytes::ByteFields;
+use crate::bytes::ByteFields;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::{DemFormat, Recognition};
 use crate::dem::limits::SizeClaim;

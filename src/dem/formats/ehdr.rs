@@ -7,7 +7,7 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};

@@ -6,7 +6,7 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
@@ -126,7 +126,7 @@ fn place(map: &[&str]) -> Result<Option<DAffine2>, DemErrorKind> {
     Ok(Some(north_up(at + DVec2::new(-first.x, first.y) * cell, cell)))
 }
 
-/// The system that `map info` names: UTM or geographic on WGS 84, what most are written in.
+/// The system that `map info` names: UTM or geographic on WGS 84, the most common ones.
 fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
     let is = |index: usize, name: &str| map.get(index).is_some_and(|part| part.eq_ignore_ascii_case(name));
     if is(0, "Geographic Lat/Lon") && is(7, "WGS-84") {

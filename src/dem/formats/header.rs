@@ -1,4 +1,4 @@
-//! Text headers of keys and values: what ESRI ASCII grids, ESRI binary grids and ENVI rasters have in common.
+//! Text headers of keys and values, as in ESRI ASCII grids, ESRI binary grids and ENVI rasters.
 
 use glam::DVec2;
 

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};

@@ -1,4 +1,4 @@
-//! File formats of elevation: a file each, declared in one list.
+//! File formats of elevation, one file each, declared in one list.
 //!
 //! A new format is a file with a `FORMAT` and its line in [`FORMATS`]: recognition, reading, writing, the extensions of
 //! tiles in folders and archives, and the formats that messages list all come from that declaration.
@@ -19,6 +19,8 @@ mod terragen;
 pub(crate) mod text;
 mod usgs;
 mod xyz;
+
+use std::error::Error;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
@@ -98,11 +100,15 @@ impl DemFormat {
     }
 
     /// A file of this format that a decoder or the file system refuses.
-    pub(crate) fn undecodable(&self, source: impl std::error::Error + Send + Sync + 'static) -> DemErrorKind {
+    pub(crate) fn undecodable(&self, source: impl Error + Send + Sync + 'static) -> DemErrorKind {
         DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
     }
 
-    pub(crate) fn unsupported(&self, what: impl Into<String>, remedy: &'static str) -> DemErrorKind {
+    pub(crate) fn unsupported(
+        &self,
+        what: impl Into<Box<dyn Error + Send + Sync>>,
+        remedy: &'static str,
+    ) -> DemErrorKind {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
 

@@ -175,7 +175,7 @@ fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     Ok(WrittenDem { companions, notes, ..WrittenDem::new(bytes, "uint16") })
 }
 
-/// The least number of two digits that is no smaller: a scale that can be typed.
+/// The least number of two significant digits that is not below the value: a scale that can be typed.
 fn readable(scale: f64) -> f64 {
     let power = scale.log10().floor() as i32 - 1;
     let digits = (scale / 10f64.powi(power)).ceil();

@@ -5,7 +5,7 @@
 
 use std::str::FromStr;
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};
@@ -34,12 +34,16 @@ pub struct RawLayout {
     nodata: Option<f64>,
 }
 
-/// A text states no layout of a RAW file.
+/// The text is not a layout of a RAW file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are u8 to u64, i8 to i64, f16, f32 and f64, followed by le or be"
-)]
+#[error("{}", Self::REMEDY)]
 pub struct RawLayoutError;
+
+impl RawLayoutError {
+    /// How a layout is written.
+    pub const REMEDY: &str = "write it as 1201x1201:i16be, where needed with :skip=BYTES and :nodata=VALUE; types are \
+                              u8 to u64, i8 to i64, f16, f32 and f64, followed by le or be";
+}
 
 impl FromStr for RawLayout {
     type Err = RawLayoutError;
@@ -80,7 +84,7 @@ fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
     Some((sample, order.or((sample.bytes() == 1).then_some(ByteOrder::Little))?))
 }
 
-/// Heights are the samples, or what a stated scale and offset make of them.
+/// Heights are the samples, times the stated scale plus the stated offset.
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let raw = file.hints.raw.ok_or(DemErrorKind::NoRawLayout)?;
     let (scale, offset) = (file.height_scale()?.unwrap_or(1.0), file.height_offset()?);

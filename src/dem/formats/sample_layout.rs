@@ -5,7 +5,7 @@
 //!         └ column_step                      └ row_step
 //! ```
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, SampleFloat, Samples};

@@ -14,7 +14,7 @@
 
 use glam::DVec2;
 
-use crate::dem::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::text::{TextWords, number};

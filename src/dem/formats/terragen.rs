@@ -12,7 +12,7 @@
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use crate::dem::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};

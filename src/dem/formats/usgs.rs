@@ -332,7 +332,7 @@ mod tests {
         let last = 2 * 1024 + 24 + 120 + 12;
         for end in 0..last {
             let refused = raster(&whole[..end]);
-            // What is left of the last height is a number as well.
+            // The rest of the last height is also a number.
             assert!(refused.is_err() || end > last - 5, "{end}");
         }
         assert!(raster(&whole[..last]).is_ok());

@@ -212,7 +212,7 @@ impl KdTree {
     }
 }
 
-/// Searches a subtree. `offset` is that of its box from `q` along each axis, as far as the planes above tell.
+/// Searches a subtree. `offset` is the offset of its box from `q` along each axis by the planes above it.
 fn visit(
     sites: &[(DVec2, u32)],
     planes: &[SplitLine],

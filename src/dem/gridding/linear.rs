@@ -1,5 +1,5 @@
-//! Triangles to heights of cells, row by row: x and z where a row of cell centers enters and leaves a triangle are taken
-//! along its edges, and between the two z is linear.
+//! Interpolates triangles to the heights of cells, row by row: x and z where a row of cell centers enters and leaves a
+//! triangle are taken along its edges, and between the two z is linear.
 //!
 //! ```text
 //!            c             at row y:  x and z on edge ac (left), x and z on edge bc (right)

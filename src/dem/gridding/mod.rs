@@ -100,34 +100,25 @@ pub struct GriddingReport {
 
 /// Why no grid was made.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum GridError {
-    /// There is no lattice of cells.
     #[error(transparent)]
     Cells(#[from] CellGridError),
-    /// A parameter of the method out of range.
     #[error("{what} is {value}; it must be {wanted}")]
-    Parameter {
-        /// The parameter.
-        what: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        wanted: &'static str,
-    },
-    /// A point or a vertex of a breakline is not finite or too large.
+    Parameter { what: &'static str, value: f64, wanted: &'static str },
     #[error("a point at {}, {} has the height {}: all three must be finite and below 1e60", .0.x, .0.y, .0.z)]
     Unplaceable(DVec3),
-    /// All points, at this number of positions, lie on one line.
     #[error(
         "all {0} positions lie on one line and no cell between them; give more points, or grid by distance (idw, quadrant or nearest) with the nearest point's height beyond the hull"
     )]
     Collinear(usize),
 }
 
-/// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and datum.
+/// Makes a grid of a cloud: a [`Raster`] of `cells`, NaN where there is no data, with the cloud's system, unit and
+/// datum.
 ///
-/// Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods take points along them, at most half
-/// a cell apart.
+/// Breaklines are edges of triangles for [`GriddingMethod::Tin`]; the other methods take points along them, at most
+/// half a cell apart.
 ///
 /// # Errors
 /// [`GridError`]: a point that is not finite, points that all lie on one line, a parameter out of range.

@@ -1,4 +1,4 @@
-//! Natural neighbor interpolation (Sibson 1981) without inserting anything.
+//! Natural neighbor interpolation (Sibson 1981) without insertions into the triangulation.
 //!
 //! A site at the cell's center q would take from each neighbor part of its Voronoi region; the height is the mean of
 //! the neighbors' by the areas taken. The triangles that would vanish, those whose circumcircle holds q (Bowyer and

@@ -1,4 +1,4 @@
-//! The points as the methods take them: sorted, one a position, near zero.
+//! The points in the form that all methods use: sorted, one per position, near zero.
 //!
 //! Points come in any order and some twice (overlapping flight lines, a breakline through a surveyed point). Sorting
 //! by x, y and z makes the results independent of the order. Coordinates become offsets from a whole-numbered

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::dem::bytes::ByteFields;
+use crate::bytes::ByteFields;
 use crate::dem::points::las_crs::LasCrs;
 use crate::dem::points::las_header::LasHeader;
 use crate::dem::points::{PointCloud, PointHints, PointsError, laz};

@@ -22,7 +22,7 @@ pub(super) struct LasCrs {
     pub meters_per_z: f64,
     /// The vertical datum.
     pub vertical_datum: Option<String>,
-    /// What was assumed.
+    /// Notes on assumptions.
     pub notes: Vec<String>,
 }
 

@@ -1,12 +1,12 @@
-//! The header of a LAS file (ASPRS LAS 1.0 to 1.4 R15), every count and offset in it held against the file.
+//! The header of a LAS file (ASPRS LAS 1.0 to 1.4 R15), with every count and offset checked against the file.
 //!
 //! The `las` crate reads the header's fields, but trusts them: its reader allocates what a forged count states and ends
-//! the process. So its other parts are not used; points and records are sliced here, out of what the file holds.
+//! the process. So its other parts are not used; points and records are slices of the file.
 
 use glam::DVec3;
 use las::raw::header::Header;
 
-use crate::dem::bytes::ByteFields;
+use crate::bytes::ByteFields;
 use crate::dem::error::DemErrorKind;
 use crate::dem::points::{MOST_POINTS, PointsError};
 
@@ -28,7 +28,7 @@ pub(super) struct LasHeader {
     pub count: u64,
     /// The factor of stored coordinates.
     pub scale: DVec3,
-    /// What is added then.
+    /// The offset that is added after scaling.
     pub offset: DVec3,
     pub says_wkt: bool,
     records: u32,
@@ -38,7 +38,7 @@ pub(super) struct LasHeader {
 
 pub(super) struct Record<'a> {
     pub owner: &'a [u8],
-    /// Its number among those of the same owner.
+    /// Its number among the records of the same owner.
     pub id: u16,
     pub content: &'a [u8],
 }
@@ -104,7 +104,7 @@ impl LasHeader {
     }
 
     /// All records that lie before the points, then the extended ones after them. Some writers count more records than
-    /// there are; what runs into the points is no record.
+    /// there are; one that reaches into the points is ignored.
     pub fn records<'a>(&self, bytes: &'a [u8]) -> Vec<Record<'a>> {
         let mut records = Vec::new();
         let mut at = self.size;
@@ -123,7 +123,8 @@ impl LasHeader {
 }
 
 impl<'a> Record<'a> {
-    /// The record at `at`, which moves past it; `None` beyond the end. `header` bytes before its content state its size.
+    /// The record at `at`, which moves past it; `None` beyond the end. `header` bytes before its content state its
+    /// size.
     fn read(
         bytes: &'a [u8],
         at: &mut usize,
@@ -143,7 +144,7 @@ impl<'a> Record<'a> {
 /// A part of LAS and LAZ that is not read.
 pub(super) fn unsupported(what: String) -> PointsError {
     let remedy = "write it again with another program, for example: pdal translate IN OUT.las";
-    DemErrorKind::Unsupported { format: "LAS file", what, remedy }.into()
+    DemErrorKind::Unsupported { format: "LAS file", what: what.into(), remedy }.into()
 }
 
 pub(super) fn broken(reason: impl Into<String>) -> PointsError {

@@ -1,4 +1,5 @@
-//! LAZ (LASzip, Isenburg 2013): compressed LAS records, unpacked by the `laz` crate after all that it trusts is checked.
+//! LAZ (LASzip, Isenburg 2013): compressed LAS records, unpacked by the `laz` crate after all that it trusts is
+//! checked.
 //!
 //! The crate allocates what a file states: a forged number of chunks asks for 68 GB and ends the process, where no
 //! error can be caught. So before it sees a file:
@@ -7,14 +8,14 @@
 //! - the table of chunks must lie in the file and state no more chunks than the points before it can be;
 //! - of layered chunks (formats 6 to 10), each layer's length must lie in the file.
 //!
-//! What stays is a stream of arithmetic codes, which can be wrong in ways that no check before decoding finds.
+//! The rest is a stream of arithmetic codes, whose errors only decoding finds.
 
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use laz::{LasZipDecompressor, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
 
-use crate::dem::bytes::{ByteFields, bytes_at};
+use crate::bytes::{ByteFields, bytes_at};
 use crate::dem::error::DemErrorKind;
 use crate::dem::points::PointsError;
 use crate::dem::points::las_header::{LasHeader, broken, unsupported};
@@ -37,8 +38,8 @@ pub(super) fn unpack(
     let vlr = LazVlr::from_buffer(laszip).map_err(undecodable)?;
     check_items(laszip, &vlr, header)?;
     check_chunks(bytes, laszip, &vlr, header)?;
-    // The decoder indexes tables by what it decodes and panics where that lies outside. Nothing that it leaves behind is
-    // used again, so unwinding out of it is safe.
+    // The decoder indexes tables by what it decodes and panics where that lies outside. Nothing that it leaves behind
+    // is used again, so unwinding out of it is safe.
     let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes, header, vlr, &mut take)));
     decoded.unwrap_or_else(|_| Err(broken("its compressed points contradict each other")))
 }

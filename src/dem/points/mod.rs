@@ -1,7 +1,7 @@
 //! Scattered points of known height, and their readers: text ([`table`]), LAS and LAZ ([`las`]).
 //!
-//! A cloud is what a survey measures: points in no order, lines along which the ground breaks, a system for their x and y
-//! and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
+//! A cloud is the result of a survey: points in no order, lines along which the ground breaks, a system for their x and
+//! y and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
 
 #[cfg(feature = "las")]
 pub mod las;
@@ -34,7 +34,7 @@ pub struct PointCloud {
     pub meters_per_z: f64,
     /// The vertical datum in the file's words; `None` where it is not stated.
     pub vertical_datum: Option<String>,
-    /// What was left out or assumed, for the user.
+    /// Notes for the user on omissions and assumptions.
     pub notes: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ impl PointCloud {
     }
 }
 
-/// What the caller states of a file of points beyond its bytes.
+/// Options for reading a file of points.
 #[derive(Clone, Debug, Default)]
 pub struct PointHints<'a> {
     /// The system of x and y, in place of the file's.
@@ -57,8 +57,8 @@ pub struct PointHints<'a> {
 
 /// Why a file of points was not read.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum PointsError {
-    /// A line is no point.
     #[error("line {line}: found '{found}', each line must hold numbers x, y, z")]
     Line {
         /// The line, from 1.
@@ -66,7 +66,6 @@ pub enum PointsError {
         /// Its text, cut where it is long.
         found: String,
     },
-    /// The header lacks columns that are needed.
     #[error("line {line}: the header '{found}' must name columns x, y and z (or lon, lat and elevation)")]
     Columns {
         /// The line, from 1.
@@ -74,32 +73,26 @@ pub enum PointsError {
         /// Its text, cut where it is long.
         found: String,
     },
-    /// The bytes are no text from this one on.
     #[error("byte {0} is not UTF-8 text; points are read from text (.xyz, .csv, .txt), LAS and LAZ")]
     NotText(usize),
     /// The file holds no points with a height, and this number of points without one.
     #[error("it holds no points{}", if *.0 > 0 { " that have a height" } else { "" })]
     Empty(usize),
-    /// The file holds no points of the wanted classes.
     #[error("it holds no points of class {wanted}; it has {found}")]
     NoClass {
-        /// The wanted classes.
         wanted: String,
         /// The classes of the file, with their counts.
         found: String,
     },
-    /// The file holds more points than are read.
     #[error("{0} points are more than the {MOST_POINTS} that are read; thin or cut the file")]
     TooMany(u64),
     /// The LAS or LAZ file is broken, or of a kind that is not read.
     #[error(transparent)]
     File(#[from] DemErrorKind),
-    /// The program was built without the readers of LAS and LAZ.
     #[error(
         "this is a LAS or LAZ file, and this program was built without the feature `las`: build it with --features las, or convert the points to text"
     )]
     WithoutLas,
-    /// The file's coordinate system is not understood.
     #[error("{0}; or state the right one with --crs")]
     Crs(#[source] DemErrorKind),
 }

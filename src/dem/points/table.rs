@@ -1,6 +1,6 @@
 //! Points as text (`.xyz`, `.csv`, `.txt`): a point a line, with or without a header that names the columns.
 //!
-//! A point without a height (an empty field or NaN) is left out and counted; any other line that is no point is an
+//! A point without a height (an empty field or NaN) is left out and counted; any other line that is not a point is an
 //! error with its number: a line dropped silently would leave a hole.
 
 use crate::dem::point_text::PointText;
@@ -9,7 +9,7 @@ use crate::dem::points::{MOST_POINTS, PointCloud, PointHints, PointsError};
 /// Reads a table of points.
 ///
 /// # Errors
-/// [`PointsError`] for the first line that is no point, a header without x, y or z, or no point at all.
+/// [`PointsError`] for the first line that is not a point, a header without x, y or z, and a file without points.
 pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError> {
     let text = std::str::from_utf8(bytes).map_err(|error| PointsError::NotText(error.valid_up_to()))?;
     let text = PointText::new(text);

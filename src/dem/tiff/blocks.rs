@@ -1,4 +1,4 @@
-//! Strips and tiles of a TIFF's first band to rows of elevations.
+//! Decodes strips and tiles of a TIFF's first band to rows of elevations.
 //!
 //! Blocks are independent, so rows of blocks are unpacked in parallel, each straight into its own rows of the raster:
 //!

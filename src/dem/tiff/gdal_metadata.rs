@@ -11,7 +11,7 @@ pub(crate) const GDAL_METADATA: u16 = 42112;
 pub(crate) struct BandMetadata {
     /// The factor of stored values.
     pub scale: f64,
-    /// What is then added.
+    /// The offset that is added after scaling.
     pub offset: f64,
     /// Meters in the unit of the result.
     pub meters_per_z: Option<f64>,

@@ -1,4 +1,5 @@
-//! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and what a sample's position means.
+//! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and whether samples are
+//! points or areas.
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::tiff::geokey_codes as key;
@@ -15,7 +16,6 @@ pub(super) enum GeoKeyValue {
     Text(String),
 }
 
-/// The keys of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct GeoKeys(Vec<(u16, GeoKeyValue)>);
 

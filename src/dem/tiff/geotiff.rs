@@ -2,8 +2,8 @@
 //! with predictors, classic and BigTIFF in both byte orders.
 //!
 //! Of several bands the first is read, of several images the first (a cloud-optimized file's full
-//! resolution). Scale, offset, unit and no-data value come from GDAL's tags. What cannot be unpacked is
-//! refused by name before it is tried.
+//! resolution). Scale, offset, unit and no-data value come from GDAL's tags. An unsupported compression is
+//! refused by name.
 
 use std::io::{Cursor, Read, Seek};
 
@@ -80,7 +80,7 @@ pub(crate) struct GeoTiffHeader {
     pub raster: Raster,
     /// The factor of stored values.
     pub scale: f64,
-    /// What is then added.
+    /// The offset that is added after scaling.
     pub offset: f64,
 }
 

@@ -18,12 +18,12 @@ use crate::dem::windows::RasterWindow;
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;
 
-/// The bytes of the mask that GDAL keeps in a file of its own.
+/// The bytes of the `.msk` file in which GDAL keeps a mask.
 pub(crate) fn file_beside(file: &DemFile) -> Option<Vec<u8>> {
     (file.hints.companions)(&format!("{}.msk", file.name))
 }
 
-/// Makes NaN of what the mask in a file beside the image hides.
+/// Sets the samples to NaN that the mask in a file beside the image hides.
 pub(crate) fn apply_beside(
     bytes: &[u8],
     (width, height): (u32, u32),
@@ -39,7 +39,7 @@ pub(crate) fn apply_beside(
         .broken(format!("the mask beside it has {} x {} samples, not {width} x {height}", found.0, found.1)))
 }
 
-/// Makes NaN of what a mask of the same size among the later images hides; returns whether there is one.
+/// Sets the samples to NaN that a mask of the same size among the later images hides; returns whether there is one.
 pub(crate) fn apply_within(
     decoder: &mut Decoder<Cursor<&[u8]>>,
     bytes: &[u8],
@@ -92,7 +92,7 @@ pub(crate) fn each_hidden(
     let (mut unpacker, mut packed) = (Unpacker::new(mask), Vec::new());
     for block in mask.blocks_meeting(window) {
         packed.clear();
-        // What was never written hides what lies under it.
+        // A block that was never written hides all samples.
         if mask.is_written(block.index) {
             unpacker.unpack(file, block, &mut packed)?;
         }

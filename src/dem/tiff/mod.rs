@@ -1,4 +1,4 @@
-//! GeoTIFF: how an image is stored, where it lies, how it is read, in whole or in windows, and how it is written.
+//! GeoTIFF: the storage and the georeference of images, reading in whole or in windows, and writing.
 
 mod blocks;
 mod gdal_metadata;

@@ -1,4 +1,4 @@
-//! The place of a GeoTIFF: by a tie point and a scale, a matrix, or control points.
+//! The georeference of a GeoTIFF: by a tie point and a scale, a matrix, or control points.
 
 use glam::{DAffine2, DMat2, DVec2};
 

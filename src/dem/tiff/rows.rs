@@ -1,4 +1,5 @@
-//! One unpacked row of a TIFF block to elevations: the predictor undone, the first band taken, no-data made NaN.
+//! Decodes one unpacked row of a TIFF block to elevations: undoes the predictor, takes the first band, turns no data to
+//! NaN.
 //!
 //! Two passes over a row, both short enough to stay in the processor's nearest memory: bytes to words of a sample's
 //! width, then words to elevations. The first is a chain of sums, the second a loop without a branch.
@@ -14,7 +15,7 @@
 //! the plain sum of the quarters before it, which takes no chain: so four shorter chains run side by side and yield
 //! samples as they go.
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::SampleFloat;
 use crate::dem::sample_type::SampleType;
@@ -102,14 +103,10 @@ trait SampleWord: Copy + Default {
 }
 
 macro_rules! words {
-    ($($word:ty: $bytes:literal),*) => {$(
+    ($($word:ident: $bytes:literal),*) => {$(
         impl SampleWord for $word {
             fn from_bytes(bytes: &[u8], order: ByteOrder) -> Self {
-                let bytes = bytes.try_into().unwrap_or_default();
-                match order {
-                    ByteOrder::Little => Self::from_le_bytes(bytes),
-                    ByteOrder::Big => Self::from_be_bytes(bytes),
-                }
+                order.$word(bytes.try_into().unwrap_or_default())
             }
 
             fn plus(self, other: Self) -> Self {

@@ -1,4 +1,4 @@
-//! How the first band of a TIFF image is stored: its tags, held against what the file can hold.
+//! The storage of a TIFF image's first band: its tags, checked against the size of the file.
 //!
 //! Everything that a header can claim is checked here, before anything is allocated for it: the size of the image, of
 //! one tile, and the number of blocks.
@@ -16,14 +16,14 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
-use crate::dem::bytes::ByteOrder;
+use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::limits::SizeClaim;
 use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::windows::RasterWindow;
 
-/// What to do about a packing that is not read.
+/// The remedy for an unsupported compression.
 pub(crate) const TO_DEFLATE: &str =
     "convert it, for example with: gdal_translate -co COMPRESS=DEFLATE FILE out.tif";
 
@@ -265,7 +265,7 @@ fn expansion(packing: Packing) -> u64 {
 /// The decoder's error in the words of the other readers.
 pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
     match error {
-        TiffError::UnsupportedError(what) => FORMAT.unsupported(what.to_string(), TO_DEFLATE),
+        TiffError::UnsupportedError(what) => FORMAT.unsupported(what, TO_DEFLATE),
         TiffError::LimitsExceeded => FORMAT.broken("a tag claims more than the file holds"),
         other => FORMAT.undecodable(other),
     }

@@ -1,8 +1,8 @@
-//! Packed blocks of a TIFF to the bytes of their rows.
+//! Decompresses the blocks of a TIFF to the bytes of their rows.
 //!
-//! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes values
-//! by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that unpack:
-//! `flate2`, `weezl` and `ruzstd`, each in one call from memory into a buffer that is kept.
+//! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes
+//! values by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that
+//! unpack: `flate2`, `weezl` and `ruzstd`, each in one call from memory into a buffer that is kept.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -113,7 +113,7 @@ impl<'a> Unpacker<'a> {
     }
 }
 
-// Each of these fills `out` from the start of a stream, ignores what follows, and returns how many bytes there were.
+// Each of these fills `out` from the start of a stream, ignores the rest, and returns the number of bytes.
 
 fn copy(packed: &[u8], out: &mut [u8]) -> usize {
     let length = packed.len().min(out.len());

@@ -1,4 +1,4 @@
-//! Windows of a GeoTIFF that stays on disk: blocks are decoded when a window meets them, and a few are kept.
+//! Windows of a GeoTIFF that stays on disk: blocks are decoded when a window meets them, and cached.
 //!
 //! ```text
 //! ┌────┬────┬────┐   blocks (tiles, or strips as wide as the image); a window is copied

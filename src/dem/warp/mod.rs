@@ -1,4 +1,4 @@
-//! Rasters in whatever system their files use, to other systems and cells, with north up.
+//! Warps rasters to other coordinate systems and cells, with north up.
 
 mod crs_transform;
 mod data_extent;
@@ -25,35 +25,22 @@ const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 
 /// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum WarpError {
-    /// No system is named, and the coordinates look like degrees.
     #[error(
         "the elevation file names no coordinate system and its coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; state its system under [terrain], for example crs = \"EPSG:4326\""
     )]
-    LooksLikeDegrees {
-        /// West.
-        min_x: f64,
-        /// East.
-        max_x: f64,
-        /// South.
-        min_y: f64,
-        /// North.
-        max_y: f64,
-    },
-    /// The raster has no georeference.
+    LooksLikeDegrees { min_x: f64, max_x: f64, min_y: f64, max_y: f64 },
     #[error(
         "the elevation file does not state where it lies or how far apart its samples are; state cell (meters between samples) under [terrain]"
     )]
     NoPlace,
-    /// The raster holds no data.
     #[error("the elevation file holds no valid sample: all of them are no data; check its no-data value")]
     Empty,
-    /// The wanted system, by name, is not in meters.
     #[error(
         "a scene needs a projected system in meters, and {0} is not one; choose a UTM zone, for example EPSG:32616"
     )]
     TargetNotMetric(String),
-    /// No UTM zone suits the raster.
     #[error(
         "the elevation file reaches from longitude {west} to {east} and from latitude {south} to {north}, which no UTM zone covers well; cut it, or state a projected system in meters as crs of the scene"
     )]
@@ -67,13 +54,11 @@ pub enum WarpError {
         /// In degrees.
         north: f64,
     },
-    /// The result would be too large.
     #[error(
         "in {system} the elevation file would need {} x {} samples; choose a system that suits its place, or larger cells",
         .size.x, .size.y
     )]
     TooLarge {
-        /// The wanted system.
         system: String,
         /// Samples per row and rows.
         size: U64Vec2,
@@ -83,17 +68,16 @@ pub enum WarpError {
         "the elevation file covers a pole, which a raster in degrees ({0}) cannot; cut it, or choose a polar system, for example EPSG:3413 or EPSG:3031"
     )]
     Pole(String),
-    /// A coordinate cannot be transformed from one system to the other.
     #[error(transparent)]
     Crs(#[from] CrsError),
 }
 
-/// The raster in meters, north up, with elevations in meters; borrowed where it is so already.
+/// The raster in a metric system, north up, with elevations in meters; borrowed where nothing changes.
 ///
 /// A raster in meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
 /// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or
-/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the grid
-/// lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
+/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the
+/// grid lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
 ///
 /// A raster without a system is taken to be in `target`, or in plain meters.
 ///
@@ -156,7 +140,7 @@ pub fn check_metric(raster: &Raster) -> Result<(), WarpError> {
     }
 }
 
-/// Checks that a raster states where it lies, and in what.
+/// Checks that a raster has a georeference and, where it looks like degrees, a coordinate system.
 fn check_source(raster: &Raster) -> Result<(), WarpError> {
     if !raster.georeferenced {
         return Err(WarpError::NoPlace);

@@ -1,4 +1,4 @@
-//! Rasters in a wanted system and with cells of a wanted size.
+//! Reprojects rasters to a given coordinate system and cell size.
 //!
 //! ```text
 //! cells of the source   │  1×          2×                  cells that are wanted

@@ -1,7 +1,7 @@
-//! What an expression is for a feature.
+//! Evaluates an expression for a feature.
 //!
-//! Every part is asked for its value together with what can be used in its place, so that `??` knows when to give way:
-//! in `width ?? 6` a width of `"narrow"` is no number and gives way, whereas in `name ?? ref` any text will do.
+//! Each node is evaluated with a predicate for usable values, by which `??` decides: in `width ?? 6` a width of
+//! `"narrow"` is not a number, so the result is 6, whereas in `name ?? ref` any text is usable.
 
 use std::cmp::Ordering;
 
@@ -9,26 +9,26 @@ use crate::description::expression::PropertyLookup;
 use crate::description::expression::syntax::{Binary, ExpressionNode, Function, arms};
 use crate::description::scalar::Scalar;
 
-/// Says of a value whether it can be used.
+/// Whether a value is usable where the expression occurs.
 type Usable<'u> = &'u dyn Fn(&Scalar) -> bool;
 
-/// The evaluation for one feature.
 pub(super) struct Evaluation<'p> {
     pub properties: PropertyLookup<'p>,
 }
 
-/// Anything can be used.
+/// Every value is usable.
 pub(super) fn any(_: &Scalar) -> bool {
     true
 }
 
-/// Only what is a number can be used.
+/// Only numbers are usable.
 fn numeric(value: &Scalar) -> bool {
     value.number().is_some()
 }
 
 impl Evaluation<'_> {
-    /// The value of `node`; only of a fallback's sides, also those in its branches, is it asked whether they are usable.
+    /// The value of `node`. Only the operands of `??` are tested with `usable`, within branches of `if` and `match`
+    /// too.
     pub fn value(&self, node: &ExpressionNode, usable: Usable<'_>) -> Option<Scalar> {
         match node {
             ExpressionNode::Literal(value) => Some(value.clone()),
@@ -115,9 +115,9 @@ impl Evaluation<'_> {
     }
 }
 
-/// The number, unless it is none: what was divided by zero, or grew out of range.
+/// `number`; `None` after a division by zero or an overflow.
 fn finite(number: f64) -> Option<Scalar> {
-    // −0 is 0: nobody who writes it means another number.
+    // −0 becomes 0.
     number.is_finite().then_some(Scalar::Number(number + 0.0))
 }
 
@@ -129,7 +129,7 @@ fn equal(left: &Scalar, right: &Scalar) -> bool {
     }
 }
 
-/// Which is greater; `None` where they cannot be ordered.
+/// The order of two values; `None` where they are not comparable.
 fn order(left: &Scalar, right: &Scalar) -> Option<Ordering> {
     match (left.number().zip(right.number()), left, right) {
         (Some((left, right)), ..) => left.partial_cmp(&right),

@@ -1,4 +1,5 @@
-//! Values that come from a feature's properties: a small language, total, without loops and without surprises.
+//! Values that come from a feature's properties: a small language in which every
+//! evaluation ends.
 //!
 //! ```toml
 //! where    = "highway in ('primary', 'secondary') and not tunnel"
@@ -38,21 +39,20 @@
 //! | `has(x)` | true where `x` has a value, else false |
 //! | `property('name')` | the property of that name, whatever characters are in it |
 //!
-//! **What is missing stays missing.** A property that a feature does not have, a text where a number is needed, a
-//! division by zero: all have no value, and so has every computation and comparison with one of them. `a ?? b` is `b`
-//! where `a` has no value that can be used in its place: no number where one is needed, no word that the key knows.
+//! **Missing values propagate.** A missing property, a text where a number is needed, and a division by zero have no
+//! value, nor has a computation or comparison with one of them. `a ?? b` is `b` where `a` has no usable value: a number
+//! where one is needed, one of the key's words where the key takes words.
 //!
-//! **To hold** is to be true, a number other than 0, or a text other than ``, `no`, `false` and `0`; what has no value
-//! does not hold. `and`, `or`, `not`, `if` and `where` ask whether a thing holds, so `not bridge` is true of a road
-//! without the property, and `lanes < 2` holds for no road of which the lanes are unknown.
+//! **Truth.** A value *holds* where it is true, a number other than 0, or a text other than ``, `no`, `false` and `0`; a
+//! missing value does not hold. `and`, `or`, `not`, `if` and `where` test whether a value holds, so `not bridge` is
+//! true of a road without the property, and `lanes < 2` does not hold for a road without `lanes`.
 //!
-//! **Texts as numbers.** Many files write numbers as texts. Where a number is needed, or the other side of a comparison
-//! is one, a text that is a number is that number, meters (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`) where it says so.
-//! Two texts are equal letter by letter, and ordered as numbers where both are numbers, else letter by letter. `true`
-//! equals what holds, `false` what does not.
+//! **Texts as numbers.** Where a number is needed, or the other operand of a comparison is one, a text converts to a
+//! number, with a unit of meters (`"4.5 m"`) or feet (`"12 ft"`, `"12'6\""`). Two texts are equal where their letters
+//! are, and are ordered as numbers where both convert, else by letters. `true` equals a value that holds, `false` one
+//! that does not.
 //!
-//! Reading is bounded: a text has at most [`MAX_TEXT_BYTES`], nesting at most [`MAX_DEPTH`]; evaluating takes time in
-//! proportion to the text.
+//! Parsing is bounded by [`MAX_TEXT_BYTES`] and [`MAX_DEPTH`]; evaluation takes time in proportion to the text.
 
 mod evaluate;
 mod parser;
@@ -66,12 +66,12 @@ use crate::description::expression::evaluate::{Evaluation, any};
 use crate::description::expression::syntax::ExpressionNode;
 use crate::description::scalar::Scalar;
 
-/// The longest text of an expression: a screen full. Far above what anybody can read, and it bounds the work.
+/// The longest text of an expression, about a screen: it bounds the work.
 pub const MAX_TEXT_BYTES: usize = 4096;
-/// The deepest nesting, of brackets as of chains of operators: it bounds the stack, and nobody reads deeper.
+/// The deepest nesting of brackets and of chains of operators: it bounds the stack.
 pub const MAX_DEPTH: usize = 200;
 
-/// Gives the value of a feature's property by its name; `None` where the feature has none.
+/// Looks up a feature's property by name; `None` where the feature does not have it.
 pub type PropertyLookup<'a> = &'a dyn Fn(&str) -> Option<Scalar>;
 
 /// A computation over a feature's properties.
@@ -80,18 +80,18 @@ pub struct Expression {
     root: ExpressionNode,
 }
 
-/// Why a text is no expression.
+/// Why a text is not an expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message} at column {column}")]
+#[error("{message}{}", column.map_or_else(String::new, |column| format!(" at column {column}")))]
 pub struct ExpressionError {
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do.
+    /// The remedy.
     pub help: String,
-    /// The bytes of the text that it is about.
+    /// The wrong bytes of the text.
     pub at: Range<usize>,
-    /// Where that starts: the first character of the text is column 1.
-    pub column: usize,
+    /// The column where that starts, from 1; `None` where a diagnostic marks the place.
+    pub column: Option<usize>,
 }
 
 impl Expression {
@@ -103,8 +103,8 @@ impl Expression {
         Self::parse_among(text, &[])
     }
 
-    /// As [`Self::parse`], for an expression that gives one of `words`: a bare name that is one of them is taken for a
-    /// text without its quotes, and so is a text that is none of them where the result is written out.
+    /// As [`Self::parse`], for an expression whose result is one of `words`. A word of the list without quotes is an
+    /// error, and so is a literal result that is not in the list.
     ///
     /// # Errors
     /// See [`ExpressionError`].
@@ -112,13 +112,13 @@ impl Expression {
         parser::parse(text, words).map(|root| Self { root })
     }
 
-    /// Whether `text` can only be meant as an expression, not as a word: it holds more than letters, digits, `_` and
-    /// `-`. A word that a key does not know is thus told as one misspelled, and not taken for a property.
+    /// Whether `text` can only be an expression and not a word: it contains other characters than letters, digits, `_`
+    /// and `-`. An unknown word is thus reported as misspelled and not read as a property.
     pub fn computes(text: &str) -> bool {
         !text.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
     }
 
-    /// The properties that it looks at, in alphabetical order, each once.
+    /// The properties that it reads, in alphabetical order, each once.
     pub fn properties(&self) -> Vec<&str> {
         let mut names = BTreeSet::new();
         self.root.add_properties(&mut names);
@@ -130,7 +130,7 @@ impl Expression {
         self.value_for(properties, &any)
     }
 
-    /// As [`Self::value`], where only what `usable` says can be used: a fallback is taken for anything else.
+    /// As [`Self::value`], where `??` falls back, and the result is `None`, for values that are not `usable`.
     pub fn value_for(
         &self,
         properties: PropertyLookup<'_>,

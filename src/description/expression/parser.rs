@@ -1,4 +1,4 @@
-//! Text to tree, by recursive descent: one function for each line of the grammar.
+//! Parses expressions by recursive descent, with one function for each line of the grammar.
 
 use std::iter;
 use std::ops::Range;
@@ -9,17 +9,17 @@ use crate::description::expression::{ExpressionError, MAX_DEPTH};
 use crate::description::scalar::Scalar;
 use crate::message::suggest::{nearest, quoted, remedy};
 
-/// A node and how many nodes lie one below another in it.
+/// A node and its depth.
 type Deep = (ExpressionNode, usize);
 type Parsed = Result<Deep, ExpressionError>;
 
-/// How deep brackets may be nested: each costs the stack a dozen calls.
+/// The deepest nesting of brackets; each level takes a dozen stack frames.
 const MAX_BRACKETS: usize = 32;
 
-/// The expression that `text` writes, which gives one of `words`, or anything where they are none.
+/// Parses `text`. The result must be one of `words`, unless `words` is empty.
 ///
 /// # Errors
-/// The text is no expression, or one that cannot give one of the words.
+/// The text is not an expression, or a literal result is not one of the words.
 pub(super) fn parse(text: &str, words: &[&str]) -> Result<ExpressionNode, ExpressionError> {
     let mut parser = ExpressionParser { text, tokens: tokens(text)?, next: 0, brackets: 0, words };
     let (root, _) = parser.expression()?;
@@ -37,13 +37,12 @@ pub(super) fn parse(text: &str, words: &[&str]) -> Result<ExpressionNode, Expres
     }
 }
 
-/// The text while it is read.
 struct ExpressionParser<'t> {
     text: &'t str,
     tokens: Vec<SpannedToken>,
     next: usize,
     brackets: usize,
-    /// What the result must be one of; none for any.
+    /// The results that are allowed; empty for any.
     words: &'t [&'t str],
 }
 
@@ -231,7 +230,7 @@ impl ExpressionParser<'_> {
         if self.take(mark) { Ok(()) } else { Err(self.unexpected(&format!("`{mark}`"), help)) }
     }
 
-    /// The mark or the bare name `ahead` of the next token; empty for another token.
+    /// The mark or bare name `ahead` tokens after the next one; empty for another token.
     fn written(&self, ahead: usize) -> &str {
         match self.tokens.get(self.next + ahead) {
             Some((ExpressionToken::Mark(mark), _)) => mark,
@@ -262,7 +261,7 @@ impl ExpressionParser<'_> {
         self.tokens.get(self.next).map_or(end, |(_, place)| place.clone())
     }
 
-    /// Where the last text that says `content` stands.
+    /// The bytes of the last text literal `content`.
     fn place_of(&self, content: &str) -> Range<usize> {
         let is = |placed: &&SpannedToken| matches!(&placed.0, ExpressionToken::Text(text) if text == content);
         self.tokens.iter().rfind(is).map_or(0..0, |(_, place)| place.clone())

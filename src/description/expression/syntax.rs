@@ -1,24 +1,22 @@
-//! An expression as a tree, and the words and signs that it is written with.
+//! The syntax tree of an expression, its operators and functions.
 
 use std::collections::BTreeSet;
 
 use crate::description::scalar::Scalar;
 
-/// Names that mean something in the language, so that a property of that name needs quotes.
+/// Keywords. A property of the same name needs quotes.
 pub(super) const RESERVED: [&str; 6] = ["and", "or", "not", "in", "true", "false"];
 
-/// A part of an expression.
+/// A node of the tree.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ExpressionNode {
-    /// A value written out; numbers are not negative.
+    /// A literal; numbers are not negative.
     Literal(Scalar),
-    /// A feature's property.
     Property(String),
     /// `-x`.
     Negative(Box<ExpressionNode>),
     /// `not x`.
     Not(Box<ExpressionNode>),
-    /// Two parts and what joins them.
     Binary(Binary, Box<ExpressionNode>, Box<ExpressionNode>),
     /// `x in (…)`; at least one.
     In(Box<ExpressionNode>, Vec<ExpressionNode>),
@@ -26,7 +24,7 @@ pub(super) enum ExpressionNode {
     Call(Function, Vec<ExpressionNode>),
 }
 
-/// What joins two parts.
+/// A binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Binary {
     Or,
@@ -44,7 +42,6 @@ pub(super) enum Binary {
     Over,
 }
 
-/// A function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Function {
     If,
@@ -57,7 +54,7 @@ pub(super) enum Function {
     Has,
 }
 
-/// Every function with its name, the fewest and the most arguments, and how a call is written.
+/// Every function with its name, its fewest and most arguments, and an example of a call.
 pub(super) const FUNCTIONS: [(&str, Function, usize, usize, &str); 8] = [
     ("if", Function::If, 3, 3, "if(condition, then, else)"),
     ("match", Function::Match, 3, usize::MAX, "match(x, 'a', 1, 'b', 2, else)"),
@@ -69,7 +66,7 @@ pub(super) const FUNCTIONS: [(&str, Function, usize, usize, &str); 8] = [
     ("has", Function::Has, 1, 1, "has(x)"),
 ];
 
-/// The operators and how they are written, by how tightly they bind, the loosest first.
+/// The operators and their spelling, by precedence, the loosest first.
 pub(super) const OPERATORS: [&[(&str, Binary)]; 6] = [
     &[("or", Binary::Or)],
     &[("and", Binary::And)],
@@ -101,7 +98,7 @@ impl ExpressionNode {
         }
     }
 
-    /// The texts written out where one of them can be the result.
+    /// The text literals that the expression can evaluate to.
     pub fn results(&self) -> Vec<&str> {
         match self {
             Self::Literal(Scalar::Text(text)) => vec![text],
@@ -116,7 +113,7 @@ impl ExpressionNode {
     }
 }
 
-/// What a `match` compares with and gives, and what it gives else; of its arguments after the first.
+/// The cases of a `match`, each with its result, and the result where no case matches.
 pub(super) fn arms(
     parts: &[ExpressionNode],
 ) -> (impl Iterator<Item = (&ExpressionNode, &ExpressionNode)>, Option<&ExpressionNode>) {

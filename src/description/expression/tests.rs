@@ -1,4 +1,4 @@
-//! What expressions mean, what is said of wrong ones, and that no text at all breaks the reader.
+//! Tests: values of expressions, messages of wrong ones, and that no text makes the reader panic.
 
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 
@@ -195,7 +195,7 @@ fn what_is_wrong_is_told_with_its_column_and_a_remedy() {
         ("", 1, "but found the end", "property"),
     ] {
         let error = Expression::parse(text).expect_err(text);
-        assert_eq!(error.column, column, "{text}: {error}");
+        assert_eq!(error.column, Some(column), "{text}: {error}");
         assert!(error.message.contains(message), "{text}: {error}");
         assert!(error.help.contains(help), "{text}: {}", error.help);
         assert!(error.to_string().ends_with(&format!("at column {column}")), "{error}");
@@ -207,7 +207,7 @@ fn where_a_word_is_wanted_stray_words_are_told() {
     let words = ["asphalt", "gravel", "track"];
     let refused = |text: &str| Expression::parse_among(text, &words).expect_err(text);
     let bare = refused("if(lanes > 1, asphalt, 'gravel')");
-    assert!(bare.message.contains("must be in quotes") && bare.column == 15, "{bare}");
+    assert!(bare.message.contains("must be in quotes") && bare.column == Some(15), "{bare}");
     let stray = refused("surface ?? 'gravle'");
     assert!(stray.message.contains("cannot be \"gravle\"") && stray.help.contains("`gravel`"), "{stray:?}");
     assert!(Expression::parse_among("match(surface, 'dirt', 'track', 'asphalt')", &words).is_ok());
@@ -232,7 +232,8 @@ fn the_properties_that_it_looks_at_are_known() {
     assert_eq!(expression.properties(), ["a b", "lanes", "x", "y"]);
 }
 
-/// How tightly comparisons and negations bind, as operators by their row in [`OPERATORS`], and all that is taken as one.
+/// How tightly comparisons and negations bind, as operators by their row in [`OPERATORS`], and all that is taken as
+/// one.
 const NEGATION: usize = 2;
 const COMPARISON: usize = 3;
 const NEGATIVE: usize = 7;

@@ -1,16 +1,15 @@
-//! The marks, names, numbers and texts that an expression is written in.
+//! The tokens of an expression.
 
 use std::ops::Range;
 
 use crate::description::expression::{ExpressionError, MAX_TEXT_BYTES};
 use crate::message::suggest::quoted;
 
-/// One of them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ExpressionToken {
     /// A number; never negative, NaN or infinite.
     Number(f64),
-    /// What stands between single quotes.
+    /// A text in single quotes.
     Text(String),
     /// A name without quotes: a property, a function or one of the language's own words.
     Name(String),
@@ -20,14 +19,14 @@ pub(super) enum ExpressionToken {
     Mark(&'static str),
 }
 
-/// The marks, longer ones before what they start with.
+/// The marks, each before the marks that are its prefixes.
 const MARKS: [&str; 16] =
     ["??", "!=", "<=", ">=", "==", "<>", "=", "<", ">", "+", "-", "*", "/", "(", ")", ","];
 
 /// A token and the bytes it takes.
 pub(super) type SpannedToken = (ExpressionToken, Range<usize>);
 
-/// What is wrong with the bytes `at` of `text`.
+/// An error about the bytes `at` of `text`.
 pub(super) fn wrong(
     text: &str,
     at: Range<usize>,
@@ -36,13 +35,18 @@ pub(super) fn wrong(
 ) -> ExpressionError {
     let start = text.floor_char_boundary(at.start);
     let column = text[..start].chars().count() + 1;
-    ExpressionError { message: message.into(), help: help.into(), at: start..at.end.max(start), column }
+    ExpressionError {
+        message: message.into(),
+        help: help.into(),
+        at: start..at.end.max(start),
+        column: Some(column),
+    }
 }
 
 /// The tokens of `text`, in order.
 ///
 /// # Errors
-/// It is too long, a quotation is not closed, or a character is none of the language's.
+/// The text is too long, a quotation is not closed, or a character begins no token.
 pub(super) fn tokens(text: &str) -> Result<Vec<SpannedToken>, ExpressionError> {
     if text.len() > MAX_TEXT_BYTES {
         let message =
@@ -73,12 +77,12 @@ pub(super) fn starts_name(letter: char) -> bool {
     letter.is_alphabetic() || letter == '_'
 }
 
-/// Whether it may stand in a bare name after its first letter.
+/// Whether a bare name may contain it after its first letter.
 pub(super) fn continues_name(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_' || letter == ':'
 }
 
-/// The characters from `at` on for which `keep` says so; moves `at` behind them.
+/// The longest run of characters from `at` on for which `keep` holds; moves `at` behind it.
 fn taken<'t>(text: &'t str, at: &mut usize, keep: impl Fn(char) -> bool) -> &'t str {
     let rest = &text[*at..];
     let end = rest.find(|letter| !keep(letter)).unwrap_or(rest.len());

@@ -1,8 +1,8 @@
-//! A JSON Schema of the scene file, for editors that complete and check while one writes.
+//! A JSON Schema of the scene file, for editors that complete and check text while it is written.
 //!
-//! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022) and
-//! uses only what the common TOML editors know. It does not check what one key means for another, nor whether an
-//! expression can be read: `sandtable check` does.
+//! Made from the declarations that the decoder reads ([`KeyDeclaration`]). It is of draft 2020-12 (Wright et al. 2022)
+//! and uses only what the common TOML editors know. It checks neither rules between keys nor the syntax of expressions;
+//! `sandtable check` does.
 
 use serde_json::{Map, Value, json};
 
@@ -12,7 +12,7 @@ use crate::description::document::Document;
 use crate::description::expression::MAX_TEXT_BYTES;
 use crate::description::styles::STYLE_KEY;
 use crate::description::value::{COORDINATES, MAX_LIST, MAX_POINTS, MAX_TEXT};
-use crate::description::words::{RampName, Word, WordDeclaration};
+use crate::description::words::{RampName, WordDeclaration, declarations};
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
@@ -56,7 +56,7 @@ fn property(key: &KeyDeclaration) -> Value {
 fn description(key: &KeyDeclaration) -> String {
     let unit = if key.unit.is_empty() { String::new() } else { format!(" Unit: {}.", key.unit) };
     let words = match key.kind {
-        KeyKind::Word(words) | KeyKind::FeatureWord(words) => meanings(words),
+        KeyKind::Word(words) | KeyKind::FeatureWord(words) => meanings(&words()),
         _ => String::new(),
     };
     let presence = match key.presence {
@@ -110,7 +110,7 @@ fn required_keys(keys: &'static [KeyDeclaration]) -> Vec<&'static str> {
     required.map(|key| key.name).collect()
 }
 
-/// What must be there where nothing is included: the required keys of single tables.
+/// The required keys of single tables, for a scene file that includes no other.
 fn completeness(keys: &'static [KeyDeclaration]) -> Value {
     let inner = keys.iter().filter_map(|key| match key.kind {
         KeyKind::Table(inner) => Some((key.name.to_owned(), completeness(inner))),
@@ -164,8 +164,8 @@ fn shape(key: &KeyDeclaration) -> Value {
             json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": MAX_LIST })
         }
         KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
-        KeyKind::Word(words) => one_of(words),
-        KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(words), reference("computed")] }),
+        KeyKind::Word(words) => one_of(&words()),
+        KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(&words()), reference("computed")] }),
         KeyKind::Color => json!({ "allOf": [reference("color")] }),
         KeyKind::Point => json!({ "allOf": [reference("point")] }),
         KeyKind::Points(least) => list(reference("point"), least, MAX_POINTS),
@@ -174,7 +174,7 @@ fn shape(key: &KeyDeclaration) -> Value {
         KeyKind::Ramp => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [one_of(RampName::DECLARATIONS), list(stop, 2, MAX_LIST)] })
+            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, MAX_LIST)] })
         }
         KeyKind::Selection => {
             let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, MAX_LIST)] });

@@ -28,6 +28,12 @@ impl LineEnd {
     pub fn opposite(self) -> Self {
         Self { end: 1 - self.end, ..self }
     }
+
+    /// The line in a chain that enters it by this end at station `start_m`.
+    pub fn link(self, start_m: f64, length_m: f64) -> ChainLink {
+        let direction = if self.end == 0 { Direction::Forward } else { Direction::Backward };
+        ChainLink { line: self.line, direction, start_m, length_m }
+    }
 }
 
 /// A line in a chain.
@@ -92,8 +98,7 @@ pub fn chains(lengths_m: &[f64], next: impl Fn(LineEnd) -> Option<LineEnd>) -> V
         let mut entered = Some(entry);
         while let Some(entry) = entered.filter(|entry| !taken[entry.line]) {
             taken[entry.line] = true;
-            let direction = if entry.end == 0 { Direction::Forward } else { Direction::Backward };
-            let link = ChainLink { line: entry.line, direction, start_m, length_m: lengths_m[entry.line] };
+            let link = entry.link(start_m, lengths_m[entry.line]);
             start_m = link.end_m();
             links.push(link);
             entered = next(entry.opposite());
@@ -175,14 +180,10 @@ impl SectionChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::{NodeId, RoadSection};
+    use crate::earthworks::alignment::network::tests::section;
 
     fn network(ends: &[[u32; 2]]) -> SectionNetwork {
-        let section = |&[from, to]: &[u32; 2]| RoadSection {
-            ends: [NodeId(from), NodeId(to)],
-            stations_m: vec![0.0, 4.0, 10.0],
-            max_grade: 0.1,
-        };
+        let section = |&ends: &[u32; 2]| section(ends, vec![0.0, 4.0, 10.0], 0.1);
         let nodes = ends.iter().flatten().max().map_or(0, |&most| most as usize + 1);
         SectionNetwork { nodes, sections: ends.iter().map(section).collect() }
     }

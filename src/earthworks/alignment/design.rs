@@ -6,24 +6,13 @@
 
 use crate::earthworks::alignment::chain::{ChainLink, Direction, SectionChain};
 use crate::earthworks::alignment::fit;
-use crate::earthworks::alignment::network::{SectionNetwork, StationLevels};
-use crate::earthworks::alignment::spans::{EarthworkLimits, spans};
+use crate::earthworks::alignment::network::{RoadSection, SectionNetwork, StationLevels};
+use crate::earthworks::alignment::spans::spans;
 use crate::earthworks::alignment::{Support, SupportSpan};
 use crate::geom::profile::Profile;
 
 /// The most fits: the second moves roads by meters, the third by decimeters.
 const ROUNDS: usize = 4;
-
-/// The ground under a section and what is stated for it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SectionGround {
-    /// The ground at its stations in meters; NaN where there is none.
-    pub ground_m: Vec<f64>,
-    /// What is stated to carry it from end to end; the ground carries it unless it cannot.
-    pub stated: Support,
-    /// What an embankment and a cutting may be.
-    pub limits: EarthworkLimits,
-}
 
 /// A network's levels and spans.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,27 +23,25 @@ pub struct Design {
     pub spans: Vec<Vec<SupportSpan>>,
 }
 
-/// Designs a network: a course a section, a level a node that roads should pass through or NaN, and the length of
-/// vertical curves in meters.
-pub fn design(network: &SectionNetwork, courses: &[SectionGround], pins: &[f64], curve_m: f64) -> Design {
+/// Designs a network: a level a node that roads should pass through or NaN, and the length of vertical curves in meters.
+pub fn design(network: &SectionNetwork, pins: &[f64], curve_m: f64) -> Design {
     let chains = SectionChain::all(network);
-    let mut targets: StationLevels = courses.iter().map(|course| course.ground_m.clone()).collect();
-    for (course, targets) in courses.iter().zip(&mut targets) {
-        if course.stated != Support::Ground {
-            targets.fill(f64::NAN);
-        }
-    }
+    let target = |section: &RoadSection| match section.support {
+        Support::Ground => section.ground_m.clone(),
+        _ => vec![f64::NAN; section.ground_m.len()],
+    };
+    let mut targets: StationLevels = network.sections.iter().map(target).collect();
     let mut round = 1;
     loop {
         let mut levels_m = fit::through(network, &targets, pins);
         let mut found = vec![Vec::new(); network.sections.len()];
         for chain in &chains {
             shape(network, chain, &targets, curve_m, &mut levels_m);
-            find(network, chain, courses, &levels_m, &mut found);
+            find(network, chain, &levels_m, &mut found);
         }
-        let released = release(network, courses, &found, &mut targets);
+        let released = release(network, &found, &mut targets);
         if released == 0 || round == ROUNDS {
-            state(network, courses, &mut found);
+            state(network, &mut found);
             return Design { levels_m, spans: found };
         }
         round += 1;
@@ -101,14 +88,13 @@ fn straighten(stations: &[f64], targets: &[f64], levels: &mut [f64]) {
 fn find(
     network: &SectionNetwork,
     chain: &SectionChain,
-    courses: &[SectionGround],
     levels: &StationLevels,
     found: &mut [Vec<SupportSpan>],
 ) {
-    for links in chain.links.split(|link| courses[link.line].stated != Support::Ground) {
+    for links in chain.links.split(|link| network.sections[link.line].support != Support::Ground) {
         let part = SectionChain { links: links.to_vec() };
         let needs: StationLevels =
-            part.links.iter().map(|link| needs(&courses[link.line], &levels[link.line])).collect();
+            part.links.iter().map(|link| needs(&network.sections[link.line], &levels[link.line])).collect();
         // The part's own sections in the order of its links.
         let own = |index: usize| ChainLink { line: index, ..part.links[index] };
         let local = SectionChain { links: (0..part.links.len()).map(own).collect() };
@@ -132,21 +118,16 @@ fn find(
     }
 }
 
-fn needs(course: &SectionGround, levels: &[f64]) -> Vec<f64> {
-    let rises = levels.iter().zip(&course.ground_m).map(|(level, ground)| level - ground);
-    rises.map(|rise_m| course.limits.need(rise_m)).collect()
+fn needs(section: &RoadSection, levels: &[f64]) -> Vec<f64> {
+    let rises = levels.iter().zip(&section.ground_m).map(|(level, ground)| level - ground);
+    rises.map(|rise_m| section.limits.need(rise_m)).collect()
 }
 
 /// Releases the ground along spans and returns how many stations counted before.
-fn release(
-    network: &SectionNetwork,
-    courses: &[SectionGround],
-    found: &[Vec<SupportSpan>],
-    targets: &mut StationLevels,
-) -> usize {
+fn release(network: &SectionNetwork, found: &[Vec<SupportSpan>], targets: &mut StationLevels) -> usize {
     let mut released = 0;
     for (index, section) in network.sections.iter().enumerate() {
-        if courses[index].stated != Support::Ground {
+        if section.support != Support::Ground {
             continue;
         }
         for span in &found[index] {
@@ -162,11 +143,10 @@ fn release(
 }
 
 /// Adds what is stated from end to end.
-fn state(network: &SectionNetwork, courses: &[SectionGround], found: &mut [Vec<SupportSpan>]) {
-    for (index, course) in courses.iter().enumerate() {
-        if course.stated != Support::Ground {
-            let to_m = network.sections[index].length_m();
-            found[index] = vec![SupportSpan { support: course.stated, from_m: 0.0, to_m }];
+fn state(network: &SectionNetwork, found: &mut [Vec<SupportSpan>]) {
+    for (section, found) in network.sections.iter().zip(found) {
+        if section.support != Support::Ground {
+            *found = vec![SupportSpan { support: section.support, from_m: 0.0, to_m: section.length_m() }];
         }
     }
 }
@@ -174,25 +154,19 @@ fn state(network: &SectionNetwork, courses: &[SectionGround], found: &mut [Vec<S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::{NodeId, RoadSection};
+    use crate::earthworks::alignment::network::tests::section;
+    use crate::earthworks::alignment::spans::EarthworkLimits;
 
-    const ANY: EarthworkLimits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+    const ANY: EarthworkLimits = EarthworkLimits::NONE;
 
     /// A straight road of sections with 10 m between stations; every section begins where the last one ended.
-    fn road(
-        grounds: &[Vec<f64>],
-        max_grade: f64,
-        limits: EarthworkLimits,
-    ) -> (SectionNetwork, Vec<SectionGround>) {
-        let section = |(index, ground): (u32, &Vec<f64>)| RoadSection {
-            ends: [NodeId(index), NodeId(index + 1)],
-            stations_m: (0..ground.len()).map(|at| at as f64 * 10.0).collect(),
-            max_grade,
+    fn road(grounds: &[Vec<f64>], max_grade: f64, limits: EarthworkLimits) -> SectionNetwork {
+        let section = |(index, ground_m): (u32, &Vec<f64>)| {
+            let stations_m = (0..ground_m.len()).map(|at| at as f64 * 10.0).collect();
+            let ground_m = ground_m.clone();
+            RoadSection { ground_m, limits, ..section([index, index + 1], stations_m, max_grade) }
         };
-        let course =
-            |ground: &Vec<f64>| SectionGround { ground_m: ground.clone(), stated: Support::Ground, limits };
-        let sections = (0..).zip(grounds).map(section).collect();
-        (SectionNetwork { nodes: grounds.len() + 1, sections }, grounds.iter().map(course).collect())
+        SectionNetwork { nodes: grounds.len() + 1, sections: (0..).zip(grounds).map(section).collect() }
     }
 
     fn valley(width: usize, depth_m: f64) -> Vec<f64> {
@@ -203,8 +177,8 @@ mod tests {
     #[test]
     fn a_deep_valley_is_bridged_and_no_longer_pulls_the_road_down() {
         let limits = EarthworkLimits { max_fill_m: 6.0, max_cut_m: f64::INFINITY };
-        let (network, courses) = road(&[valley(20, 40.0)], 0.06, limits);
-        let design = design(&network, &courses, &[100.0, 100.0], 50.0);
+        let network = road(&[valley(20, 40.0)], 0.06, limits);
+        let design = design(&network, &[100.0, 100.0], 50.0);
         assert_eq!(network.check(&design.levels_m, 1e-9), Ok(()));
         assert_eq!(design.spans[0].len(), 1);
         let SupportSpan { support, from_m, to_m } = design.spans[0][0];
@@ -217,8 +191,8 @@ mod tests {
     fn a_bridge_goes_on_from_one_section_into_the_next() {
         let limits = EarthworkLimits { max_fill_m: 6.0, max_cut_m: f64::INFINITY };
         let ground = valley(20, 40.0);
-        let (network, courses) = road(&[ground[..=40].to_vec(), ground[40..].to_vec()], 0.06, limits);
-        let design = design(&network, &courses, &[f64::NAN; 3], 50.0);
+        let network = road(&[ground[..=40].to_vec(), ground[40..].to_vec()], 0.06, limits);
+        let design = design(&network, &[f64::NAN; 3], 50.0);
         assert_eq!(design.spans[0].len(), 1);
         assert_eq!(design.spans[0][0].to_m, 400.0);
         assert_eq!(design.spans[1][0].from_m, 0.0);
@@ -228,8 +202,8 @@ mod tests {
     fn a_ridge_too_high_to_cut_is_tunneled() {
         let ridge: Vec<f64> = (0..81).map(|index| 160.0 - 2.0 * f64::abs(f64::from(index) - 40.0)).collect();
         let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: 12.0 };
-        let (network, courses) = road(std::slice::from_ref(&ridge), 0.05, limits);
-        let design = design(&network, &courses, &[80.0, 80.0], 50.0);
+        let network = road(std::slice::from_ref(&ridge), 0.05, limits);
+        let design = design(&network, &[80.0, 80.0], 50.0);
         assert_eq!(design.spans[0].len(), 1);
         assert_eq!(design.spans[0][0].support, Support::Tunnel);
         for ((&station, &level), ground) in
@@ -244,9 +218,9 @@ mod tests {
     #[test]
     fn a_stated_bridge_runs_straight_whatever_lies_under_it() {
         let grounds = [vec![10.0; 11], vec![10.0, 2.0, 30.0, 2.0, 14.0], vec![14.0; 11]];
-        let (network, mut courses) = road(&grounds, 0.2, ANY);
-        courses[1].stated = Support::Bridge;
-        let design = design(&network, &courses, &[10.0, f64::NAN, f64::NAN, 14.0], 0.0);
+        let mut network = road(&grounds, 0.2, ANY);
+        network.sections[1].support = Support::Bridge;
+        let design = design(&network, &[10.0, f64::NAN, f64::NAN, 14.0], 0.0);
         assert_eq!(design.spans[1], [SupportSpan { support: Support::Bridge, from_m: 0.0, to_m: 40.0 }]);
         for (level, straight) in design.levels_m[1].iter().zip([10.0, 11.0, 12.0, 13.0, 14.0]) {
             assert!((level - straight).abs() < 1e-9, "{:?}", design.levels_m[1]);

@@ -41,11 +41,7 @@ pub fn below(network: &SectionNetwork, levels: &StationLevels) -> StationLevels 
 /// The lowest profile that nowhere lies below `levels` and keeps the grade; minus infinity where none of the levels
 /// reaches.
 pub fn above(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
-    let mut turned = below(network, &negated(levels.clone()));
-    for levels in &mut turned {
-        levels.iter_mut().for_each(|level| *level = -*level);
-    }
-    turned
+    negated(below(network, &negated(levels.clone())))
 }
 
 fn negated(mut levels: StationLevels) -> StationLevels {
@@ -119,16 +115,12 @@ impl Ord for Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::NodeId;
+    use crate::earthworks::alignment::network::tests::section;
     use proptest::prelude::*;
 
     /// A star of three sections of the given stations that meet in node 0.
     fn star(stations: [Vec<f64>; 3], max_grade: f64) -> SectionNetwork {
-        let section = |(index, stations_m): (u32, Vec<f64>)| RoadSection {
-            ends: [NodeId(0), NodeId(index)],
-            stations_m,
-            max_grade,
-        };
+        let section = |(index, stations_m): (u32, Vec<f64>)| section([0, index], stations_m, max_grade);
         SectionNetwork { nodes: 4, sections: (1..).zip(stations).map(section).collect() }
     }
 

@@ -44,12 +44,12 @@ pub fn through(network: &SectionNetwork, levels: &StationLevels, pins: &[f64]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::{NodeId, RoadSection};
+    use crate::earthworks::alignment::network::tests::section;
 
     fn road(levels: &[f64], step_m: f64, max_grade: f64) -> (SectionNetwork, StationLevels) {
         let stations_m = (0..levels.len()).map(|index| index as f64 * step_m).collect();
-        let section = RoadSection { ends: [NodeId(0), NodeId(1)], stations_m, max_grade };
-        (SectionNetwork { nodes: 2, sections: vec![section] }, vec![levels.to_vec()])
+        let sections = vec![section([0, 1], stations_m, max_grade)];
+        (SectionNetwork { nodes: 2, sections }, vec![levels.to_vec()])
     }
 
     #[test]

@@ -128,6 +128,26 @@ pub struct Alignment {
 const SAME_STATION_M: f64 = 1e-6;
 
 impl Alignment {
+    /// A line on the ground as it is, of one width.
+    pub fn on_ground(line: Polyline, width_m: f64) -> Self {
+        Self { line, level: None, width: Width::Constant(width_m), support: Support::Ground }
+    }
+
+    /// Whether the ground carries it.
+    pub fn is_on_ground(&self) -> bool {
+        self.support == Support::Ground
+    }
+
+    /// Its elevation at a station in meters; NaN where it has no levels.
+    pub fn level_m(&self, station_m: f64) -> f64 {
+        self.level.as_ref().map_or(f64::NAN, |level| level.at(station_m))
+    }
+
+    /// This alignment, `more_m` wider everywhere.
+    pub fn widened(&self, more_m: f64) -> Self {
+        Self { width: self.width.grown(more_m), ..self.clone() }
+    }
+
     /// The part from where the line first enters `rect` to where it last leaves it; `None` where it passes by.
     pub fn within(&self, rect: &Rect) -> Option<Self> {
         let [from_m, to_m] = self.line.range_within(rect)?;

@@ -1,6 +1,8 @@
 //! Roads as a graph: sections between the nodes where roads end or meet.
 
+use crate::earthworks::alignment::Support;
 use crate::earthworks::alignment::chain::LineEnd;
+use crate::earthworks::alignment::spans::EarthworkLimits;
 
 /// A place where roads end or meet, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,8 +22,14 @@ pub struct RoadSection {
     pub ends: [NodeId; 2],
     /// Distances from its beginning in meters, from 0, never falling; at least two.
     pub stations_m: Vec<f64>,
+    /// The ground at its stations in meters; NaN where there is none.
+    pub ground_m: Vec<f64>,
     /// The steepest rise along it, meters per meter, above 0.
     pub max_grade: f64,
+    /// What is stated to carry it from end to end; the ground carries it unless it cannot.
+    pub support: Support,
+    /// What an embankment and a cutting may be.
+    pub limits: EarthworkLimits,
 }
 
 impl RoadSection {
@@ -33,6 +41,18 @@ impl RoadSection {
 
 /// One number a station of every section, such as heights in meters; NaN where there is none.
 pub type StationLevels = Vec<Vec<f64>>;
+
+/// Levels that no network of roads can have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum SectionLevelsError {
+    /// A section is steeper than it may be.
+    #[error("section {section} rises {rise_m} m in {run_m} m at station {station_m} m")]
+    Steep { section: usize, rise_m: f64, run_m: f64, station_m: f64 },
+    /// Two sections disagree where they meet.
+    #[error("{node:?} lies at {before_m} m, and at {level_m} m for section {section}")]
+    Apart { node: NodeId, before_m: f64, level_m: f64, section: usize },
+}
 
 /// A network of sections.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,25 +84,37 @@ impl SectionNetwork {
     /// where they meet, to a millimeter. Stations without a level are passed over.
     ///
     /// # Errors
-    /// A sentence that names the first place that does not.
-    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), String> {
+    /// The first place that does not.
+    pub fn check(&self, levels: &StationLevels, slack: f64) -> Result<(), SectionLevelsError> {
         let mut at_node = vec![f64::NAN; self.nodes];
         for (index, (section, levels)) in self.sections.iter().zip(levels).enumerate() {
             for (stations, pair) in section.stations_m.windows(2).zip(levels.windows(2)) {
-                let (run, rise) = (stations[1] - stations[0], (pair[1] - pair[0]).abs());
+                let (run_m, rise_m) = (stations[1] - stations[0], (pair[1] - pair[0]).abs());
                 // A millimeter for stations that rounding has put beside each other.
-                if rise > run * (section.max_grade + slack) + 1e-3 {
-                    let station = stations[0];
-                    return Err(format!("section {index} rises {rise} m in {run} m at station {station} m"));
+                if rise_m > run_m * (section.max_grade + slack) + 1e-3 {
+                    let station_m = stations[0];
+                    return Err(SectionLevelsError::Steep { section: index, rise_m, run_m, station_m });
                 }
             }
-            for (node, level) in section.ends.into_iter().zip([levels[0], levels[levels.len() - 1]]) {
-                let before = std::mem::replace(&mut at_node[node.index()], level);
-                if (before - level).abs() > 1e-3 {
-                    return Err(format!("{node:?} lies at {before} m, and at {level} m for section {index}"));
+            for (node, level_m) in section.ends.into_iter().zip([levels[0], levels[levels.len() - 1]]) {
+                let before_m = std::mem::replace(&mut at_node[node.index()], level_m);
+                if (before_m - level_m).abs() > 1e-3 {
+                    return Err(SectionLevelsError::Apart { node, before_m, level_m, section: index });
                 }
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+pub(in crate::earthworks) mod tests {
+    use super::*;
+
+    /// A section between two nodes over ground at height 0, without limits.
+    pub fn section(ends: [u32; 2], stations_m: Vec<f64>, max_grade: f64) -> RoadSection {
+        let ground_m = vec![0.0; stations_m.len()];
+        let (support, limits) = (Support::Ground, EarthworkLimits::NONE);
+        RoadSection { ends: ends.map(NodeId), stations_m, ground_m, max_grade, support, limits }
     }
 }

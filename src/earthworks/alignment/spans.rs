@@ -35,6 +35,9 @@ pub struct EarthworkLimits {
 }
 
 impl EarthworkLimits {
+    /// Any embankment and any cutting.
+    pub const NONE: Self = Self { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+
     /// The share of the limit that a road `rise_m` above the ground needs: above 0 for fill, below for cut, beyond ±1
     /// for too much; 0 where there is no ground.
     pub fn need(&self, rise_m: f64) -> f64 {
@@ -151,7 +154,7 @@ mod tests {
 
     #[test]
     fn without_limits_or_ground_nothing_is_needed() {
-        let any = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
+        let any = EarthworkLimits::NONE;
         assert_eq!((any.need(900.0), any.need(-900.0), any.need(f64::NAN)), (0.0, 0.0, 0.0));
         let some = EarthworkLimits { max_fill_m: 8.0, max_cut_m: 10.0 };
         assert_eq!((some.need(4.0), some.need(-20.0)), (0.5, -2.0));

@@ -3,7 +3,10 @@
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
 use crate::earthworks::channel::{ChannelError, Cut, MOST_VISITS};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::geom::segment;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::post_rect::PostRect;
+use crate::terrain::volumes::Volumes;
 use glam::DVec2;
 
 /// Posts by where the lattice stores them, rising, each with what it is to become.
@@ -36,7 +39,7 @@ impl ChannelBed {
     /// before a lake, no post of the triangles that its centerline crosses stays below it.
     pub fn shaped(
         lattice: &Lattice,
-        courses: &[ChannelCourse],
+        courses: &[ChannelCourse<'_>],
         pieces: &[CenterlinePiece],
     ) -> Result<Self, ChannelError> {
         let wishes = wishes(lattice, courses)?;
@@ -56,7 +59,7 @@ impl ChannelBed {
         };
         let touching = touched.clone().map(|(post, piece)| (post, piece.channel));
         let touching = touching.chain(wishes.iter().map(|wish| (wish.post, wish.channel)));
-        bed.limit(touching.map(|(post, channel)| (post, courses[channel as usize].max_cut_m)));
+        bed.limit(touching.map(|(post, channel)| (post, courses[channel as usize].channel.max_cut_m)));
         let mut levels_m = vec![f64::INFINITY; bed.posts.len()];
         for (post, piece) in touched {
             let place = bed.place(post);
@@ -107,11 +110,9 @@ impl ChannelBed {
 
     /// Gives the lattice the bed's heights, and adds what was moved to the channels it counts for.
     pub fn dig(&self, lattice: &mut Lattice, cuts: &mut [Cut]) {
-        let columns = lattice.columns() as usize;
-        let cell_m2 = lattice.cell().x * lattice.cell().y;
+        let cell_m2 = lattice.cell_m2();
         for (place, &index) in self.posts.iter().enumerate() {
-            let post =
-                Post { column: (index as usize % columns) as u32, row: (index as usize / columns) as u32 };
+            let post = lattice.post_at(index as usize);
             let (before, after) = (lattice.height(post), self.heights_m[place] as f32);
             if before.is_nan() || lattice.is_pinned(post) {
                 continue;
@@ -119,8 +120,7 @@ impl ChannelBed {
             lattice.pin(post, after);
             if let Some(cut) = cuts.get_mut(self.owners[place] as usize) {
                 let rise_m = f64::from(after) - f64::from(before);
-                cut.volumes.fill_m3 += rise_m.max(0.0) * cell_m2;
-                cut.volumes.cut_m3 += (-rise_m).max(0.0) * cell_m2;
+                cut.volumes += Volumes::from_rise(rise_m, cell_m2);
                 cut.deepest_m = cut.deepest_m.max(-rise_m);
             }
         }
@@ -131,7 +131,7 @@ impl ChannelBed {
 const MOST_WAITING: usize = 4_000_000;
 
 /// What channels would have of the posts under their water and banks: for each post the wish of the nearest channel.
-fn wishes(lattice: &Lattice, courses: &[ChannelCourse]) -> Result<Vec<Wish>, ChannelError> {
+fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>, ChannelError> {
     let stretches = || {
         let of_course = |(course, channel): (_, u32)| {
             let pairs = ChannelCourse::pairs(course);
@@ -166,59 +166,49 @@ struct StretchPosts {
     ends: [CourseStation; 2],
     bed_m: f64,
     bank_m: f64,
-    columns: (u32, u32),
-    rows: (u32, u32),
+    posts: PostRect,
 }
 
 impl StretchPosts {
     /// `None` where there is no ground or no post is near.
-    fn of(lattice: &Lattice, course: &ChannelCourse, ends: [CourseStation; 2]) -> Option<Self> {
+    fn of(lattice: &Lattice, course: &ChannelCourse<'_>, ends: [CourseStation; 2]) -> Option<Self> {
         if ends.iter().any(|end| end.level_m.is_nan()) {
             return None;
         }
         let bed_m = ends.map(|end| end.bed_m(lattice)).into_iter().fold(0.0, f64::max);
-        let reach = DVec2::splat(bed_m + course.bank_m) / lattice.cell();
-        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        let low = (ends[0].grid.min(ends[1].grid) - reach).ceil().max(DVec2::ZERO);
-        let high = (ends[0].grid.max(ends[1].grid) + reach).floor().min(last);
-        low.cmple(high).all().then_some(Self {
-            ends,
-            bed_m,
-            bank_m: course.bank_m,
-            columns: (low.x as u32, high.x as u32),
-            rows: (low.y as u32, high.y as u32),
-        })
+        let bank_m = course.channel.bank_m;
+        let reach = DVec2::splat(bed_m + bank_m) / lattice.cell();
+        let [from, to] = ends.map(|end| end.grid);
+        let posts = PostRect::between(lattice, from.min(to) - reach, from.max(to) + reach)?;
+        Some(Self { ends, bed_m, bank_m, posts })
     }
 
     fn posts(&self) -> usize {
-        let span = |(first, last): (u32, u32)| (last - first) as usize + 1;
-        span(self.columns).saturating_mul(span(self.rows))
+        let PostRect { first, last } = self.posts;
+        self.posts.width().saturating_mul((last.row - first.row) as usize + 1)
     }
 
     fn wish(&self, lattice: &Lattice, channel: u32, wishes: &mut Vec<Wish>) {
         let [from, to] = self.ends;
         let way = to.at - from.at;
-        for row in self.rows.0..=self.rows.1 {
-            for column in self.columns.0..=self.columns.1 {
-                let post = Post { column, row };
-                let at = lattice.map_position(post) - lattice.origin();
-                let part = (at - from.at).dot(way) / way.length_squared();
-                let part = if part.is_nan() { 0.0 } else { part.clamp(0.0, 1.0) };
-                let aside_m = at.distance(from.at + way * part);
-                let ground_m = f64::from(lattice.height(post));
-                if aside_m > self.bed_m + self.bank_m || ground_m.is_nan() {
-                    continue;
-                }
-                let level_m = from.level_m + (to.level_m - from.level_m) * part;
-                let beyond_m = aside_m - self.bed_m;
-                let blend = if beyond_m > 0.0 { beyond_m / self.bank_m } else { 0.0 };
-                wishes.push(Wish {
-                    post: lattice.index(post) as u32,
-                    channel,
-                    aside: aside_m / self.bed_m,
-                    height_m: level_m + (ground_m - level_m) * blend,
-                });
+        for post in self.posts.posts() {
+            let at = lattice.map_position(post) - lattice.origin();
+            let part = segment::nearest_part((from.at, to.at), at);
+            let part = if part.is_nan() { 0.0 } else { part };
+            let aside_m = at.distance(from.at + way * part);
+            let ground_m = f64::from(lattice.height(post));
+            if aside_m > self.bed_m + self.bank_m || ground_m.is_nan() {
+                continue;
             }
+            let level_m = from.level_m + (to.level_m - from.level_m) * part;
+            let beyond_m = aside_m - self.bed_m;
+            let blend = if beyond_m > 0.0 { beyond_m / self.bank_m } else { 0.0 };
+            wishes.push(Wish {
+                post: lattice.index(post) as u32,
+                channel,
+                aside: aside_m / self.bed_m,
+                height_m: level_m + (ground_m - level_m) * blend,
+            });
         }
     }
 }

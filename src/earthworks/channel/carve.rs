@@ -19,7 +19,7 @@
 use crate::earthworks::channel::bed::ChannelBed;
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
 use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use glam::DVec2;
 
 /// What a stretch may rise by rounding, in meters: a thousand of them come to a thousandth of a millimeter.
@@ -54,8 +54,8 @@ pub(super) struct CenterlinePiece {
 }
 
 /// All stretches of `courses` over ground, those of the course with the highest source first, each downstream.
-pub(super) fn pieces(lattice: &Lattice, courses: &[ChannelCourse]) -> Vec<CenterlinePiece> {
-    let source = |course: &ChannelCourse| {
+pub(super) fn pieces(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Vec<CenterlinePiece> {
+    let source = |course: &ChannelCourse<'_>| {
         let mut levels = course.stations.iter().map(|station| station.level_m);
         levels.find(|level| !level.is_nan()).unwrap_or(f64::NEG_INFINITY)
     };
@@ -72,17 +72,11 @@ impl CenterlinePiece {
     /// The stretch between two stations in a row; `None` where it has no ground or no length.
     fn between(lattice: &Lattice, channel: u32, [from, to]: [&CourseStation; 2]) -> Option<Self> {
         let middle = (from.grid + to.grid) * 0.5;
-        let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-        if !(middle.cmpge(DVec2::ZERO).all() && middle.cmple(last).all()) {
-            return None;
-        }
-        let low = middle.floor().min(last - 1.0);
-        let (column, row) = (low.x as usize, low.y as usize);
-        let first = row * lattice.columns() as usize + column;
+        let (cell, part) = lattice.cell_at_grid(middle)?;
+        let (low, first) = (cell.grid(), lattice.index(cell));
         let north = first + lattice.columns() as usize;
         let corners = [first, first + 1, north, north + 1];
-        let diagonal = Diagonal::of_cell(Post::at_grid(low));
-        let (used, weigh) = triangle(diagonal, middle - low);
+        let (used, weigh) = triangle(Diagonal::of_cell(cell), part);
         let (start, end) = (weigh(from.grid - low), weigh(to.grid - low));
         let shares = std::array::from_fn(|at| end[at] - start[at]);
         let posts = used.map(|corner| corners[corner]);

@@ -12,19 +12,17 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
+use crate::earthworks::alignment::Alignment;
 use crate::earthworks::channel::Channel;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::crossings::crossings;
 
 /// A channel with its stations, downstream.
-pub(super) struct ChannelCourse {
+pub(super) struct ChannelCourse<'a> {
+    pub channel: &'a Channel,
     /// Every vertex, and every crossing with an edge of the finest triangles.
     pub stations: Vec<CourseStation>,
-    /// How far beyond the bed the ground is blended.
-    pub bank_m: f64,
-    /// How deep the ground may be cut.
-    pub max_cut_m: f64,
 }
 
 /// A place on a centerline.
@@ -63,7 +61,7 @@ impl CourseStation {
     }
 }
 
-impl ChannelCourse {
+impl<'a> ChannelCourse<'a> {
     /// Every two stations in a row that are of one reach.
     pub fn pairs(&self) -> impl Iterator<Item = [CourseStation; 2]> + '_ {
         let of_one_reach =
@@ -72,13 +70,14 @@ impl ChannelCourse {
     }
 
     /// The stations of a channel, levels not yet found.
-    pub fn of(lattice: &Lattice, channel: &Channel) -> Self {
-        let points = channel.line.points();
-        let mut course = Self { stations: Vec::new(), bank_m: channel.bank_m, max_cut_m: channel.max_cut_m };
+    pub fn of(lattice: &Lattice, channel: &'a Channel) -> Self {
+        let Alignment { line, width, .. } = &channel.alignment;
+        let points = line.points();
+        let mut course = Self { channel, stations: Vec::new() };
         for (index, pair) in points.windows(2).enumerate() {
             let across = (pair[1] - pair[0]).normalize_or_zero().perp();
-            let [start_m, end_m] = [index, index + 1].map(|vertex| channel.line.stations()[vertex]);
-            let halves = [start_m, end_m].map(|station_m| channel.width.at(station_m) / 2.0);
+            let [start_m, end_m] = [index, index + 1].map(|vertex| line.stations()[vertex]);
+            let halves = [start_m, end_m].map(|station_m| width.at(station_m) / 2.0);
             let mut add = |part: f64, grid: DVec2, vertex: Option<usize>| {
                 let place = StationPoint {
                     station_m: start_m + (end_m - start_m) * part,
@@ -147,14 +146,8 @@ fn height(lattice: &Lattice, at: DVec2) -> f64 {
 
 /// The level of the lake at a grid position: there the cell's posts are pinned and level.
 fn lake_at(lattice: &Lattice, grid: DVec2) -> Option<f64> {
-    let last = DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1));
-    if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) {
-        return None;
-    }
-    let low = grid.floor().min(last - 1.0);
-    let cell = Post { column: low.x as u32, row: low.y as u32 };
-    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
-        .map(|(east, north)| Post { column: cell.column + east, row: cell.row + north });
+    let (cell, _) = lattice.cell_at_grid(grid)?;
+    let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(east, north)| cell.offset(east, north));
     let level = lattice.height(cell);
     let is_lake = corners.iter().all(|&post| lattice.is_pinned(post) && lattice.height(post) == level);
     is_lake.then_some(f64::from(level))

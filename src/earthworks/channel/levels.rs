@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
 use crate::earthworks::channel::reaches::{Sill, reaches};
-use crate::earthworks::channel::{Channel, Climb, Cut};
+use crate::earthworks::channel::{Climb, Cut};
 use crate::earthworks::falling_levels::{WeightedLevel, fit_falling};
 use crate::geom::polyline::{VertexKey, vertex_key};
 
@@ -37,9 +37,9 @@ struct Nodes {
 }
 
 /// Finds the level at every station that has ground.
-pub(super) fn settle(courses: &mut [ChannelCourse], channels: &[Channel]) {
+pub(super) fn settle(courses: &mut [ChannelCourse<'_>]) {
     courses.iter_mut().for_each(fit);
-    let mut nodes = Nodes::shared(courses, channels);
+    let mut nodes = Nodes::shared(courses);
     relax(courses, &mut nodes, lower);
     relax(courses, &mut nodes, raise_floor);
     for (index, course) in courses.iter_mut().enumerate() {
@@ -54,7 +54,7 @@ pub(super) fn settle(courses: &mut [ChannelCourse], channels: &[Channel]) {
 }
 
 /// The reaches of a course, and the levels of each by itself.
-fn fit(course: &mut ChannelCourse) {
+fn fit(course: &mut ChannelCourse<'_>) {
     let grounded: Vec<usize> =
         (0..course.stations.len()).filter(|&at| !course.stations[at].raw_m.is_nan()).collect();
     let sill = |&at: &usize| Sill {
@@ -62,7 +62,7 @@ fn fit(course: &mut ChannelCourse) {
         bank_m: course.stations[at].bank_m.max(course.stations[at].raw_m),
     };
     let sills: Vec<Sill> = grounded.iter().map(sill).collect();
-    let found = reaches(&sills, course.max_cut_m);
+    let found = reaches(&sills, course.channel.max_cut_m);
     for (number, &(first, last)) in found.iter().enumerate() {
         fit_reach(course, &grounded[first..=last], &sills[first..=last]);
         // Stations without ground are of the reach around them: the ground may begin between two stations.
@@ -73,11 +73,11 @@ fn fit(course: &mut ChannelCourse) {
 }
 
 /// The levels of the stations `reach` by themselves: those nearest to the ground that never rise and keep both bounds.
-fn fit_reach(course: &mut ChannelCourse, reach: &[usize], sills: &[Sill]) {
+fn fit_reach(course: &mut ChannelCourse<'_>, reach: &[usize], sills: &[Sill]) {
     let mut highest_ahead_m = f64::NEG_INFINITY;
     for (&at, sill) in reach.iter().zip(sills).rev() {
         highest_ahead_m = highest_ahead_m.max(sill.ground_m);
-        course.stations[at].lowest_m = highest_ahead_m - course.max_cut_m;
+        course.stations[at].lowest_m = highest_ahead_m - course.channel.max_cut_m;
     }
     let station_m = |index: usize| course.stations[reach[index]].station_m;
     let last = reach.len() - 1;
@@ -98,10 +98,10 @@ fn fit_reach(course: &mut ChannelCourse, reach: &[usize], sills: &[Sill]) {
 }
 
 impl Nodes {
-    fn shared(courses: &[ChannelCourse], channels: &[Channel]) -> Self {
+    fn shared(courses: &[ChannelCourse<'_>]) -> Self {
         let mut at: BTreeMap<VertexKey, BTreeSet<usize>> = BTreeMap::new();
-        for (index, channel) in channels.iter().enumerate() {
-            for &point in channel.line.points() {
+        for (index, course) in courses.iter().enumerate() {
+            for &point in course.channel.alignment.line.points() {
                 at.entry(vertex_key(point)).or_default().insert(index);
             }
         }
@@ -112,23 +112,23 @@ impl Nodes {
             cap_m: f64::INFINITY,
             floor_m: f64::NEG_INFINITY,
         });
-        let stations_of = |(course, channel): (&ChannelCourse, &Channel)| {
-            let points = channel.line.points();
+        let stations_of = |course: &ChannelCourse<'_>| {
+            let points = course.channel.alignment.line.points();
             let node_of = |station: &CourseStation| {
                 station.vertex.and_then(|vertex| places.get(&vertex_key(points[vertex])).copied())
             };
             let stations = course.stations.iter().enumerate();
             stations.filter_map(|(at, station)| node_of(station).map(|node| (at, node))).collect()
         };
-        Self { nodes: nodes.collect(), of_courses: courses.iter().zip(channels).map(stations_of).collect() }
+        Self { nodes: nodes.collect(), of_courses: courses.iter().map(stations_of).collect() }
     }
 }
 
 /// Visits every course, and again those that share a node which `visit` has changed, until nothing changes.
 fn relax(
-    courses: &mut [ChannelCourse],
+    courses: &mut [ChannelCourse<'_>],
     nodes: &mut Nodes,
-    visit: fn(&mut ChannelCourse, &mut Nodes, usize) -> Vec<usize>,
+    visit: fn(&mut ChannelCourse<'_>, &mut Nodes, usize) -> Vec<usize>,
 ) {
     let mut waiting: BTreeSet<usize> = (0..courses.len()).collect();
     while let Some(index) = waiting.pop_first() {
@@ -139,7 +139,7 @@ fn relax(
 }
 
 /// Lowers a course to what flows in at its nodes, as far as allowed, and returns the nodes that it lowers.
-fn lower(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+fn lower(course: &mut ChannelCourse<'_>, nodes: &mut Nodes, index: usize) -> Vec<usize> {
     let (mut lowered, mut lowest_m, mut reach) = (Vec::new(), f64::INFINITY, None);
     let mut own = nodes.of_courses[index].iter().peekable();
     for (at, station) in course.stations.iter_mut().enumerate() {
@@ -166,7 +166,7 @@ fn lower(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usi
 }
 
 /// Raises the floors of the nodes from which water of this course comes to a lake, and returns these nodes.
-fn raise_floor(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> Vec<usize> {
+fn raise_floor(course: &mut ChannelCourse<'_>, nodes: &mut Nodes, index: usize) -> Vec<usize> {
     let floors_m = floors_m(course, nodes, index);
     let mut raised = Vec::new();
     for &(at, node) in nodes.of_courses[index].iter().rev() {
@@ -181,7 +181,7 @@ fn raise_floor(course: &mut ChannelCourse, nodes: &mut Nodes, index: usize) -> V
 }
 
 /// For each station of a course the highest lake that its water has yet to reach; minus infinity for none.
-fn floors_m(course: &ChannelCourse, nodes: &Nodes, index: usize) -> Vec<f64> {
+fn floors_m(course: &ChannelCourse<'_>, nodes: &Nodes, index: usize) -> Vec<f64> {
     let mut floors_m = vec![f64::NEG_INFINITY; course.stations.len()];
     let mut own = nodes.of_courses[index].iter().rev().peekable();
     let (mut floor_m, mut reach) = (f64::NEG_INFINITY, None);
@@ -201,7 +201,7 @@ fn floors_m(course: &ChannelCourse, nodes: &Nodes, index: usize) -> Vec<f64> {
 }
 
 /// The levels at a course's ends, nothing cut yet.
-pub(super) fn ends(course: &ChannelCourse) -> Cut {
+pub(super) fn ends(course: &ChannelCourse<'_>) -> Cut {
     let mut levels = course.stations.iter().map(|station| station.level_m).filter(|level| !level.is_nan());
     let first = levels.next();
     let last = levels.next_back().or(first);
@@ -209,7 +209,7 @@ pub(super) fn ends(course: &ChannelCourse) -> Cut {
 }
 
 /// Where a course goes from one reach to the next. The ground there stays as it is.
-fn climbs(course: &ChannelCourse) -> Vec<Climb> {
+fn climbs(course: &ChannelCourse<'_>) -> Vec<Climb> {
     let grounded: Vec<&CourseStation> = course
         .stations
         .iter()

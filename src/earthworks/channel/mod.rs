@@ -25,7 +25,7 @@ pub mod flow;
 mod levels;
 mod reaches;
 
-use crate::earthworks::alignment::Width;
+use crate::earthworks::alignment::Alignment;
 use crate::earthworks::channel::bed::ChannelBed;
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::ChannelCourse;
@@ -36,10 +36,8 @@ use crate::terrain::volumes::Volumes;
 /// A river to cut.
 #[derive(Clone, Debug)]
 pub struct Channel {
-    /// The centerline in world coordinates, downstream.
-    pub line: Polyline,
-    /// The water's width.
-    pub width: Width,
+    /// The centerline in world coordinates, downstream, and the water's width.
+    pub alignment: Alignment,
     /// How far beyond the bed the ground is blended, in meters, at least 0.
     pub bank_m: f64,
     /// How deep the ground may be cut, and how high it may be filled before a lake, in meters, above 0; infinite for any
@@ -97,9 +95,9 @@ pub const MOST_VISITS: usize = 200_000_000;
 /// # Errors
 /// See [`ChannelError`]; the ground is then as it was.
 pub fn cut(lattice: &mut Lattice, channels: &[Channel]) -> Result<Cuts, ChannelError> {
-    let mut courses: Vec<ChannelCourse> =
+    let mut courses: Vec<ChannelCourse<'_>> =
         channels.iter().map(|channel| ChannelCourse::of(lattice, channel)).collect();
-    levels::settle(&mut courses, channels);
+    levels::settle(&mut courses);
     let pieces = carve::pieces(lattice, &courses);
     let mut bed = ChannelBed::shaped(lattice, &courses, &pieces)?;
     let climbing = carve::carve(&mut bed, &pieces);

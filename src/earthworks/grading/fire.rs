@@ -7,6 +7,7 @@ use crate::earthworks::grading::GradingWorks;
 use crate::earthworks::grading::formation::{Formation, LegId, world};
 use crate::earthworks::grading::strip::GradingStrip;
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 
 /// A post that the fire has come to.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,8 +43,7 @@ pub(in crate::earthworks::grading) fn batter(
         spread(strips, &formation, works.lattice, post, &mut front);
     }
     while let Some(Reverse(Front { index, leg, .. })) = front.pop() {
-        let columns = works.lattice.columns() as usize;
-        let post = Post { column: (index % columns) as u32, row: (index / columns) as u32 };
+        let post = works.lattice.post_at(index);
         if formation.owner(index).is_some() || works.lattice.is_pinned(post) {
             continue;
         }
@@ -73,7 +73,7 @@ fn spread(
     front: &mut BinaryHeap<Reverse<Front>>,
 ) {
     let Some(from) = formation.owner(lattice.index(post)) else { return };
-    for next in neighbors(lattice, post) {
+    for next in (PostRect { first: post, last: post }).grown((1, 1), lattice).posts() {
         let index = lattice.index(next);
         if formation.owner(index).is_some() {
             continue;
@@ -84,15 +84,4 @@ fn spread(
             front.push(Reverse(nearest));
         }
     }
-}
-
-/// The posts round a post, diagonal ones too, that the lattice has.
-fn neighbors(lattice: &Lattice, post: Post) -> impl Iterator<Item = Post> {
-    let steps = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    steps.into_iter().filter_map(move |(east, north)| {
-        let column = post.column.checked_add_signed(east).filter(|&column| column < columns)?;
-        let row = post.row.checked_add_signed(north).filter(|&row| row < rows)?;
-        Some(Post { column, row })
-    })
 }

@@ -67,10 +67,8 @@ impl Formation {
         for id in formation.legs.ids() {
             formation.claim(lattice, strips, id);
         }
-        let row = |row: u32| (0..lattice.columns()).map(move |column| Post { column, row });
-        let is_owned = |post: &Post| formation.owners[lattice.index(*post)] != 0;
-        let posts = (0..lattice.rows()).flat_map(row).filter(is_owned).collect();
-        formation.posts = posts;
+        let owned = formation.owners.iter().enumerate().filter(|(_, owner)| **owner != 0);
+        formation.posts = owned.map(|(index, _)| lattice.post_at(index)).collect();
         formation
     }
 
@@ -78,8 +76,9 @@ impl Formation {
         let (index, leg) = self.legs.place(id);
         let strip = &strips[index];
         let margin = lattice.cell().length();
-        let reach = strip.section.half_width_m + strip.section.shoulder_m + margin;
-        let ends = [strip.line.points()[leg], strip.line.points()[leg + 1]];
+        let reach = strip.reach_m() + margin;
+        let points = strip.alignment.line.points();
+        let ends = [points[leg], points[leg + 1]];
         for post in posts_near(lattice, ends, reach) {
             let at = world(lattice, post);
             let beside = strip.beside(leg, at);
@@ -117,7 +116,7 @@ impl Formation {
 
 /// World X and Y of a post, not rounded to f32.
 pub(in crate::earthworks::grading) fn world(lattice: &Lattice, post: Post) -> DVec2 {
-    DVec2::new(f64::from(post.column), f64::from(post.row)) * lattice.cell() + lattice.extent().min
+    post.grid() * lattice.cell() + lattice.extent().min
 }
 
 /// The posts within `reach` of a leg, and some farther ones: row by row, beside the part of the leg near the row.

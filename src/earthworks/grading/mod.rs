@@ -70,7 +70,7 @@ impl GradingWorks<'_> {
 mod tests {
     use super::*;
     use crate::earthworks::alignment::Support;
-    use crate::earthworks::alignment::design::{SectionGround, design};
+    use crate::earthworks::alignment::design::design;
     use crate::earthworks::alignment::network::{NodeId, RoadSection, SectionNetwork};
     use crate::earthworks::alignment::spans::EarthworkLimits;
     use crate::earthworks::grading::strip::StripEnd;
@@ -135,7 +135,8 @@ mod tests {
             for index in 0..500 {
                 let (along, aside) = (f64::from(index) / 500.0 * 226.0 + 2.0, f64::from(index % 13) - 6.0);
                 let way = (points[1] - points[0]).normalize();
-                let off = planar(&rough, points[0] + way * along + way.perp() * aside) - road.level(along);
+                let off = planar(&rough, points[0] + way * along + way.perp() * aside)
+                    - road.alignment.level_m(along);
                 assert!(off.abs() < 1e-4, "{off} m at {along}, {aside}");
             }
         }
@@ -205,13 +206,13 @@ mod tests {
             let road = designed(&before, &points, grade_limit);
             let mut after = before.clone();
             let volumes = grade(&mut after, std::slice::from_ref(&road));
-            let bends: Vec<f64> = road.line.stations().to_vec();
+            let bends: Vec<f64> = road.alignment.line.stations().to_vec();
             for index in 0..400 {
-                let station = road.line.length() * f64::from(index) / 400.0;
+                let station = road.alignment.line.length() * f64::from(index) / 400.0;
                 let leg = bends.partition_point(|&at| at <= station) - 1;
                 let way = (points[leg + 1] - points[leg]).normalize();
                 let aside = f64::from(index % 11) - 5.0;
-                let place = road.line.at(station) + way.perp() * aside;
+                let place = road.alignment.line.at(station) + way.perp() * aside;
                 let nearest = (0..road.legs()).map(|leg| road.beside(leg, place));
                 let nearest = nearest.min_by(|a, b| a.out_m.total_cmp(&b.out_m)).expect("a leg");
                 let off = (planar(&after, place) - road.formation(&nearest)).abs();
@@ -245,19 +246,13 @@ mod tests {
         let stations_m: Vec<f64> = stations.iter().map(|at| at.station_m).collect();
         let ground_m = stations.iter().map(|at| at.ground.height_m().expect("ground")).collect();
         let ends = [NodeId(0), NodeId(1)];
-        let network = SectionNetwork {
-            nodes: 2,
-            sections: vec![RoadSection { ends, stations_m: stations_m.clone(), max_grade }],
-        };
-        let limits = EarthworkLimits { max_fill_m: f64::INFINITY, max_cut_m: f64::INFINITY };
-        let design = design(
-            &network,
-            &[SectionGround { ground_m, stated: Support::Ground, limits }],
-            &[f64::NAN; 2],
-            50.0,
-        );
-        let flat = strip(points, [0.0; 2], FLAT);
-        let level = Profile::new(stations_m, design.levels_m[0].clone()).expect("stations rise");
-        GradingStrip { level, ..flat }
+        let (support, limits) = (Support::Ground, EarthworkLimits::NONE);
+        let section =
+            RoadSection { ends, stations_m: stations_m.clone(), ground_m, max_grade, support, limits };
+        let network = SectionNetwork { nodes: 2, sections: vec![section] };
+        let design = design(&network, &[f64::NAN; 2], 50.0);
+        let mut strip = strip(points, [0.0; 2], FLAT);
+        strip.alignment.level = Profile::new(stations_m, design.levels_m[0].clone());
+        strip
     }
 }

@@ -14,9 +14,8 @@
 
 use glam::DVec2;
 
-use crate::geom::offset::LineBend;
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
+use crate::earthworks::alignment::Alignment;
+use crate::geom::offset::{Continuations, LineBend};
 
 /// The steepest border between two legs, meters along for each meter aside: that of a square turn.
 const STEEPEST_LEAN: f64 = 1.0;
@@ -24,11 +23,9 @@ const STEEPEST_LEAN: f64 = 1.0;
 /// How far from a bend stations are squeezed, in meters of their shift at the formation's edge: a third steeper there.
 const EASE: f64 = 4.0;
 
-/// The cross section of a road.
+/// The cross section of a road beside its width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossSection {
-    /// Half the carriageway's width in meters.
-    pub half_width_m: f64,
     /// Each shoulder's width in meters.
     pub shoulder_m: f64,
     /// How far the carriageway falls from its middle to either side, meters per meter.
@@ -51,10 +48,8 @@ pub enum StripEnd {
 /// A road on the ground between bridges and tunnels.
 #[derive(Clone, Debug)]
 pub struct GradingStrip {
-    /// Its centerline in world coordinates.
-    pub line: Polyline,
-    /// The road's level on the centerline in meters, over stations along `line`.
-    pub level: Profile,
+    /// Its centerline, level and carriageway, of one width.
+    pub alignment: Alignment,
     /// Across.
     pub section: CrossSection,
     /// What stands at its ends.
@@ -77,16 +72,25 @@ pub struct StripOffset {
 impl GradingStrip {
     /// How many legs it has.
     pub fn legs(&self) -> usize {
-        self.line.points().len() - 1
+        self.alignment.line.points().len() - 1
+    }
+
+    fn half_width_m(&self) -> f64 {
+        self.alignment.width.widest_m() / 2.0
+    }
+
+    /// From the centerline to the edge of the formation, in meters.
+    pub fn reach_m(&self) -> f64 {
+        self.half_width_m() + self.section.shoulder_m
     }
 
     /// The position of a world point relative to a leg.
     pub fn beside(&self, leg: usize, at: DVec2) -> StripOffset {
-        let points = self.line.points();
+        let points = self.alignment.line.points();
         let (from, to) = (points[leg], points[leg + 1]);
         let (length, way) = (from.distance(to), (to - from).normalize_or_zero());
         let (along, left) = (way.dot(at - from), way.perp_dot(at - from));
-        let reach = self.section.half_width_m + self.section.shoulder_m;
+        let reach = self.reach_m();
         let (before, after) = (-along, along - length);
         let beyond_m = match (leg == 0 && before > 0.0, leg + 1 == self.legs() && after > 0.0) {
             (true, _) => before,
@@ -102,7 +106,7 @@ impl GradingStrip {
         let to_end = length - along + self.squeezed(leg + 1, leg, -left, length - along);
         // Each end's ease reaches to the middle at most, so that one of the two is no more than the distance itself.
         let within = if along < length / 2.0 { from_start } else { length - to_end };
-        let station_m = self.line.stations()[leg] + within.clamp(0.0, length);
+        let station_m = self.alignment.line.stations()[leg] + within.clamp(0.0, length);
         StripOffset { out_m, station_m, aside_m: left.abs(), beyond_m }
     }
 
@@ -110,9 +114,9 @@ impl GradingStrip {
     /// the left as seen from the leg's start, to the right as seen from its end.
     fn squeezed(&self, vertex: usize, leg: usize, aside: f64, distance: f64) -> f64 {
         let lean = self.lean(vertex, leg);
-        let points = self.line.points();
+        let points = self.alignment.line.points();
         let half = points[leg].distance(points[leg + 1]) / 2.0;
-        let reach = self.section.half_width_m + self.section.shoulder_m;
+        let reach = self.reach_m();
         let ease = (EASE * reach * lean.abs()).min(half);
         if distance >= ease || ease <= 0.0 {
             return 0.0;
@@ -123,25 +127,18 @@ impl GradingStrip {
 
     /// How far along a leg the line between it and its neighbor at a vertex goes for each meter to the left.
     fn lean(&self, vertex: usize, leg: usize) -> f64 {
-        let points = self.line.points();
-        if vertex == 0 || vertex + 1 == points.len() {
-            return 0.0;
-        }
+        let points = self.alignment.line.points();
+        let Some(bend) = LineBend::at(points, vertex, Continuations::default(), 0.0) else { return 0.0 };
         let own = (points[leg + 1] - points[leg]).normalize_or_zero();
-        let bend = LineBend { points: [points[vertex - 1], points[vertex], points[vertex + 1]], half: 0.0 };
         let between = bend.bisector();
         let (along, left) = (own.dot(between), own.perp_dot(between));
         if left > 1e-9 { (along / left).clamp(-STEEPEST_LEAN, STEEPEST_LEAN) } else { 0.0 }
     }
 
-    /// The road's level on the centerline.
-    pub fn level(&self, station_m: f64) -> f64 {
-        self.level.at(station_m)
-    }
-
     /// The level of the formation at a place beside the strip.
     pub fn formation(&self, beside: &StripOffset) -> f64 {
-        self.level(beside.station_m) - self.section.crown * beside.aside_m.min(self.section.half_width_m)
+        self.alignment.level_m(beside.station_m)
+            - self.section.crown * beside.aside_m.min(self.half_width_m())
     }
 
     /// Where the batters at a place would lie: the fill's, below which there may be no ground, and the cut's, above
@@ -164,18 +161,21 @@ impl GradingStrip {
 #[cfg(test)]
 pub(in crate::earthworks::grading) mod tests {
     use super::*;
+    use crate::geom::polyline::Polyline;
+    use crate::geom::profile::Profile;
 
     pub const FLAT: CrossSection =
-        CrossSection { half_width_m: 5.0, shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };
+        CrossSection { shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };
 
-    /// A strip along these points, its level rising evenly from the first to the second.
+    /// A strip ten meters wide along these points, its level rising evenly from the first to the second.
     pub fn strip(points: &[DVec2], [first, last]: [f64; 2], section: CrossSection) -> GradingStrip {
         let line = Polyline::new(points.iter().copied(), 0.0).expect("a line");
         let stations_m = line.stations().to_vec();
         let level = |station: &f64| first + (last - first) * station / line.length();
         let levels_m = stations_m.iter().map(level).collect();
-        let level = Profile::new(stations_m, levels_m).expect("stations rise");
-        GradingStrip { line, level, section, ends: [StripEnd::Open; 2] }
+        let level = Profile::new(stations_m, levels_m);
+        let alignment = Alignment { level, ..Alignment::on_ground(line, 10.0) };
+        GradingStrip { alignment, section, ends: [StripEnd::Open; 2] }
     }
 
     #[test]
@@ -199,7 +199,7 @@ pub(in crate::earthworks::grading) mod tests {
             .normalize();
             for aside in [-6.0, -2.0, 3.0, 6.0] {
                 let at = points[1] + between * aside;
-                let levels = [0, 1].map(|leg| strip.level(strip.beside(leg, at).station_m));
+                let levels = [0, 1].map(|leg| strip.alignment.level_m(strip.beside(leg, at).station_m));
                 assert!((levels[0] - levels[1]).abs() < 1e-9, "{levels:?} at {aside} m aside");
             }
         }

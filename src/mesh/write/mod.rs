@@ -42,16 +42,10 @@ impl MeshFormat {
 
 /// Why a mesh does not fit a format; the inner error of an [`io::ErrorKind::InvalidInput`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum MeshWriteError {
-    /// More than a 32-bit count can state.
     #[error("{count} {what} exceed the {} that the format can hold; raise the maximum error", u32::MAX)]
-    TooLarge {
-        /// How many there are.
-        count: usize,
-        /// What is counted.
-        what: &'static str,
-    },
-    /// The mesh has no triangles.
+    TooLarge { count: usize, what: &'static str },
     #[error("a glTF mesh needs at least one triangle")]
     Empty,
 }
@@ -62,7 +56,7 @@ impl From<MeshWriteError> for io::Error {
     }
 }
 
-/// What a file states about its content.
+/// Remarks about the content of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Remarks {
     lines: Vec<String>,
@@ -70,8 +64,8 @@ pub struct Remarks {
 }
 
 impl Remarks {
-    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no line
-    /// can end a comment.
+    /// Full sentences, and a short form for the 80 bytes of an STL header. Control characters become `?`, so that no
+    /// line can end a comment.
     pub fn new(lines: &[String], short: &str) -> Self {
         let printable = |line: &str| line.replace(char::is_control, "?");
         Self { lines: lines.iter().map(|line| printable(line)).collect(), short: printable(short) }

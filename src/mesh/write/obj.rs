@@ -46,7 +46,7 @@ pub struct ObjObject<'a> {
 /// Writes an OBJ file object by object.
 pub struct ObjWriter<'w, W> {
     out: &'w mut W,
-    /// Lines written of each kind: what the next object's indices start after.
+    /// Lines written of each kind: the base of the next object's indices.
     positions: usize,
     uvs: usize,
     normals: usize,
@@ -124,7 +124,7 @@ impl<'w, W: Write> ObjWriter<'w, W> {
     }
 }
 
-/// `name` as one word: what is neither letter nor digit nor one of `-.` becomes `_`.
+/// `name` as one word: characters other than letters, digits, `-` and `.` become `_`.
 pub fn word(name: &str) -> String {
     name.chars().map(|at| if at.is_alphanumeric() || "-.".contains(at) { at } else { '_' }).collect()
 }

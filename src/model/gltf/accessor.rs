@@ -1,5 +1,5 @@
-//! Numbers out of accessors. Every slice is checked before it is read: the readers of the `gltf` crate (1.4.1) panic on
-//! forged lengths, and they do not read quantized positions.
+//! Reads numbers from accessors. Every slice is checked before it is read: the readers of the `gltf` crate (1.4.1)
+//! panic on forged lengths, and they do not read quantized positions.
 
 use std::cell::Cell;
 

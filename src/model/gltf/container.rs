@@ -1,4 +1,4 @@
-//! Bytes to a document whose indices are all in range.
+//! Parses the bytes of a file to a document whose indices are all in range.
 
 use ::gltf::Document;
 use ::gltf::json::validation::{Checked, Error, Validate};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::model::error::ModelError;
 
-/// Extensions that change where data is or what it means, and are read.
+/// Supported extensions that change the place or the meaning of data.
 const SUPPORTED: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"];
 /// The start of extensions that refine how a material looks; it is drawn without them.
 const REFINEMENTS: &str = "KHR_materials_";
@@ -65,8 +65,8 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ModelError> {
     Ok((json, binary))
 }
 
-/// Adds what the format leaves out and `gltf-json` 1.4.1 requires: nodes of scenes. Removes `extras`, of which it
-/// accepts only objects.
+/// Adds an optional field that `gltf-json` 1.4.1 requires: nodes of scenes. Removes `extras`, of which it accepts only
+/// objects.
 fn complete(document: &mut Value) {
     remove_extras(document);
     for scene in document.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
@@ -124,8 +124,8 @@ fn check_positions(root: &Root) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Refuses indices out of range and unknown values. The rest that the crate reports, such as missing bounds of positions
-/// and attributes of the author's own, does no harm.
+/// Refuses indices out of range and unknown values. The rest that the crate reports, such as missing bounds of
+/// positions and attributes of the author's own, does no harm.
 fn check_indices(root: &Root) -> Result<(), ModelError> {
     let mut first = None;
     root.validate(root, Path::new, &mut |path, error| {

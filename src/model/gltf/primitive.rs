@@ -1,4 +1,4 @@
-//! Primitives to triangles with corners.
+//! Converts primitives to triangles with corners.
 
 use ::gltf::mesh::{Mode, Primitive, Semantic};
 use ::gltf::{Accessor, Mesh};

@@ -1,11 +1,12 @@
-//! A parsed OBJ file and its libraries to a [`Model`].
+//! Makes a [`Model`] from a parsed OBJ file and its libraries.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
 use crate::draw::list::MaterialId;
-use crate::model::error::{CompanionError, ModelError, error_chain};
+use crate::message::chain::error_text;
+use crate::model::error::{CompanionError, ModelError};
 use crate::model::material::{MappedMaterial, unnamed_material};
 use crate::model::normals::{CREASE_COS, Smoothing, corner_normals};
 use crate::model::part::{ModelCorner, PartBuilder, TriangleBudget};
@@ -62,7 +63,7 @@ fn load_libraries(
                 materials.extend(parsed.filter(|material| names.insert(material.name.clone())));
             }
             Err(error) => {
-                notes.push(format!("material library '{library}' is missing: {}", error_chain(&*error)));
+                notes.push(format!("material library '{library}' is missing: {}", error_text(&*error)));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! An OBJ text to its statements, all indices absolute and in range.
+//! Parses an OBJ text to statements with absolute indices in range.
 
 use std::ops::Range;
 

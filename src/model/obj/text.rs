@@ -1,4 +1,4 @@
-//! Bytes to logical lines: encodings and continued lines.
+//! Splits bytes into logical lines: decodes text and joins continued lines.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! A 3DS file's objects, materials and nodes to a [`Model`].
+//! Makes a [`Model`] from the objects, materials and nodes of a 3DS file.
 //!
 //! Vertices are stored in the editor's world. They go to their object's axes (the inverse of the mesh matrix, mirrored
 //! along X where that matrix mirrors: 3D Studio stores mirrored objects so), from there relative to the node's pivot,

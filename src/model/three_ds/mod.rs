@@ -10,8 +10,7 @@
 //!
 //! Vertices are stored where the object was in the editor; the keyframer gives its pose at frame 0. `assemble` brings
 //! one to the other. Ids and layouts follow lib3ds and the "3D Studio File Format" notes of Jochen Wilhelmy (1996). A
-//! chunk that reaches past its parent is refused, as lib3ds and assimp do: the rest of the file cannot be told from
-//! noise.
+//! chunk that reaches past its parent is refused, as lib3ds and assimp do: the rest of the file may be anything.
 
 mod assemble;
 mod chunk;

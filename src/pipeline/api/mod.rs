@@ -1,4 +1,4 @@
-//! The types that `lib.rs` offers: a few over the modules below, for programs that use this crate as a library.
+//! The types that `lib.rs` re-exports, for programs that use this crate as a library.
 
 pub mod dem;
 pub mod error;

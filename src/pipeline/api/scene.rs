@@ -31,7 +31,7 @@ impl Default for SceneOptions<'_> {
     }
 }
 
-/// What a picture shows of a scene, and its size.
+/// The view of a scene and the size of its picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     view: scene::SceneView,

@@ -40,21 +40,17 @@ pub enum FlightPath {
 
 /// A path that cannot be flown.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum FlightError {
-    /// The file of stations cannot be read.
     #[error(transparent)]
     File(#[from] ReadFileError),
-    /// The file does not hold stations.
     #[error(transparent)]
     Stations(#[from] StationFileError),
-    /// A camera has no direction.
     #[error("{path}, frame {frame}")]
     Camera {
-        /// The path.
         path: FlightPath,
         /// From 1.
         frame: usize,
-        /// Why.
         source: CameraError,
     },
 }

@@ -14,7 +14,7 @@ use crate::view::camera::Camera;
 /// views, few enough to take no longer than the flight.
 pub const MEASURED: usize = 8;
 
-/// What one method did on a flight, over all frames but the first.
+/// Measurements of one method on a flight, over all frames but the first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightReport {
     /// The method.

@@ -1,4 +1,4 @@
-//! What every method does: it follows a camera and returns what it shows.
+//! The interface of every method: follow a camera, return the triangles shown.
 
 use crate::pipeline::lod::deferred::DeferredFollower;
 use crate::pipeline::lod::full::FullFollower;

@@ -5,9 +5,9 @@
 
 use std::fmt::{self, Display};
 
-use crate::pipeline::choice::{Choice, ChoiceWord, word};
+use crate::message::choice::{Choice, ChoiceWord, word};
 
-/// What emits triangles.
+/// The emitters of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Emit {
     /// Index lists of refined vertices.
@@ -57,7 +57,7 @@ pub enum SphereRule {
     Bounding,
 }
 
-/// What refines.
+/// The refiner of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refine {
     /// A refiner that evaluates any criterion.
@@ -66,7 +66,7 @@ pub enum Refine {
     Deferred,
 }
 
-/// What refines by any criterion.
+/// The refiners that take any criterion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refiner {
     /// From the roots, for every frame.
@@ -90,7 +90,7 @@ pub enum LodMethod {
         lists: IndexEmitter,
         /// When an error shows.
         criterion: CriterionKind,
-        /// What refines.
+        /// The refiner of a method.
         refiner: Refiner,
     },
     /// Nested spheres examined when due; the index lists of triangles are updated in place.
@@ -173,7 +173,7 @@ impl Choice for Refine {
 }
 
 impl LodMethod {
-    /// What emits its triangles.
+    /// Its emitter of triangles.
     pub fn emit(self) -> Emit {
         match self {
             Self::Full => Emit::Full,
@@ -192,7 +192,7 @@ impl LodMethod {
         }
     }
 
-    /// What refines; `None` where nothing is refined.
+    /// Its refiner; `None` if it refines nothing.
     pub fn refine(self) -> Option<Refine> {
         match self {
             Self::Full | Self::Geomipmap => None,

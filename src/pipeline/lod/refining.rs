@@ -34,7 +34,7 @@ enum RefinerState<'a> {
     Queues(Box<Queues<'a>>),
 }
 
-/// The update of a refiner, to be called with a criterion. Returns what changed, where the refiner knows.
+/// The update of a refiner, to be called with a criterion. Returns the changes if the refiner records them.
 struct RefinerUpdate<'s, 'a> {
     state: &'s mut RefinerState<'a>,
     layout: &'s PatchLayout,

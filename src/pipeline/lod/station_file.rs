@@ -20,33 +20,24 @@ const LONGEST_QUOTE: usize = 60;
 
 /// A text that is not a flight.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum StationFileError {
-    /// A line is not a station.
     #[error(transparent)]
     Line(#[from] LineError<StationFault>),
-    /// There are fewer than two stations.
     #[error("{name}: found {found} stations, a flight needs two or more lines of x,y,z,tx,ty,tz")]
-    TooFew {
-        /// The file.
-        name: String,
-        /// How many.
-        found: usize,
-    },
+    TooFew { name: String, found: usize },
 }
 
-/// What is wrong with a station.
+/// A fault of a station.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum StationFault {
-    /// The line, which is quoted, does not hold six numbers.
     #[error("found '{0}', each line must hold six numbers x,y,z,tx,ty,tz")]
     Numbers(String),
-    /// A coordinate is out of range.
     #[error("coordinates are meters from the south-west post, at most {FARTHEST_M}")]
     Range,
-    /// The eye has no direction.
     #[error("the eye is its own target; let it look somewhere")]
     NoDirection,
-    /// There are too many stations.
     #[error("a flight has at most {MOST} stations")]
     TooMany,
 }

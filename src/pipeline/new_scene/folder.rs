@@ -16,26 +16,20 @@ pub type FolderError = FileError<FolderCause>;
 
 /// Why a new scene cannot use a folder or a file.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum FolderCause {
-    /// A file is in the way of the folder.
     #[error("this is not a folder")]
     NotAFolder,
-    /// A path that does not exist goes up.
     #[error("name the folder without `..` in it")]
     Parent,
-    /// No part of the path exists.
     #[error("there is no such place")]
     Nowhere,
-    /// The file does not exist.
     #[error("there is no such file")]
     NoFile,
-    /// A folder, a pipe or a device.
     #[error("this is not a file")]
     NotAFile,
-    /// The name is not Unicode, which a scene file must be.
     #[error("its name is not Unicode text; rename it")]
     NotText,
-    /// The system refuses.
     #[error(transparent)]
     System(#[from] SystemError),
 }

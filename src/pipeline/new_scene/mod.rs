@@ -39,7 +39,7 @@ const FILE_NAME: &str = "scene.toml";
 /// About as many contour lines as the eye can follow.
 const CONTOURS: f64 = 12.0;
 
-/// What a scene file is made of.
+/// Options for a new scene file.
 #[derive(Clone, Debug, Default)]
 pub struct NewSceneOptions {
     /// The folder for the scene file; it is made where it does not exist.
@@ -65,20 +65,16 @@ pub struct WrittenScene {
 
 /// A scene file that cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum NewSceneError {
-    /// There is a scene file already.
     #[error("{}: there is such a file already; remove it, or name another folder", .0.display())]
     Exists(PathBuf),
-    /// The folder or a file named in the scene is unfit.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// A vector file cannot be read.
     #[error(transparent)]
     Survey(#[from] SurveyError),
-    /// The elevation gives no ground.
     #[error(transparent)]
     Ground(#[from] OpenSceneError),
-    /// The folder cannot be made, or the file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteFileError),
 }
@@ -110,7 +106,7 @@ pub fn write(
     fs::create_dir_all(&options.folder).map_err(system)?;
     let draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
         if is_new {
-            // Fails, as it should, where the folder is no longer empty.
+            // Does nothing where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
         }
     })?;
@@ -122,7 +118,7 @@ fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewScen
     Ok(VectorDraft { file: folder.relative(file)?, layers: survey::layers(file)? })
 }
 
-/// The draft with what the elevation gives: heights, extent and cameras.
+/// Completes the draft from the elevation: heights, extent and cameras.
 fn complete(
     path: &Path,
     mut draft: SceneDraft,

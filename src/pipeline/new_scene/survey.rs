@@ -1,8 +1,8 @@
 //! A survey of vector files: which tables of a scene file could take their features.
 //!
-//! Each [`TableRule`] is a table that could be written, with the expression that selects its features. The expression is
-//! evaluated for every feature, so that the counts are those of the scene, and no table is written that selects nothing.
-//! Where no rule matches a layer, its name may still say what it holds.
+//! Each [`TableRule`] is a table that could be written, with the expression that selects its features. The expression
+//! is evaluated for every feature, so that the counts are those of the scene, and no table is written that selects
+//! nothing. Where no rule matches a layer, its name may still say what it holds.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -52,9 +52,8 @@ pub(super) enum FeatureSelection {
 
 /// A table that may be written.
 pub(super) struct TableRule {
-    /// The name of the table.
     pub table: &'static str,
-    /// What its features are.
+    /// The kind of its features.
     pub what: &'static str,
     /// Their shape, as [`Geometry::kind`] names it.
     pub shape: &'static str,

@@ -9,7 +9,7 @@ use crate::geom::rect::Rect;
 use crate::pipeline::new_scene::cameras::CameraDraft;
 use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
 
-/// What is known of the scene; zero and empty where it is not known yet.
+/// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]
 pub(super) struct SceneDraft {
     pub title: String,
@@ -31,7 +31,7 @@ pub(super) struct SceneDraft {
     pub extent: Option<Rect>,
 }
 
-/// A vector file and what it holds.
+/// A vector file and its layers.
 pub(super) struct VectorDraft {
     /// The file as the scene file names it.
     pub file: String,

@@ -1,4 +1,4 @@
-//! Cutting triangles to the part that a picture can show.
+//! Clips triangles to the view.
 //!
 //! A triangle is cut at the near plane, where the division by `w` would fail, and at a guard band far outside the
 //! picture, beyond which sub-pixel coordinates would overflow (Sutherland and Hodgman 1974). A crossing is computed

@@ -1,4 +1,4 @@
-//! Which samples of a pixel lie on a masked face and not in one of its holes.
+//! The samples of a pixel that lie on a masked face and not in one of its holes.
 //!
 //! Foliage is the most expensive thing to draw: leaf lies behind leaf, and every sample reads the mask. Constants of a
 //! face are therefore computed once per face, and the mask's footprint, which hardly changes across a pixel, once per

@@ -1,4 +1,4 @@
-//! Triangles of a draw list to faces and pieces, ready for the rasterizer.
+//! Converts the triangles of a draw list to faces and pieces for the rasterizer.
 //!
 //! A [`ScreenFace`] is a triangle with all that shading needs; a [`FacePiece`] is a part of its outline on the picture,
 //! usually the only one. Triangles are processed in parallel in chunks of [`CHUNK`], each from its three vertices:

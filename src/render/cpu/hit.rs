@@ -1,4 +1,4 @@
-//! The point of a face that a pixel shows.
+//! The point of a face at a pixel.
 
 use glam::{Vec2, Vec3};
 

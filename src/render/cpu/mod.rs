@@ -23,8 +23,8 @@
 //! Shading takes two thirds of the time and more; the rest is triangles (three corners projected, three planes) and one
 //! depth test per covered sample. Eight samples per pixel take a third more time than one. Memory: 12 bytes per pixel
 //! for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12 bytes per pixel and 52 per
-//! triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces; a third of each texture and
-//! of the ground map for their coarser levels, and as much again of a texture with holes for its alpha.
+//! triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces; a third of each texture
+//! and of the ground map for their coarser levels, and as much again of a texture with holes for its alpha.
 
 mod alpha;
 mod band;
@@ -69,7 +69,7 @@ pub struct RenderQuality {
     pub anisotropy: u32,
 }
 
-/// The number of positions at which each pixel is tested for what it shows.
+/// The number of samples per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleCount {
     /// Once, at the center: jagged, for drafts.

@@ -1,4 +1,4 @@
-//! Which samples of which pixels a triangle covers, exactly.
+//! Exact coverage: the samples of pixels that a triangle covers.
 //!
 //! Corners are snapped to a sub-pixel grid; everything after that is integer arithmetic. An edge function gives the
 //! side of an edge on which a sample lies (Pineda 1988). A sample on an edge belongs to the triangle for which the edge

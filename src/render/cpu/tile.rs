@@ -1,4 +1,4 @@
-//! One tile, from its pieces to finished pixels.
+//! Draws the pieces of one tile to finished pixels.
 
 use glam::Vec3;
 

@@ -1,9 +1,9 @@
 //! The face that each sample of a tile sees, among opaque and masked surfaces.
 //!
 //! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes must come in
-//! the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: what a draped face
-//! meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of two at the
-//! same depth the first of the list.
+//! the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: what a draped
+//! face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of two at
+//! the same depth the first of the list.
 
 use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::render::cpu::occlusion::Occlusion;
@@ -54,8 +54,8 @@ impl<const N: usize> Visibility<N> {
         ((y - self.window.from[1]) * TILE + x - self.window.from[0]) as usize
     }
 
-    /// Whether a solid's piece may be seen in front of what is there; if so, counts it as drawn. Must be called for
-    /// solids only, after everything else is drawn.
+    /// Whether a solid's piece may be seen in front of the faces drawn before; if so, counts it as drawn. Must be
+    /// called for solids only, after everything else is drawn.
     pub fn may_show(&mut self, piece: &FacePiece, face: &ScreenFace) -> bool {
         let visible = piece.window.intersection(self.window);
         let [left, top] = self.window.from;

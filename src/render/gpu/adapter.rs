@@ -63,7 +63,7 @@ impl Gpu {
         self.api
     }
 
-    /// Runs `work`, and returns what the device or its driver reports against it.
+    /// Runs `work`; returns the errors of the device and its driver.
     pub(super) fn guarded<T>(
         &self,
         doing: &'static str,

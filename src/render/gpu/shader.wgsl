@@ -69,7 +69,7 @@ struct Corner {
     @location(3) color: vec4f,
 }
 
-// What each item has of its own.
+// The values that differ between items.
 struct Instance {
     @location(4) x_axis: vec4f,
     @location(5) y_axis: vec4f,

@@ -226,11 +226,11 @@ fn hashed(column: u32, row: u32, seed: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::words::Word;
+    use crate::message::choice::Choice;
     use crate::ribbon::texture::{RibbonSurface, texture};
 
     fn covers() -> impl Iterator<Item = Cover> {
-        Cover::ALL.iter().copied()
+        Cover::CHOICES.iter().map(|choice| choice.value)
     }
 
     #[test]

@@ -57,6 +57,15 @@ impl RibbonSurface {
         matches!(self, Self::AsphaltJunction | Self::GravelJunction | Self::TrackJunction | Self::Confluence)
     }
 
+    /// How good a pavement it is: a road goes through the lesser ones that it meets.
+    pub fn rank(self) -> u8 {
+        match self {
+            Self::Track | Self::Shoulder => 0,
+            Self::Gravel => 1,
+            _ => 2,
+        }
+    }
+
     /// Whether the ground shows through it.
     pub fn lets_through(self) -> bool {
         matches!(self, Self::Cover(_) | Self::Border | Self::Bank)

@@ -186,7 +186,6 @@ pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Resu
         .with_help("take fewer points or a lower density, or choose among them with `where`"))
 }
 
-/// The choice among a table's variants.
 struct ModelChoice<'a> {
     table: &'a ModelPlacement,
     file: usize,

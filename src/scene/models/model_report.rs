@@ -32,72 +32,55 @@ pub fn add(
 ) {
     let finest = frame.scale.ground(lattice);
     for group in &placed.groups {
-        let stand = |index: usize| {
-            let placement = &placed.placements[index];
-            let footprint = placed.library.footprint(placement.model);
-            StandReport::new(placement, footprint, &finest, volumes.get(&index).copied())
-        };
-        let all: Vec<StandReport> = group.placements.clone().filter_map(stand).collect();
         let name = group.table.name.clone().unwrap_or_else(|| group.table.file.to_string());
+        let rows = group.placements.clone().filter_map(|index| {
+            let placement = &placed.placements[index];
+            row(placement, placed.library.footprint(placement.model), &finest, volumes.get(&index))
+        });
         if group.table.instances.is_some() {
             note(group, &name, &mut collected.notes);
-            collected.report.instances.push(instances(group, name, &all));
+            collected.report.instances.push(instances(group, name, &rows.collect::<Vec<_>>()));
         } else {
-            collected.report.models.extend(all.iter().map(|stand| stand.row(name.clone())));
+            collected.report.models.extend(rows.map(|row| ModelRow { name: name.clone(), ..row }));
         }
     }
 }
 
-/// How one model stands, in meters as they are drawn, but for the anchor's elevation.
-struct StandReport {
-    anchor_m: Option<f64>,
-    gaps_m: [Option<f64>; 4],
-    tilt_deg: f64,
-    plinth_m: Option<f64>,
-    moved: Option<Volumes>,
+/// How one model stands, without its name, in meters as they are drawn, but for the anchor's elevation; `None` where there
+/// is no ground.
+fn row(
+    placement: &Placement,
+    footprint: &ModelFootprint,
+    finest: &DrawnGround<'_>,
+    moved: Option<&Volumes>,
+) -> Option<ModelRow> {
+    let ground = SupportSurface { displayed: finest, ground: finest };
+    let pose = stand(placement, footprint, ground)?;
+    let gap = |corner: Vec3| Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?);
+    let [gap_front_left, gap_front_right, gap_back_right, gap_back_left] = pose.base(footprint).map(gap);
+    let is_on_ground = placement.clamp != Clamp::Absolute;
+    Some(ModelRow {
+        name: String::new(),
+        anchor: is_on_ground.then(|| finest.scale.elevation_m(pose.anchor_z)),
+        gap_front_left,
+        gap_front_right,
+        gap_back_right,
+        gap_back_left,
+        tilt: pose.tilt_rad.to_degrees(),
+        plinth: pose.plinth_height_m(placement, footprint, ground),
+        cut: moved.map(|moved| moved.cut_m3),
+        fill: moved.map(|moved| moved.fill_m3),
+    })
 }
 
-impl StandReport {
-    fn new(
-        placement: &Placement,
-        footprint: &ModelFootprint,
-        finest: &DrawnGround<'_>,
-        moved: Option<Volumes>,
-    ) -> Option<Self> {
-        let ground = SupportSurface { displayed: finest, ground: finest };
-        let pose = stand(placement, footprint, ground)?;
-        let gap =
-            |corner: Vec3| Some(f64::from(corner.z) - finest.displayed_z(corner.truncate().as_dvec2())?);
-        Some(Self {
-            anchor_m: (placement.clamp != Clamp::Absolute).then(|| finest.scale.elevation_m(pose.anchor_z)),
-            gaps_m: pose.base(footprint).map(gap),
-            tilt_deg: pose.tilt_rad.to_degrees(),
-            plinth_m: pose.plinth_height_m(placement, footprint, ground),
-            moved,
-        })
-    }
-
-    fn row(&self, name: String) -> ModelRow {
-        let [gap_front_left, gap_front_right, gap_back_right, gap_back_left] = self.gaps_m;
-        ModelRow {
-            name,
-            anchor: self.anchor_m,
-            gap_front_left,
-            gap_front_right,
-            gap_back_right,
-            gap_back_left,
-            tilt: self.tilt_deg,
-            plinth: self.plinth_m,
-            cut: self.moved.map(|moved| moved.cut_m3),
-            fill: self.moved.map(|moved| moved.fill_m3),
-        }
-    }
-}
-
-fn instances(group: &InstanceGroup<'_>, name: String, all: &[StandReport]) -> InstancesRow {
-    let gaps = || all.iter().flat_map(|stand| stand.gaps_m).flatten();
-    let total = |of: fn(&Volumes) -> f64| {
-        let moved: Vec<f64> = all.iter().filter_map(|stand| stand.moved.as_ref()).map(of).collect();
+fn instances(group: &InstanceGroup<'_>, name: String, all: &[ModelRow]) -> InstancesRow {
+    let gaps = || {
+        let corners =
+            |row: &ModelRow| [row.gap_front_left, row.gap_front_right, row.gap_back_right, row.gap_back_left];
+        all.iter().flat_map(corners).flatten()
+    };
+    let total = |of: fn(&ModelRow) -> Option<f64>| {
+        let moved: Vec<f64> = all.iter().filter_map(of).collect();
         (!moved.is_empty()).then(|| moved.iter().sum())
     };
     InstancesRow {
@@ -107,10 +90,10 @@ fn instances(group: &InstanceGroup<'_>, name: String, all: &[StandReport]) -> In
         of_no_variant: group.unknown,
         least_gap: gaps().min_by(f64::total_cmp),
         greatest_gap: gaps().max_by(f64::total_cmp),
-        greatest_tilt: all.iter().map(|stand| stand.tilt_deg).max_by(f64::total_cmp),
-        highest_plinth: all.iter().filter_map(|stand| stand.plinth_m).max_by(f64::total_cmp),
-        cut: total(|moved| moved.cut_m3),
-        fill: total(|moved| moved.fill_m3),
+        greatest_tilt: all.iter().map(|row| row.tilt).max_by(f64::total_cmp),
+        highest_plinth: all.iter().filter_map(|row| row.plinth).max_by(f64::total_cmp),
+        cut: total(|row| row.cut),
+        fill: total(|row| row.fill),
     }
 }
 

@@ -91,7 +91,6 @@ fn grouped<'a>(stands: impl Iterator<Item = (&'a PlacedModel, DetailForm)>) -> G
     groups
 }
 
-/// The form of each model in view.
 fn forms(
     scene: &SceneModel,
     camera: &Camera,
@@ -131,7 +130,6 @@ impl BoundingSphere {
         Self { center: bounds.center(), radius: bounds.radius() }
     }
 
-    /// The sphere in world space.
     fn in_world(&self, stand: &PlacedModel) -> Self {
         let scale = stand.world_from_model.x_axis.truncate().length();
         Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }

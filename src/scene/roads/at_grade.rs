@@ -24,13 +24,14 @@ pub fn crossings(
     counts: impl Fn(&Centerline) -> bool,
 ) -> Option<Vec<[RoadStation; 2]>> {
     let chosen = roads.iter().enumerate().filter(|(_, road)| counts(road));
-    let tree = LegTree::new(chosen.flat_map(|(road, at)| LineLeg::all(road, &at.alignment.line)).collect());
+    let tree =
+        LegTree::new(chosen.flat_map(|(road, at)| LineLeg::all(road, &at.street.alignment.line)).collect());
     let (mut pairs, mut found) = (0, Vec::new());
     for (index, one) in tree.legs().iter().enumerate() {
         let near = tree.near(one);
         let after = &near[near.partition_point(|&other| other <= index)..];
         let others = after.iter().map(|&other| &tree.legs()[other]);
-        let same = others.filter(|other| roads[one.line].level == roads[other.line].level);
+        let same = others.filter(|other| roads[one.line].street.level == roads[other.line].street.level);
         found.extend(same.filter_map(|other| crossing(one, other)));
         pairs += after.len();
         if pairs > MOST_PAIRS || found.len() > MOST_CROSSINGS {
@@ -73,7 +74,12 @@ mod tests {
             let found = crossings(&roads, |_| true).expect("not too tangled");
             assert_eq!(found.len(), 15 * 15);
             for [(one, at), (other, there)] in found {
-                let apart = roads[one].alignment.line.at(at).distance(roads[other].alignment.line.at(there));
+                let apart = roads[one]
+                    .street
+                    .alignment
+                    .line
+                    .at(at)
+                    .distance(roads[other].street.alignment.line.at(there));
                 assert!(apart < 1e-9, "{apart}");
             }
         }

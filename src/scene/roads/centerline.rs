@@ -1,16 +1,15 @@
 //! The document's roads as centerlines, each with what it is to become.
 
-use glam::DVec2;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::RoadTable;
 use crate::description::words::{self, Markings};
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::geom::polyline::{Polyline, kept};
+use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
+use crate::ribbon::junction::Street;
 use crate::ribbon::stroke::StrokeOptions;
 use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::FeatureKind;
@@ -25,16 +24,10 @@ const REACH_M: f64 = 1000.0;
 /// A road, or the part of one that has one support.
 #[derive(Clone, Debug)]
 pub struct Centerline {
-    /// Its centerline, levels and carriageway.
-    pub alignment: Alignment,
-    /// Its carriageway's joints, and the mean of its width.
-    pub options: StrokeOptions,
+    /// Its carriageway.
+    pub street: Street,
     /// The width of the unpaved strip on either side in meters; 0 for none.
     pub shoulder_m: f64,
-    /// Its pavement.
-    pub surface: RibbonSurface,
-    /// What passes over what: roads of different levels do not meet.
-    pub level: i32,
     /// Its feature.
     pub feature: FeatureId,
     /// The index of its table in the document.
@@ -56,7 +49,7 @@ pub fn collect(
     let mut all = Vec::new();
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
-        let widths_m = lines.first().and_then(|line| widths_m(road, &line.shape));
+        let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
         let name = road.name.as_deref();
         for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Road, name, collected) {
             let mut centerline = centerline(road, attributes, line, collected);
@@ -71,12 +64,12 @@ pub fn collect(
 }
 
 impl Centerline {
-    /// Gives it a width at each vertex.
     fn vary(&mut self, widths_m: &[f64]) {
-        self.options.width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
-        self.options.texture_length_m = texture_length_m(self.surface, self.options.width_m);
-        let widths = Profile::new(self.alignment.line.stations().to_vec(), widths_m.to_vec());
-        self.alignment.width = widths.map_or(Width::Constant(self.options.width_m), Width::Varying);
+        let Street { alignment, width_m, options, surface, .. } = &mut self.street;
+        *width_m = widths_m.iter().sum::<f64>() / widths_m.len() as f64;
+        options.texture_length_m = texture_length_m(*surface, *width_m);
+        let widths = Profile::new(alignment.line.stations().to_vec(), widths_m.to_vec());
+        alignment.width = widths.map_or(Width::Constant(*width_m), Width::Varying);
     }
 }
 
@@ -87,47 +80,40 @@ fn centerline(
     line: Polyline,
     collected: &mut SceneBuilder,
 ) -> Centerline {
-    let surface = surface(road, &attributes);
+    let word = attributes.value_or_default(&road.surface);
+    let surface = surface(word, attributes.value_or_default(&road.markings));
     let width_m = attributes.number(&road.width, &mut collected.default_counts);
     let shoulder_m = attributes.number(&road.shoulder, &mut collected.default_counts);
-    let options = StrokeOptions {
-        width_m,
-        join: road.join,
-        miter_limit: road.miter_limit,
-        texture_length_m: texture_length_m(surface, width_m),
-    };
     let support = support(road, &attributes);
-    Centerline {
-        alignment: Alignment { line, level: None, width: Width::Constant(width_m), support },
-        options,
-        shoulder_m,
-        surface,
+    let street = Street {
+        alignment: Alignment { support, ..Alignment::on_ground(line, width_m) },
+        width_m,
+        options: StrokeOptions {
+            join: road.join,
+            miter_limit: road.miter_limit,
+            ..StrokeOptions::of(surface, width_m)
+        },
         level: level(road, &attributes, support),
+        surface,
+    };
+    Centerline {
+        street,
+        shoulder_m,
         feature: collected.add(FeatureKind::Road, attributes.name(road.name.as_deref())),
         table: 0,
         attributes,
     }
 }
 
-/// The widths stated for the points of an inline line, at the vertices that are left of it.
-fn widths_m(road: &RoadTable, shape: &[DVec2]) -> Option<Vec<f64>> {
-    let stated = road.widths.as_ref()?;
-    let widths_m: Option<Vec<f64>> =
-        kept(shape, near::MERGE_M).into_iter().map(|index| stated.get(index).copied()).collect();
-    widths_m.filter(|widths_m| widths_m.len() >= 2)
-}
-
-/// What it is paved with and what is painted on it.
-fn surface(road: &RoadTable, attributes: &Attributes) -> RibbonSurface {
-    match attributes.value_or_default(&road.surface) {
-        words::RoadSurface::Gravel => RibbonSurface::Gravel,
-        words::RoadSurface::Track => RibbonSurface::Track,
-        words::RoadSurface::Asphalt => match attributes.value_or_default(&road.markings) {
-            Markings::Dashed => RibbonSurface::Asphalt,
-            Markings::Solid => RibbonSurface::AsphaltSolid,
-            Markings::Edges => RibbonSurface::AsphaltEdges,
-            Markings::None => RibbonSurface::AsphaltPlain,
-        },
+/// A pavement, with what is painted on asphalt.
+pub(in crate::scene) fn surface(word: words::RoadSurface, markings: Markings) -> RibbonSurface {
+    match (word, markings) {
+        (words::RoadSurface::Gravel, _) => RibbonSurface::Gravel,
+        (words::RoadSurface::Track, _) => RibbonSurface::Track,
+        (words::RoadSurface::Asphalt, Markings::Dashed) => RibbonSurface::Asphalt,
+        (words::RoadSurface::Asphalt, Markings::Solid) => RibbonSurface::AsphaltSolid,
+        (words::RoadSurface::Asphalt, Markings::Edges) => RibbonSurface::AsphaltEdges,
+        (words::RoadSurface::Asphalt, Markings::None) => RibbonSurface::AsphaltPlain,
     }
 }
 
@@ -159,16 +145,21 @@ fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
 pub(in crate::scene::roads) mod tests {
     use super::*;
     use crate::description::parse::parse;
+    use glam::DVec2;
 
     /// A road along these points, six meters wide, from the document's first table.
     pub fn road(points: &[(f64, f64)], support: Support, level: i32) -> Centerline {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");
-        Centerline {
-            alignment: Alignment { line, level: None, width: Width::Constant(6.0), support },
+        let street = Street {
+            alignment: Alignment { support, ..Alignment::on_ground(line, 6.0) },
+            width_m: 6.0,
             options: StrokeOptions::default(),
-            shoulder_m: 0.0,
-            surface: RibbonSurface::Asphalt,
             level,
+            surface: RibbonSurface::Asphalt,
+        };
+        Centerline {
+            street,
+            shoulder_m: 0.0,
             feature: FeatureId(2),
             table: 0,
             attributes: Attributes::default(),
@@ -185,6 +176,6 @@ pub(in crate::scene::roads) mod tests {
     fn widths_stay_with_their_points_where_points_are_merged() {
         let road = table("points = [[0, 0], [0.001, 0], [9, 0]]\nwidths = [3, 4, 5]");
         let shape = [DVec2::ZERO, DVec2::X * 0.001, DVec2::X * 9.0];
-        assert_eq!(widths_m(&road, &shape), Some(vec![3.0, 5.0]));
+        assert_eq!(near::widths_m(road.widths.as_deref(), &shape), Some(vec![3.0, 5.0]));
     }
 }

@@ -44,7 +44,7 @@ impl SpanChain {
     /// The chains of `spans`, in order of their first spans; a span whose levels are stated is a chain alone.
     pub fn all(spans: &[RoadSpan], roads: &[Centerline]) -> Vec<Self> {
         let meetings = SpanMeetings::new(spans, roads);
-        let lengths_m: Vec<f64> = spans.iter().map(|span| span.alignment.line.length()).collect();
+        let lengths_m: Vec<f64> = spans.iter().map(|span| span.street.alignment.line.length()).collect();
         let chain = |links: Vec<ChainLink>| {
             let (first, last) = (links[0], links[links.len() - 1]);
             let ends = [first.entry(), last.entry().opposite()].map(|end| meetings.end(end));
@@ -57,7 +57,7 @@ impl SpanChain {
     pub fn at(&self, spans: &[RoadSpan], station_m: f64) -> DVec2 {
         let link = self.links.iter().find(|link| station_m <= link.end_m());
         let link = link.unwrap_or(&self.links[self.links.len() - 1]);
-        spans[link.line].alignment.line.at((station_m - link.reach_m()[0]).abs())
+        spans[link.line].street.alignment.line.at((station_m - link.reach_m()[0]).abs())
     }
 }
 
@@ -77,16 +77,17 @@ impl<'a> SpanMeetings<'a> {
         let mut ends: BTreeMap<(Support, VertexKey), Vec<LineEnd>> = BTreeMap::new();
         let mut inside = BTreeSet::new();
         for (line, span) in spans.iter().enumerate() {
-            let support = span.alignment.support;
-            for (end, at) in span.alignment.line.ends().into_iter().enumerate() {
+            let support = span.street.alignment.support;
+            for (end, at) in span.street.alignment.line.ends().into_iter().enumerate() {
                 ends.entry((support, vertex_key(at))).or_default().push(LineEnd { line, end });
             }
-            let points = span.alignment.line.points();
+            let points = span.street.alignment.line.points();
             inside.extend(points[1..points.len() - 1].iter().map(|&at| (support, vertex_key(at))));
         }
         let ends_at = |support, at| ends.contains_key(&(support, at));
-        let on_ground = roads.iter().filter(|road| road.alignment.support == Support::Ground);
-        let touched = on_ground.flat_map(|road| road.alignment.line.points()).map(|&at| vertex_key(at));
+        let on_ground = roads.iter().filter(|road| road.street.alignment.is_on_ground());
+        let touched =
+            on_ground.flat_map(|road| road.street.alignment.line.points()).map(|&at| vertex_key(at));
         let mut fixed: BTreeSet<VertexKey> =
             touched.filter(|&at| ends_at(Support::Bridge, at) || ends_at(Support::Tunnel, at)).collect();
         let both = ends.keys().map(|&(_, at)| at);
@@ -95,7 +96,7 @@ impl<'a> SpanMeetings<'a> {
     }
 
     fn key(&self, LineEnd { line, end }: LineEnd) -> (Support, VertexKey) {
-        let alignment = &self.spans[line].alignment;
+        let alignment = &self.spans[line].street.alignment;
         (alignment.support, vertex_key(alignment.line.ends()[end]))
     }
 
@@ -104,7 +105,7 @@ impl<'a> SpanMeetings<'a> {
         let key = self.key(at);
         let others: Vec<_> = self.ends[&key].iter().copied().filter(|&other| other != at).collect();
         let is_free = !self.fixed.contains(&key.1) && !self.inside.contains(&key);
-        let is_open = |end: LineEnd| self.spans[end.line].alignment.level.is_none();
+        let is_open = |end: LineEnd| self.spans[end.line].street.alignment.level.is_none();
         match others[..] {
             [other] if is_free && is_open(at) && is_open(other) => Some(other),
             _ => None,
@@ -126,25 +127,15 @@ impl<'a> SpanMeetings<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::{Alignment, Width};
-    use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::StrokeOptions;
-    use crate::ribbon::texture::RibbonSurface;
+    use crate::geom::offset::Continuations;
+    use crate::scene::roads::centerline;
     use crate::scene::roads::spans::SpanOrigin;
 
     fn span(support: Support, points: &[(f64, f64)]) -> RoadSpan {
         RoadSpan {
-            alignment: Alignment {
-                line: Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line"),
-                level: None,
-                width: Width::Constant(6.0),
-                support,
-            },
+            street: centerline::tests::road(points, support, 1).street,
             road: None,
-            beyond: [None; 2],
-            options: StrokeOptions::default(),
-            surface: RibbonSurface::Asphalt,
-            level: 1,
+            beyond: Continuations::default(),
             pier_spacing_m: None,
             name: String::new(),
             origin: SpanOrigin::Tag,
@@ -165,7 +156,10 @@ mod tests {
         for (index, piece) in pieces.iter().enumerate() {
             let link = chains[0].links.iter().find(|link| link.line == index).expect("a link");
             for end in 0..2 {
-                assert_eq!(chains[0].at(&pieces, link.reach_m()[end]), piece.alignment.line.ends()[end]);
+                assert_eq!(
+                    chains[0].at(&pieces, link.reach_m()[end]),
+                    piece.street.alignment.line.ends()[end]
+                );
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::earthworks::alignment::design::design;
 use crate::earthworks::alignment::network::NodeId;
-use crate::earthworks::alignment::{Support, SupportSpan};
+use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
 use crate::earthworks::grading::grade;
 use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
 use crate::scene::builder::SceneBuilder;
@@ -51,7 +51,7 @@ pub fn conform(
     if rules.iter().all(Option::is_none) {
         return Ok(());
     }
-    let is_on_ground = |road: &Centerline| road.alignment.support == Support::Ground;
+    let is_on_ground = |road: &Centerline| road.street.alignment.is_on_ground();
     let meetings = meetings(roads, |road| is_on_ground(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
         let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
@@ -59,7 +59,7 @@ pub fn conform(
     }
     let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.cell().max_element());
-    let design = design(&survey.network, &survey.courses, &survey.pins, curve_m);
+    let design = design(&survey.network, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
     let works =
         Earthworks { roads, rules: &rules, walls: walls(roads, &routes, &meetings), meetings: &meetings };
@@ -72,7 +72,6 @@ pub fn conform(
     Ok(())
 }
 
-/// The ground to be graded for roads.
 struct Earthworks<'a> {
     roads: &'a [Centerline],
     rules: &'a [Option<Rules>],
@@ -105,11 +104,13 @@ impl Earthworks<'_> {
         let all = route.all_spans();
         let on_ground = all.iter().enumerate().filter(|(_, span)| span.support == Support::Ground);
         let strip = |(index, span): (usize, &SupportSpan)| {
-            let line = self.roads[route.road].alignment.line.slice(span.from_m, span.to_m, 0.0)?;
-            let level = route.design.slice(span.from_m, span.to_m, 0.0);
+            let street = &self.roads[route.road].street;
+            let line = street.alignment.line.slice(span.from_m, span.to_m, 0.0)?;
+            let level = Some(route.design.slice(span.from_m, span.to_m, 0.0));
+            let alignment = Alignment { level, ..Alignment::on_ground(line, street.width_m) };
             let beside = [index.checked_sub(1).and_then(|before| all.get(before)), all.get(index + 1)];
             let ends = [self.end(route, beside[0], 0), self.end(route, beside[1], usize::MAX)];
-            Some(GradingStrip { line, level, section: rules.section, ends })
+            Some(GradingStrip { alignment, section: rules.section, ends })
         };
         on_ground.filter_map(strip).collect()
     }
@@ -129,7 +130,7 @@ impl Earthworks<'_> {
 fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
     let mut nodes = BTreeSet::new();
     for (road, stops) in roads.iter().zip(&meetings.stops) {
-        if road.alignment.support != Support::Ground {
+        if !road.street.alignment.is_on_ground() {
             nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
         }
     }
@@ -144,7 +145,7 @@ fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTr
 
 /// Puts more posts between those there are, where the carriageways are narrower than a few cells.
 fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut SceneBuilder) {
-    let widths = strips.iter().map(|strip| 2.0 * strip.section.half_width_m);
+    let widths = strips.iter().map(|strip| strip.alignment.width.widest_m());
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
     let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
     let times = densify::affordable_doublings(lattice, wanted);
@@ -172,7 +173,6 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
     }
 }
 
-/// Reports a road and keeps its profile.
 fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &mut SceneBuilder) {
     let name = collected.name(road.feature).to_owned();
     let all = route.all_spans();
@@ -188,7 +188,7 @@ fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &
     let highest = |sign: f64| rises.iter().fold(0.0, |most: f64, rise| most.max(rise * sign));
     collected.report.conformed_roads.push(ConformedRoadRow {
         name: name.clone(),
-        length: road.alignment.line.length(),
+        length: road.street.alignment.line.length(),
         // Over less than a millimeter a grade is rounding.
         highest_grade: route.design.steepest(1e-3) * 100.0,
         cut: volumes.cut_m3,
@@ -201,9 +201,8 @@ fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &
     collected.profiles.push(RoadProfile {
         feature: road.feature,
         name,
-        stations_m: route.stations_m().to_vec(),
-        ground_m: ground_m.to_vec(),
-        design_m: design_m.to_vec(),
+        ground: route.ground.clone(),
+        design: route.design.clone(),
         supports,
     });
 }

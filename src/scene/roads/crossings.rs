@@ -5,20 +5,10 @@ use glam::DVec2;
 use crate::geom::leg_tree::{LegTree, LineLeg};
 use crate::geom::polyline::Polyline;
 use crate::geom::segment;
+use crate::ribbon::junction::Street;
 
 /// A crossing at a smaller angle than this sine counts as this one: its clearance would have no end.
 const LEAST_SINE: f64 = 0.25;
-
-/// A line that others may pass over.
-#[derive(Clone, Copy, Debug)]
-pub struct PassedLine<'a> {
-    /// Its centerline in world coordinates.
-    pub line: &'a Polyline,
-    /// Its width in meters.
-    pub width_m: f64,
-    /// What passes over what.
-    pub level: i32,
-}
 
 /// Where a line passes over another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,17 +29,21 @@ pub struct Overpass {
 
 /// Every point where one of `upper` crosses one of `lower` whose level is lower, by upper line and station. Lines that
 /// only touch end to end do not cross.
-pub fn find(upper: &[PassedLine<'_>], lower: &[PassedLine<'_>]) -> Vec<Overpass> {
-    let legs = |lines: &[PassedLine<'_>]| -> Vec<LineLeg> {
-        lines.iter().enumerate().flat_map(|(index, passed)| LineLeg::all(index, passed.line)).collect()
+pub fn find(upper: &[&Street], lower: &[&Street]) -> Vec<Overpass> {
+    let legs = |lines: &[&Street]| -> Vec<LineLeg> {
+        lines
+            .iter()
+            .enumerate()
+            .flat_map(|(index, passed)| LineLeg::all(index, &passed.alignment.line))
+            .collect()
     };
     let below = LegTree::new(legs(lower));
     let mut found = Vec::new();
     for above in legs(upper) {
-        let over = &upper[above.line];
+        let over = upper[above.line];
         let near = below.near(&above).into_iter().map(|index| &below.legs()[index]);
         let lower_legs = near.filter(|leg| lower[leg.line].level < over.level);
-        found.extend(lower_legs.filter_map(|leg| cross(over, &above, &lower[leg.line], leg)));
+        found.extend(lower_legs.filter_map(|leg| cross(over, &above, lower[leg.line], leg)));
     }
     found.sort_by(|a, b| {
         a.upper.cmp(&b.upper).then(a.upper_m.total_cmp(&b.upper_m)).then(a.lower.cmp(&b.lower))
@@ -61,16 +55,11 @@ pub fn find(upper: &[PassedLine<'_>], lower: &[PassedLine<'_>]) -> Vec<Overpass>
 }
 
 /// Where a leg of one line crosses a leg of another.
-fn cross(
-    over: &PassedLine<'_>,
-    above: &LineLeg,
-    under: &PassedLine<'_>,
-    below: &LineLeg,
-) -> Option<Overpass> {
+fn cross(over: &Street, above: &LineLeg, under: &Street, below: &LineLeg) -> Option<Overpass> {
     let parts = segment::crossing(above.ends.into(), below.ends.into())?;
     let station = |leg: &LineLeg, part: f64| leg.stations[0] + (leg.stations[1] - leg.stations[0]) * part;
     let (upper_m, lower_m) = (station(above, parts[0]), station(below, parts[1]));
-    if is_end(over.line, upper_m) && is_end(under.line, lower_m) {
+    if is_end(&over.alignment.line, upper_m) && is_end(&under.alignment.line, lower_m) {
         return None;
     }
     let [a, b] = [above, below].map(|leg| (leg.ends[1] - leg.ends[0]).normalize_or_zero());
@@ -78,7 +67,7 @@ fn cross(
     Some(Overpass {
         upper: above.line,
         lower: below.line,
-        at: over.line.at(upper_m),
+        at: over.alignment.line.at(upper_m),
         upper_m,
         lower_m,
         half_m,
@@ -92,14 +81,19 @@ fn is_end(line: &Polyline, station_m: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::earthworks::alignment::Alignment;
+    use crate::ribbon::stroke::StrokeOptions;
+    use crate::ribbon::texture::RibbonSurface;
     use proptest::prelude::*;
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")
     }
 
-    fn way(line: &Polyline, level: i32) -> PassedLine<'_> {
-        PassedLine { line, width_m: 6.0, level }
+    fn way(line: &Polyline, level: i32) -> Street {
+        let alignment = Alignment::on_ground(line.clone(), 6.0);
+        let options = StrokeOptions::default();
+        Street { alignment, width_m: 6.0, options, level, surface: RibbonSurface::Asphalt }
     }
 
     #[test]
@@ -109,7 +103,7 @@ mod tests {
         let onward = line(&[(40.0, 0.0), (90.0, 5.0)]);
         let above = line(&[(20.0, -50.0), (20.0, 50.0)]);
         let lower = [way(&below, 0), way(&onward, 0), way(&above, 2)];
-        let found = find(&[way(&bridge, 1)], &lower);
+        let found = find(&[&way(&bridge, 1)], &lower.each_ref());
         assert_eq!(found.len(), 1);
         assert_eq!(
             (found[0].lower, found[0].upper_m, found[0].lower_m, found[0].half_m),
@@ -131,7 +125,7 @@ mod tests {
                 .flat_map(|one| segments(&under).into_iter().map(move |other| (one, other)))
                 .filter(|&(one, other)| segment::crossing(one, other).is_some())
                 .count();
-            prop_assert_eq!(find(&[way(&over, 1)], &[way(&under, 0)]).len(), pairs);
+            prop_assert_eq!(find(&[&way(&over, 1)], &[&way(&under, 0)]).len(), pairs);
         }
     }
 }

@@ -11,9 +11,10 @@ use glam::DVec2;
 use crate::earthworks::alignment::Support;
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::profile::Profile;
+use crate::ribbon::junction::Street;
 use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
-use crate::scene::roads::crossings::{self, Overpass, PassedLine};
+use crate::scene::roads::crossings::{self, Overpass};
 use crate::scene::roads::spans::RoadSpan;
 use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::bridge::depth_m;
@@ -111,7 +112,7 @@ pub fn settle(
 }
 
 fn top_level(chain: &SpanChain, spans: &[RoadSpan]) -> i32 {
-    chain.links.iter().map(|link| spans[link.line].level).max().unwrap_or(0)
+    chain.links.iter().map(|link| spans[link.line].street.level).max().unwrap_or(0)
 }
 
 /// The widest span between piers of a bridge as high as this.
@@ -161,22 +162,14 @@ impl<'a> Below<'a> {
         all_roads: &[Centerline],
         site: &'a Site<'a>,
     ) -> Self {
-        let bridges: Vec<usize> =
-            (0..spans.len()).filter(|&span| spans[span].alignment.support == Support::Bridge).collect();
-        let over = |&span: &usize| PassedLine {
-            line: &spans[span].alignment.line,
-            width_m: spans[span].options.width_m,
-            level: spans[span].level,
-        };
-        let upper: Vec<PassedLine<'_>> = bridges.iter().map(over).collect();
-        let on_ground = all_roads.iter().filter(|road| road.alignment.support == Support::Ground);
-        let passed = on_ground.map(|road| PassedLine {
-            line: &road.alignment.line,
-            width_m: road.options.width_m,
-            level: road.level,
-        });
-        let roads = passed.clone().count();
-        let lower: Vec<PassedLine<'_>> = passed.chain(upper.iter().copied()).collect();
+        let bridges: Vec<usize> = (0..spans.len())
+            .filter(|&span| spans[span].street.alignment.support == Support::Bridge)
+            .collect();
+        let upper: Vec<&Street> = bridges.iter().map(|&span| &spans[span].street).collect();
+        let on_ground =
+            all_roads.iter().map(|road| &road.street).filter(|road| road.alignment.is_on_ground());
+        let roads = on_ground.clone().count();
+        let lower: Vec<&Street> = on_ground.chain(upper.iter().copied()).collect();
         let mut link_of = vec![(0, 0); spans.len()];
         for (index, chain) in chains.iter().enumerate() {
             for (link, placed) in chain.links.iter().enumerate() {
@@ -185,7 +178,8 @@ impl<'a> Below<'a> {
         }
         let mut inside = BTreeMap::new();
         for (index, span) in spans.iter().enumerate() {
-            let (points, stations) = (span.alignment.line.points(), span.alignment.line.stations());
+            let (points, stations) =
+                (span.street.alignment.line.points(), span.street.alignment.line.stations());
             let between = 1..points.len() - 1;
             inside.extend(between.map(|vertex| (vertex_key(points[vertex]), (index, stations[vertex]))));
         }
@@ -236,9 +230,9 @@ impl<'a> Below<'a> {
         let spacing_m =
             stated.unwrap_or_else(|| by_height(&Profile::straight(chain.length_m, ends_m), ground));
         let depth_m = depth_m(spacing_m.min(chain.length_m));
-        let is_bridge = first.alignment.support == Support::Bridge;
+        let is_bridge = first.street.alignment.support == Support::Bridge;
         let passages = if is_bridge { self.passages(index, runs) } else { Vec::new() };
-        let level = first.alignment.level.clone();
+        let level = first.street.alignment.level.clone();
         let stated = level.filter(|level| level.values().iter().all(|level| level.is_finite()));
         let straight = Profile::straight(chain.length_m, ends_m);
         let profile = stated.unwrap_or_else(|| {
@@ -327,7 +321,7 @@ fn meetings(samples: &[Vec<ClearancePoint>], below: &Below<'_>) -> BTreeMap<Vert
     let mut pulls: Vec<LevelPull> = Vec::new();
     for (chain, ground) in below.chains.iter().zip(samples) {
         let Some(own) = ground_ends(ground) else { continue };
-        let first = &below.spans[chain.links[0].line].alignment;
+        let first = &below.spans[chain.links[0].line].street.alignment;
         let stated = first.level.as_ref().map(Profile::values);
         let own = stated.map_or(own, |levels| [levels[0], levels[levels.len() - 1]]);
         for end in 0..2 {

@@ -46,7 +46,7 @@ struct RoadVertex {
 pub fn meetings(roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) -> RoadMeetings {
     let mut places: BTreeMap<VertexKey, Vec<RoadVertex>> = BTreeMap::new();
     for (road, centerline) in roads.iter().enumerate() {
-        let points = centerline.alignment.line.points();
+        let points = centerline.street.alignment.line.points();
         for (index, at) in points.iter().enumerate() {
             let is_end = index == 0 || index + 1 == points.len();
             places.entry(vertex_key(*at)).or_default().push(RoadVertex { road, index, is_end });
@@ -60,7 +60,7 @@ pub fn meetings(roads: &[Centerline], crosses: impl Fn(&Centerline) -> bool) -> 
         }
         let mut by_level: BTreeMap<i32, Vec<RoadVertex>> = BTreeMap::new();
         for vertex in vertices {
-            by_level.entry(roads[vertex.road].level).or_default().push(*vertex);
+            by_level.entry(roads[vertex.road].street.level).or_default().push(*vertex);
         }
         by_level.values().filter(|alike| alike.len() > 1).for_each(|alike| found.join(roads, alike));
     }
@@ -79,7 +79,7 @@ impl RoadMeetings {
     fn join(&mut self, roads: &[Centerline], vertices: &[RoadVertex]) {
         let node = self.node();
         for vertex in vertices {
-            let station_m = roads[vertex.road].alignment.line.stations()[vertex.index];
+            let station_m = roads[vertex.road].street.alignment.line.stations()[vertex.index];
             self.stops[vertex.road].push(RoadStop { station_m, node });
         }
     }

@@ -8,7 +8,7 @@ use crate::description::features::RoadTable;
 use crate::description::words::ProfileMode;
 use crate::earthworks::alignment::SupportSpan;
 use crate::earthworks::alignment::chain::LineEnd;
-use crate::earthworks::alignment::design::{Design, SectionGround};
+use crate::earthworks::alignment::design::Design;
 use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
 use crate::earthworks::alignment::spans::EarthworkLimits;
 use crate::earthworks::grading::strip;
@@ -48,7 +48,6 @@ impl Rules {
                 max_cut_m: table.max_cut.unwrap_or(f64::INFINITY),
             },
             section: strip::CrossSection {
-                half_width_m: road.options.width_m / 2.0,
                 shoulder_m: road.attributes.value_or_default(&table.shoulder),
                 crown: table.crown / 100.0,
                 fill_slope: table.fill_slope,
@@ -67,15 +66,12 @@ pub fn conforms(table: &RoadTable) -> bool {
 pub struct NetworkSurvey {
     /// The sections between nodes.
     pub network: SectionNetwork,
-    /// One a section.
-    pub courses: Vec<SectionGround>,
     /// One a node: the ground where a single road ends, NaN elsewhere.
     pub pins: Vec<f64>,
     /// One a road of the network.
     surveyed: Vec<SurveyedRoad>,
 }
 
-/// A road with its sections.
 struct SurveyedRoad {
     road: usize,
     sections: Range<usize>,
@@ -96,7 +92,7 @@ impl NetworkSurvey {
         meetings: &RoadMeetings,
     ) -> Result<Self, Diagnostic> {
         let network = SectionNetwork { nodes: meetings.nodes, sections: Vec::new() };
-        let mut survey = Self { network, courses: Vec::new(), pins: Vec::new(), surveyed: Vec::new() };
+        let mut survey = Self { network, pins: Vec::new(), surveyed: Vec::new() };
         let mut stations = 0.0;
         for (index, (road, rules)) in roads.iter().zip(rules).enumerate() {
             let Some(rules) = rules else { continue };
@@ -114,17 +110,15 @@ impl NetworkSurvey {
         let first = self.network.sections.len();
         for pair in stops.windows(2) {
             let origin = lattice.origin();
-            let points = road.alignment.line.between(pair[0].station_m, pair[1].station_m);
+            let points = road.street.alignment.line.between(pair[0].station_m, pair[1].station_m);
             let points: Vec<_> = points.into_iter().map(|point| point + origin).collect();
             let stations = profile(lattice, &points);
             self.network.sections.push(RoadSection {
                 ends: [pair[0].node, pair[1].node],
                 stations_m: stations.iter().map(|at| at.station_m).collect(),
-                max_grade: rules.max_grade,
-            });
-            self.courses.push(SectionGround {
                 ground_m: stations.iter().map(|at| at.ground.height_m().unwrap_or(f64::NAN)).collect(),
-                stated: road.alignment.support,
+                max_grade: rules.max_grade,
+                support: road.street.alignment.support,
                 limits: rules.limits,
             });
         }
@@ -140,7 +134,7 @@ impl NetworkSurvey {
     fn pin(&mut self) {
         let pin = |arms: Vec<LineEnd>| match arms[..] {
             [LineEnd { line, end }] => {
-                let ground = &self.courses[line].ground_m;
+                let ground = &self.network.sections[line].ground_m;
                 ground[end * (ground.len() - 1)]
             }
             _ => f64::NAN,
@@ -159,9 +153,9 @@ impl NetworkSurvey {
         for (section, &start_m) in surveyed.sections.clone().zip(&surveyed.starts_m) {
             // The node between two sections is the last station of one and the first of the next.
             let skipped = usize::from(!stations_m.is_empty());
-            let stations = self.network.sections[section].stations_m.iter().skip(skipped);
-            stations_m.extend(stations.map(|at| start_m + at));
-            ground_m.extend(self.courses[section].ground_m.iter().skip(skipped));
+            let surveyed = &self.network.sections[section];
+            stations_m.extend(surveyed.stations_m.iter().skip(skipped).map(|at| start_m + at));
+            ground_m.extend(surveyed.ground_m.iter().skip(skipped));
             design_m.extend(design.levels_m[section].iter().skip(skipped));
             spans.extend(design.spans[section].iter().map(|span| SupportSpan {
                 from_m: start_m + span.from_m,
@@ -179,9 +173,9 @@ impl NetworkSurvey {
 /// About how many stations a road will have.
 fn stations_of(lattice: &Lattice, road: &Centerline) -> f64 {
     let (extent, cell) = (lattice.extent(), lattice.cell());
-    let on_ground = road.alignment.line.legs().filter_map(|[from, to]| extent.clip_line(from, to));
+    let on_ground = road.street.alignment.line.legs().filter_map(|[from, to]| extent.clip_line(from, to));
     let crossed = on_ground.map(|(from, to)| 2.0 * ((to - from).abs() / cell).element_sum());
-    crossed.sum::<f64>() + road.alignment.line.points().len() as f64
+    crossed.sum::<f64>() + road.street.alignment.line.points().len() as f64
 }
 
 fn too_many(document: &Document, road: &Centerline) -> Diagnostic {

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::Support;
+use crate::geom::profile::Profile;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,13 +13,10 @@ pub struct RoadProfile {
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
-    /// Meters along the road from its start, rising.
-    pub stations_m: Vec<f64>,
-    /// The ground on the centerline before the road was built, in meters; NaN where there is none. Straight between
-    /// stations.
-    pub ground_m: Vec<f64>,
-    /// The road's level on the centerline in meters.
-    pub design_m: Vec<f64>,
+    /// The ground on the centerline before the road was built, in meters; NaN where there is none.
+    pub ground: Profile,
+    /// The road's level on the centerline in meters, at the same stations.
+    pub design: Profile,
     /// What carries the road at each station; where that changes, what carries it from there.
     pub supports: Vec<Support>,
 }
@@ -28,10 +26,10 @@ impl RoadProfile {
     /// of names. Nothing stands where there is no ground.
     pub fn csv(&self) -> String {
         let mut text = String::from("station_m,ground_m,design_m,carried\n");
-        for (index, station_m) in self.stations_m.iter().enumerate() {
-            let ground = Some(self.ground_m[index]).filter(|ground| !ground.is_nan());
+        for (index, station_m) in self.design.stations().iter().enumerate() {
+            let ground = Some(self.ground.values()[index]).filter(|ground| !ground.is_nan());
             let ground = ground.map(|ground| format!("{ground:.3}")).unwrap_or_default();
-            let (design_m, support) = (self.design_m[index], self.supports[index].word());
+            let (design_m, support) = (self.design.values()[index], self.supports[index].word());
             writeln!(text, "{station_m:.3},{ground},{design_m:.3},{support}")
                 .expect("text takes all that is written");
         }
@@ -48,9 +46,8 @@ mod tests {
         let profile = RoadProfile {
             feature: FeatureId(2),
             name: "pass road".into(),
-            stations_m: vec![0.0, 12.5],
-            ground_m: vec![101.25, f64::NAN],
-            design_m: vec![101.25, 102.0],
+            ground: Profile::straight(12.5, [101.25, f64::NAN]),
+            design: Profile::straight(12.5, [101.25, 102.0]),
             supports: vec![Support::Ground, Support::Bridge],
         };
         let table =

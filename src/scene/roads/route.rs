@@ -3,6 +3,7 @@
 use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
 use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
+use crate::ribbon::junction::Street;
 use crate::scene::roads::centerline::Centerline;
 
 /// Spans shorter than this are part of their neighbors, in meters.
@@ -72,7 +73,7 @@ impl Route {
     }
 
     fn part(&self, road: &Centerline, span: &SupportSpan) -> Option<Centerline> {
-        let whole = &road.alignment.line;
+        let whole = &road.street.alignment.line;
         let is_whole = span.from_m <= 0.0 && span.to_m >= whole.length();
         let line = match span.support {
             Support::Ground if is_whole => whole.clone(),
@@ -81,20 +82,21 @@ impl Route {
         };
         let levels = line.stations().iter().map(|station| self.design.at(span.from_m + station)).collect();
         let level = Profile::new(line.stations().to_vec(), levels);
-        let width = road.alignment.width.along(&line, span.from_m);
-        let raised = match (road.alignment.support, span.support) {
+        let width = road.street.alignment.width.along(&line, span.from_m);
+        let raised = match (road.street.alignment.support, span.support) {
             (Support::Ground, Support::Bridge) => 1,
             (Support::Ground, Support::Tunnel) => -1,
             _ => 0,
         };
         let alignment = Alignment { line, level, width, support: span.support };
-        Some(Centerline { alignment, level: road.level + raised, ..road.clone() })
+        let street = Street { alignment, level: road.street.level + raised, ..road.street.clone() };
+        Some(Centerline { street, ..road.clone() })
     }
 
     /// The line along a span, with vertices wherever its level bends.
     fn deck(&self, line: &Polyline, span: &SupportSpan) -> Option<Polyline> {
         let profile = self.design.slice(span.from_m, span.to_m, 0.0);
-        let bends = bends(profile.stations(), profile.values()).into_iter().map(|at| span.from_m + at);
+        let bends = profile.bends(DECK_SLACK_M).into_iter().map(|at| span.from_m + at);
         let inside = |at: &f64| *at > span.from_m && *at < span.to_m;
         let mut all: Vec<f64> = bends.chain(line.stations().iter().copied()).filter(inside).collect();
         // The ends as they were stated: the neighbors end there to the last bit.
@@ -102,27 +104,6 @@ impl Route {
         all.sort_by(f64::total_cmp);
         Polyline::new(all.into_iter().map(|station| line.at(station)), SAME_M)
     }
-}
-
-/// The stations that keep a profile within [`DECK_SLACK_M`] of its levels (Douglas and Peucker 1973), with its ends.
-fn bends(stations: &[f64], levels: &[f64]) -> Vec<f64> {
-    let last = stations.len() - 1;
-    let mut kept = vec![false; stations.len()];
-    (kept[0], kept[last]) = (true, true);
-    let mut open = vec![(0, last)];
-    while let Some((from, to)) = open.pop() {
-        let run = stations[to] - stations[from];
-        let off = |&index: &usize| {
-            let part = if run > 0.0 { (stations[index] - stations[from]) / run } else { 0.0 };
-            (levels[index] - (levels[from] + (levels[to] - levels[from]) * part)).abs()
-        };
-        let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-        if let Some(worst) = worst.filter(|worst| off(worst) > DECK_SLACK_M) {
-            kept[worst] = true;
-            open.extend([(from, worst), (worst, to)]);
-        }
-    }
-    stations.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&station, _)| station).collect()
 }
 
 #[cfg(test)]
@@ -188,25 +169,31 @@ mod tests {
             };
             let parts = route.cut(&whole);
             assert_eq!(
-                parts.iter().map(|part| (part.alignment.support, part.level)).collect::<Vec<_>>(),
+                parts
+                    .iter()
+                    .map(|part| (part.street.alignment.support, part.street.level))
+                    .collect::<Vec<_>>(),
                 [(Support::Ground, 0), (Support::Bridge, 1), (Support::Ground, 0)]
             );
             for pair in parts.windows(2) {
-                let (end, start) =
-                    (pair[0].alignment.line.points().last(), pair[1].alignment.line.points().first());
+                let (end, start) = (
+                    pair[0].street.alignment.line.points().last(),
+                    pair[1].street.alignment.line.points().first(),
+                );
                 assert_eq!(end, start);
-                let levels =
-                    |part: &Centerline| part.alignment.level.clone().expect("levels").values().to_vec();
+                let levels = |part: &Centerline| {
+                    part.street.alignment.level.clone().expect("levels").values().to_vec()
+                };
                 let step = levels(&pair[0])[levels(&pair[0]).len() - 1] - levels(&pair[1])[0];
                 assert!(step.abs() < 1e-9, "{step}");
             }
             let bridge = &parts[1];
             assert!(
-                bridge.alignment.line.points().len() > 6,
+                bridge.street.alignment.line.points().len() > 6,
                 "an arch needs more vertices than its road has"
             );
-            assert!((bridge.alignment.line.length() - 59.5).abs() < 1e-9);
-            assert_eq!(parts.iter().map(|part| part.alignment.line.length()).sum::<f64>(), 100.0);
+            assert!((bridge.street.alignment.line.length() - 59.5).abs() < 1e-9);
+            assert_eq!(parts.iter().map(|part| part.street.alignment.line.length()).sum::<f64>(), 100.0);
         }
     }
 }

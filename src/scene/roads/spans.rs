@@ -3,23 +3,20 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use glam::DVec2;
-
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::words;
+use crate::description::words::Markings;
 use crate::earthworks::alignment::{Alignment, Support, Width};
+use crate::geom::offset::Continuations;
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::{RibbonSurface, texture_length_m};
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
 use crate::scene::roads::centerline::{self, Centerline};
-use crate::scene::roads::network::rank_of;
 use crate::scene::sources::Sources;
 
 /// How far from the ground a bridge may run that still reaches it, in meters.
@@ -50,19 +47,13 @@ impl SpanOrigin {
 /// A bridge or a tunnel, from one end of its line to the other.
 #[derive(Clone, Debug)]
 pub struct RoadSpan {
-    /// Its centerline within the elevation model, its level where that is stated or designed, its mean width, and its
-    /// support, which is never the ground.
-    pub alignment: Alignment,
+    /// Its carriageway within the elevation model: with levels where they are stated or designed, of its mean width, and
+    /// never on the ground.
+    pub street: Street,
     /// The index of its road; `None` where a table states it.
     pub road: Option<usize>,
-    /// The vertices beyond both ends, of the roads that continue there.
-    pub beyond: [Option<DVec2>; 2],
-    /// Its carriageway.
-    pub options: StrokeOptions,
-    /// Its pavement.
-    pub surface: RibbonSurface,
-    /// What passes over what.
-    pub level: i32,
+    /// What continues it at its ends.
+    pub beyond: Continuations,
     /// The widest distance between piers that is stated, in meters, at least 1.
     pub pier_spacing_m: Option<f64>,
     /// The road's name, or the one stated; may be empty.
@@ -99,25 +90,20 @@ fn road_span(
     extent: &Rect,
     collected: &SceneBuilder,
 ) -> Option<RoadSpan> {
-    let support = road.alignment.support;
+    let support = road.street.alignment.support;
     if support == Support::Ground {
         return None;
     }
-    let width = Width::Constant(road.options.width_m);
-    let alignment = Alignment { width, ..road.alignment.within(extent)? };
+    let width = Width::Constant(road.street.width_m);
+    let alignment = Alignment { width, ..road.street.alignment.within(extent)? };
     let table = document.roads.get(road.table)?;
     let is_tagged = centerline::support(table, &road.attributes) == support;
-    // Ids of features count from 2.
-    let feature = collected.features.get((road.feature.0 as usize).checked_sub(2)?);
     Some(RoadSpan {
-        alignment,
+        street: Street { alignment, ..road.street.clone() },
         road: None,
-        beyond: [None; 2],
-        options: road.options,
-        surface: road.surface,
-        level: road.level,
+        beyond: Continuations::default(),
         pier_spacing_m: None,
-        name: feature.map(|feature| feature.name.clone()).unwrap_or_default(),
+        name: collected.name(road.feature).to_owned(),
         origin: if is_tagged { SpanOrigin::Tag } else { SpanOrigin::Rule },
         place: table.source.span(),
     })
@@ -137,25 +123,19 @@ fn table_spans(
             if line.range_within(extent).is_none() {
                 continue;
             }
-            let surface = surface(attributes.value_or_default(&bridge.surface));
+            let word = attributes.value_or_default(&bridge.surface);
+            let surface = centerline::surface(word, Markings::Dashed);
             let width_m = attributes.number(&bridge.width, &mut collected.default_counts);
-            let options = StrokeOptions {
-                width_m,
-                texture_length_m: texture_length_m(surface, width_m),
-                ..StrokeOptions::default()
-            };
             let deck_m = attributes.value(bridge.deck.as_ref());
             let level = deck_m.map(|level| Profile::straight(line.length(), [level; 2]));
             let alignment =
-                Alignment { line, level, width: Width::Constant(width_m), support: Support::Bridge };
+                Alignment { level, support: Support::Bridge, ..Alignment::on_ground(line, width_m) };
             let Some(alignment) = alignment.within(extent) else { continue };
+            let options = StrokeOptions::of(surface, width_m);
             all.push(RoadSpan {
-                alignment,
+                street: Street { alignment, width_m, options, level: 1, surface },
                 road: None,
-                beyond: [None; 2],
-                options,
-                surface,
-                level: 1,
+                beyond: Continuations::default(),
                 pier_spacing_m: bridge.pier_spacing.stated().copied(),
                 name: attributes.name(name),
                 origin: SpanOrigin::Table,
@@ -166,36 +146,18 @@ fn table_spans(
     Ok(all)
 }
 
-fn surface(word: words::RoadSurface) -> RibbonSurface {
-    match word {
-        words::RoadSurface::Asphalt => RibbonSurface::Asphalt,
-        words::RoadSurface::Gravel => RibbonSurface::Gravel,
-        words::RoadSurface::Track => RibbonSurface::Track,
-    }
-}
-
 /// Finds what continues at the spans' ends, so that their edges are those of the ribbons there.
 fn find_continuations(spans: &mut [RoadSpan], roads: &[Centerline]) {
     let ends: BTreeSet<VertexKey> =
-        spans.iter().flat_map(|span| span.alignment.line.ends()).map(vertex_key).collect();
-    let meets = |road: &&Centerline| {
+        spans.iter().flat_map(|span| span.street.alignment.line.ends()).map(vertex_key).collect();
+    let meets = |road: &&Street| {
         let alignment = &road.alignment;
-        alignment.support == Support::Ground
-            && alignment.line.points().iter().any(|&at| ends.contains(&vertex_key(at)))
+        alignment.is_on_ground() && alignment.line.points().iter().any(|&at| ends.contains(&vertex_key(at)))
     };
-    let of_spans = spans.iter().map(|span| Street {
-        level: span.level,
-        rank: rank_of(span.surface),
-        ..Street::new(&span.alignment, span.options)
-    });
-    let of_roads = roads.iter().filter(meets).map(|road| Street {
-        level: road.level,
-        rank: rank_of(road.surface),
-        ..Street::new(&road.alignment, road.options)
-    });
-    let streets: Vec<Street<'_>> = of_spans.chain(of_roads).collect();
+    let on_ground = roads.iter().map(|road| &road.street).filter(meets);
+    let streets: Vec<&Street> = spans.iter().map(|span| &span.street).chain(on_ground).collect();
     let network = junction::connect(&streets);
     for (span, beyond) in spans.iter_mut().zip(network.continuations) {
-        span.beyond = [beyond.before, beyond.after];
+        span.beyond = beyond;
     }
 }

@@ -20,8 +20,9 @@ use crate::description::features::ScatterTable;
 use crate::description::words::Clamp;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
+use crate::mesh::sink::VertexId;
 use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::models::library::Library;
 use crate::scene::models::{PlacedModels, within};
 use crate::scene::placement::outline;
@@ -95,7 +96,6 @@ pub fn strew(
     Ok(())
 }
 
-/// The models of a table.
 struct Species {
     models: Vec<usize>,
     seed: u64,
@@ -137,7 +137,6 @@ impl ScatterCounts {
     }
 }
 
-/// The pattern of one area.
 fn pattern(
     table: &ScatterTable,
     attributes: &Attributes,
@@ -157,7 +156,7 @@ fn bands(
     (lattice, squares): (&Lattice, &mut usize),
 ) -> Result<Bands, Diagnostic> {
     let to_map = |ring: &Vec<DVec2>| ring.iter().map(|at| at + lattice.origin()).collect::<Vec<_>>();
-    let rings: Vec<Vec<DVec2>> = std::iter::once(&area.exterior).chain(&area.holes).map(to_map).collect();
+    let rings: Vec<Vec<DVec2>> = area.rings().map(to_map).collect();
     let extent = lattice.extent();
     let extent = Rect { min: extent.min + lattice.origin(), max: extent.max + lattice.origin() };
     let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, MAX_SQUARES);
@@ -178,7 +177,6 @@ fn bands(
     })
 }
 
-/// The conditions at a point.
 struct ScatterGround<'a> {
     table: &'a ScatterTable,
     frame: &'a WorldFrame<'a>,
@@ -255,10 +253,7 @@ fn holds([from, to]: [f64; 2], value: f64) -> bool {
 /// The ground under roads, water, buildings and the models so far.
 fn taken_by(placed: &PlacedModels<'_>, collected: &SceneBuilder) -> Taken {
     let mut taken = Taken::default();
-    let kind = |feature: FeatureId| {
-        let index = (feature.0 as usize).checked_sub(FeatureId::GROUND.0 as usize + 1);
-        index.and_then(|index| collected.features.get(index)).map(|feature| feature.kind)
-    };
+    let kind = |id: FeatureId| collected.feature(id).map(|feature| feature.kind);
     for ribbon in &collected.ribbons {
         if !matches!(kind(ribbon.feature), Some(FeatureKind::Area | FeatureKind::Fence)) {
             ribbon.plan.corners().for_each(|triangle| taken.add(triangle.map(|corner| corner.at)));
@@ -266,11 +261,10 @@ fn taken_by(placed: &PlacedModels<'_>, collected: &SceneBuilder) -> Taken {
     }
     for solid in &collected.solids {
         if matches!(kind(solid.feature), Some(FeatureKind::Building | FeatureKind::Bridge)) {
-            let at = |id: &crate::mesh::sink::VertexId| {
-                Vec3::from(solid.mesh.vertices[id.index()].position).truncate().as_dvec2()
-            };
+            let at =
+                |id: VertexId| Vec3::from(solid.mesh.vertices[id.index()].position).truncate().as_dvec2();
             // The upper side of a closed solid covers its plan.
-            solid.mesh.triangles.iter().for_each(|ids| taken.add([at(&ids[0]), at(&ids[1]), at(&ids[2])]));
+            solid.mesh.triangles.iter().for_each(|ids| taken.add(ids.map(at)));
         }
     }
     for placement in &placed.placements {
@@ -286,8 +280,7 @@ fn tell(
 ) {
     let name = table.name.clone().unwrap_or_default();
     let models = if count == 1 { "1 model stands".into() } else { format!("{count} models stand") };
-    let called =
-        if name.is_empty() { "a scatter without a name".into() } else { format!("scatter '{name}'") };
+    let called = described("scatter", &name);
     let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
     collected.notes.push(format!("{called}: {models} in {areas_s}"));
     if counts.crowded > 0 {

@@ -5,17 +5,17 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::LakeTable;
-use crate::description::words::{LevelRule, Word};
+use crate::description::words::LevelRule;
 use crate::draw::list::FeatureId;
 use crate::earthworks::shore;
 use crate::geom::polygon;
-use crate::geom::rect::Rect;
+use crate::message::choice::Choice;
 use crate::ribbon::area;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::FeatureKind;
 use crate::scene::attributes::{Attributes, count_default};
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::near::Clipped;
 use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
@@ -40,10 +40,10 @@ pub fn lay(
     for lake in &document.lakes {
         for Sourced { attributes, shape } in sources.polygons(&lake.source)? {
             let name = attributes.name(lake.name.as_deref());
-            let bounds = Rect::around(shape.exterior.iter().copied());
+            let bounds = polygon::bounds(&shape.exterior);
             let extent = lattice.extent();
             if !bounds.meets(&extent) {
-                collected.notes.push(format!("{} lies off the elevation model", described(&name)));
+                collected.notes.push(format!("{} lies off the elevation model", described("lake", &name)));
                 continue;
             }
             let mut plan = Clipped { plan: PlanMesh::default(), extent: &extent };
@@ -80,14 +80,14 @@ fn flood(
     let (level_m, volumes) = (level.level_m, flooded.volumes);
     collected.notes.push(format!(
         "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
-        described(&name),
+        described("lake", &name),
         volumes.cut_m3,
         volumes.fill_m3
     ));
     if let Some(other_m) = flooded.other_level_m {
         collected.notes.push(format!(
             "{} shares cells with a lake at {other_m:.1} m, and the level of the later one holds there",
-            described(&name)
+            described("lake", &name)
         ));
     }
     collected.report.lakes.push(LakeRow {
@@ -122,7 +122,6 @@ fn level_of(
     })
 }
 
-/// The ground along a lake's outer shore.
 struct Shore {
     /// Heights in meters, rising, each with the meters of shore that it represents.
     heights: Vec<(f64, f64)>,
@@ -189,9 +188,4 @@ impl Shore {
 fn area_m2(shape: &Polygon) -> f64 {
     let area = |ring: &[DVec2]| polygon::doubled_area(ring).abs() / 2.0;
     area(&shape.exterior) - shape.holes.iter().map(|hole| area(hole)).sum::<f64>()
-}
-
-/// A lake in a note; many have no name.
-fn described(name: &str) -> String {
-    if name.is_empty() { "a lake without a name".into() } else { format!("lake '{name}'") }
 }

@@ -9,8 +9,9 @@ use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::earthworks::channel::flow::{self, Flow};
 use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
+use crate::ribbon::junction::Street;
 use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::{RibbonSurface, texture_length_m};
+use crate::ribbon::texture::RibbonSurface;
 use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
@@ -23,8 +24,8 @@ const REACH_M: f64 = 1000.0;
 
 /// A river, downstream.
 pub struct Stream {
-    /// Its centerline and the width of its water.
-    pub alignment: Alignment,
+    /// Its water, along its centerline.
+    pub street: Street,
     /// The width of the bank on either side in meters.
     pub bank_m: f64,
     /// Whether the ground is cut to it.
@@ -35,15 +36,6 @@ pub struct Stream {
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
-}
-
-impl Stream {
-    /// How its water is stroked.
-    pub fn options(&self) -> StrokeOptions {
-        let width_m = self.alignment.width.widest_m();
-        let texture_length_m = texture_length_m(RibbonSurface::River, width_m);
-        StrokeOptions { width_m, texture_length_m, ..StrokeOptions::default() }
-    }
 }
 
 /// The document's rivers that come near the ground, in the order of its tables.
@@ -60,10 +52,11 @@ pub fn collect(
     let mut drawn: Vec<(&RiverTable, Attributes, Polyline, Option<Profile>)> = Vec::new();
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
-        let shape = lines.first().map(|line| line.shape.clone()).unwrap_or_default();
+        let widths_m = lines.first().and_then(|line| near::widths_m(river.widths.as_deref(), &line.shape));
         let name = river.name.as_deref();
         for (attributes, line) in near::lines(lines, &extent, REACH_M, FeatureKind::River, name, collected) {
-            let widths = river.widths.as_ref().and_then(|widths_m| widths(&line, &shape, widths_m));
+            let widths = widths_m.as_ref();
+            let widths = widths.and_then(|widths_m| Profile::new(line.stations().to_vec(), widths_m.clone()));
             drawn.push((river, attributes, line, widths));
         }
     }
@@ -75,13 +68,6 @@ pub fn collect(
     });
     let stream = |(river, attributes, line, widths)| stream(river, &attributes, line, widths, collected);
     Ok(directed.map(stream).collect())
-}
-
-/// The widths of the vertices that a line kept of its points; `None` where they are not as many.
-fn widths(line: &Polyline, points: &[glam::DVec2], widths_m: &[f64]) -> Option<Profile> {
-    let mut stated = points.iter().zip(widths_m);
-    let mut width = |at: &glam::DVec2| stated.find(|(point, _)| *point == at).map(|(_, &width_m)| width_m);
-    Profile::new(line.stations().to_vec(), line.points().iter().filter_map(&mut width).collect())
 }
 
 fn stream(
@@ -103,6 +89,9 @@ fn stream(
         widths.filter(|_| mouth_m != width_m).map_or(Width::Constant(width_m), Width::Varying)
     });
     let bank_m = attributes.number(&river.bank, counts);
+    let width_m = width.widest_m();
     let alignment = Alignment { line, level: None, width, support: Support::Ground };
-    Stream { alignment, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
+    let options = StrokeOptions::of(RibbonSurface::River, width_m);
+    let street = Street { alignment, width_m, options, level: 0, surface: RibbonSurface::River };
+    Stream { street, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
 }

@@ -14,14 +14,15 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::Water;
-use crate::earthworks::alignment::Width;
 use crate::earthworks::channel::{self, Channel, Climb, Cut, Cuts};
+use crate::geom::offset::Continuations;
+use crate::geom::polygon;
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::junction::{self, Street};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{Continuations, Stations, StrokePath, stroke_path};
+use crate::ribbon::stroke::{StrokePath, stroke};
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
@@ -45,8 +46,13 @@ pub fn lay(
 ) -> Result<(), Diagnostic> {
     let streams = network::collect(document, sources, lattice, collected)?;
     let falling: Vec<&Stream> = streams.iter().filter(|stream| stream.water == Water::Falls).collect();
-    let cuts = channel::cut(lattice, &falling.iter().map(|stream| channel_of(stream)).collect::<Vec<_>>());
-    let cuts = cuts.map_err(|error| {
+    let channel = |stream: &&Stream| Channel {
+        alignment: stream.street.alignment.clone(),
+        bank_m: stream.bank_m,
+        max_cut_m: stream.max_cut_m,
+    };
+    let channels: Vec<Channel> = falling.iter().map(channel).collect();
+    let cuts = channel::cut(lattice, &channels).map_err(|error| {
         let place = document.rivers.first().map_or(0..0, |river| river.source.span());
         let help = "make them narrower, or say `water = \"drape\"`";
         document.error_at(place, error).with_help(help)
@@ -55,15 +61,6 @@ pub fn lay(
     report_climbs(&falling, &cuts, collected);
     ribbons(&streams, &lattice.extent(), collected);
     Ok(())
-}
-
-fn channel_of(stream: &Stream) -> Channel {
-    Channel {
-        line: stream.alignment.line.clone(),
-        width: stream.alignment.width.clone(),
-        bank_m: stream.bank_m,
-        max_cut_m: stream.max_cut_m,
-    }
 }
 
 /// Reports the cuts: a row for each river, and a note on them all.
@@ -100,7 +97,6 @@ fn report_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder)
     ));
 }
 
-/// The greatest of a channel's climbs.
 fn greatest(cut: &Cut) -> Option<&Climb> {
     cut.climbs.iter().max_by(|a, b| a.rise_m.total_cmp(&b.rise_m))
 }
@@ -108,7 +104,7 @@ fn greatest(cut: &Cut) -> Option<&Climb> {
 fn row(stream: &Stream, cut: &Cut) -> RiverRow {
     RiverRow {
         name: stream.name.clone(),
-        length: stream.alignment.line.length(),
+        length: stream.street.alignment.line.length(),
         from: cut.levels_m.map(|levels| levels.0),
         to: cut.levels_m.map(|levels| levels.1),
         deepest_cut: cut.deepest_m,
@@ -121,27 +117,23 @@ fn row(stream: &Stream, cut: &Cut) -> RiverRow {
 
 /// Lays water, banks and confluences; narrower water over wider, so that a mouth shows in the river that it flows into.
 fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
-    let streets: Vec<Street<'_>> =
-        streams.iter().map(|stream| Street::new(&stream.alignment, stream.options())).collect();
+    let streets: Vec<&Street> = streams.iter().map(|stream| &stream.street).collect();
     let network = junction::connect(&streets);
-    let widest_m = |index: usize| streams[index].alignment.width.widest_m();
+    let widest_m = |index: usize| streams[index].street.width_m;
     let mut order: Vec<usize> = (0..streams.len()).collect();
     order.sort_by(|&a, &b| widest_m(b).total_cmp(&widest_m(a)));
     for index in order {
         let stream = &streams[index];
         let beyond = ends_of_one_width(stream, network.continuations[index]);
-        let ribbon = |width: &Width| {
+        let mut lay = |street: &Street| {
             let mut ribbon = Clipped { plan: PlanMesh::default(), extent };
-            let path =
-                StrokePath { line: &stream.alignment.line, width, beyond, stations: Stations::default() };
-            stroke_path(&path, &stream.options(), &mut ribbon);
-            ribbon.plan
+            let path = StrokePath { beyond, ..StrokePath::alone(&street.alignment) };
+            stroke(&path, &street.options, &mut ribbon);
+            collected.lay(ribbon.plan, street.surface, stream.feature);
         };
-        let width = &stream.alignment.width;
-        collected.lay(ribbon(width), RibbonSurface::River, stream.feature);
+        lay(&stream.street);
         if stream.bank_m > 0.0 {
-            let banks = ribbon(&width.grown(2.0 * stream.bank_m));
-            collected.lay(banks, RibbonSurface::Bank, stream.feature);
+            lay(&stream.street.with_more(2.0 * stream.bank_m, RibbonSurface::Bank));
         }
     }
     confluences(streams, &network.continuations, extent, collected);
@@ -149,7 +141,7 @@ fn ribbons(streams: &[Stream], extent: &Rect, collected: &mut SceneBuilder) {
 
 /// What continues a river at its ends: nothing where it tapers, since the other end would be of another width.
 fn ends_of_one_width(stream: &Stream, beyond: Continuations) -> Continuations {
-    if stream.alignment.width.is_constant() { beyond } else { Continuations::default() }
+    if stream.street.alignment.width.is_constant() { beyond } else { Continuations::default() }
 }
 
 /// A river at a vertex: the water's width there, which river it is, and where.
@@ -165,15 +157,16 @@ fn confluences(
     let mut ends: BTreeMap<VertexKey, bool> = BTreeMap::new();
     for (stream, beyond) in streams.iter().zip(continuations) {
         let beyond = ends_of_one_width(stream, *beyond);
-        for (at, beyond) in stream.alignment.line.ends().into_iter().zip([beyond.before, beyond.after]) {
+        for (at, beyond) in stream.street.alignment.line.ends().into_iter().zip([beyond.before, beyond.after])
+        {
             *ends.entry(vertex_key(at)).or_default() |= beyond.is_none();
         }
     }
     let mut widest: BTreeMap<VertexKey, Vec<Meeting>> = BTreeMap::new();
     for (index, stream) in streams.iter().enumerate() {
-        let line = &stream.alignment.line;
+        let line = &stream.street.alignment.line;
         for (&at, &station_m) in line.points().iter().zip(line.stations()) {
-            let width_m = stream.alignment.width.at(station_m);
+            let width_m = stream.street.alignment.width.at(station_m);
             if ends.get(&vertex_key(at)).is_some_and(|is_open| *is_open) {
                 widest.entry(vertex_key(at)).or_default().push((width_m, index, at));
             }
@@ -190,14 +183,12 @@ fn confluences(
 }
 
 fn disc(center: DVec2, radius_m: f64, sink: &mut impl MeshSink<PlanVertex>) {
+    let mut vertex = |at: DVec2| sink.vertex(PlanVertex { at, uv: (at / (4.0 * radius_m)).as_vec2() });
+    let middle = vertex(center);
     let corner = |index: u32| {
         let angle = f64::from(index) * std::f64::consts::TAU / f64::from(DISC_CORNERS);
-        let at = center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m;
-        PlanVertex { at, uv: (at / (4.0 * radius_m)).as_vec2() }
+        vertex(center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m)
     };
-    let middle = sink.vertex(PlanVertex { at: center, uv: (center / (4.0 * radius_m)).as_vec2() });
-    let rim: Vec<_> = (0..DISC_CORNERS).map(|index| sink.vertex(corner(index))).collect();
-    for (index, &from) in rim.iter().enumerate() {
-        sink.triangle([middle, from, rim[(index + 1) % rim.len()]]);
-    }
+    let rim: Vec<_> = (0..DISC_CORNERS).map(corner).collect();
+    polygon::edges(&rim).for_each(|(from, to)| sink.triangle([middle, from, to]));
 }

@@ -22,9 +22,9 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
 
+use crate::bytes::ByteCursor;
 use crate::geom::crs::Crs;
 use crate::vector::builder::{FeatureParts, LayerBuilder};
-use crate::vector::cursor::ByteCursor;
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::feature::{Properties, VectorLayer};
 use crate::vector::geopackage::wkb::WkbError;
@@ -38,7 +38,6 @@ const FREE_STEPS: u64 = 100_000_000;
 /// Steps for each byte of the file, of which reading takes less than one.
 const STEPS_PER_BYTE: u64 = 10;
 
-/// A table or view of features.
 struct GpkgTable {
     name: String,
     geometry_column: String,

@@ -11,8 +11,8 @@
 //! `geozero` 0.15 overflows the stack on nested collections and reads either ISO's types or EWKB's flags. They build
 //! seven and four more crates to save some 60 lines.
 
+use crate::bytes::{ByteCursor, ByteOrder};
 use crate::vector::builder::{FeatureParts, Vertices, position};
-use crate::vector::cursor::ByteCursor;
 
 /// Depth of nested collections; a multipolygon in a collection is three deep.
 const MAX_DEPTH: usize = 16;
@@ -32,10 +32,10 @@ pub(crate) enum WkbError {
     Unsupported(&'static str),
 }
 
-/// The byte order and what a position holds.
+/// The byte order and the dimensions of a position.
 #[derive(Clone, Copy)]
 struct WkbLayout {
-    little_endian: bool,
+    order: ByteOrder,
     has_z: bool,
     /// Bytes of a position.
     stride: usize,
@@ -91,12 +91,12 @@ fn read_shape(cursor: &mut ByteCursor<'_>, parts: &mut FeatureParts, depth: usiz
 
 /// Reads the type of a shape, without its dimensions, and its layout.
 fn read_header(cursor: &mut ByteCursor<'_>) -> Result<(u32, WkbLayout), WkbError> {
-    let little_endian = match cursor.u8() {
-        Some(0) => false,
-        Some(1) => true,
+    let order = match cursor.u8() {
+        Some(0) => ByteOrder::Big,
+        Some(1) => ByteOrder::Little,
         _ => return Err(WkbError::Broken),
     };
-    let mut layout = WkbLayout { little_endian, has_z: false, stride: 16 };
+    let mut layout = WkbLayout { order, has_z: false, stride: 16 };
     let stated = read_u32(cursor, layout)?;
     if stated & HAS_SRID != 0 {
         read_u32(cursor, layout)?;
@@ -112,8 +112,7 @@ fn read_header(cursor: &mut ByteCursor<'_>) -> Result<(u32, WkbLayout), WkbError
 }
 
 fn read_u32(cursor: &mut ByteCursor<'_>, layout: WkbLayout) -> Result<u32, WkbError> {
-    let bytes = cursor.array().ok_or(WkbError::Broken)?;
-    Ok(if layout.little_endian { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
+    cursor.array().map(|bytes| layout.order.u32(bytes)).ok_or(WkbError::Broken)
 }
 
 /// Reads a count of items that take at least `min_bytes` each.
@@ -134,9 +133,7 @@ fn read_positions(
     count: usize,
 ) -> Result<Vertices, WkbError> {
     let bytes = cursor.take(count * layout.stride).ok_or(WkbError::Broken)?;
-    let number = |bytes: [u8; 8]| {
-        if layout.little_endian { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) }
-    };
+    let number = |bytes: [u8; 8]| layout.order.f64(bytes);
     let vertex = |bytes: &[u8]| {
         let (numbers, _) = bytes.as_chunks::<8>();
         position(number(numbers[0]), number(numbers[1]), layout.has_z.then(|| number(numbers[2])))

@@ -1,4 +1,4 @@
-//! Areas of relations: ways are joined end to end to rings, and rings to polygons with holes.
+//! Joins the ways of relations end to end to rings, and rings to polygons with holes.
 //!
 //! A relation is only read complete: with a way missing or open, its islands would turn into lakes.
 

@@ -104,7 +104,7 @@ const AREA_KEYS: [&str; 16] = [
 ];
 /// Tags that make a closed way an area.
 const AREA_TAGS: [(&str, &str); 2] = [("highway", "platform"), ("public_transport", "platform")];
-/// Keys that do not state what a thing is (`unsignificant`).
+/// Keys that do not classify a feature (GDAL's `unsignificant`).
 const INSIGNIFICANT_KEYS: [&str; 6] = ["created_by", "converted_by", "source", "time", "ele", "attribution"];
 
 impl OsmLayer {
@@ -196,7 +196,7 @@ impl OsmLayer {
     }
 }
 
-/// Returns the tags that state what a thing is.
+/// Returns the tags that classify a feature.
 fn significant_tags<'a>(data: &'a OsmData, tags: &'a OsmTags) -> impl Iterator<Item = (&'a str, &'a str)> {
     data.tags(tags).filter(|(key, _)| !INSIGNIFICANT_KEYS.contains(key))
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! length:u32 (big-endian) │ BlobHeader: type, datasize │ Blob: raw or zlib  ── again and again
-//! OSMHeader: what a reader must know │ OSMData: texts, then groups of nodes, ways or relations
+//! OSMHeader: required features │ OSMData: texts, then groups of nodes, ways or relations
 //! ```
 //!
 //! Numbers of nodes are stored as differences. The limits on the sizes of headers and blobs are the format's own; they
@@ -12,7 +12,7 @@
 //! and 20 s. It also generates code with `protobuf-codegen` and `regex`, nineteen crates and 50 s of processor time.
 
 use crate::archive;
-use crate::vector::cursor::ByteCursor;
+use crate::bytes::ByteCursor;
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::osm::data::{
     OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, TextId,
@@ -29,7 +29,7 @@ const KNOWN_FEATURES: [&[u8]; 2] = [b"OsmSchema-V0.6", b"DenseNodes"];
 /// Billionths of a degree in a unit of coordinates.
 const NANODEGREES_PER_UNIT: i64 = 100;
 
-/// What can be wrong with a block.
+/// Why a block cannot be read.
 #[derive(Debug, thiserror::Error)]
 enum PbfError {
     #[error(transparent)]

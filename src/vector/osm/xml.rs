@@ -8,7 +8,7 @@ use crate::vector::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";
 
-/// Reads everything in the file but what is marked as deleted.
+/// Reads the file without objects that are marked as deleted.
 pub(super) fn read(bytes: &[u8]) -> Result<OsmData, VectorError> {
     let text = xml::decode(bytes, FORMAT)?;
     let mut xml = XmlReader::new(&text, FORMAT);

@@ -13,7 +13,7 @@ use std::slice::ChunksExact;
 
 use serde_json::{Number, Value};
 
-use crate::vector::cursor::ByteCursor;
+use crate::bytes::ByteCursor;
 use crate::vector::encoding::TextEncoding;
 use crate::vector::error::VectorError;
 use crate::vector::feature::Properties;

@@ -14,15 +14,15 @@
 //! is a hole in which ([`rings`](crate::vector::rings)).
 //!
 //! Written by hand. `shapefile` 0.9 refuses two of eighteen real files for their outdated index, allocates 535 MB for a
-//! file of 1000 bytes with a count changed, tells holes by direction only, and builds ten more crates.
+//! file of 1000 bytes with a count changed, recognizes holes by direction only, and builds ten more crates.
 
 mod dbf;
 
 use glam::DVec3;
 
+use crate::bytes::ByteCursor;
 use crate::geom::crs::Crs;
 use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::cursor::ByteCursor;
 use crate::vector::encoding::TextEncoding;
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::feature::{Properties, VectorLayer};

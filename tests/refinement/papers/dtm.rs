@@ -6,10 +6,11 @@ use std::sync::Arc;
 use glam::{DVec2, Vec2, Vec3};
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DepthLayer, DrawMesh};
+use sandtable::earthworks::alignment::Alignment;
 use sandtable::geom::polyline::Polyline;
 use sandtable::ribbon::drape::{check_clearance, drape};
 use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::stroke::{Continuations, StrokeOptions, stroke};
+use sandtable::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable::roam::active::ActiveSet;
 use sandtable::roam::block::{BlockSource, WholeGround};
 use sandtable::roam::criterion::Criterion;
@@ -64,12 +65,8 @@ fn features_get_their_elevation_from_the_ground_that_roam_built() {
         Polyline::new(vec![DVec2::new(50.0, 80.0), DVec2::new(400.0, 300.0), DVec2::new(900.0, 820.0)], 0.01)
             .expect("a line");
     let mut plan = PlanMesh::default();
-    stroke(
-        &line,
-        Continuations::default(),
-        &StrokeOptions { width_m: 12.0, ..StrokeOptions::default() },
-        &mut plan,
-    );
+    let alignment = Alignment::on_ground(line, 12.0);
+    stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), &mut plan);
     assert!(!plan.triangles.is_empty(), "triangles from centerline and width");
     let mut draped = DrawMesh::default();
     drape(&plan, &displayed, &mut draped);

@@ -6,7 +6,7 @@ use std::path::Path;
 use sandtable::description::declaration::{KeyDeclaration, KeyKind, Presence};
 use sandtable::description::document::Document;
 use sandtable::description::styles::STYLE_KEY;
-use sandtable::description::words::{RampName, Word, WordDeclaration};
+use sandtable::description::words::{RampName, WordDeclaration, declarations};
 
 const HEAD: &str = "# Scene files: keys and defaults
 
@@ -53,7 +53,7 @@ fn row(key: &KeyDeclaration) -> String {
     let words = match key.kind {
         KeyKind::Word(words) | KeyKind::FeatureWord(words) => {
             let meanings: Vec<String> =
-                words.iter().map(|declared| format!(" `{}`: {}", declared.word, declared.doc)).collect();
+                words().iter().map(|declared| format!(" `{}`: {}", declared.word, declared.doc)).collect();
             meanings.join(";") + "."
         }
         _ => String::new(),
@@ -75,12 +75,12 @@ fn kind_and_range(kind: KeyKind) -> (String, String) {
         KeyKind::TextList => any("text or list of texts"),
         KeyKind::TextTable | KeyKind::Styles => any("table with names of yours"),
         KeyKind::Expression => any("expression"),
-        KeyKind::Word(words) => (listed(words), String::new()),
-        KeyKind::FeatureWord(words) => (listed(words) + " or expression", String::new()),
+        KeyKind::Word(words) => (listed(&words()), String::new()),
+        KeyKind::FeatureWord(words) => (listed(&words()) + " or expression", String::new()),
         KeyKind::Color => any("color, `\"#rrggbb\"`"),
         KeyKind::Point => any("point"),
         KeyKind::Points(_) => any("list of points"),
-        KeyKind::Ramp => (listed(RampName::DECLARATIONS) + " or list of stops", String::new()),
+        KeyKind::Ramp => (listed(&declarations::<RampName>()) + " or list of stops", String::new()),
         KeyKind::Selection => any("table or expression"),
         KeyKind::Table(_) => any("table"),
         KeyKind::Tables(_) | KeyKind::StyledTables(_) => any("list of tables"),

@@ -97,7 +97,7 @@ pub struct Viewshed {
 }
 
 /// The number of posts of each kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct ViewshedCounts {
     /// In sight.
     pub visible: usize,
