@@ -16,8 +16,8 @@ pub fn crop(raster: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
     let last = DVec2::new(f64::from(raster.width - 1), f64::from(raster.height - 1));
     let low = (centers.min.ceil() - margin).max(DVec2::ZERO);
     let high = (centers.max.floor() + margin).min(last);
-    // Also false where a coordinate is not a number.
-    if !((high - low).min_element() >= 1.0) {
+    let size = high - low;
+    if size.is_nan() || size.min_element() < 1.0 {
         return None;
     }
     let (first, last) = (low.as_uvec2(), high.as_uvec2());
