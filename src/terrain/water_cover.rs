@@ -38,7 +38,7 @@ pub struct WaterCover {
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice) -> WaterCover {
     let mut search =
-        Search { lattice, state: vec![PostState::New; lattice.heights().len()], stack: Vec::new() };
+        WaterSearch { lattice, state: vec![PostState::New; lattice.heights().len()], stack: Vec::new() };
     let mut cover = WaterCover::default();
     let (columns, rows) = (lattice.columns(), lattice.rows());
     for post in lattice.posts() {
