@@ -1,19 +1,23 @@
 //! `sandtable render`: a scene file to an annotated PNG.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::{Map, Value, json};
 
 use crate::annotate::report::AnnotationReport;
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
-use crate::cli::output::{print_lines, row, warn};
+use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, picture_size};
+use crate::draw::list::DrawList;
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
-use crate::pipeline::picture::{PictureSize, RenderedView, render_view};
+use crate::pipeline::picture::{PictureSize, RenderedView, annotate_view, draw_view};
+use crate::pipeline::picture_statistics::{Lightness, PictureStatistics};
 use crate::pipeline::scene_file::open_scene;
 use crate::render::RenderBackend;
 use crate::scene::{SceneModel, SceneView};
@@ -40,6 +44,9 @@ pub struct RenderArguments {
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step
+    #[arg(long)]
+    pub json: bool,
 }
 
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
@@ -52,8 +59,12 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     let rendered = pool.install(|| render(arguments, &path, &steps))?;
     let times = steps.finish();
+    if arguments.json {
+        return print(&format!("{:#}\n", as_json(&path, &rendered, &times)));
+    }
     let mut lines = vec![path.display().to_string()];
     lines.extend(contents(&rendered.scene));
+    lines.extend(rendered.scene.inferred_notes().iter().map(|note| row(9, "note", note)));
     lines.extend(summary(&rendered));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));
@@ -69,6 +80,8 @@ struct RenderedScene {
     scene: SceneModel,
     camera: String,
     view: RenderedView,
+    /// Measured where JSON is printed.
+    statistics: Option<PictureStatistics>,
 }
 
 fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result<RenderedScene, CliError> {
@@ -77,10 +90,12 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
     let camera = find_camera(&scene, arguments.camera.as_deref())?.clone();
     files::check_output(path, &scene.files)
         .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
-    let view = render_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
+    let drawn = draw_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
+    let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
+    let view = annotate_view(&scene, drawn, &progress);
     progress("writing the picture");
     files::write_picture(path, &view.pixels)?;
-    Ok(RenderedScene { scene, camera: camera.name, view })
+    Ok(RenderedScene { scene, camera: camera.name, view, statistics })
 }
 
 /// The error with `reason` and the option to change, where the picture would replace an input.
@@ -127,6 +142,41 @@ fn summary(rendered: &RenderedScene) -> Vec<String> {
         row(9, "labels", format!("{why}: {}", names.join(", ")))
     });
     std::iter::once(row(9, "camera", camera)).chain(labels).collect()
+}
+
+/// The rendered scene as an object with a member for each fact.
+fn as_json(path: &Path, rendered: &RenderedScene, times: &[(&'static str, f64)]) -> Value {
+    let RenderedScene { scene, camera, view, statistics } = rendered;
+    let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
+    let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &view.annotations;
+    let notes: Vec<String> = scene.notes.iter().cloned().chain(scene.inferred_notes()).collect();
+    let seconds: Map<String, Value> = times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
+    json!({
+        "picture": path.display().to_string(),
+        "camera": camera,
+        "filled_fraction": statistics.map(|statistics| statistics.filled),
+        "ground_fraction": statistics.map(|statistics| statistics.ground),
+        "ground_lightness": lightness.map(|Lightness { mean, sd, p2, p98 }| {
+            json!({"mean": mean, "sd": sd, "p2": p2, "p98": p98})
+        }),
+        "triangles": triangles(scene, &view.drawn.list),
+        "labels": {
+            "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened
+        },
+        "notes": notes,
+        "seconds": seconds,
+    })
+}
+
+/// The number of triangles drawn of the ground and of each kind of feature.
+fn triangles(scene: &SceneModel, list: &DrawList) -> BTreeMap<&'static str, usize> {
+    let mut counts = BTreeMap::new();
+    for item in &list.items {
+        let feature = (item.feature.0 as usize).checked_sub(2).and_then(|index| scene.features.get(index));
+        *counts.entry(feature.map_or("ground", |feature| feature.kind.noun(2))).or_default() +=
+            item.triangles.len();
+    }
+    counts
 }
 
 /// A label on one line, cut where it is long.

@@ -4,6 +4,7 @@
 pub mod answer;
 pub mod cache;
 pub mod cell_grid;
+pub mod crop;
 pub mod error;
 pub mod formats;
 mod georef;

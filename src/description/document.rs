@@ -95,7 +95,7 @@ table! {
         scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
         /// Names and heights on the picture.
         labels as "label": Vec<LabelTable> = key::tables::<LabelTable>(), default [];
-        /// Views; the first is the default. Without any, one sees the whole ground in pictures of 4:3 and wider.
+        /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
         /// What frames the picture.
         furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
@@ -122,6 +122,10 @@ table! {
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
         /// Whether samples without data that others enclose are filled by a membrane.
         fill_voids: bool = key::switch(), default false;
+        /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
+        infer_water: bool = key::switch(), default true;
+        /// Points around the part that the scene is made of, such as two corners of a map.
+        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole model";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.
@@ -138,7 +142,8 @@ table! {
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
-        /// Distance at which 63 % of what is seen is haze; 0 for clear air.
+        /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
+        /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
             otherwise "eight times the longest side of the terrain, its drawn height included";
     }
@@ -175,29 +180,56 @@ table! {
         kind: LabelKind = key::word::<LabelKind>(), default "place";
     }
 
-    /// `[[camera]]`.
+    /// `[[camera]]`: an eye and what it looks at, or, without them, a view that fills the picture.
     struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
         name: Stated<String> = key::filled_text(), required;
         /// Place of the eye.
-        eye: Stated<[f64; 2]> = key::point(), required;
+        eye: Option<Stated<[f64; 2]>> = key::point(), otherwise "where the ground fills the picture";
         /// Height of the eye above the ground.
         eye_height: f64 = key::number(Within(0.0, 1e7), "m"), default 2;
         /// Elevation of the eye, instead of `eye_height`.
         eye_elevation: Option<f64> = key::number(Bounds::ELEVATION, "m"), otherwise "by `eye_height`";
         /// Place on the ground that the camera looks at.
-        look_at: Stated<[f64; 2]> = key::point(), required;
+        look_at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `azimuth` and `pitch`";
         /// Height above that place that it looks at.
         look_at_height: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// Coordinate system of `eye` and `look_at`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
-        /// Vertical field of view; 40 is about that of a normal lens held upright.
-        field_of_view: f64 = key::number(Within(1.0, 170.0), "°"), default 40;
+        /// Of a camera without an eye: where it looks, clockwise from north.
+        azimuth: Option<f64> = key::number(Within(-360.0, 360.0), "°"), otherwise "0";
+        /// Of a camera without an eye: how far it looks down from the horizon.
+        pitch: Option<f64> = key::number(Within(5.0, 89.0), "°"), otherwise "what fills the picture best, from 40 to 50";
+        /// Of a camera without an eye: points around what it shows, such as two corners of a map.
+        shows: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole ground";
+        /// Vertical field of view; 40 is about that of a normal lens held upright, 28 that of a portrait lens.
+        field_of_view: Option<f64> = key::number(Within(1.0, 170.0), "°"), otherwise "40 with an eye, 28 without";
     }
     check(reader) {
         if let (Some(_), Some(span)) = (reader.key_span("eye_height"), reader.value_span("eye_elevation")) {
             let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
             reader.error(span, "the eye has both a height and an elevation", help);
+        }
+        for (stated, missing) in [("eye", "look_at"), ("look_at", "eye")] {
+            if let (Some(span), None) = (reader.value_span(stated), reader.value_span(missing)) {
+                let help = "state both, or neither for a view that fills the picture";
+                reader.error(span, format!("the camera has `{stated}` without `{missing}`"), help);
+            }
+        }
+        if reader.value_span("eye").is_some() {
+            for key in ["azimuth", "pitch", "shows"] {
+                if let Some(span) = reader.key_span(key) {
+                    let message = format!("`{key}` has no effect on a camera with an `eye`");
+                    reader.error(span, message, "remove it, or remove `eye` and `look_at`");
+                }
+            }
+        } else {
+            for key in ["eye_height", "eye_elevation", "look_at_height"] {
+                if let Some(span) = reader.key_span(key) {
+                    let message = format!("`{key}` has no effect on a camera without an `eye`");
+                    reader.error(span, message, "state `eye` and `look_at`, or remove it");
+                }
+            }
         }
     }
 

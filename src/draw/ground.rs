@@ -24,6 +24,9 @@ pub struct GroundMap {
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
     pub contours: Option<Contours>,
+    /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
+    /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
+    pub form_level: u32,
 }
 
 /// The ground at one post.
@@ -40,6 +43,8 @@ pub struct GroundPost {
     pub sun_visibility: f32,
     /// Share of the sky seen from the post, 0..=1.
     pub sky_visibility: f32,
+    /// 1 where the post is under water, else 0; between posts the shore lies at 0.5.
+    pub water: f32,
 }
 
 /// Colors at rising heights, interpolated in linear light.
@@ -72,6 +77,12 @@ impl ColorRamp {
         (0..steps).map(|step| self.linear_at(height(step))).collect()
     }
 
+    /// `height_m` as a share of the range of the stops, 0..=1 between them; 0 where there is one stop.
+    pub fn elevation(&self, height_m: f32) -> f32 {
+        let (low, high) = self.height_range();
+        if high > low { (height_m - low) / (high - low) } else { 0.0 }
+    }
+
     /// The heights of the lowest and the highest stop.
     pub fn height_range(&self) -> (f32, f32) {
         (self.stops[0].0, self.stops[self.stops.len() - 1].0)
@@ -85,6 +96,31 @@ impl ColorRamp {
             Some(&(high, color)) if above > 0 => below.lerp(color, (height_m - low) / (high - low)),
             _ => below,
         }
+    }
+}
+
+/// The colors of standing water on the ground map: near the shore and at depth; one blue for all water.
+///
+/// Water covers `clamp((water − 0.5) · 4 + 0.5, 0, 1)` of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaterColor;
+
+impl WaterColor {
+    /// Water at the height of 0 and above.
+    pub const SURFACE: Srgba = Srgba::opaque(92, 150, 190);
+    /// Deep water.
+    pub const DEEP: Srgba = Srgba::opaque(52, 100, 152);
+    /// The height in meters at which water is taken to be deep.
+    pub const DEEP_M: f32 = -1000.0;
+
+    /// The share of a pixel that is under water, from the mean of [`GroundPost::water`] around it.
+    pub fn cover(water: f32) -> f32 {
+        ((water - 0.5) * 4.0 + 0.5).clamp(0.0, 1.0)
+    }
+
+    /// The color of water over a bed at `height_m`, in linear light.
+    pub fn linear_at(height_m: f32) -> Vec3 {
+        Self::SURFACE.linear().lerp(Self::DEEP.linear(), (height_m / Self::DEEP_M).clamp(0.0, 1.0).sqrt())
     }
 }
 
@@ -180,8 +216,8 @@ impl GroundMap {
 impl GroundPost {
     /// Combines each value with the same value of `other`.
     pub fn zip_with(&self, other: &Self, combine: impl Fn(f32, f32) -> f32) -> Self {
-        let [own, other]: [[f32; 5]; 2] = [bytemuck::cast(*self), bytemuck::cast(*other)];
-        bytemuck::cast::<[f32; 5], _>(std::array::from_fn(|index| combine(own[index], other[index])))
+        let [own, other]: [[f32; 6]; 2] = [bytemuck::cast(*self), bytemuck::cast(*other)];
+        bytemuck::cast::<[f32; 6], _>(std::array::from_fn(|index| combine(own[index], other[index])))
     }
 
     fn lerp(&self, other: &Self, share: f32) -> Self {
@@ -208,6 +244,7 @@ mod tests {
             posts: vec![GroundPost::default(); 6],
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
+            form_level: 0,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();
         assert_eq!(map.check(), Ok(()));

@@ -1,11 +1,13 @@
-//! Light, haze and sky: one formula for both renderers.
+//! Light, relief shading, haze and sky: one formula for both renderers.
 //!
-//! A surface point with albedo `a`, unit normal `n`, sun visibility `s` and sky visibility `v` (both 1 where nothing is
-//! in the way) shows `lit = a · (s · sun · max(n·to_sun, 0) + v · mix(bounce, sky, (n.z + 1) / 2))` and, `d` meters
-//! from the eye, `mix(lit, haze.color, 1 − exp(−d / haze.distance_m))`. Where nothing is drawn, a ray with unit
-//! direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
+//! A point of a solid with albedo `a` and unit normal `n` shows
+//! `lit = a · (sun · max(n·to_sun, 0) + mix(bounce, sky, (n.z + 1) / 2))`; the ground and what is draped on it is shaded
+//! as a relief map, see [`ReliefShading`]. `d` meters from the eye both show `mix(lit, haze.color, 1 − exp(−max(d − haze.near_m, 0) / haze.distance_m))`. Where nothing is drawn,
+//! a ray with unit direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
 
-use glam::Vec3;
+use std::f32::consts::FRAC_1_SQRT_2;
+
+use glam::{Vec2, Vec3};
 
 /// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +31,8 @@ pub struct Lighting {
 pub struct Haze {
     /// The color of the horizon, linear.
     pub color: Vec3,
+    /// The distance in meters from the eye at which haze begins, at least 0.
+    pub near_m: f32,
     /// The distance in meters at which 63 % of the color is haze; infinite for clear air.
     pub distance_m: f32,
 }
@@ -37,27 +41,27 @@ impl Default for Lighting {
     /// The cartographic convention: light from the north-west, 45° high, on a clear day.
     fn default() -> Self {
         Self {
-            to_sun: Vec3::new(-0.5, 0.5, std::f32::consts::FRAC_1_SQRT_2),
+            to_sun: Vec3::new(-0.5, 0.5, FRAC_1_SQRT_2),
             sun: Vec3::new(0.95, 0.91, 0.82),
             sky: Vec3::new(0.34, 0.38, 0.45),
             bounce: Vec3::new(0.16, 0.14, 0.12),
-            haze: Haze { color: Vec3::new(0.66, 0.76, 0.86), distance_m: f32::INFINITY },
+            haze: Haze { color: Vec3::new(0.66, 0.76, 0.86), near_m: 0.0, distance_m: f32::INFINITY },
             zenith: Vec3::new(0.16, 0.34, 0.66),
         }
     }
 }
 
 impl Lighting {
-    /// The light that a surface point returns, before haze; see the module's formula.
-    pub fn shade(&self, albedo: Vec3, normal: Vec3, sun_visibility: f32, sky_visibility: f32) -> Vec3 {
-        let direct = self.sun * (normal.dot(self.to_sun).max(0.0) * sun_visibility);
-        let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5) * sky_visibility;
+    /// The light that a point of a solid returns, before haze; see the module's formula.
+    pub fn shade(&self, albedo: Vec3, normal: Vec3) -> Vec3 {
+        let direct = self.sun * normal.dot(self.to_sun).max(0.0);
+        let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5);
         albedo * (direct + ambient)
     }
 
     /// `color` as seen through `distance_m` meters of air.
     pub fn add_haze(&self, color: Vec3, distance_m: f32) -> Vec3 {
-        let clear = libm::expf(-distance_m / self.haze.distance_m);
+        let clear = libm::expf(-(distance_m - self.haze.near_m).max(0.0) / self.haze.distance_m);
         self.haze.color.lerp(color, clear)
     }
 
@@ -65,5 +69,167 @@ impl Lighting {
     pub fn sky_color(&self, ray: Vec3) -> Vec3 {
         let rise = ray.normalize_or_zero().z.max(0.0).sqrt();
         self.haze.color.lerp(self.zenith, rise)
+    }
+}
+
+/// The shading of the ground: the analytical form of Swiss relief shading.
+///
+/// Of the light, 55 % comes from the sun and is subject to cast shadows, 20 % from four side lights 30° high (which
+/// model slopes that lie along the sun's rays; after the multidirectional hillshade of Mark 1992), and 25 % is that of
+/// the sun on generalized ground, which holds the large forms together (Leonowicz, Jenny and Hurni 2010). With `shade`
+/// their sum, `flat` that of level ground, and `c` the contrast, which grows with elevation as in aerial perspective
+/// (Jenny and Patterson 2020), `r = c · (shade − flat)` and
+///
+/// ```text
+/// lit = albedo · clamp(1 + GAIN · r, DARKEST, BRIGHTEST) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1))
+///              · mix(CLOSED, 1, sky visibility)
+/// ```
+///
+/// Level ground in the open keeps its albedo, so that the tints of a legend are those of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliefShading {
+    /// Unit vector from the ground toward the sun.
+    pub to_sun: Vec3,
+    /// Unit vectors toward the side lights: 90° and 45° counterclockwise of the sun, with it, and 45° clockwise of it.
+    pub sides: [Vec3; 4],
+}
+
+/// A place on the ground as relief shading sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliefPoint {
+    /// The upward unit normal.
+    pub normal: Vec3,
+    /// The upward unit normal of the generalized ground.
+    pub form: Vec3,
+    /// Share of the sun that reaches the place, 0..=1.
+    pub sun_visibility: f32,
+    /// Share of the sky that is seen, 0..=1.
+    pub sky_visibility: f32,
+    /// The elevation as a share of the ground's range of heights; clamped to 0..=1.
+    pub elevation: f32,
+}
+
+impl ReliefShading {
+    /// The share of the light from the sun, from the side lights, and from the sun on generalized ground.
+    pub const SHARES: [f32; 3] = [0.55, 0.20, 0.25];
+    /// The shares of the side lights.
+    pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
+    /// The change of brightness with shade: larger is harsher.
+    pub const GAIN: f32 = 2.0;
+    /// The least brightness: deep shade stays readable.
+    pub const DARKEST: f32 = 0.22;
+    /// The greatest brightness: above it pale tints lose their color.
+    pub const BRIGHTEST: f32 = 1.5;
+    /// The color of the light on slopes toward the sun.
+    pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
+    /// The color of the light in shade.
+    pub const COOL: Vec3 = Vec3::new(0.80, 0.90, 1.12);
+    /// Brightness where no sky is seen.
+    pub const CLOSED: f32 = 0.5;
+    /// The contrast of the lowest ground; that of the highest quarter is 1.
+    pub const LOW_CONTRAST: f32 = 0.6;
+
+    /// The shading for a sun in direction `to_sun` (unit vector).
+    pub fn new(to_sun: Vec3) -> Self {
+        let level = to_sun.truncate().try_normalize().unwrap_or(Vec2::new(-1.0, 1.0) * FRAC_1_SQRT_2);
+        let half = Vec2::splat(FRAC_1_SQRT_2);
+        let side = |turn: Vec2| (turn.rotate(level) * SIDE_LEVEL).extend(SIDE_RISE);
+        Self { to_sun, sides: [side(Vec2::Y), side(half), side(Vec2::X), side(half * Vec2::new(1.0, -1.0))] }
+    }
+
+    /// The light that level ground in the open receives, on the scale of the shade.
+    pub fn flat(&self) -> f32 {
+        let [main, sides, form] = Self::SHARES;
+        (main + form) * self.to_sun.z.max(0.0) + sides * SIDE_RISE
+    }
+
+    /// The light that a place returns, linear, before haze.
+    pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
+        let facing = |normal: Vec3, light: Vec3| normal.dot(light).max(0.0);
+        let [main, sides, form] = Self::SHARES;
+        let side_light: f32 = self
+            .sides
+            .iter()
+            .zip(Self::SIDE_SHARES)
+            .map(|(&side, share)| facing(point.normal, side) * share)
+            .sum();
+        let shade = main * facing(point.normal, self.to_sun) * point.sun_visibility
+            + sides * side_light
+            + form * facing(point.form, self.to_sun);
+        let contrast =
+            Self::LOW_CONTRAST + (1.0 - Self::LOW_CONTRAST) * (point.elevation / 0.75).clamp(0.0, 1.0);
+        let relief = contrast * (shade - self.flat());
+        let brightness = (1.0 + Self::GAIN * relief).clamp(Self::DARKEST, Self::BRIGHTEST);
+        let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * relief).clamp(0.0, 1.0));
+        let level = Self::COOL.lerp(Self::WARM, 0.5);
+        let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
+        albedo * tint / level * (brightness * sky)
+    }
+}
+
+/// Cosine and sine of the side lights' altitude, 30°.
+const SIDE_LEVEL: f32 = 0.866_025_4;
+const SIDE_RISE: f32 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LEVEL: ReliefPoint = ReliefPoint {
+        normal: Vec3::Z,
+        form: Vec3::Z,
+        sun_visibility: 1.0,
+        sky_visibility: 1.0,
+        elevation: 1.0,
+    };
+
+    fn shading() -> ReliefShading {
+        ReliefShading::new(Lighting::default().to_sun)
+    }
+
+    #[test]
+    fn level_ground_in_the_open_keeps_its_albedo() {
+        let albedo = Vec3::new(0.2, 0.4, 0.6);
+        for elevation in [-3.0, 0.0, 0.5, 2.0] {
+            let shown = shading().shade(albedo, &ReliefPoint { elevation, ..LEVEL });
+            assert!(shown.abs_diff_eq(albedo, 1e-6), "{elevation}: {shown}");
+        }
+    }
+
+    #[test]
+    fn slopes_toward_the_sun_are_bright_and_warm_and_slopes_away_dark_and_cool() {
+        let slope = |toward: f32| {
+            let normal = Vec3::new(-0.5 * toward, 0.5 * toward, 1.0).normalize();
+            shading().shade(Vec3::ONE, &ReliefPoint { normal, form: normal, ..LEVEL })
+        };
+        let (lit, dark) = (slope(1.0), slope(-1.0));
+        assert!(lit.y > 1.2 && lit.x > lit.z, "{lit}");
+        assert!(dark.y < 0.4 && dark.x < dark.z, "{dark}");
+    }
+
+    #[test]
+    fn shade_is_deeper_on_high_ground_and_where_little_sky_is_seen() {
+        let green = |point: ReliefPoint| shading().shade(Vec3::ONE, &point).y;
+        let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
+        assert!(green(shadow) < green(ReliefPoint { elevation: 0.0, ..shadow }));
+        assert!(green(ReliefPoint { sky_visibility: 0.5, ..LEVEL }) < 0.8);
+    }
+
+    #[test]
+    fn side_lights_are_unit_vectors_around_the_sun() {
+        for to_sun in [Lighting::default().to_sun, Vec3::Z, Vec3::new(0.6, 0.0, 0.8)] {
+            let shading = ReliefShading::new(to_sun);
+            assert!(shading.sides.iter().all(|side| side.is_normalized()), "{to_sun}");
+            assert!(shading.sides[2].truncate().perp_dot(to_sun.truncate()).abs() < 1e-6, "{to_sun}");
+        }
+    }
+
+    #[test]
+    fn haze_begins_at_its_near_distance() {
+        let haze = Haze { near_m: 100.0, distance_m: 50.0, ..Lighting::default().haze };
+        let lighting = Lighting { haze, ..Lighting::default() };
+        assert_eq!(lighting.add_haze(Vec3::ONE, 99.0), Vec3::ONE);
+        let share = (Vec3::ONE - lighting.add_haze(Vec3::ONE, 150.0)) / (Vec3::ONE - haze.color);
+        assert!(share.abs_diff_eq(Vec3::splat(0.632), 1e-3), "{share}");
     }
 }

@@ -76,6 +76,7 @@ mod tests {
             posts: (0..15).map(post).collect(),
             ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
+            form_level: 0,
         }
     }
 

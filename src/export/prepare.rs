@@ -126,6 +126,7 @@ mod tests {
             posts: (0..9).map(post).collect(),
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
+            form_level: 0,
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };
         let ground =

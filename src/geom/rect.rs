@@ -25,6 +25,18 @@ impl Rect {
         Self { min: self.min.min(point), max: self.max.max(point) }
     }
 
+    /// What this rectangle and `other` have in common; possibly empty.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Its corners, the middles of its sides and its center: enough for its box in another coordinate system where it is
+    /// not much curved there.
+    pub fn grid_points(&self) -> impl Iterator<Item = DVec2> + use<> {
+        let (min, half) = (self.min, self.size() / 2.0);
+        (0..9u8).map(move |index| min + half * DVec2::new(f64::from(index % 3), f64::from(index / 3)))
+    }
+
     /// This rectangle extended by `margin` on all four sides.
     pub fn grown(self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin }

@@ -5,10 +5,11 @@ use crate::annotate::report::AnnotationReport;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
+use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{SceneModel, SceneView};
-use crate::view::camera::CameraError;
+use crate::view::camera::{Camera, CameraError};
 
 /// The size of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +25,16 @@ impl Choice for RenderBackend {
         word(Self::Cpu, "cpu", "The processor"),
         word(Self::Gpu, "gpu", "A graphics adapter; needs the Cargo feature `gpu`"),
     ];
+}
+
+/// A picture without annotations and its draw list.
+pub struct DrawnView {
+    /// How it was seen.
+    pub camera: Camera,
+    /// The picture, opaque, with depths and features.
+    pub picture: Rendering,
+    /// What was drawn.
+    pub drawn: ViewDraw,
 }
 
 /// An annotated picture and its draw list.
@@ -59,12 +70,32 @@ pub fn render_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<RenderedView, PictureError> {
+    Ok(annotate_view(scene, draw_view(scene, view, size, backend, progress)?, progress))
+}
+
+/// The first half of [`render_view`]: the picture without annotations.
+///
+/// # Errors
+/// See [`PictureError`].
+pub fn draw_view(
+    scene: &SceneModel,
+    view: &SceneView,
+    size: PictureSize,
+    backend: RenderBackend,
+    progress: &dyn Fn(&'static str),
+) -> Result<DrawnView, PictureError> {
     let camera = camera(scene, view, (size.width, size.height))?;
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
-    let mut picture = render(&drawn.list, &camera, backend)?;
+    let picture = render(&drawn.list, &camera, backend)?;
+    Ok(DrawnView { camera, picture, drawn })
+}
+
+/// The second half of [`render_view`]: paints the annotations.
+pub fn annotate_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> RenderedView {
     progress("annotating");
+    let DrawnView { camera, mut picture, drawn } = view;
     let annotations = labels::annotations(scene, &camera, &picture);
     let annotations = annotate(&mut picture.pixels, &annotations);
-    Ok(RenderedView { pixels: picture.pixels, drawn, annotations })
+    RenderedView { pixels: picture.pixels, drawn, annotations }
 }

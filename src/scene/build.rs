@@ -88,7 +88,7 @@ pub fn build(
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
     let labels = views::labels(&frame, &lattice)?;
-    let cameras = views::cameras(&frame, &lattice, bounds)?;
+    let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
@@ -98,8 +98,11 @@ pub fn build(
         heights,
         ramp: style::ramp(document, height_range_m)?,
         contours: style::contours(document),
-        lighting: style::lighting(document, (bounds.1 - bounds.0).max_element()),
+        lighting: style::lighting(document),
+        haze_m: document.style.haze.map(|distance_m| distance_m as f32),
         map: OnceLock::new(),
+        infers_water: document.terrain.infer_water,
+        water: OnceLock::new(),
         lattice,
         height_range_m,
         scale,

@@ -1,7 +1,11 @@
 //! The first pass: the elevation file, or the tiles of one, to the ground lattice.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use glam::DVec2;
+
+use crate::dem::crop::crop;
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::{RawLayout, RawLayoutError};
 use crate::dem::mosaic::Tiles;
@@ -13,6 +17,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 use crate::scene::assets::Assets;
 use crate::terrain::lattice::Lattice;
 
@@ -40,11 +45,39 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     if document.terrain.fill_voids {
         notes.push(voids::fill(&mut source).note());
     }
-    let metric =
-        warp::to_metric(&source, document.crs.as_ref()).map_err(|error| document.error(dem, error))?;
+    let metric = metric(document, &source)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
+}
+
+/// The part of the elevation that the scene is made of, in a metric system.
+fn metric<'a>(document: &Document, source: &'a Raster) -> Result<Cow<'a, Raster>, Diagnostic> {
+    /// Samples beside the extent that warping reads.
+    const BESIDE: u32 = 4;
+    let dem = &document.terrain.dem;
+    let failed = |error| document.error(dem, error);
+    let Some(extent) = &document.terrain.extent else {
+        return warp::to_metric(source, document.crs.as_ref()).map_err(failed);
+    };
+    let crs = warp::metric_crs(source, document.crs.as_ref()).map_err(failed)?;
+    let scene = crs.clone().unwrap_or_else(Crs::local);
+    let given = document.points_crs.as_ref().unwrap_or(&scene);
+    let own = source.crs.as_ref().unwrap_or(&scene);
+    let misplaced = |error| document.error(extent, error);
+    let corners: Result<Vec<DVec2>, _> =
+        extent.iter().map(|&at| given.transform(&scene, DVec2::from(at))).collect();
+    let rect = Rect::around(corners.map_err(misplaced)?);
+    let in_source: Result<Vec<DVec2>, _> = rect.grid_points().map(|at| scene.transform(own, at)).collect();
+    let part = crop(source, &Rect::around(in_source.map_err(misplaced)?), BESIDE);
+    let warped = |part: Raster| Ok(warp::to_metric(&part, crs.as_ref()).map_err(failed)?.into_owned());
+    let part = part.map(warped).transpose()?;
+    part.and_then(|part| crop(&part, &rect, 0)).map(Cow::Owned).ok_or_else(|| {
+        let message = "the extent holds less than two samples a side of the elevation model";
+        document
+            .error(extent, message)
+            .with_help("name points on the model, or remove `extent` to take all of it")
+    })
 }
 
 /// The document's elevation files as one raster.

@@ -42,6 +42,7 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
 use crate::ribbon::plan::PlanMesh;
@@ -54,6 +55,7 @@ use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
+use crate::terrain::water_cover::{WaterCover, water_cover};
 
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
@@ -81,9 +83,14 @@ pub struct SceneModel {
     pub ramp: ColorRamp,
     /// Lines of equal height on the ground.
     pub contours: Option<Contours>,
-    /// Light, haze and sky.
+    /// Light and sky.
     pub lighting: Lighting,
+    /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
+    /// `None` fits haze to each view.
+    pub haze_m: Option<f32>,
     map: OnceLock<Arc<GroundMap>>,
+    infers_water: bool,
+    water: OnceLock<WaterCover>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
     /// Solids with fixed heights: buildings, bridges.
@@ -277,12 +284,35 @@ pub struct SceneLabel {
 pub struct SceneView {
     /// Its name on the command line.
     pub name: String,
-    /// The eye, world space.
-    pub eye: Vec3,
-    /// The point in the picture's middle, world space.
-    pub target: Vec3,
+    /// From where it looks, and whereto.
+    pub aim: ViewAim,
     /// Vertical field of view in radians.
     pub fov_y_rad: f32,
+}
+
+/// From where a view looks, and whereto.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewAim {
+    /// From a place to a place, world space.
+    At {
+        /// The eye.
+        eye: Vec3,
+        /// The point in the picture's middle.
+        target: Vec3,
+    },
+    /// From as near as what it shows fits into the picture.
+    Fitted(FittedView),
+}
+
+/// A view whose eye depends on the picture's shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FittedView {
+    /// Where it looks, clockwise from north, radians.
+    pub azimuth_rad: f32,
+    /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
+    pub pitch_rad: Option<f32>,
+    /// The ground that it shows, world X and Y; `None` for all of it.
+    pub shown: Option<Rect>,
 }
 
 impl SceneModel {
@@ -294,6 +324,31 @@ impl SceneModel {
     /// What the ground looks like, its light computed on first use.
     pub fn map(&self) -> &Arc<GroundMap> {
         self.map.get_or_init(|| Arc::new(style::ground_map(self)))
+    }
+
+    /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
+    pub fn water(&self) -> &WaterCover {
+        self.water.get_or_init(|| {
+            if self.infers_water { water_cover(&self.lattice) } else { WaterCover::default() }
+        })
+    }
+
+    /// What a picture shows that no file states, for the user.
+    pub fn inferred_notes(&self) -> Vec<String> {
+        let WaterCover { sea_posts, lakes, .. } = self.water();
+        let area = |posts: usize| format!("{:.2} km²", posts as f64 * self.lattice.cell_m2() / 1e6);
+        let sea = (*sea_posts > 0).then(|| {
+            format!(
+                "{} are drawn as sea: ground at or below 0 m that is connected to the border",
+                area(*sea_posts)
+            )
+        });
+        let lakes = (!lakes.is_empty()).then(|| {
+            let area = area(lakes.iter().sum());
+            format!("{} level basins are drawn as lakes, {area} in all", lakes.len())
+        });
+        let off = |note| format!("{note} (inferred; `infer_water = false` in [terrain] switches it off)");
+        sea.into_iter().chain(lakes).map(off).collect()
     }
 
     /// Whether [`SceneModel::map`] has been made.

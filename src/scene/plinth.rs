@@ -18,6 +18,11 @@ const DEPTH: f64 = 0.02;
 const TOP: Srgba = Srgba::opaque(196, 168, 136);
 const FOOT: Srgba = Srgba::opaque(132, 110, 90);
 
+/// World Z of the foot of the walls under a ground that is drawn over `bounds`.
+pub fn base_z((min, max): (Vec3, Vec3)) -> f32 {
+    min.z - (f64::from((max - min).truncate().max_element()) * DEPTH) as f32
+}
+
 /// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`.
 ///
 /// A border edge gets a wall where there is no ground beyond it: at the lattice's border and around holes, not

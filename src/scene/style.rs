@@ -10,20 +10,21 @@ use crate::description::document::Document;
 use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use crate::draw::lighting::{Haze, Lighting};
+use crate::draw::lighting::Lighting;
 use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light;
 
-/// The tints of an atlas, from the lowest ground to the highest: meadow, field, heath, rock, snow.
+/// The tints of an atlas, from the lowest ground to the highest. Their lightness rises steadily (L* 61 to 94), so that
+/// tint never works against shade.
 const ATLAS: [(f32, [u8; 3]); 7] = [
-    (0.0, [120, 158, 106]),
-    (0.18, [156, 182, 124]),
-    (0.38, [206, 206, 150]),
-    (0.56, [216, 190, 138]),
-    (0.74, [190, 156, 118]),
-    (0.90, [172, 150, 134]),
-    (1.0, [226, 220, 212]),
+    (0.0, [122, 156, 116]),
+    (0.18, [154, 180, 128]),
+    (0.38, [192, 200, 146]),
+    (0.56, [216, 208, 162]),
+    (0.74, [226, 212, 180]),
+    (0.90, [234, 225, 206]),
+    (1.0, [243, 239, 231]),
 ];
 
 /// The tints of a desert: sand, ochre, red rock, pale heights.
@@ -78,31 +79,27 @@ pub fn contours(document: &Document) -> Option<Contours> {
     })
 }
 
-/// The document's light and haze; `extent_m` is the longest side of the displayed ground's box.
-pub fn lighting(document: &Document, extent_m: f32) -> Lighting {
+/// The document's light.
+pub fn lighting(document: &Document) -> Lighting {
     let light = &document.style.light;
     let (azimuth, altitude) = ((light.azimuth as f32).to_radians(), (light.altitude as f32).to_radians());
     let level = libm::sinf(FRAC_PI_2 - altitude);
     let to_sun = Vec3::new(libm::sinf(azimuth) * level, libm::cosf(azimuth) * level, libm::sinf(altitude));
-    let distance_m = match document.style.haze {
-        Some(0.0) => f32::INFINITY,
-        Some(distance) => distance as f32,
-        None => extent_m * 8.0,
-    };
-    let default = Lighting::default();
-    Lighting { to_sun: to_sun.normalize_or(Vec3::Z), haze: Haze { distance_m, ..default.haze }, ..default }
+    Lighting { to_sun: to_sun.normalize_or(Vec3::Z), ..Lighting::default() }
 }
 
 /// The height, slope and light of every post.
 pub fn ground_map(scene: &SceneModel) -> GroundMap {
     let lattice = &scene.lattice;
     let light = light::light(scene.ground().lattice(), scene.lighting.to_sun);
+    let is_water = &scene.water().is_water;
     let filled = filled_heights(lattice, scene.height_range_m.0);
     let posts = lattice
         .posts()
         .zip(filled)
         .zip(light.sun.into_iter().zip(light.sky))
-        .map(|((post, height_m), (sun_visibility, sky_visibility))| {
+        .enumerate()
+        .map(|(index, ((post, height_m), (sun_visibility, sky_visibility)))| {
             let slopes = lattice.slopes(post);
             GroundPost {
                 height_m,
@@ -110,6 +107,7 @@ pub fn ground_map(scene: &SceneModel) -> GroundMap {
                 slope_north: scene.scale.world_z(slopes.y),
                 sun_visibility,
                 sky_visibility,
+                water: if is_water.get(index).is_some_and(|&is_water| is_water) { 1.0 } else { 0.0 },
             }
         })
         .collect();
@@ -121,7 +119,17 @@ pub fn ground_map(scene: &SceneModel) -> GroundMap {
         posts,
         ramp: scene.ramp.clone(),
         contours: scene.contours,
+        form_level: form_level(lattice),
     }
+}
+
+/// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.
+const FORM_SHARE: f64 = 1.0 / 100.0;
+
+/// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
+fn form_level(lattice: &Lattice) -> u32 {
+    let form_m = lattice.extent().size().max_element() * FORM_SHARE;
+    libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
 }
 
 /// The heights, where posts without data take the nearest height of their row, or the lowest: they only color pixels

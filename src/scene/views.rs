@@ -1,12 +1,14 @@
 //! Labels and cameras in world space.
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, LabelTable};
+use crate::description::stated::Stated;
+use crate::geom::rect::Rect;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneLabel, SceneView};
+use crate::scene::{FittedView, SceneLabel, SceneView, ViewAim};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -35,45 +37,79 @@ pub fn whole_meters(height_m: f32) -> String {
     format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-/// The document's cameras; without any, one that sees all of the drawn ground's `bounds`.
+/// The document's cameras; without any, one that is fitted to the whole ground.
 ///
 /// # Errors
 /// The eye of a camera without `eye_elevation` lies off the ground, its target does, or the two coincide.
-pub fn cameras(
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
-    bounds: (Vec3, Vec3),
-) -> Result<Vec<SceneView>, Diagnostic> {
+pub fn cameras(frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Vec<SceneView>, Diagnostic> {
     if frame.document.cameras.is_empty() {
-        return Ok(vec![overview(bounds)]);
+        return Ok(vec![overview()]);
     }
     frame.document.cameras.iter().map(|table| camera(table, frame, lattice)).collect()
 }
 
+/// The field of view of a camera with an eye, degrees.
+const EYE_FOV_DEG: f64 = 40.0;
+/// The field of view of a fitted camera, degrees: long lenses keep the far ground large.
+const FITTED_FOV_DEG: f64 = 28.0;
+
 fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
-    let eye_world = frame.point(&table.eye, table.crs.as_ref())?;
+    let (aim, fov_deg) = match (&table.eye, &table.look_at) {
+        (Some(eye), Some(look_at)) => (aimed(table, eye, look_at, frame, lattice)?, EYE_FOV_DEG),
+        _ => (ViewAim::Fitted(fitted(table, frame, lattice)?), FITTED_FOV_DEG),
+    };
+    let fov_y_rad = (table.field_of_view.unwrap_or(fov_deg) as f32).to_radians();
+    Ok(SceneView { name: table.name.to_string(), aim, fov_y_rad })
+}
+
+fn aimed(
+    table: &CameraTable,
+    eye: &Stated<[f64; 2]>,
+    look_at: &Stated<[f64; 2]>,
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+) -> Result<ViewAim, Diagnostic> {
+    let eye_world = frame.point(eye, table.crs.as_ref())?;
     let eye = match table.eye_elevation {
         Some(elevation) => eye_world.as_vec2().extend(frame.scale.world_z(elevation as f32)),
         None => {
-            let ground = frame.on_ground(lattice, &table.eye, eye_world).map_err(|error| {
+            let ground = frame.on_ground(lattice, eye, eye_world).map_err(|error| {
                 error.with_help("give the camera an eye_elevation where its eye is not above the model")
             })?;
             ground + Vec3::Z * table.eye_height as f32
         }
     };
-    let target_world = frame.point(&table.look_at, table.crs.as_ref())?;
-    let target = frame.on_ground(lattice, &table.look_at, target_world)?;
+    let target_world = frame.point(look_at, table.crs.as_ref())?;
+    let target = frame.on_ground(lattice, look_at, target_world)?;
     let target = target + Vec3::Z * table.look_at_height as f32;
     if (target - eye).try_normalize().is_none() {
         let message = "the camera looks at the place where its eye is";
         let help = "move look_at, or give it another look_at_height";
-        return Err(frame.document.error(&table.look_at, message).with_help(help));
+        return Err(frame.document.error(look_at, message).with_help(help));
     }
-    Ok(SceneView {
-        name: table.name.to_string(),
-        eye,
-        target,
-        fov_y_rad: (table.field_of_view as f32).to_radians(),
+    Ok(ViewAim::At { eye, target })
+}
+
+fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<FittedView, Diagnostic> {
+    let radians = |degrees: f64| degrees.to_radians() as f32;
+    let shown = table.shows.as_ref().map(|shows| {
+        let crs = table.crs.as_ref().unwrap_or(&frame.points_crs);
+        let corners: Result<Vec<DVec2>, _> =
+            shows.iter().map(|&corner| frame.world(crs, DVec2::from(corner))).collect();
+        let corners = corners.map_err(|error| frame.document.error(shows, error))?;
+        let ground = Rect { min: DVec2::ZERO, max: lattice.extent().size() };
+        let shown = Rect::around(corners).intersection(&ground);
+        if shown.is_empty() {
+            let help = "name points on it, or remove `shows` to see all of it";
+            let message = "the camera shows nothing of the elevation model";
+            return Err(frame.document.error(shows, message).with_help(help));
+        }
+        Ok(shown)
+    });
+    Ok(FittedView {
+        azimuth_rad: radians(table.azimuth.unwrap_or(0.0)),
+        pitch_rad: table.pitch.map(radians),
+        shown: shown.transpose()?,
     })
 }
 
@@ -81,9 +117,10 @@ fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Res
 pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
     let lattice = ground.lattice;
     let depth_m = |view: &SceneView| {
-        let at = lattice.origin() + view.eye.truncate().as_dvec2();
+        let ViewAim::At { eye, .. } = view.aim else { return None };
+        let at = lattice.origin() + eye.truncate().as_dvec2();
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
-        Some(height - f64::from(ground.scale.elevation_m(view.eye.z))).filter(|&depth| depth > 0.0)
+        Some(height - f64::from(ground.scale.elevation_m(eye.z))).filter(|&depth| depth > 0.0)
     };
     cameras
         .iter()
@@ -92,34 +129,11 @@ pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
         .collect()
 }
 
-/// The overview's field of view.
-const OVERVIEW_FOV_DEG: f32 = 40.0;
-/// The narrowest picture, width to height, that shows the overview's whole ground.
-const OVERVIEW_ASPECT: f32 = 4.0 / 3.0;
-/// A factor of the eye's distance, which leaves space for the plinth and the furniture.
-const OVERVIEW_MARGIN: f32 = 1.1;
-
-/// A view from the south, 36° down, as near as the whole ground fits in.
-fn overview((min, max): (Vec3, Vec3)) -> SceneView {
-    let target = (min + max) / 2.0;
-    let back = Vec3::new(0.0, -0.8, 0.6);
-    let up = Vec3::new(0.0, 0.6, 0.8);
-    let fov_y_rad = OVERVIEW_FOV_DEG.to_radians();
-    let tan = libm::tanf(fov_y_rad / 2.0);
-    // Each corner of the box has a least distance at which it lies within the picture.
-    let distance = (0..8)
-        .map(|corner| {
-            let side = |bit: i32| if corner & bit == 0 { -0.5 } else { 0.5 };
-            let offset = (max - min) * Vec3::new(side(1), side(2), side(4));
-            offset.dot(back) + (offset.dot(up).abs() / tan).max(offset.x.abs() / (tan * OVERVIEW_ASPECT))
-        })
-        .fold(0.0, f32::max);
-    SceneView {
-        name: "overview".into(),
-        eye: target + back * (distance * OVERVIEW_MARGIN),
-        target,
-        fov_y_rad,
-    }
+/// A view from the south that is fitted to the whole ground.
+fn overview() -> SceneView {
+    let view = FittedView { azimuth_rad: 0.0, pitch_rad: None, shown: None };
+    let fov_y_rad = (FITTED_FOV_DEG as f32).to_radians();
+    SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad }
 }
 
 #[cfg(test)]

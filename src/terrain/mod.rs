@@ -14,3 +14,4 @@ pub mod sight;
 pub mod support_surface;
 pub mod triangle_surface;
 pub mod volumes;
+pub mod water_cover;

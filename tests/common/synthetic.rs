@@ -137,7 +137,7 @@ pub fn material_of(list: &mut DrawList, feature: FeatureId) -> &mut Material {
 }
 
 fn lighting() -> Lighting {
-    let haze = Haze { color: Vec3::new(0.66, 0.76, 0.86), distance_m: 4000.0 };
+    let haze = Haze { color: Vec3::new(0.66, 0.76, 0.86), near_m: 0.0, distance_m: 4000.0 };
     Lighting { haze, ..Default::default() }
 }
 
@@ -151,6 +151,7 @@ fn ground_map() -> GroundMap {
             slope_north: slope.y,
             sun_visibility: if at(index).x > 500.0 { 0.25 } else { 1.0 },
             sky_visibility: 0.9,
+            water: 0.0,
         }
     };
     let stops = [
@@ -166,6 +167,7 @@ fn ground_map() -> GroundMap {
         posts: (0..POSTS * POSTS).map(post).collect(),
         ramp: ColorRamp::new(stops.into()).expect("rising stops"),
         contours: None,
+        form_level: 0,
     }
 }
 

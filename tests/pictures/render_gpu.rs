@@ -12,6 +12,7 @@ use crate::common::synthetic::{
 };
 use glam::{Vec2, Vec3};
 use sandtable::draw::color::Srgba;
+use sandtable::draw::lighting::{ReliefPoint, ReliefShading};
 use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
 use sandtable::draw::pixels::Pixels;
 use sandtable::render::gpu::adapter::Gpu;
@@ -69,7 +70,15 @@ fn ground_light(list: &DrawList, world: Vec3, albedo: Option<Vec3>) -> Vec3 {
     let map = list.ground.as_ref().expect("the scene has a ground map");
     let post = map.sample(world.truncate());
     let albedo = albedo.unwrap_or_else(|| map.ramp.linear_at(post.height_m));
-    list.lighting.shade(albedo, post.normal(), post.sun_visibility, post.sky_visibility)
+    let relief = ReliefShading::new(list.lighting.to_sun);
+    let point = ReliefPoint {
+        normal: post.normal(),
+        form: post.normal(),
+        sun_visibility: post.sun_visibility,
+        sky_visibility: post.sky_visibility,
+        elevation: map.ramp.elevation(post.height_m),
+    };
+    relief.shade(albedo, &point)
 }
 
 #[test]
@@ -155,7 +164,7 @@ fn a_textured_box_stands_before_the_ground() {
         assert_eq!(seen.feature, HOUSE);
         assert!((seen.world.z - top.z).abs() < 0.05, "{} m, not {} m", seen.world.z, top.z);
         let light = |texel: Srgba| {
-            let lit = list.lighting.shade(texel.linear(), Vec3::Z, 1.0, 1.0);
+            let lit = list.lighting.shade(texel.linear(), Vec3::Z);
             Srgba::from_linear(list.lighting.add_haze(lit, seen.world.distance(camera.eye())))
         };
         let (dark, bright) = (light(Srgba::opaque(190, 120, 90)), light(Srgba::opaque(210, 200, 180)));
@@ -178,7 +187,7 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
         assert_eq!(post.feature, MASKED);
         assert_ne!(hole.feature, MASKED);
         assert!(hole.depth_m > post.depth_m);
-        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
+        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::NEG_Y);
         let expected = list.lighting.add_haze(lit, post.world.distance(camera.eye()));
         assert_color(&post, expected, "fence", gpu);
 
@@ -188,7 +197,7 @@ fn a_mask_leaves_holes_and_a_pane_lets_light_through() {
         let below = list
             .lighting
             .add_haze(ground_light(&list, behind.world, None), behind.world.distance(camera.eye()));
-        let lit = list.lighting.shade(PANE_COLOR.linear(), Vec3::NEG_Y, 1.0, 1.0);
+        let lit = list.lighting.shade(PANE_COLOR.linear(), Vec3::NEG_Y);
         let own = list.lighting.add_haze(lit, pane.distance(camera.eye()));
         assert_color(&behind, below.lerp(own, PANE_COLOR.alpha()), "pane", gpu);
     }
@@ -203,7 +212,7 @@ fn a_one_sided_board_has_no_back_and_a_two_sided_one_turns_its_normal() {
         material_of(&mut list, MASKED).two_sided = true;
         let post = seen(&drawn(gpu, &list, &camera), &camera, on_board(FENCE, -0.375));
         assert_eq!(post.feature, MASKED);
-        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::Y, 1.0, 1.0);
+        let lit = list.lighting.shade(FENCE_COLOR.linear(), Vec3::Y);
         let expected = list.lighting.add_haze(lit, post.world.distance(camera.eye()));
         assert_color(&post, expected, "the fence's back", gpu);
         material_of(&mut list, MASKED).two_sided = false;

@@ -96,16 +96,7 @@ pub enum WarpError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a, Raster>, WarpError> {
-    check_source(raster)?;
-    if let Some(target) = target.filter(|target| !target.is_metric()) {
-        return Err(WarpError::TargetNotMetric(target.name().into()));
-    }
-    let system = match (&raster.crs, target) {
-        (_, Some(target)) => Some(target.clone()),
-        (Some(own), None) if own.is_metric() => Some(own.clone()),
-        (Some(own), None) => Some(utm_zone(raster, own)?),
-        (None, None) => None,
-    };
+    let system = metric_crs(raster, target)?;
     let own = raster.crs.as_ref().or(system.as_ref());
     let north_up = if own == system.as_ref() && raster.is_axis_aligned() {
         turned_north_up(raster)
@@ -118,6 +109,23 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
         Cow::Owned(raster) => Cow::Owned(raster.into_meters()),
     };
     Ok(with_crs(metric, system.as_ref()))
+}
+
+/// The system that [`to_metric`] brings a raster to; `None` where the raster names none and no `target` is given.
+///
+/// # Errors
+/// [`WarpError`]: see [`to_metric`].
+pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, WarpError> {
+    check_source(raster)?;
+    if let Some(target) = target.filter(|target| !target.is_metric()) {
+        return Err(WarpError::TargetNotMetric(target.name().into()));
+    }
+    Ok(match (&raster.crs, target) {
+        (_, Some(target)) => Some(target.clone()),
+        (Some(own), None) if own.is_metric() => Some(own.clone()),
+        (Some(own), None) => Some(utm_zone(raster, own)?),
+        (None, None) => None,
+    })
 }
 
 /// Checks that the raster lies in a system in meters already; its samples are ignored.

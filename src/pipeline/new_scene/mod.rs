@@ -9,6 +9,7 @@
 //! relative to the scene file, so that a folder can be moved together with its data. Nothing is copied: the scene reads
 //! data under the parent of DIR as it is; for other data the user must allow the folders of [`WrittenScene::allowed`].
 
+mod cameras;
 mod folder;
 mod survey;
 mod text;
@@ -17,19 +18,20 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::DVec2;
 
 use crate::annotate::nice::NiceNumber;
 use crate::description::parse::parse;
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 use crate::pipeline::files::{self, SystemError, WriteFileError};
+use crate::pipeline::new_scene::cameras::{cameras, map_extent};
 use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
-use crate::pipeline::new_scene::text::{CameraDraft, SceneDraft, VectorDraft};
+use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
 use crate::pipeline::scene_file::OpenSceneError;
-use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
 use crate::scene::build::build;
-use crate::terrain::query::{Interpolation, ground_height};
 
 /// The name of the scene file in its folder.
 const FILE_NAME: &str = "scene.toml";
@@ -102,7 +104,7 @@ pub fn write(
     let is_new = !options.folder.exists();
     let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
     fs::create_dir_all(&options.folder).map_err(system)?;
-    let draft = complete(&path, draft, &allowed).inspect_err(|_| {
+    let draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
         if is_new {
             // Does nothing where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
@@ -116,22 +118,31 @@ fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewScen
     Ok(VectorDraft { file: folder.relative(file)?, layers: survey::layers(file)? })
 }
 
-/// Completes the draft from the elevation: heights, extent, and a camera that sees all of it.
-fn complete(path: &Path, mut draft: SceneDraft, allowed: &[PathBuf]) -> Result<SceneDraft, OpenSceneError> {
+/// Completes the draft from the elevation: heights, extent and cameras.
+fn complete(
+    path: &Path,
+    mut draft: SceneDraft,
+    vectors: &[VectorDraft],
+    allowed: &[PathBuf],
+) -> Result<SceneDraft, OpenSceneError> {
     let assets = Assets::new(path, allowed)?;
     let built = |draft: &SceneDraft| {
         let document = parse(&path.to_string_lossy(), &text::terrain(draft))?;
         Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
     };
-    let plain = built(&draft)?;
-    let (lattice, (low, high)) = (&plain.lattice, plain.height_range_m);
+    let mut scene = built(&draft)?;
+    let vectors = extent(vectors, &scene.crs);
+    draft.extent = worth_cropping(vectors, map_extent(&scene.lattice));
+    if draft.extent.is_some() {
+        scene = built(&draft)?;
+    }
+    let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     draft.size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
-    draft.crs_name = plain.crs.name().to_owned();
+    draft.crs_name = scene.crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / draft.size_m);
     draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
-    let scene = if draft.exaggeration == 1.0 { plain } else { built(&draft)? };
-    draft.camera = camera(&scene);
+    draft.cameras = cameras(&scene, vectors);
     Ok(draft)
 }
 
@@ -144,20 +155,33 @@ fn exaggeration(relief: f64) -> f64 {
     }
 }
 
-/// The default camera of the scene as a table states it; `None` where there is no ground at the center to look at.
-fn camera(scene: &SceneModel) -> Option<CameraDraft> {
-    let view = scene.cameras.first()?;
-    let (lattice, scale) = (&scene.lattice, scene.scale);
-    let map_position = |world: Vec3| lattice.origin() + world.truncate().as_dvec2();
-    let look_at = map_position(view.target);
-    let ground_m = ground_height(lattice, Interpolation::Planar, look_at).height_m()?;
-    Some(CameraDraft {
-        name: view.name.clone(),
-        eye: map_position(view.eye),
-        eye_elevation_m: scale.elevation_m(f64::from(view.eye.z)),
-        look_at,
-        look_at_height_m: f64::from(view.target.z) - scale.world_z(ground_m),
-        field_of_view_deg: f64::from(view.fov_y_rad.to_degrees()),
+/// The box of all features, in the scene's system; empty where there are none. Features that cannot be transformed to it
+/// are left out.
+fn extent(vectors: &[VectorDraft], crs: &Crs) -> Rect {
+    let layers = vectors.iter().flat_map(|vector| &vector.layers);
+    Rect::around(
+        layers.flat_map(|layer| layer.corners.iter().filter_map(|at| layer.crs.transform(crs, *at).ok())),
+    )
+}
+
+/// The extent of a scene whose vectors cover little of the `ground`: theirs and a margin; `None` where they cover more, or
+/// where there are none.
+fn worth_cropping(vectors: Rect, ground: Rect) -> Option<Rect> {
+    /// The share of the ground below which it is cropped.
+    const LITTLE: f64 = 0.3;
+    /// The margin on each side, as a share of the longer side.
+    const MARGIN: f64 = 0.15;
+    /// The shorter side as a share of the longer: a narrow block leaves most of a picture empty.
+    const NARROWEST: f64 = 0.8;
+    /// A smaller share of the ground along a side is a point on it, not a place to crop to.
+    const LEAST: f64 = 0.01;
+    let covered = vectors.intersection(&ground);
+    let share = covered.size() / ground.size();
+    let is_little = !covered.is_empty() && share.element_product() < LITTLE && share.min_element() > LEAST;
+    is_little.then(|| {
+        let longer = covered.size().max_element();
+        let half = covered.size().max(DVec2::splat(longer * NARROWEST)) / 2.0 + longer * MARGIN;
+        Rect { min: covered.center() - half, max: covered.center() + half }.intersection(&ground)
     })
 }
 

@@ -7,7 +7,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use crate::description::expression::Expression;
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::attributes::Attributes;
@@ -24,6 +28,10 @@ pub(super) struct SurveyedLayer {
     pub matches: Vec<TableMatch>,
     /// Features that no table takes: `lines`, `polygons` or `points`, and how many.
     pub rest: Vec<(&'static str, usize)>,
+    /// Its coordinate system.
+    pub crs: Crs,
+    /// Corners and middles of the sides of the box of its features, in its system; none where it has no feature.
+    pub corners: Vec<DVec2>,
 }
 
 /// A table and how many features it takes.
@@ -268,7 +276,10 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
         let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken);
         (kind, left.filter(|(feature, _)| feature.geometry.kind() == kind).count())
     });
-    SurveyedLayer { name, matches, rest: rest.into_iter().filter(|rest| rest.1 > 0).collect() }
+    let bounds = Rect::around(layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied()));
+    let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
+    let rest = rest.into_iter().filter(|rest| rest.1 > 0).collect();
+    SurveyedLayer { name, matches, rest, crs: layer.crs.clone(), corners }
 }
 
 /// The table that the name of a layer suggests.

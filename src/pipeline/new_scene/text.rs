@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use glam::DVec2;
 use serde_json::Value;
 
 use crate::annotate::nice::NiceNumber;
+use crate::geom::rect::Rect;
+use crate::pipeline::new_scene::cameras::CameraDraft;
 use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
 
 /// The properties of the scene; zero and empty before they are determined.
@@ -25,17 +26,9 @@ pub(super) struct SceneDraft {
     /// 0 where none is stated.
     pub exaggeration: f64,
     pub contours_m: Option<f64>,
-    pub camera: Option<CameraDraft>,
-}
-
-/// A camera as its table states it.
-pub(super) struct CameraDraft {
-    pub name: String,
-    pub eye: DVec2,
-    pub eye_elevation_m: f64,
-    pub look_at: DVec2,
-    pub look_at_height_m: f64,
-    pub field_of_view_deg: f64,
+    pub cameras: Vec<CameraDraft>,
+    /// The part of the elevation that the scene is made of, in the scene's system; `None` for all of it.
+    pub extent: Option<Rect>,
 }
 
 /// A vector file and its layers.
@@ -83,7 +76,11 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
         }
     }
     sources.iter().for_each(|&source| rest(&mut out, source));
-    out.push_str(&camera(draft));
+    out.push_str(
+        "\n# A camera without `eye` and `look_at` is fitted to the ground that it shows. `eye`, `eye_height` and `look_at` put\n\
+         # it in a place of your own.\n",
+    );
+    draft.cameras.iter().for_each(|draft| camera(&mut out, draft));
     out
 }
 
@@ -108,6 +105,13 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     let _ = writeln!(out, "dem = {dem}");
     if let Some(crs) = &draft.crs {
         let _ = writeln!(out, "crs = {}", quoted(crs));
+    }
+    if let Some(extent) = &draft.extent {
+        let corners = corners(extent);
+        let _ = writeln!(
+            out,
+            "# The features and a margin; remove it to see the whole elevation model.\nextent = {corners}"
+        );
     }
     if draft.exaggeration > 0.0 {
         let _ = writeln!(out, "# 1 is true to scale; flat country shows its forms at 2 or 3.");
@@ -162,23 +166,21 @@ fn rest(out: &mut String, source: LayerSource<'_>) {
     }
 }
 
-fn camera(draft: &SceneDraft) -> String {
-    let Some(camera) = &draft.camera else {
-        return "\n# Without a [[camera]] one is made that sees the whole ground.\n".into();
-    };
-    let decimals = if draft.size_m < 200.0 { 2 } else { 0 };
-    let point = |at: DVec2| format!("[{:.decimals$}, {:.decimals$}]", at.x, at.y);
-    format!(
-        "\n# The whole ground from the south. `eye_height` in place of `eye_elevation` counts from the ground.\n\
-         [[camera]]\nname = {}\neye = {}\neye_elevation = {:.decimals$}\nlook_at = {}\nlook_at_height = {:.decimals$}\n\
-         field_of_view = {:.0}\n",
-        quoted(&camera.name),
-        point(camera.eye),
-        camera.eye_elevation_m,
-        point(camera.look_at),
-        camera.look_at_height_m,
-        camera.field_of_view_deg
-    )
+fn camera(out: &mut String, camera: &CameraDraft) {
+    let _ = writeln!(out, "\n# {}\n[[camera]]\nname = {}", camera.about, quoted(camera.name));
+    for (key, angle) in [("azimuth", camera.azimuth_deg), ("pitch", camera.pitch_deg)] {
+        if let Some(angle) = angle {
+            let _ = writeln!(out, "{key} = {angle}");
+        }
+    }
+    if let Some(shown) = &camera.shown {
+        let _ = writeln!(out, "shows = {}", corners(shown));
+    }
+}
+
+/// The corners of a rectangle in whole meters, as a list of points.
+fn corners(Rect { min, max }: &Rect) -> String {
+    format!("[[{:.0}, {:.0}], [{:.0}, {:.0}]]", min.x, min.y, max.x, max.y)
 }
 
 /// A text in double quotes; JSON's escapes are TOML's.

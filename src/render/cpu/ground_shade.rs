@@ -5,7 +5,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground::{GroundMap, GroundPost, WaterColor};
+use crate::draw::lighting::{ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
 use crate::render::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
@@ -15,6 +16,7 @@ pub struct GroundShader<'a> {
     map: &'a GroundMap,
     posts_per_meter: Vec2,
     coarser: Vec<GroundLevel>,
+    relief: ReliefShading,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,8 +28,24 @@ pub struct GroundPoint {
 }
 
 impl<'a> GroundShader<'a> {
-    pub fn new(map: &'a GroundMap) -> Self {
-        Self { map, posts_per_meter: map.cell.recip(), coarser: coarser_levels(map).collect() }
+    pub fn new(map: &'a GroundMap, to_sun: Vec3) -> Self {
+        let coarser = coarser_levels(map).collect();
+        Self { map, posts_per_meter: map.cell.recip(), coarser, relief: ReliefShading::new(to_sun) }
+    }
+
+    /// The light that the ground returns at a point, before haze; see [`ReliefShading`].
+    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
+        let mut form = GroundPoint::default();
+        let level = self.coarser.len().min(self.map.form_level as usize);
+        self.add_bilinear(&mut form, hit.world.truncate(), level, 1.0);
+        let point = ReliefPoint {
+            normal: point.post.normal(),
+            form: form.post.normal(),
+            sun_visibility: point.post.sun_visibility,
+            sky_visibility: point.post.sky_visibility,
+            elevation: self.map.ramp.elevation(point.post.height_m),
+        };
+        self.relief.shade(albedo, &point)
     }
 
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {
@@ -47,14 +65,16 @@ impl<'a> GroundShader<'a> {
         point
     }
 
-    /// The map's color at a point, in linear light: the ramp with contours on it.
+    /// The map's color at a point, in linear light: the ramp with contours on it, or water.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let height = point.post.height_m;
-        let color = self.map.ramp.linear_at(height);
+        let land = self.map.ramp.linear_at(height);
+        let water = WaterColor::cover(point.post.water);
+        let color = if water > 0.0 { land.lerp(WaterColor::linear_at(height), water) } else { land };
         let Some(contours) = &self.map.contours else { return color };
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let across = Vec2::new(change(hit.right), change(hit.down)).length();
-        let strength = contours.strength(height, across);
+        let strength = contours.strength(height, across) * (1.0 - water);
         color.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 
@@ -110,6 +130,7 @@ mod tests {
             posts: (0..columns * rows).map(post).collect(),
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
+            form_level: 0,
         }
     }
 
@@ -120,7 +141,7 @@ mod tests {
     #[test]
     fn close_up_the_reading_is_that_of_the_map() {
         let map = map(6, 5, |x, y| x * x - 3.0 * y + x * y);
-        let ground = GroundShader::new(&map);
+        let ground = GroundShader::new(&map, Vec3::Z);
         for at in [(-30.0, 70.0), (-27.3, 81.2), (-20.0, 90.0), (-99.0, 77.0), (99.0, 999.0)] {
             let at = Vec2::from(at);
             let point = ground.at(&hit(at.extend(0.0), 0.01), 8);
@@ -131,7 +152,7 @@ mod tests {
     #[test]
     fn every_level_keeps_an_even_slope_in_place() {
         let map = map(129, 129, |x, y| 3.0 * x - 2.0 * y);
-        let ground = GroundShader::new(&map);
+        let ground = GroundShader::new(&map, Vec3::Z);
         let middle = Vec2::new(-30.0 + 2.0 * 64.0, 70.0 + 5.0 * 64.0);
         for pixel_m in [0.1, 4.0, 9.0, 20.0] {
             let point = ground.at(&hit(middle.extend(0.0), pixel_m), 1);
@@ -145,7 +166,7 @@ mod tests {
     #[test]
     fn far_away_sharp_ground_reads_as_its_mean() {
         let map = map(64, 64, |x, y| if (x + y) % 2.0 == 0.0 { 0.0 } else { 10.0 });
-        let point = GroundShader::new(&map).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
+        let point = GroundShader::new(&map, Vec3::Z).at(&hit(Vec3::new(31.0, 230.0, 0.0), 100.0), 8);
         assert!((point.post.height_m - 5.0).abs() < 0.2, "{}", point.post.height_m);
     }
 }

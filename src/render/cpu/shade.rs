@@ -43,7 +43,7 @@ impl<'a> Shader<'a> {
             list,
             screen,
             textures: list.textures.par_iter().map(Texture::new).collect(),
-            ground: list.ground.as_deref().map(GroundShader::new),
+            ground: list.ground.as_deref().map(|map| GroundShader::new(map, list.lighting.to_sun)),
             most_taps,
         }
     }
@@ -76,14 +76,11 @@ impl<'a> Shader<'a> {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
             _ => self.surface_color(material, &vertices),
         };
-        let (normal, sun, sky) = match (material.normals, &ground) {
-            (NormalSource::Ground, Some((_, point))) => {
-                (point.post.normal(), point.post.sun_visibility, point.post.sky_visibility)
-            }
-            _ => (vertices.normal(item, face), 1.0, 1.0),
-        };
         let lighting = &self.list.lighting;
-        let mut color = lighting.shade(albedo, normal, sun, sky);
+        let mut color = match (material.normals, &ground) {
+            (NormalSource::Ground, Some((ground, point))) => ground.lit(albedo, point, &hit),
+            _ => lighting.shade(albedo, vertices.normal(item, face)),
+        };
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);
         }

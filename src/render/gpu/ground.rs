@@ -95,14 +95,16 @@ fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[Groun
     }
 }
 
-/// Height and slopes as bits, both visibilities as 16 bits each.
+/// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10.
 fn packed(post: &GroundPost) -> [u32; 4] {
-    let sixteen = |share: f32| (share.clamp(0.0, 1.0) * 65535.0 + 0.5) as u32;
+    let share = |share: f32, most: f32| (share.clamp(0.0, 1.0) * most + 0.5) as u32;
     [
         post.height_m.to_bits(),
         post.slope_east.to_bits(),
         post.slope_north.to_bits(),
-        sixteen(post.sun_visibility) | sixteen(post.sky_visibility) << 16,
+        share(post.sun_visibility, 4095.0)
+            | share(post.sky_visibility, 1023.0) << 12
+            | share(post.water, 1023.0) << 22,
     ]
 }
 
@@ -122,17 +124,20 @@ mod tests {
     }
 
     #[test]
-    fn packing_keeps_the_bits_of_heights_and_the_visibilities_to_16_bits() {
+    fn packing_keeps_the_bits_of_heights_and_the_shares_to_a_thousandth() {
         let post = GroundPost {
             height_m: -1234.567,
             slope_east: 0.1,
             slope_north: -3.5,
             sun_visibility: 1.0,
             sky_visibility: 0.25,
+            water: 0.75,
         };
-        let [height, east, north, visibilities] = packed(&post);
+        let [height, east, north, shares] = packed(&post);
         assert_eq!([height, east, north].map(f32::from_bits), [-1234.567, 0.1, -3.5]);
-        assert_eq!(visibilities & 0xffff, 65535);
-        assert!((f64::from(visibilities >> 16) / 65535.0 - 0.25).abs() < 1e-5);
+        let shares = [(shares & 4095, 4095.0), (shares >> 12 & 1023, 1023.0), (shares >> 22, 1023.0)];
+        for ((share, most), wanted) in shares.into_iter().zip([1.0, 0.25, 0.75]) {
+            assert!((f64::from(share) / most - wanted).abs() < 1e-3, "{share} of {most}");
+        }
     }
 }

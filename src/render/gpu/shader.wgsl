@@ -16,9 +16,12 @@ struct Frame {
     sky: vec4f,           // rgb
     bounce: vec4f,        // rgb
     haze: vec4f,          // rgb, 1 / distance
-    zenith: vec4f,        // rgb
+    zenith: vec4f,        // rgb, distance at which haze begins
+    sides: array<vec4f, 4>, // xyz toward a side light, its share
+    water: vec4f,         // rgb at the surface
+    deep: vec4f,          // rgb of deep water
     ground: vec4f,        // x and y of the south-west post, cell's width and height
-    ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground
+    ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
@@ -41,7 +44,8 @@ const MOST_TAPS = 8.0;
 const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-// One texel a post: height, slope east and slope north as bits of f32, both visibilities as 16 bits each.
+// One texel a post: height, slope east and slope north as bits of f32; the visibilities of the sun in 12 bits and of the
+// sky in 10, and water in 10.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
 // The same for all smaller levels, side by side.
 @group(0) @binding(2) var ground_coarse: texture_2d<u32>;
@@ -114,7 +118,7 @@ fn vertex(corner: Corner, instance: Instance) -> Varying {
 struct Post {
     height: f32,
     slope: vec2f,
-    visibility: vec2f, // of the sun, of the sky
+    visibility: vec3f, // of the sun, of the sky; under water
     gradient: vec2f,   // rise of the height itself, meters per meter
 }
 
@@ -125,7 +129,9 @@ fn post_at(at: vec2u, level: u32) -> Post {
     } else {
         texel = textureLoad(ground_coarse, at + vec2u(frame.ground_levels[level].z, 0u), 0);
     }
-    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), unpack2x16unorm(texel.w), vec2f(0.0));
+    let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
+    let visibility = shares / vec3f(4095.0, 1023.0, 1023.0);
+    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0));
 }
 
 fn mix_post(a: Post, b: Post, t: f32) -> Post {
@@ -169,7 +175,7 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     let level = clamp(log2(max(longer / taps, 1e-6)), 0.0, most);
     let lower = u32(level);
     let part = level - f32(lower);
-    var sum = Post(0.0, vec2f(0.0), vec2f(0.0), vec2f(0.0));
+    var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0));
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let here = at + axis * ((tap + 0.5) / taps - 0.5);
         var post = ground_on_level(here, lower);
@@ -228,10 +234,37 @@ fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
 
-fn lit(albedo: vec3f, normal: vec3f, sun_visibility: f32, sky_visibility: f32) -> vec3f {
-    let direct = frame.sun.rgb * (max(dot(normal, frame.to_sun.xyz), 0.0) * sun_visibility);
-    let ambient = mix(frame.bounce.rgb, frame.sky.rgb, normal.z * 0.5 + 0.5) * sky_visibility;
+// Lighting::shade.
+fn lit(albedo: vec3f, normal: vec3f) -> vec3f {
+    let direct = frame.sun.rgb * max(dot(normal, frame.to_sun.xyz), 0.0);
+    let ambient = mix(frame.bounce.rgb, frame.sky.rgb, normal.z * 0.5 + 0.5);
     return albedo * (direct + ambient);
+}
+
+fn facing_sun(normal: vec3f) -> f32 {
+    return max(dot(normal, frame.to_sun.xyz), 0.0);
+}
+
+// ReliefShading::shade, with the same constants.
+fn relief_lit(albedo: vec3f, post: Post, at: vec2f) -> vec3f {
+    let shares = vec3f(0.55, 0.20, 0.25);
+    let normal = normalize(vec3f(-post.slope, 1.0));
+    let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope, 1.0));
+    var sides = 0.0;
+    for (var side = 0; side < 4; side += 1) {
+        sides += max(dot(normal, frame.sides[side].xyz), 0.0) * frame.sides[side].w;
+    }
+    let shade = dot(shares, vec3f(facing_sun(normal) * post.visibility.x, sides, facing_sun(form)));
+    let level = dot(shares, vec3f(facing_sun(vec3f(0.0, 0.0, 1.0)), 0.5, facing_sun(vec3f(0.0, 0.0, 1.0))));
+    let low = stop_at(0u).w;
+    let high = stop_at(frame.ground_size.x - 1u).w;
+    let elevation = select(0.0, (post.height - low) / (high - low), high > low);
+    let relief = mix(0.6, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
+    let brightness = clamp(1.0 + 2.0 * relief, 0.22, 1.5);
+    let cool = vec3f(0.80, 0.90, 1.12);
+    let warm = vec3f(1.06, 1.0, 0.90);
+    let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
+    return albedo * tint * (brightness * mix(0.5, 1.0, post.visibility.y));
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.
@@ -258,24 +291,27 @@ fn surface(in: Varying) -> vec4f {
 fn shade(in: Varying, front: bool) -> vec4f {
     let flags = material.flags.x;
     var color = surface(in);
-    var normal = vertex_normal(in, front);
-    var visibility = vec2f(1.0);
+    let normal = vertex_normal(in, front);
+    var light = vec3f(0.0);
     let right = dpdx(in.world.xy);
     let down = dpdy(in.world.xy);
     if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
         let post = ground_at(in.world.xy, right, down);
-        if (flags & FROM_GROUND_NORMAL) != 0u {
-            normal = normalize(vec3f(-post.slope, 1.0));
-            visibility = post.visibility;
-        }
         if (flags & FROM_GROUND_ALBEDO) != 0u {
             let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
-            color = vec4f(mix(ramp_at(post.height), frame.contour.rgb, cover), 1.0);
+            // WaterColor.
+            let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
+            let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
+            let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water);
+            color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
         }
+        light = relief_lit(color.rgb, post, in.world.xy);
     }
-    let light = lit(color.rgb, normal, visibility.x, visibility.y);
-    let clear = exp(-distance(in.world, frame.eye.xyz) * frame.haze.w);
+    if (flags & FROM_GROUND_NORMAL) == 0u {
+        light = lit(color.rgb, normal);
+    }
+    let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
 }
 

@@ -3,6 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::draw::ground::WaterColor;
+use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
@@ -33,6 +35,9 @@ pub struct FrameUniforms {
     bounce: [f32; 4],
     haze: [f32; 4],
     zenith: [f32; 4],
+    sides: [[f32; 4]; 4],
+    water: [f32; 4],
+    deep: [f32; 4],
     ground: [f32; 4],
     ground_size: [u32; 4],
     contour: [f32; 4],
@@ -67,6 +72,7 @@ impl FrameUniforms {
         let (near, far) = camera.planes();
         let (width, height) = camera.size();
         let light = &list.lighting;
+        let relief = ReliefShading::new(light.to_sun);
         Self {
             eye: with(camera.eye(), 0.0),
             right: with(camera.right(), 1.0 / tan.x),
@@ -79,7 +85,10 @@ impl FrameUniforms {
             sky: with(light.sky, 0.0),
             bounce: with(light.bounce, 0.0),
             haze: with(light.haze.color, 1.0 / light.haze.distance_m),
-            zenith: with(light.zenith, 0.0),
+            zenith: with(light.zenith, light.haze.near_m),
+            sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
+            water: with(WaterColor::SURFACE.linear(), 1.0),
+            deep: with(WaterColor::DEEP.linear(), 1.0),
             ..Self::ground(list)
         }
     }
@@ -93,7 +102,9 @@ impl FrameUniforms {
             *slot = [level.size.columns, level.size.rows, level.first, 0];
         }
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
-        frame.ground_size = [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, 0];
+        let coarsest = levels.len() as u32 - 1;
+        frame.ground_size =
+            [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, map.form_level.min(coarsest)];
         if let Some(contours) = map.contours {
             let every = contours.major_every.max(1) as f32;
             frame.contour = with(contours.color.linear(), contours.color.alpha());

@@ -101,7 +101,7 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
             RibbonSurface::Bank => water::bank(u, grain),
             RibbonSurface::Cover(cover) => cover::texel(cover, u, v, grain),
             RibbonSurface::Border => Srgba::WHITE,
-            RibbonSurface::Lake => shade([74, 124, 158], (grain - 0.5) * 5.0),
+            RibbonSurface::Lake => shade([92, 150, 190], (grain - 0.5) * 5.0),
         }
     })
 }

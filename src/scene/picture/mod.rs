@@ -2,7 +2,10 @@
 
 mod detail;
 mod drapes;
+mod fit;
+mod fitted_view;
 mod ground;
+mod haze;
 mod models;
 pub mod recut;
 mod solids;
@@ -15,7 +18,8 @@ use glam::{Mat4, Vec3};
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::picture::detail::Viewer;
-use crate::scene::{SceneModel, SceneView};
+use crate::scene::picture::fitted_view::fitted_aim;
+use crate::scene::{SceneModel, SceneView, ViewAim};
 use crate::view::camera::{Camera, CameraError};
 
 /// The draw list of a scene for one camera.
@@ -34,9 +38,13 @@ pub struct ViewDraw {
 /// See [`CameraError`].
 pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<Camera, CameraError> {
     let (min, max) = scene.bounds;
-    let farthest = Vec3::select((view.eye - min).abs().cmpgt((view.eye - max).abs()), min, max);
-    let far = view.eye.distance(farthest) * 1.5 + 1000.0;
-    Camera::new(view.eye, view.target, view.fov_y_rad, size, (0.5, far))
+    let (eye, target) = match view.aim {
+        ViewAim::At { eye, target } => (eye, target),
+        ViewAim::Fitted(fitted) => fitted_aim(scene, &fitted, view.fov_y_rad, size),
+    };
+    let farthest = Vec3::select((eye - min).abs().cmpgt((eye - max).abs()), min, max);
+    let far = eye.distance(farthest) * 1.5 + 1000.0;
+    Camera::new(eye, target, view.fov_y_rad, size, (0.5, far))
 }
 
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.
@@ -68,6 +76,9 @@ fn listed(
     }
     let mut list =
         DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
+    if let Viewer::Camera(camera) = viewer {
+        list.lighting.haze = haze::haze(scene.lighting.haze.color, scene.haze_m, camera, scene.bounds);
+    }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");

@@ -234,7 +234,7 @@ fn backs_are_left_out_unless_a_material_has_two_sides() {
         assert_eq!(feature(&picture, 40, 30), seen);
         if two_sided {
             // Turned to the viewer, the normal also faces the sun behind the viewer.
-            let lit = list.lighting.shade(GREEN.linear(), -Vec3::Y, 1.0, 1.0);
+            let lit = list.lighting.shade(GREEN.linear(), -Vec3::Y);
             assert_eq!(picture.pixels.at(40, 30), Srgba::from_linear(lit));
         }
     }

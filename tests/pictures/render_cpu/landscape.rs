@@ -81,6 +81,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             slope_north: rise(0.0, cell),
             sun_visibility: 1.0,
             sky_visibility: 1.0,
+            water: 0.0,
         }
     };
     let stops = [
@@ -103,6 +104,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             color: Srgba([90, 60, 30, 190]),
             width_px: 1.2,
         }),
+        form_level: 3,
     }
 }
 
