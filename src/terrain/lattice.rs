@@ -435,6 +435,20 @@ mod tests {
     }
 
     #[test]
+    fn slopes_of_a_row_are_those_of_its_posts_to_the_last_bit() {
+        for columns in [2, 3, 9] {
+            let height =
+                |index: u32| if index % 23 == 7 { f32::NAN } else { (index * 7919 % 101) as f32 / 7.0 };
+            let heights = (0..columns * 12).map(height).collect();
+            let lattice = Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), columns, heights).expect("sound");
+            for row in 0..12 {
+                let slopes = (0..columns).map(|column| lattice.slopes(Post { column, row }));
+                assert_eq!(lattice.slopes_of_row(row), slopes.collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
     fn a_stretched_lattice_has_the_same_posts_and_higher_heights() {
         let mut plain = plane();
         plain.pin(Post { column: 1, row: 2 }, 7.0);
