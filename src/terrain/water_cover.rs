@@ -160,6 +160,7 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::lattice::Post;
     use glam::DVec2;
 
     fn lattice(height: impl Fn(f32, f32) -> f32) -> Lattice {

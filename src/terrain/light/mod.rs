@@ -62,14 +62,14 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    fn lattice(columns: u32, cell_m: f64, height: impl Fn(u32, u32) -> f32) -> Lattice {
-        let heights = (0..columns * columns).map(|index| height(index % columns, index / columns)).collect();
+    fn lattice([columns, rows]: [u32; 2], cell_m: f64, height: impl Fn(u32, u32) -> f32) -> Lattice {
+        let heights = (0..columns * rows).map(|index| height(index % columns, index / columns)).collect();
         Lattice::new(DVec2::ZERO, DVec2::splat(cell_m), columns, heights).expect("sound")
     }
 
     /// A level plain with a wall of 100 m along column 20.
     fn wall() -> Lattice {
-        lattice(41, 10.0, |column, _| if column == 20 { 100.0 } else { 0.0 })
+        lattice([41, 41], 10.0, |column, _| if column == 20 { 100.0 } else { 0.0 })
     }
 
     #[test]
@@ -84,8 +84,8 @@ mod tests {
 
     #[test]
     fn shadows_are_as_long_in_all_directions_and_on_reduced_lattices() {
-        for columns in [601, 2400] {
-            let middle = f64::from(columns / 2);
+        for size in [[301, 301], [2400, 301]] {
+            let middle = DVec2::new(f64::from(size[0] / 2), f64::from(size[1] / 2));
             let post = |column: u32, row: u32| DVec2::new(f64::from(column), f64::from(row)) - middle;
             for (east, north) in
                 [(1.0, 0.0), (0.6, 0.8), (-0.8, 0.6), (0.0, -1.0), (0.6, -0.8), (-0.96, -0.28)]
@@ -93,10 +93,10 @@ mod tests {
                 // A wall across the middle, from which the sun shines.
                 let toward = DVec2::new(east, north);
                 let ground = |column, row| if post(column, row).dot(toward).abs() < 2.0 { 50.0 } else { 0.0 };
-                let lattice = lattice(columns, 1.0, ground);
+                let lattice = lattice(size, 1.0, ground);
                 let light = TerrainLight::new(&lattice, toward.as_vec2().extend(0.5).normalize());
                 let share = |behind_m: f64| {
-                    let at = DVec2::splat(middle) - behind_m * toward;
+                    let at = middle - behind_m * toward;
                     light.sun(at.y.round() as usize)[at.x.round() as usize]
                 };
                 assert!(share(90.0) < 0.05, "{toward}: {}", share(90.0));
@@ -111,10 +111,19 @@ mod tests {
     #[test]
     fn slopes_less_steep_than_the_sun_are_fully_lit_on_reduced_lattices() {
         for (east, north) in [(0.4, 0.0), (0.0, -0.4), (0.25, 0.3), (-0.3, 0.2)] {
-            let slope = lattice(2300, 1.0, |column, row| column as f32 * east + row as f32 * north);
+            let slope = lattice([2300, 200], 1.0, |column, row| column as f32 * east + row as f32 * north);
             let away = glam::Vec2::new(-east, -north).normalize();
             let light = TerrainLight::new(&slope, (-away).extend(0.7).normalize());
-            assert!((0..2300).step_by(7).all(|row| light.sun(row).iter().all(|&share| share == 1.0)));
+            assert!((0..200).all(|row| light.sun(row).iter().all(|&share| share == 1.0)));
+        }
+    }
+
+    #[test]
+    fn level_ground_is_fully_lit_by_the_lowest_sun_and_by_none() {
+        let level = lattice([41, 41], 10.0, |_, _| 300.1);
+        for altitude in [-0.1, 0.0, 0.005, 0.02, 0.1, 0.3, 1.5, 5.0, 100.0] {
+            let light = TerrainLight::new(&level, Vec3::new(0.8, -0.6, altitude).normalize());
+            assert!((0..41).all(|row| light.sun(row).iter().all(|&share| share > 0.99)), "{altitude}");
         }
     }
 
@@ -122,9 +131,9 @@ mod tests {
     fn posts_without_data_cast_no_shadow_and_are_fully_lit() {
         for columns in [41, 2301] {
             let ground = |column, _| if column % 41 == 20 { f32::NAN } else { 3.0 };
-            let holed = lattice(columns, 10.0, ground);
+            let holed = lattice([columns, 41], 10.0, ground);
             let light = TerrainLight::new(&holed, Vec3::new(-0.6, 0.1, 0.5).normalize());
-            for row in 0..columns as usize {
+            for row in 0..41 {
                 assert!(light.sun(row).iter().chain(&light.sky(row)).all(|&share| share == 1.0), "{row}");
             }
         }
@@ -141,17 +150,17 @@ mod tests {
 
     #[test]
     fn the_sky_over_a_valley_is_the_same_on_reduced_lattices() {
-        let valley = |columns: u32| {
-            let cell_m = 2400.0 / f64::from(columns - 1);
-            let height =
-                |column: u32, _| ((column as f32 * cell_m as f32 - 1200.0).abs() - 100.0).clamp(0.0, 400.0);
-            let lattice = lattice(columns, cell_m, height);
-            let sky = TerrainLight::new(&lattice, Vec3::Z).sky(columns as usize / 2);
-            [0.0, 0.3, 0.4, 0.5, 0.55, 0.8].map(|share| sky[(share * f64::from(columns - 1)) as usize])
+        let valley = |posts_per_cell: u32| {
+            let size = [600, 80].map(|cells| cells * posts_per_cell + 1);
+            let cell_m = 4.0 / posts_per_cell as f32;
+            let height = |column: u32, _| ((column as f32 * cell_m - 1200.0).abs() - 20.0).clamp(0.0, 100.0);
+            let lattice = lattice(size, f64::from(cell_m), height);
+            let sky = TerrainLight::new(&lattice, Vec3::Z).sky(size[1] as usize / 2);
+            [0, 270, 275, 280, 290, 300, 304, 400].map(|cell| sky[cell * posts_per_cell as usize])
         };
-        let full = valley(601);
-        assert!(full[3] < 0.8 && full[0] > 0.99, "{full:?}");
-        for (full, reduced) in full.into_iter().zip(valley(2401)) {
+        let full = valley(1);
+        assert!(full[5] < 0.8 && full[0] > 0.99, "{full:?}");
+        for (full, reduced) in full.into_iter().zip(valley(4)) {
             assert!((full - reduced).abs() < 0.02, "{full} and {reduced}");
         }
     }

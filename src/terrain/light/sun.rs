@@ -55,7 +55,10 @@ impl SunShadow {
         // Rays that do not sink, or fall straight down, would reach too far or nowhere.
         let sheet = |altitude: f32| sheet(heights, level, libm::tanf(altitude.clamp(0.0, 1.55)));
         let (full, partial) = rayon::join(|| sheet(altitude + SUN_RADIUS), || sheet(altitude - SUN_RADIUS));
-        Some(Self { full, partial, least_penumbra_m: LEAST_PENUMBRA_CELLS * heights.cell.max_element() })
+        // Level ground lies as far above its sheets as rays sink from post to post, and is fully lit.
+        let sinking_m = heights.cell.min_element() * to_sun.z / to_sun.xy().length();
+        let least_penumbra_m = (LEAST_PENUMBRA_CELLS * heights.cell.max_element()).min(2.0 * sinking_m);
+        Some(Self { full, partial, least_penumbra_m })
     }
 
     /// The share of the sun that reaches each post of a row of `heights`, 0..=1; 1 where there is no data.
