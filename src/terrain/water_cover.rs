@@ -38,7 +38,7 @@ pub struct WaterCover {
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice) -> WaterCover {
     let heights = lattice.heights();
-    let mut search = Search { lattice, state: vec![PostState::New; heights.len()], posts: Vec::new() };
+    let mut search = WaterSearch { lattice, state: vec![PostState::New; heights.len()], posts: Vec::new() };
     let mut cover = WaterCover::default();
     let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
     for row in 0..rows {
@@ -46,7 +46,7 @@ pub fn water_cover(lattice: &Lattice) -> WaterCover {
         let step = if row == 0 || row + 1 == rows { 1 } else { columns - 1 };
         for index in (row * columns..(row + 1) * columns).step_by(step) {
             if heights[index] <= 0.0 && search.state[index] == PostState::New {
-                cover.sea_posts += search.keep(index, |height| height <= 0.0, |region| region.is_sea());
+                cover.sea_posts += search.keep(index, 0.0, |height| height <= 0.0, |region| region.is_sea());
             }
         }
     }
@@ -55,7 +55,7 @@ pub fn water_cover(lattice: &Lattice) -> WaterCover {
             let (level, index) = (pair[0], row * columns + column);
             if level == pair[1] && search.state[index] == PostState::New {
                 let belongs = |height: f32| (height - level).abs() < LEVEL_M;
-                let lake = search.keep(index, belongs, |region| region.is_lake(lattice));
+                let lake = search.keep(index, level, belongs, |region| region.is_lake(lattice));
                 cover.lakes.extend((lake > 0).then_some(lake));
             }
         }
@@ -73,7 +73,7 @@ enum PostState {
     Water,
 }
 
-struct Search<'a> {
+struct WaterSearch<'a> {
     lattice: &'a Lattice,
     state: Vec<PostState>,
     /// Of the region that was found last; kept for its memory.
@@ -101,18 +101,18 @@ impl Region<'_> {
     }
 }
 
-impl Search<'_> {
+impl WaterSearch<'_> {
     /// Marks the posts connected to the one at index `first` whose heights `belong` as water where `is_water` holds of
-    /// them, and as land otherwise; the number of posts of water.
+    /// them, and as land otherwise; the number of posts of water. Heights beside them are compared with `level`.
     fn keep(
         &mut self,
         first: usize,
+        level: f32,
         belongs: impl Fn(f32) -> bool,
         is_water: impl Fn(&Region) -> bool,
     ) -> usize {
         let Self { lattice, state, posts } = self;
         let (heights, columns) = (lattice.heights(), lattice.columns() as usize);
-        let level = heights[first];
         let wall = level + WALL_M + lattice.cell().max_element() as f32 / 2.0;
         let (mut higher, mut lower, mut walls) = (0, 0, 0);
         state[first] = PostState::Land;
@@ -196,10 +196,16 @@ mod tests {
                 |x, y| if y < 20.0 { -x } else { y - 19.0 - if x > 40.0 && y == 30.0 { 40.0 } else { 0.0 } },
             );
         let cover = water_cover(&coast);
-        assert_eq!(cover.sea_posts, 20 * 60 + 19, "20 rows, and a channel that meets the east border");
+        assert_eq!(cover.sea_posts, 20 * 60, "20 rows; the channel is too small");
         assert!(cover.lakes.is_empty());
         let enclosed = lattice(|x, y| f32::hypot(x - 30.0, y - 25.0) - 12.0);
         assert_eq!(water_cover(&enclosed), WaterCover::default(), "a hollow below 0 far from the border");
+    }
+
+    #[test]
+    fn a_sea_with_its_depths_is_a_sea() {
+        let shelf = lattice(|_, y| if y < 20.0 { -500.0 } else { y - 19.0 });
+        assert_eq!(water_cover(&shelf).sea_posts, 20 * 60);
     }
 
     #[test]
