@@ -3,6 +3,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
@@ -13,7 +14,7 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
 use crate::draw::lighting::Lighting;
 use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::light;
+use crate::terrain::light::TerrainLight;
 
 /// The tints of an atlas, from the lowest ground to the highest. Their lightness rises steadily (L* 61 to 94), so that
 /// tint never works against shade.
@@ -91,26 +92,33 @@ pub fn lighting(document: &Document) -> Lighting {
 /// The height, slope and light of every post.
 pub fn ground_map(scene: &SceneModel) -> GroundMap {
     let lattice = &scene.lattice;
-    let light = light::light(scene.ground().lattice(), scene.lighting.to_sun);
-    let is_water = &scene.water().is_water;
-    let filled = filled_heights(lattice, scene.height_range_m.0);
-    let posts = lattice
-        .posts()
-        .zip(filled)
-        .zip(light.sun.into_iter().zip(light.sky))
-        .enumerate()
-        .map(|(index, ((post, height_m), (sun_visibility, sky_visibility)))| {
-            let slopes = lattice.slopes(post);
-            GroundPost {
+    let (light, water) = rayon::join(
+        || TerrainLight::new(scene.ground().lattice(), scene.lighting.to_sun),
+        || &scene.water().is_water,
+    );
+    let columns = lattice.columns() as usize;
+    let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(lattice.heights().len());
+    posts.par_chunks_exact_mut(columns).enumerate().for_each(|(row, posts)| {
+        let first = row * columns;
+        let heights = filled_heights(&lattice.heights()[first..][..columns], scene.height_range_m.0);
+        let slopes = lattice.slopes_of_row(row as u32);
+        let light = light.sun(row).into_iter().zip(light.sky(row));
+        for ((post, (height_m, slopes)), (sun_visibility, sky_visibility)) in
+            posts.iter_mut().zip(heights.into_iter().zip(slopes)).zip(light)
+        {
+            *post = GroundPost {
                 height_m,
                 slope_east: scene.scale.world_z(slopes.x),
                 slope_north: scene.scale.world_z(slopes.y),
                 sun_visibility,
                 sky_visibility,
-                water: if is_water.get(index).is_some_and(|&is_water| is_water) { 1.0 } else { 0.0 },
-            }
-        })
-        .collect();
+                water: 0.0,
+            };
+        }
+        for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
+            post.water = if is_water { 1.0 } else { 0.0 };
+        }
+    });
     GroundMap {
         origin: glam::Vec2::ZERO,
         cell: lattice.cell().as_vec2(),
@@ -132,24 +140,20 @@ fn form_level(lattice: &Lattice) -> u32 {
     libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
 }
 
-/// The heights, where posts without data take the nearest height of their row, or the lowest: they only color pixels
-/// within half a cell of the edge of data.
-fn filled_heights(lattice: &Lattice, lowest: f32) -> Vec<f32> {
-    let columns = lattice.columns() as usize;
-    let mut heights = lattice.heights().to_vec();
-    for row in heights.chunks_mut(columns) {
-        spread(row);
-        row.reverse();
-        spread(row);
-        row.reverse();
-    }
-    for height in heights.iter_mut().filter(|height| height.is_nan()) {
-        *height = lowest;
+/// The heights of a row, where posts without data take the nearest height of the row, or the lowest: they only color
+/// pixels within half a cell of the edge of data.
+fn filled_heights(row: &[f32], lowest: f32) -> Vec<f32> {
+    let mut heights = row.to_vec();
+    if row.iter().any(|height| height.is_nan()) {
+        spread(heights.iter_mut());
+        spread(heights.iter_mut().rev());
+        heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = lowest);
     }
     heights
 }
 
-fn spread(row: &mut [f32]) {
+/// Sets heights that are NaN to the one before.
+fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
     let mut last = f32::NAN;
     for height in row {
         if height.is_nan() {

@@ -16,6 +16,8 @@
 //!        0       1       2  column
 //! ```
 
+use std::iter::once;
+
 use glam::{DVec2, Vec2};
 
 use crate::dem::raster::{Raster, Samples};
@@ -379,6 +381,28 @@ impl Lattice {
         )
     }
 
+    /// [`Lattice::slopes`] of the posts of a row, many times faster where the lattice is not densified.
+    pub fn slopes_of_row(&self, row: u32) -> Vec<Vec2> {
+        let posts = (0..self.columns).map(|column| Post { column, row });
+        if self.doublings > 0 || row == 0 || row + 1 == self.rows {
+            return posts.map(|post| self.slopes(post)).collect();
+        }
+        let line = |row: u32| &self.heights[row as usize * self.columns as usize..][..self.columns as usize];
+        let span = (self.cell.as_vec2() * 8.0).to_array();
+        let windows = line(row - 1).windows(3).zip(line(row).windows(3)).zip(line(row + 1).windows(3));
+        let inner = windows.map(|((south, own), north)| {
+            let east = (north[2] + 2.0 * own[2] + south[2]) - (north[0] + 2.0 * own[0] + south[0]);
+            let up = (north[2] + 2.0 * north[1] + north[0]) - (south[2] + 2.0 * south[1] + south[0]);
+            // NaN where any of the nine posts has no data.
+            Vec2::new(east / span[0], up / span[1]) + 0.0 * own[1]
+        });
+        let mut slopes: Vec<Vec2> = once(Vec2::NAN).chain(inner).chain(once(Vec2::NAN)).collect();
+        for (slopes, post) in slopes.iter_mut().zip(posts).filter(|(slopes, _)| slopes.is_nan()) {
+            *slopes = self.slopes(post);
+        }
+        slopes
+    }
+
     /// The post `east` columns and `north` rows away, or the last one in that direction.
     fn beside(&self, post: Post, east: i64, north: i64) -> Post {
         let column = (i64::from(post.column) + east).clamp(0, i64::from(self.columns) - 1);
@@ -407,6 +431,20 @@ mod tests {
         let lattice = plane();
         for post in lattice.posts() {
             assert!((lattice.slopes(post) - Vec2::new(0.2, -0.2)).length() < 1e-6, "{post:?}");
+        }
+    }
+
+    #[test]
+    fn slopes_of_a_row_are_those_of_its_posts_to_the_last_bit() {
+        for columns in [2, 3, 9] {
+            let height =
+                |index: u32| if index % 23 == 7 { f32::NAN } else { (index * 7919 % 101) as f32 / 7.0 };
+            let heights = (0..columns * 12).map(height).collect();
+            let lattice = Lattice::new(DVec2::ZERO, DVec2::new(9.77, 3.1), columns, heights).expect("sound");
+            for row in 0..12 {
+                let slopes = (0..columns).map(|column| lattice.slopes(Post { column, row }));
+                assert_eq!(lattice.slopes_of_row(row), slopes.collect::<Vec<_>>());
+            }
         }
     }
 

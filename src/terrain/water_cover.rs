@@ -10,7 +10,7 @@
 //!
 //! Both are inferred from heights alone: a polder open to the border is taken for sea.
 
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 
 /// The fewest posts of a lake or a sea: fewer happen to be level.
 pub const LEAST_POSTS: usize = 200;
@@ -37,27 +37,27 @@ pub struct WaterCover {
 
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice) -> WaterCover {
-    let mut search =
-        WaterSearch { lattice, state: vec![PostState::New; lattice.heights().len()], stack: Vec::new() };
+    let heights = lattice.heights();
+    let mut search = WaterSearch { lattice, state: vec![PostState::New; heights.len()], posts: Vec::new() };
     let mut cover = WaterCover::default();
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    for post in lattice.posts() {
-        let on_border =
-            post.column == 0 || post.row == 0 || post.column + 1 == columns || post.row + 1 == rows;
-        if on_border && search.is_new(post) && lattice.height(post) <= 0.0 {
-            cover.sea_posts += search.keep(post, 0.0, |height| height <= 0.0, Region::is_sea);
+    let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
+    for row in 0..rows {
+        // Of the rows between the first and the last, only the ends lie on the border.
+        let step = if row == 0 || row + 1 == rows { 1 } else { columns - 1 };
+        for index in (row * columns..(row + 1) * columns).step_by(step) {
+            if heights[index] <= 0.0 && search.state[index] == PostState::New {
+                cover.sea_posts += search.keep(index, 0.0, |height| height <= 0.0, |region| region.is_sea());
+            }
         }
     }
-    for post in lattice.posts().filter(|&post| post.column + 1 < columns) {
-        let level = lattice.height(post);
-        if search.is_new(post) && level == lattice.height(post.offset(1, 0)) {
-            let lake = search.keep(
-                post,
-                level,
-                |height| (height - level).abs() < LEVEL_M,
-                |region| region.is_lake(lattice),
-            );
-            cover.lakes.extend((lake > 0).then_some(lake));
+    for (row, line) in heights.chunks_exact(columns).enumerate() {
+        for (column, pair) in line.windows(2).enumerate() {
+            let (level, index) = (pair[0], row * columns + column);
+            if level == pair[1] && search.state[index] == PostState::New {
+                let belongs = |height: f32| (height - level).abs() < LEVEL_M;
+                let lake = search.keep(index, level, belongs, |region| region.is_lake(lattice));
+                cover.lakes.extend((lake > 0).then_some(lake));
+            }
         }
     }
     if cover.sea_posts > 0 || !cover.lakes.is_empty() {
@@ -76,19 +76,20 @@ enum PostState {
 struct WaterSearch<'a> {
     lattice: &'a Lattice,
     state: Vec<PostState>,
-    stack: Vec<Post>,
+    /// Of the region that was found last; kept for its memory.
+    posts: Vec<usize>,
 }
 
 /// Connected posts and how many are beside them.
-struct Region {
-    posts: Vec<usize>,
+struct Region<'a> {
+    posts: &'a [usize],
     higher: usize,
     lower: usize,
     /// Of those that are higher, those far above.
     walls: usize,
 }
 
-impl Region {
+impl Region<'_> {
     fn is_sea(&self) -> bool {
         self.posts.len() >= LEAST_POSTS && 2 * self.walls <= self.higher
     }
@@ -101,66 +102,65 @@ impl Region {
 }
 
 impl WaterSearch<'_> {
-    fn is_new(&self, post: Post) -> bool {
-        self.state[self.lattice.index(post)] == PostState::New
-    }
-
-    /// Marks the region of `first` whose heights `belong` as water where `is_water` holds, and as land otherwise; the
-    /// number of posts of water. Heights beside the region are compared with `level`.
+    /// Marks the posts connected to the one at index `first` whose heights `belong` as water where `is_water` holds of
+    /// them, and as land otherwise; the number of posts of water. Heights beside them are compared with `level`.
     fn keep(
         &mut self,
-        first: Post,
+        first: usize,
         level: f32,
         belongs: impl Fn(f32) -> bool,
         is_water: impl Fn(&Region) -> bool,
     ) -> usize {
-        let region = self.region(first, level, belongs);
-        if !is_water(&region) {
-            return 0;
-        }
-        region.posts.iter().for_each(|&index| self.state[index] = PostState::Water);
-        region.posts.len()
-    }
-
-    /// The posts connected to `first` whose heights `belong`, all marked as land.
-    fn region(&mut self, first: Post, level: f32, belongs: impl Fn(f32) -> bool) -> Region {
-        let lattice = self.lattice;
-        let mut region = Region { posts: Vec::new(), higher: 0, lower: 0, walls: 0 };
+        let Self { lattice, state, posts } = self;
+        let (heights, columns) = (lattice.heights(), lattice.columns() as usize);
         let wall = level + WALL_M + lattice.cell().max_element() as f32 / 2.0;
-        self.state[lattice.index(first)] = PostState::Land;
-        self.stack.push(first);
-        while let Some(post) = self.stack.pop() {
-            region.posts.push(lattice.index(post));
-            for next in neighbors(lattice, post) {
-                let (index, height) = (lattice.index(next), lattice.height(next));
+        let (mut higher, mut lower, mut walls) = (0, 0, 0);
+        state[first] = PostState::Land;
+        posts.clear();
+        posts.push(first);
+        let mut visited = 0;
+        while let Some(&post) = posts.get(visited) {
+            visited += 1;
+            let column = post % columns;
+            let mut visit = |next: usize| {
+                let height = heights[next];
                 if belongs(height) {
-                    if self.state[index] == PostState::New {
-                        self.state[index] = PostState::Land;
-                        self.stack.push(next);
+                    if state[next] == PostState::New {
+                        state[next] = PostState::Land;
+                        posts.push(next);
                     }
                 } else if height > level {
-                    region.higher += 1;
-                    region.walls += usize::from(height > wall);
+                    higher += 1;
+                    walls += usize::from(height > wall);
                 } else if height < level {
-                    region.lower += 1;
+                    lower += 1;
                 }
+            };
+            if column + 1 < columns {
+                visit(post + 1);
+            }
+            if post + columns < heights.len() {
+                visit(post + columns);
+            }
+            if column > 0 {
+                visit(post - 1);
+            }
+            if post >= columns {
+                visit(post - columns);
             }
         }
-        region
+        if !is_water(&Region { posts, higher, lower, walls }) {
+            return 0;
+        }
+        posts.iter().for_each(|&index| state[index] = PostState::Water);
+        posts.len()
     }
-}
-
-fn neighbors(lattice: &Lattice, Post { column, row }: Post) -> impl Iterator<Item = Post> {
-    let east = (column + 1 < lattice.columns()).then_some(Post { column: column + 1, row });
-    let north = (row + 1 < lattice.rows()).then_some(Post { column, row: row + 1 });
-    let west = column.checked_sub(1).map(|column| Post { column, row });
-    let south = row.checked_sub(1).map(|row| Post { column, row });
-    [east, north, west, south].into_iter().flatten()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::lattice::Post;
     use glam::DVec2;
 
     fn lattice(height: impl Fn(f32, f32) -> f32) -> Lattice {

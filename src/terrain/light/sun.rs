@@ -1,0 +1,143 @@
+//! The sun's shadow: two sheets swept over the ground away from the sun, one sinking with the rays of the sun's upper
+//! edge and one with those of its lower edge.
+//!
+//! ```text
+//!            ridge
+//!  sun        /\ ` - .  lower edge's rays
+//!   ↘        /  \ `      ` - .
+//!           /    \   ` .        ` - .
+//! _________/      \______` .____________` - .____
+//!                  shadow  | penumbra       | lit
+//! ```
+//!
+//! Each line of posts takes the sheet from the line before it, interpolated where the rays pass between posts, so that
+//! the cost is constant per post. Where the ground has more posts than a picture has pixels, the sheets are swept over a
+//! reduced lattice whose posts cast what any post around them casts; heights are compared with them post by post.
+
+use std::borrow::Cow;
+
+use glam::{Vec2, Vec2Swizzles, Vec3, Vec3Swizzles};
+
+use crate::terrain::light::field::{CoarseField, Reduction};
+
+/// Half the sun's breadth, radians: 0.75°. The true sun's is 0.27°, whose penumbra a picture of the whole ground shows as
+/// a hard edge with the stairs of the lattice.
+const SUN_RADIUS: f32 = 0.013;
+
+/// The least height over which the sun emerges, as a share of the cell size: smaller shows the lattice as stairs along
+/// the edges of short shadows, larger washes them out.
+const LEAST_PENUMBRA_CELLS: f32 = 0.35;
+
+/// The most cells along a side of the lattice that is swept: a picture of 1920 pixels shows no more.
+const MOST_CELLS: usize = 2048;
+
+/// The height of a sheet where nothing casts a shadow: so far down that no sum of heights comes near, and finite, since
+/// interpolating between infinities gives NaN.
+const NOTHING: f32 = -1e30;
+
+/// The heights up to which the ground is in shadow.
+#[derive(Debug)]
+pub struct SunShadow {
+    /// Without any sun.
+    full: CoarseField<'static>,
+    /// Without all of it.
+    partial: CoarseField<'static>,
+    /// The height over which the sun emerges at the least, meters.
+    least_penumbra_m: f32,
+}
+
+impl SunShadow {
+    /// The shadow of heights under a sun in direction `to_sun` (unit vector); `None` where it is overhead, or below the
+    /// horizon and so throws no light to shade.
+    pub fn cast(heights: &CoarseField, to_sun: Vec3) -> Option<Self> {
+        let level = to_sun.xy().try_normalize().filter(|_| to_sun.z > 0.0)?;
+        let altitude = libm::atan2f(to_sun.z, to_sun.xy().length());
+        // Rays that do not sink, or fall straight down, would reach too far or nowhere.
+        let sheet = |altitude: f32| sheet(heights, level, libm::tanf(altitude.clamp(0.0, 1.55)));
+        let (full, partial) = rayon::join(|| sheet(altitude + SUN_RADIUS), || sheet(altitude - SUN_RADIUS));
+        // Level ground lies as far above its sheets as rays sink from post to post, and is fully lit.
+        let sinking_m = heights.cell.min_element() * to_sun.z / to_sun.xy().length();
+        let least_penumbra_m = (LEAST_PENUMBRA_CELLS * heights.cell.max_element()).min(2.0 * sinking_m);
+        Some(Self { full, partial, least_penumbra_m })
+    }
+
+    /// The share of the sun that reaches each post of a row of `heights`, 0..=1; 1 where there is no data.
+    pub fn visibility(&self, row: usize, heights: &[f32]) -> Vec<f32> {
+        let [mut full, partial] =
+            [&self.full, &self.partial].map(|sheet| sheet.finer_row(row, sheet.every, heights.len()));
+        for ((full, partial), &height) in full.iter_mut().zip(partial).zip(heights) {
+            let middle = 0.5 * (*full + partial);
+            let share = (height - middle) / (partial - *full).max(self.least_penumbra_m) + 0.5;
+            *full = if share < 1.0 { share.max(0.0) } else { 1.0 };
+        }
+        full
+    }
+}
+
+/// The highest of what the posts around a post cast, moved to it along rays; `rise` is that of the rays per post
+/// eastward and northward.
+struct Caster {
+    rise: Vec2,
+}
+
+impl Reduction for Caster {
+    type Sum = f32;
+    const NONE: f32 = NOTHING;
+
+    /// Every post counts once: shadows of rough ground would grow with posts that count to several.
+    fn before(by: usize) -> usize {
+        (by - 1) / 2
+    }
+
+    fn add(&self, sum: f32, value: f32, north: f32) -> f32 {
+        sum.max(value - self.rise.y * north)
+    }
+
+    fn join(&self, sum: f32, column: f32, east: f32) -> f32 {
+        sum.max(column - self.rise.x * east)
+    }
+
+    fn value(&self, sum: f32) -> f32 {
+        sum
+    }
+}
+
+/// The heights below which rays that rise by `tangent` toward `level` (unit vector) meet ground.
+fn sheet(heights: &CoarseField, level: Vec2, tangent: f32) -> CoarseField<'static> {
+    let caster = Caster { rise: level * heights.cell * tangent };
+    let casting = heights.reduced(heights.factor(MOST_CELLS), &caster);
+    let steps = (level / casting.cell).abs();
+    if steps.y >= steps.x {
+        swept(&casting, level, tangent)
+    } else {
+        swept(&casting.transposed(), level.yx(), tangent).transposed()
+    }
+}
+
+/// Sweeps from row to row away from the sun, which is `level` and more north or south than east or west in cells.
+fn swept(casting: &CoarseField, level: Vec2, tangent: f32) -> CoarseField<'static> {
+    let per_row = casting.cell.y / level.y.abs();
+    let aside = level.x * per_row / casting.cell.x;
+    let (first, part) = (1.0 + aside.floor(), aside - aside.floor());
+    let drop = per_row * tangent;
+    let mut shadow = vec![NOTHING; casting.values.len()];
+    // One value more at the western end and two at the eastern end, where nothing casts a shadow.
+    let mut before = vec![NOTHING; casting.columns + 3];
+    for step in 0..casting.rows {
+        let row = if level.y > 0.0 { casting.rows - 1 - step } else { step };
+        let shadow = &mut shadow[row * casting.columns..][..casting.columns];
+        for (shadow, pair) in shadow.iter_mut().zip(before[first as usize..].windows(2)) {
+            *shadow = between(pair[0], pair[1], part) - drop;
+        }
+        for (before, (casting, shadow)) in before[1..].iter_mut().zip(casting.line(row).iter().zip(shadow)) {
+            *before = casting.max(*shadow);
+        }
+    }
+    CoarseField { values: Cow::Owned(shadow), ..*casting }
+}
+
+/// The height between two, linear where both cast a shadow; else that of the nearer.
+fn between(from: f32, to: f32, part: f32) -> f32 {
+    let nearer = if part > 0.5 { to } else { from };
+    if from.min(to) > 0.5 * NOTHING { from + (to - from) * part } else { nearer }
+}
