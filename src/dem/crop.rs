@@ -64,12 +64,12 @@ mod tests {
     #[test]
     fn a_margin_ends_at_the_raster_s_border() {
         let part = cropped((114.0, 211.0), (136.0, 226.0), 9).expect("all of it");
-        assert_eq!(part, raster());
+        assert_eq!((part.extent(), part.samples), (raster().extent(), raster().samples));
     }
 
     #[test]
     fn less_than_two_samples_a_side_are_nothing() {
-        assert_eq!(cropped((114.0, 211.0), (116.0, 226.0), 0), None);
-        assert_eq!(cropped((900.0, 211.0), (990.0, 226.0), 0), None);
+        assert!(cropped((114.0, 211.0), (116.0, 226.0), 0).is_none());
+        assert!(cropped((900.0, 211.0), (990.0, 226.0), 0).is_none());
     }
 }

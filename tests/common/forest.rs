@@ -84,6 +84,10 @@ pub fn overlook(scene: &SceneModel, size: (u32, u32)) -> Camera {
 
 /// A picture from anywhere.
 pub fn seen_from(scene: &SceneModel, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
-    let view = sandtable::scene::SceneView { name: String::new(), eye, target, fov_y_rad: 0.7 };
+    let view = sandtable::scene::SceneView {
+        name: String::new(),
+        aim: sandtable::scene::ViewAim::At { eye, target },
+        fov_y_rad: 0.7,
+    };
     picture::camera(scene, &view, size).expect("sound")
 }

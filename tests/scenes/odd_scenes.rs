@@ -9,6 +9,7 @@ use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
+use sandtable::scene::plinth::base_z;
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).
 fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {
@@ -38,12 +39,14 @@ fn the_overview_shows_all_of_the_ground_whatever_its_shape() {
     for (index, (posts, exaggeration)) in cases.into_iter().enumerate() {
         let text = format!("crs = \"EPSG:32616\"\nvertical_exaggeration = {exaggeration}");
         let scene = scene(&format!("overview{index}"), posts, &text).expect("sound");
-        let (min, max) = scene.bounds;
+        let base_z = base_z(scene.bounds);
         for (width, height) in [(1920, 1080), (640, 480)] {
             let camera = camera(&scene, &scene.cameras[0], (width, height)).expect("sound");
-            for corner in 0..8 {
-                let upper = |bit: i32| corner & bit != 0;
-                let at = Vec3::select(glam::BVec3::new(upper(1), upper(2), upper(4)), max, min);
+            let posts_on_ground = scene.lattice.posts().flat_map(|post| {
+                let plan = scene.lattice.position(post);
+                [scene.scale.world_z(scene.lattice.height(post)), base_z].map(|z| plan.extend(z))
+            });
+            for at in posts_on_ground {
                 let seen = camera.project(at).expect("in front of the eye").pixel;
                 let inside =
                     seen.x >= 0.0 && seen.x <= width as f32 && seen.y >= 0.0 && seen.y <= height as f32;

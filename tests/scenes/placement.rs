@@ -10,7 +10,7 @@ use sandtable::scene::assets::Assets;
 use sandtable::scene::build::{build, build_ground};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
 use sandtable::scene::report::ModelRow;
-use sandtable::scene::{SceneModel, SceneView};
+use sandtable::scene::{SceneModel, SceneView, ViewAim};
 use sandtable::terrain::lattice::Lattice;
 use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::terrain::triangle_surface::TriangleSurface;
@@ -103,7 +103,8 @@ fn shots(mut scene: SceneModel, mut check: impl FnMut(&SceneModel, &ViewDraw)) {
         let turn = index as f32 * 1.3;
         let eye = Vec3::new(1000.0 + 2600.0 * turn.cos(), 1000.0 + 2600.0 * turn.sin(), 1500.0);
         let target = Vec3::new(1000.0, 1000.0, 450.0);
-        let view = SceneView { name: String::new(), eye, target, fov_y_rad: 0.8 };
+        let aim = ViewAim::At { eye, target };
+        let view = SceneView { name: String::new(), aim, fov_y_rad: 0.8 };
         let camera = camera(&scene, &view, (640, 360)).expect("sound");
         check(&scene, &build_draw_list(&scene, &camera, &|_| ()));
     }

@@ -12,8 +12,8 @@ use sandtable::ribbon::patches::Drapes;
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::coherent::Coherent;
-use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{camera, recut};
+use sandtable::scene::{SceneModel, SceneView, ViewAim};
 use sandtable::view::camera::Camera;
 
 /// f32 world coordinates in a scene of ten kilometers, times the slope of a mountain side.
@@ -66,13 +66,16 @@ fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give
         seen: BTreeSet::new(),
         drapes: recut::drapes(&scene),
     };
-    let (first, last) = (&scene.cameras[0], scene.cameras.last().expect("several"));
+    let placed = |view: &SceneView| {
+        let camera = camera(&scene, view, (960, 540)).expect("a sound camera");
+        (camera.eye(), camera.eye() + camera.forward() * 20_000.0)
+    };
+    let (first, last) = (placed(&scene.cameras[0]), placed(scene.cameras.last().expect("several")));
     let mut recuts = Vec::new();
     for frame in 0..24 {
         let part = frame as f32 / 160.0;
-        let mut view = first.clone();
-        view.eye = first.eye.lerp(last.eye, part);
-        view.target = first.target.lerp(last.target, part);
+        let aim = ViewAim::At { eye: first.0.lerp(last.0, part), target: first.1.lerp(last.1, part) };
+        let view = SceneView { aim, ..scene.cameras[0].clone() };
         let camera = camera(&scene, &view, (960, 540)).expect("a sound camera");
         let (displayed, cut) = walk.frame(&camera);
         recuts.push(cut);
