@@ -6,6 +6,8 @@ mod common;
 
 #[path = "real_data/broken.rs"]
 mod broken;
+#[path = "real_data/first_picture.rs"]
+mod first_picture;
 #[path = "real_data/oracle.rs"]
 mod oracle;
 #[path = "real_data/places.rs"]

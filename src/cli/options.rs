@@ -41,6 +41,9 @@ pub struct HeightArguments {
     /// Height in meters of value 0 of a gray PNG or a RAW file [default: 0]
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
     pub height_offset: Option<f64>,
+    /// A value that means no data, besides the one that the file declares
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    pub nodata: Option<f64>,
     /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
@@ -82,6 +85,7 @@ impl HeightArguments {
         DemOptions {
             height_scale: self.height_scale,
             height_offset: self.height_offset,
+            nodata: self.nodata,
             height_encoding: self.height_encoding,
             raw: self.raw,
             ..DemOptions::default()

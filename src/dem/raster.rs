@@ -116,6 +116,16 @@ impl Samples {
         }
     }
 
+    /// Makes every sample of `value` one without data; a 32-bit sample is compared with the nearest 32-bit value.
+    pub(crate) fn clear(&mut self, value: f64) {
+        match self {
+            Self::F32(values) => {
+                values.iter_mut().filter(|at| **at == value as f32).for_each(|at| *at = f32::NAN)
+            }
+            Self::F64(values) => values.iter_mut().filter(|at| **at == value).for_each(|at| *at = f64::NAN),
+        }
+    }
+
     /// These values times `factor` plus `offset`, in 64 bits; unchanged where that changes nothing.
     pub(crate) fn scaled(self, factor: f64, offset: f64) -> Self {
         if factor == 1.0 && offset == 0.0 {

@@ -15,6 +15,8 @@ pub struct DemHints<'a> {
     pub height_scale: Option<f64>,
     /// Elevation in meters of value 0. Default 0.
     pub height_offset: Option<f64>,
+    /// A value that means no data, besides the one that the file declares, in the file's vertical unit.
+    pub nodata: Option<f64>,
     /// The encoding of heights in the colors of a PNG; a color PNG is refused without it.
     pub height_encoding: Option<HeightEncoding>,
     /// The layout of the file, which is RAW.
@@ -35,6 +37,7 @@ impl Default for DemHints<'_> {
         Self {
             height_scale: None,
             height_offset: None,
+            nodata: None,
             height_encoding: None,
             raw: None,
             vertical_datum: None,
@@ -147,6 +150,9 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
         .map_err(|kind| DemError { name: name.to_owned(), kind })?;
     if hints.vertical_datum.is_some() {
         raster.vertical_datum.clone_from(&hints.vertical_datum);
+    }
+    if let Some(nodata) = hints.nodata {
+        raster.samples.clear(nodata);
     }
     Ok(raster)
 }

@@ -114,6 +114,8 @@ table! {
         height_scale: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "1 for RAW; gray PNG needs it";
         /// Height of sample value 0 of a gray PNG or RAW file.
         height_offset: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
+        /// A value that means no data, besides the one that the file declares.
+        nodata: Option<f64> = key::number(Within(-1e10, 1e10), ""), otherwise "what the file declares";
         /// How the colors of a PNG encode heights.
         height_encoding: Option<HeightEncodingWord> = key::word::<HeightEncodingWord>(), otherwise "none; color PNG needs it";
         /// That the file is RAW, and its layout, such as `1201x1201:i16be`.

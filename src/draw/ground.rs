@@ -196,6 +196,17 @@ impl GroundMap {
         if is_grid { Ok(()) } else { Err(GroundMapError::Grid(self.cell, self.origin)) }
     }
 
+    /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
+    /// the ramp with contours on it, or water.
+    pub fn albedo(&self, post: &GroundPost, change_m: f32) -> Vec3 {
+        let land = self.ramp.linear_at(post.height_m);
+        let water = WaterColor::cover(post.water);
+        let bare = if water > 0.0 { land.lerp(WaterColor::linear_at(post.height_m), water) } else { land };
+        let Some(contours) = &self.contours else { return bare };
+        let strength = contours.strength(post.height_m, change_m) * (1.0 - water);
+        bare.lerp(contours.color.linear(), strength * contours.color.alpha())
+    }
+
     /// The map at world position `at`, bilinear between posts; outside the map, the value at its border.
     pub fn sample(&self, at: Vec2) -> GroundPost {
         let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);

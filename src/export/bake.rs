@@ -1,4 +1,4 @@
-//! The ground map as a texture: tints and contours seen from straight above, without light and shadow.
+//! The ground map as a texture: tints, water and contours seen from straight above, without light and shadow.
 
 use glam::Vec2;
 use rayon::prelude::*;
@@ -50,14 +50,10 @@ pub fn bake(map: &GroundMap) -> BakedGround {
 
 fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let height_m = |offset: Vec2| map.sample(at + offset).height_m;
-    let here = height_m(Vec2::ZERO);
-    let color = map.ramp.linear_at(here);
-    let Some(contours) = &map.contours else { return Srgba::from_linear(color) };
     let half = step / 2.0;
     let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
     let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
-    let strength = contours.strength(here, Vec2::new(east, north).length()) * contours.color.alpha();
-    Srgba::from_linear(color.lerp(contours.color.linear(), strength))
+    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length()))
 }
 
 #[cfg(test)]

@@ -87,6 +87,7 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
     let hints = DemHints {
         height_scale: terrain.height_scale,
         height_offset: Some(terrain.height_offset),
+        nodata: terrain.nodata,
         height_encoding: terrain.height_encoding.map(|encoding| match encoding {
             HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
             HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,

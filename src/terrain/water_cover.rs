@@ -38,14 +38,14 @@ pub struct WaterCover {
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
 pub fn water_cover(lattice: &Lattice) -> WaterCover {
     let mut search =
-        Search { lattice, state: vec![PostState::New; lattice.heights().len()], stack: Vec::new() };
+        WaterSearch { lattice, state: vec![PostState::New; lattice.heights().len()], stack: Vec::new() };
     let mut cover = WaterCover::default();
     let (columns, rows) = (lattice.columns(), lattice.rows());
     for post in lattice.posts() {
         let on_border =
             post.column == 0 || post.row == 0 || post.column + 1 == columns || post.row + 1 == rows;
         if on_border && search.is_new(post) && lattice.height(post) <= 0.0 {
-            cover.sea_posts += search.keep(post, |height| height <= 0.0, Region::is_sea);
+            cover.sea_posts += search.keep(post, 0.0, |height| height <= 0.0, Region::is_sea);
         }
     }
     for post in lattice.posts().filter(|&post| post.column + 1 < columns) {
@@ -53,6 +53,7 @@ pub fn water_cover(lattice: &Lattice) -> WaterCover {
         if search.is_new(post) && level == lattice.height(post.offset(1, 0)) {
             let lake = search.keep(
                 post,
+                level,
                 |height| (height - level).abs() < LEVEL_M,
                 |region| region.is_lake(lattice),
             );
@@ -72,7 +73,7 @@ enum PostState {
     Water,
 }
 
-struct Search<'a> {
+struct WaterSearch<'a> {
     lattice: &'a Lattice,
     state: Vec<PostState>,
     stack: Vec<Post>,
@@ -99,20 +100,21 @@ impl Region {
     }
 }
 
-impl Search<'_> {
+impl WaterSearch<'_> {
     fn is_new(&self, post: Post) -> bool {
         self.state[self.lattice.index(post)] == PostState::New
     }
 
     /// Marks the region of `first` whose heights `belong` as water where `is_water` holds, and as land otherwise; the
-    /// number of posts of water.
+    /// number of posts of water. Heights beside the region are compared with `level`.
     fn keep(
         &mut self,
         first: Post,
+        level: f32,
         belongs: impl Fn(f32) -> bool,
         is_water: impl Fn(&Region) -> bool,
     ) -> usize {
-        let region = self.region(first, belongs);
+        let region = self.region(first, level, belongs);
         if !is_water(&region) {
             return 0;
         }
@@ -121,9 +123,8 @@ impl Search<'_> {
     }
 
     /// The posts connected to `first` whose heights `belong`, all marked as land.
-    fn region(&mut self, first: Post, belongs: impl Fn(f32) -> bool) -> Region {
+    fn region(&mut self, first: Post, level: f32, belongs: impl Fn(f32) -> bool) -> Region {
         let lattice = self.lattice;
-        let level = lattice.height(first);
         let mut region = Region { posts: Vec::new(), higher: 0, lower: 0, walls: 0 };
         let wall = level + WALL_M + lattice.cell().max_element() as f32 / 2.0;
         self.state[lattice.index(first)] = PostState::Land;
@@ -195,10 +196,16 @@ mod tests {
                 |x, y| if y < 20.0 { -x } else { y - 19.0 - if x > 40.0 && y == 30.0 { 40.0 } else { 0.0 } },
             );
         let cover = water_cover(&coast);
-        assert_eq!(cover.sea_posts, 20 * 60 + 19, "20 rows, and a channel that meets the east border");
+        assert_eq!(cover.sea_posts, 20 * 60, "20 rows; the channel is too small");
         assert!(cover.lakes.is_empty());
         let enclosed = lattice(|x, y| f32::hypot(x - 30.0, y - 25.0) - 12.0);
         assert_eq!(water_cover(&enclosed), WaterCover::default(), "a hollow below 0 far from the border");
+    }
+
+    #[test]
+    fn a_sea_with_its_depths_is_a_sea() {
+        let shelf = lattice(|_, y| if y < 20.0 { -500.0 } else { y - 19.0 });
+        assert_eq!(water_cover(&shelf).sea_posts, 20 * 60);
     }
 
     #[test]

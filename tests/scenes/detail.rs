@@ -33,7 +33,9 @@ fn asset(name: &str) -> Model {
 /// The picture as seen, and the one in which every model is drawn in full.
 fn pictures(scene: &SceneModel, camera: &Camera) -> ([DrawList; 2], [Rendering; 2]) {
     let seen = build_draw_list(scene, camera, &|_| ()).list;
-    let (full, _) = draw_list(scene, &display(scene, camera), &|_| ());
+    let (mut full, _) = draw_list(scene, &display(scene, camera), &|_| ());
+    // Without a camera there is no haze.
+    full.lighting = seen.lighting;
     let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
     let pictures = [drawn(&seen), drawn(&full)];
     ([seen, full], pictures)

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundMap, GroundPost, WaterColor};
+use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::lighting::{ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
@@ -67,15 +67,8 @@ impl<'a> GroundShader<'a> {
 
     /// The map's color at a point, in linear light: the ramp with contours on it, or water.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
-        let height = point.post.height_m;
-        let land = self.map.ramp.linear_at(height);
-        let water = WaterColor::cover(point.post.water);
-        let color = if water > 0.0 { land.lerp(WaterColor::linear_at(height), water) } else { land };
-        let Some(contours) = &self.map.contours else { return color };
         let change = |step: Vec3| point.gradient.dot(step.truncate());
-        let across = Vec2::new(change(hit.right), change(hit.down)).length();
-        let strength = contours.strength(height, across) * (1.0 - water);
-        color.lerp(contours.color.linear(), strength * contours.color.alpha())
+        self.map.albedo(&point.post, Vec2::new(change(hit.right), change(hit.down)).length())
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.

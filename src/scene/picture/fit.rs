@@ -19,13 +19,13 @@ pub(super) struct FitFrame {
 
 /// A direction of view: an orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ViewAxes {
+pub(super) struct FitAxes {
     pub right: Vec3,
     pub up: Vec3,
     pub forward: Vec3,
 }
 
-impl ViewAxes {
+impl FitAxes {
     /// The axes of a camera that looks toward `azimuth_rad`, clockwise from north, and `pitch_rad` below the horizon,
     /// less than a right angle.
     pub fn new(azimuth_rad: f32, pitch_rad: f32) -> Self {
@@ -43,7 +43,7 @@ impl ViewAxes {
 
 /// The nearest eye whose `frame` holds all `points`, of which there is at least one; where the frame is wider or higher
 /// than they need, they are in its middle.
-pub(super) fn fitted_eye(points: &[Vec3], axes: &ViewAxes, frame: &FitFrame) -> Vec3 {
+pub(super) fn fitted_eye(points: &[Vec3], axes: &FitAxes, frame: &FitFrame) -> Vec3 {
     let mut low = Vec2::INFINITY;
     let mut high = Vec2::NEG_INFINITY;
     for point in points {
@@ -57,7 +57,7 @@ pub(super) fn fitted_eye(points: &[Vec3], axes: &ViewAxes, frame: &FitFrame) -> 
 }
 
 /// The points as `eye` sees them, as tangents to the right and up.
-pub(super) fn projected(points: &[Vec3], axes: &ViewAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
+pub(super) fn projected(points: &[Vec3], axes: &FitAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
     points.iter().map(move |point| {
         let local = axes.coordinates(*point - eye);
         local.truncate() / local.z
@@ -82,7 +82,7 @@ mod tests {
         for (azimuth, pitch) in [(0.0, 0.7), (1.0, 0.2), (3.0, 1.3), (-2.0, 0.9)] {
             for (min, max) in [((-0.5, -0.2), (0.5, 0.3)), ((-0.1, -0.4), (0.3, 0.4))] {
                 let frame = FitFrame { min: min.into(), max: max.into() };
-                let axes = ViewAxes::new(azimuth, pitch);
+                let axes = FitAxes::new(azimuth, pitch);
                 let eye = fitted_eye(&points, &axes, &frame);
                 let [mut low, mut high] = [Vec2::INFINITY, Vec2::NEG_INFINITY];
                 for at in projected(&points, &axes, eye) {
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn the_axes_look_where_they_are_told_with_the_picture_upright() {
-        let axes = ViewAxes::new(0.5, 0.8);
+        let axes = FitAxes::new(0.5, 0.8);
         assert!((axes.forward.z + libm::sinf(0.8)).abs() < 1e-6 && axes.up.z > 0.0 && axes.right.z == 0.0);
         assert!(axes.right.cross(axes.forward).abs_diff_eq(axes.up, 1e-6));
     }

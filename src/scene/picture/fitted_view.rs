@@ -7,7 +7,7 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::geom::convex::hull;
 use crate::geom::polygon::doubled_area;
 use crate::geom::rect::Rect;
-use crate::scene::picture::fit::{FitFrame, ViewAxes, fitted_eye, projected};
+use crate::scene::picture::fit::{FitAxes, FitFrame, fitted_eye, projected};
 use crate::scene::plinth::base_z;
 use crate::scene::{FittedView, SceneModel};
 use crate::terrain::lattice::Post;
@@ -37,13 +37,13 @@ pub(super) fn fitted_aim(
         max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
     };
     let aimed = |pitch_rad: f32| {
-        let axes = ViewAxes::new(view.azimuth_rad, pitch_rad);
+        let axes = FitAxes::new(view.azimuth_rad, pitch_rad);
         (axes, fitted_eye(&points, &axes, &frame))
     };
     let (axes, eye) = match view.pitch_rad {
         Some(pitch_rad) => aimed(pitch_rad),
         None => {
-            let filled = |&(axes, eye): &(ViewAxes, Vec3)| {
+            let filled = |&(axes, eye): &(FitAxes, Vec3)| {
                 let corners: Vec<DVec2> =
                     projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
                 doubled_area(&hull(&corners))

@@ -151,8 +151,11 @@ fn contours_keep_their_width_from_near_to_far() {
     item(&mut list, ground_mesh(20, 500.0, slope), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     let camera = looking(Vec3::new(0.0, -420.0, -80.0), Vec3::new(0.0, 0.0, 20.0), (64, 900));
     let picture = shot(&list, &camera);
-    // Down one column, the dark of each line adds up to its width.
-    let dark = |y: u32| 1.0 - linear_from_srgb(picture.pixels.at(32, y).0[0]);
+    // Down one column, the dark of each line adds up to its width; the slope is shaded alike everywhere.
+    let ground = (0..900).filter(|&y| feature(&picture, 32, y) == FeatureId::GROUND);
+    let light = |y: u32| linear_from_srgb(picture.pixels.at(32, y).0[0]);
+    let bare = ground.map(light).fold(0.0, f32::max);
+    let dark = |y: u32| 1.0 - light(y) / bare;
     let mut widths = Vec::new();
     let mut sum = 0.0;
     for y in (0..900).filter(|&y| feature(&picture, 32, y) == FeatureId::GROUND) {

@@ -49,6 +49,18 @@ fn a_png_needs_a_scale_and_may_have_an_offset() {
 }
 
 #[test]
+fn a_stated_value_means_no_data_besides_the_file_s() {
+    let valley = ["dem", "info", "assets/jacksboro/valley.asc", "--json"];
+    let lowest = |about: &Value| about["min"].as_f64().expect("a number");
+    let declared = json(&valley);
+    let low = lowest(&declared).to_string();
+    let stated = json(&[&valley[..], &["--nodata", &low]].concat());
+    assert!(lowest(&stated) > lowest(&declared), "{stated}");
+    let valid = |about: &Value| about["valid"].as_u64().expect("a count");
+    assert!(valid(&stated) < valid(&declared), "{stated}");
+}
+
+#[test]
 fn a_grid_without_a_single_height_has_no_statistics() {
     let scratch = Scratch::new();
     scratch.write(
