@@ -111,6 +111,7 @@ pub fn build(
         layout,
         ground: OnceLock::new(),
         ribbons: collected.ribbons,
+        symbols: collected.symbols,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),

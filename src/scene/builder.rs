@@ -8,6 +8,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::DefaultCounts;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::symbols::LineSymbol;
 use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
 use crate::terrain::triangle_surface::SurfaceTriangle;
 
@@ -16,6 +17,8 @@ use crate::terrain::triangle_surface::SurfaceTriangle;
 pub struct SceneBuilder {
     /// Meshes draped on the ground.
     pub ribbons: Vec<Ribbon>,
+    /// Roads and rivers as lines.
+    pub symbols: Vec<LineSymbol>,
     /// Every feature so far; ids count from 2.
     pub features: Vec<SceneFeature>,
     /// Solids with fixed heights.

@@ -26,6 +26,7 @@ pub mod roads;
 pub mod scatter;
 pub mod sources;
 pub mod style;
+pub mod symbols;
 pub mod vertical_scale;
 pub mod views;
 pub mod water;
@@ -51,6 +52,7 @@ use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::symbols::LineSymbol;
 use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
@@ -93,6 +95,8 @@ pub struct SceneModel {
     water: OnceLock<WaterCover>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
+    /// Roads and rivers, as lines for pictures in which their ribbons are too narrow.
+    pub symbols: Vec<LineSymbol>,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
     /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.

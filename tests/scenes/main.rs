@@ -14,3 +14,4 @@ mod placement;
 mod recut;
 mod scatter;
 mod scene_file;
+mod symbols;

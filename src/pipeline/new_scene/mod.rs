@@ -137,10 +137,10 @@ fn complete(
         scene = built(&draft)?;
     }
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
-    draft.size_m = lattice.extent().size().max_element();
+    let size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
     draft.crs_name = scene.crs.name().to_owned();
-    draft.exaggeration = exaggeration(draft.relief_m / draft.size_m);
+    draft.exaggeration = exaggeration(draft.relief_m / size_m);
     draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
     draft.cameras = cameras(&scene, vectors);
     Ok(draft)

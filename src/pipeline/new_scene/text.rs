@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use crate::annotate::nice::NiceNumber;
 use crate::geom::rect::Rect;
 use crate::pipeline::new_scene::cameras::CameraDraft;
 use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
@@ -19,8 +18,6 @@ pub(super) struct SceneDraft {
     pub crs: Option<String>,
     /// The name of the scene's coordinate system.
     pub crs_name: String,
-    /// The longer side of the ground.
-    pub size_m: f64,
     /// From the lowest to the highest post.
     pub relief_m: f64,
     /// 0 where none is stated.
@@ -45,33 +42,19 @@ struct LayerSource<'a> {
     layer: &'a SurveyedLayer,
 }
 
-/// Up to this extent, widths are true to scale: on a picture a thousand pixels wide a pixel is then four meters, and a
-/// street of five meters is just visible.
-const TRUE_TO_SCALE_M: f64 = 4000.0;
-
 /// The text of the scene file.
 pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
     let mut out = head(draft);
     out.push_str(&terrain(draft));
     out.push_str(&style(draft));
-    let factor =
-        NiceNumber::at_most(draft.size_m / TRUE_TO_SCALE_M).map_or(1.0, |nice| nice.value().max(1.0));
     let sources: Vec<LayerSource<'_>> = vectors
         .iter()
         .flat_map(|VectorDraft { file, layers }| layers.iter().map(move |layer| LayerSource { file, layer }))
         .collect();
-    if factor > 1.0 && !sources.is_empty() {
-        let _ = writeln!(
-            out,
-            "\n# The ground is {:.0} km wide: roads and rivers are drawn {factor} times as wide as they are, so that they\n\
-             # show. For a view from near by, divide the widths by {factor}.",
-            draft.size_m / 1000.0
-        );
-    }
     for rule in &RULES {
         for &source in &sources {
             for found in source.layer.matches.iter().filter(|found| found.rule.what == rule.what) {
-                table(&mut out, source, found, factor);
+                table(&mut out, source, found);
             }
         }
     }
@@ -132,7 +115,7 @@ fn style(draft: &SceneDraft) -> String {
     out
 }
 
-fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch, factor: f64) {
+fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
     let (rule, count) = (found.rule, found.count);
     let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(source.file));
     if let Some(name) = &source.layer.name {
@@ -142,7 +125,7 @@ fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch, factor: 
         let _ = writeln!(out, "where = {}", quoted(rule.condition));
     }
     if let Some(width_m) = rule.width_m {
-        let _ = writeln!(out, "width = {}", width_m * factor);
+        let _ = writeln!(out, "width = {width_m}");
     }
     for key in rule.keys {
         let _ = writeln!(out, "{key}");

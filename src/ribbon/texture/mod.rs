@@ -66,6 +66,14 @@ impl RibbonSurface {
         }
     }
 
+    /// The same pavement without lines.
+    pub fn unmarked(self) -> Self {
+        match self {
+            Self::Asphalt | Self::AsphaltSolid | Self::AsphaltEdges => Self::AsphaltPlain,
+            other => other,
+        }
+    }
+
     /// Whether the ground shows through it.
     pub fn lets_through(self) -> bool {
         matches!(self, Self::Cover(_) | Self::Border | Self::Bank)

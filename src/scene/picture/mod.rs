@@ -9,6 +9,7 @@ mod haze;
 mod models;
 pub mod recut;
 mod solids;
+mod symbols;
 mod uprights;
 
 use std::sync::Arc;
@@ -82,7 +83,7 @@ fn listed(
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
-    drapes::add(&mut list, scene, displayed);
+    drapes::add(&mut list, scene, displayed, viewer);
     progress("setting models");
     ground::add_plinth(&mut list, walls);
     solids::add(&mut list, scene);

@@ -23,6 +23,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
 use crate::scene::roads::centerline::Centerline;
+use crate::scene::symbols::LineSymbol;
 
 /// Meters in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;
@@ -36,6 +37,7 @@ const JOINTS: [RibbonSurface; 3] =
 
 /// Lays the roads that the ground carries on it.
 pub fn lay(all: &[Centerline], extent: &Rect, collected: &mut SceneBuilder) {
+    collected.symbols.extend(all.iter().filter_map(|road| LineSymbol::of(&road.street, road.feature)));
     let with_shoulders =
         |road: &Centerline| road.street.with_more(2.0 * road.shoulder_m, RibbonSurface::Shoulder);
     let shouldered = all.iter().filter(|road| road.shoulder_m > 0.0);

@@ -28,6 +28,7 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
 use crate::scene::report::RiverRow;
 use crate::scene::sources::Sources;
+use crate::scene::symbols::LineSymbol;
 use crate::scene::water::network::{self, Stream};
 use crate::terrain::lattice::Lattice;
 
@@ -60,6 +61,8 @@ pub fn lay(
     report_cuts(&falling, &cuts, collected);
     report_climbs(&falling, &cuts, collected);
     ribbons(&streams, &lattice.extent(), collected);
+    let symbols = streams.iter().filter_map(|stream| LineSymbol::of(&stream.street, stream.feature));
+    collected.symbols.extend(symbols);
     Ok(())
 }
 

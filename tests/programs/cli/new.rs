@@ -36,6 +36,7 @@ fn a_new_scene_is_sound_says_how_to_render_it_and_renders() {
         "crs = \"EPSG:32616\"",
         "interval = 50",
         "file = \"../data/streams.geojson\"",
+        "\nwidth = 3\n",
         "[[camera]]",
     ] {
         assert!(text.contains(wanted), "{wanted} in\n{text}");

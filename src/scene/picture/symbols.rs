@@ -1,0 +1,344 @@
+//! Line symbols for one camera: roads and rivers where they would be drawn narrower than their class needs.
+//!
+//! ```text
+//!  centerline ─► vertices that show ─► legs in view, short against their distance ─► a width at each vertex
+//!             ─► runs that are too narrow ─► stroked in plan: casing and fill ─► draped
+//! ```
+//!
+//! A width on the picture depends on the depth of a vertex and, where the camera looks across the ground at a low angle,
+//! on the line's direction. It is taken at each vertex for the level ground there. On a straight leg the width that a
+//! depth needs is straight too, so that few vertices are enough.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3, Vec2};
+use rayon::prelude::*;
+
+use crate::draw::list::{DrawMesh, FeatureId};
+use crate::earthworks::alignment::{Alignment, Support, Width};
+use crate::geom::polyline::Polyline;
+use crate::geom::profile::Profile;
+use crate::geom::rect::Rect;
+use crate::geom::segment;
+use crate::mesh::sink::MeshSink;
+use crate::ribbon::drape::drape;
+use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use crate::scene::SceneModel;
+use crate::scene::symbols::{LineSymbol, drawn_width_m, px_scale};
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::triangle_surface::TriangleSurface;
+use crate::view::camera::Camera;
+use crate::view::frustum::Frustum;
+
+/// How much wider than its fill a casing is on either side, in pixels of a picture 1080 lines high.
+const CASING_PX: f64 = 0.75;
+
+/// Symbols narrower than this have no casing: it would be more of them than the fill.
+const LEAST_CASED_PX: f64 = 2.0;
+
+/// How far a vertex that is left out may lie from the line, in pixels.
+const SLACK_PX: f64 = 0.3;
+
+/// How far beside the picture a line is still drawn, in pixels: more than half of the widest symbol.
+const MARGIN_PX: f64 = 12.0;
+
+/// The longest leg, as a share of its distance from the eye: perspective changes widths along it by as much.
+const LONGEST_LEG: f64 = 0.1;
+
+/// The most that a width grows because ground is seen at a low angle. Ground is seldom level where it is seen lower than
+/// at twenty degrees.
+const MOST_FORESHORTENING: f64 = 3.0;
+
+/// Markings narrower than this road, in pixels of a picture 1080 lines high, are lost, and gray its pavement.
+const MARKED_PX: f64 = 6.0;
+
+/// Sides of a round end.
+const CAP_SIDES: u32 = 4;
+
+/// The shortest leg that is divided, in widths of the line: near the eye the line is wide enough.
+const SHORTEST_LEG: f64 = 8.0;
+
+/// How much wider a casing is than its fill at most, in what the fill is wider than the line.
+const CASING_RISE: f64 = 2.0;
+
+/// A symbol, draped.
+pub(super) struct DrapedSymbol<'a> {
+    /// The line.
+    pub symbol: &'a LineSymbol,
+    /// Its outline; empty for the narrowest.
+    pub casing: DrawMesh,
+    /// Its inside.
+    pub fill: DrawMesh,
+}
+
+/// How the ribbons of a feature show beside its symbols.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum RibbonShow {
+    /// Symbols take the place of all that is in view.
+    Replaced,
+    /// Too narrow for markings.
+    Plain,
+    /// As it is.
+    Full,
+}
+
+/// The symbols of a picture.
+#[derive(Default)]
+pub(super) struct Symbols<'a> {
+    /// The lines that have any in view.
+    pub draped: Vec<DrapedSymbol<'a>>,
+    /// Of the features in view that are roads or rivers.
+    pub shows: BTreeMap<FeatureId, RibbonShow>,
+}
+
+/// The symbols that `camera` sees, on the ground that it is shown.
+pub(super) fn symbols<'a>(
+    scene: &'a SceneModel,
+    camera: &Camera,
+    displayed: &dyn TriangleSurface,
+) -> Symbols<'a> {
+    let view = SymbolView::new(scene, camera);
+    let seen: Vec<_> = scene.symbols.par_iter().map(|symbol| (symbol, view.seen(symbol))).collect();
+    let mut shows = BTreeMap::new();
+    for (symbol, show) in seen.iter().filter_map(|(symbol, seen)| Some((symbol, seen.show?))) {
+        let most = shows.entry(symbol.feature).or_insert(show);
+        *most = show.max(*most);
+    }
+    let draped = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
+        let mesh = |plan: &PlanMesh| {
+            let mut mesh = DrawMesh::default();
+            drape(plan, displayed, &mut mesh);
+            mesh
+        };
+        let strokes = |width: fn(&SymbolVertex) -> f64| {
+            let mut plan = PlanMesh::default();
+            seen.runs.iter().for_each(|run| stroke_run(run, width, &mut plan));
+            mesh(&plan)
+        };
+        let is_cased = symbol.least_px >= LEAST_CASED_PX;
+        let casing = if is_cased { strokes(|vertex| vertex.casing_m) } else { DrawMesh::default() };
+        DrapedSymbol { symbol, casing, fill: strokes(|vertex| vertex.drawn_m) }
+    };
+    let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
+    Symbols { draped: narrow.map(draped).collect(), shows }
+}
+
+/// A vertex of a line in view.
+#[derive(Clone, Copy, Debug)]
+struct SymbolVertex {
+    at: DVec2,
+    true_m: f64,
+    drawn_m: f64,
+    casing_m: f64,
+    show: RibbonShow,
+}
+
+/// What a camera sees of a line.
+#[derive(Default)]
+struct SeenLine {
+    /// The parts that are too narrow.
+    runs: Vec<Vec<SymbolVertex>>,
+    /// `None` where it is out of view.
+    show: Option<RibbonShow>,
+}
+
+/// A point of a centerline on the ground.
+#[derive(Clone, Copy)]
+struct LinePoint {
+    at: DVec3,
+    station_m: f64,
+    /// Along the line, of length 1.
+    along: DVec2,
+}
+
+impl LinePoint {
+    fn middle(&self, other: &Self, along: DVec2) -> Self {
+        Self { at: self.at.midpoint(other.at), station_m: self.station_m.midpoint(other.station_m), along }
+    }
+}
+
+struct SymbolView<'a> {
+    camera: &'a Camera,
+    frustum: Frustum,
+    ground: FullResolution<'a>,
+    extent: Rect,
+    /// The lowest and the highest ground.
+    z: [f32; 2],
+    px: f64,
+}
+
+impl<'a> SymbolView<'a> {
+    fn new(scene: &'a SceneModel, camera: &'a Camera) -> Self {
+        let (min, max) = scene.bounds;
+        let lattice = scene.ground().lattice();
+        Self {
+            camera,
+            frustum: Frustum::new(camera),
+            ground: FullResolution { lattice },
+            extent: lattice.extent(),
+            z: [min.z, max.z],
+            px: px_scale(camera.size().1),
+        }
+    }
+
+    fn seen(&self, symbol: &LineSymbol) -> SeenLine {
+        let mut seen = SeenLine::default();
+        let mut end = None;
+        for leg in self.points(&symbol.alignment.line).windows(2) {
+            self.divide([leg[0], leg[1]], symbol, &mut |part| {
+                let part = part.map(|point| self.vertex(symbol, &point));
+                seen.show = seen.show.max(part.iter().map(|vertex| vertex.show).max());
+                if part.iter().any(|vertex| vertex.drawn_m > vertex.true_m) {
+                    match seen.runs.last_mut().filter(|_| end == Some(part[0].at)) {
+                        Some(run) => run.push(part[1]),
+                        None => seen.runs.push(part.to_vec()),
+                    }
+                    end = Some(part[1].at);
+                }
+            });
+        }
+        seen
+    }
+
+    /// Calls `visit` with the parts of a leg that may be in view, in order, each short against its distance.
+    fn divide(&self, leg: [LinePoint; 2], symbol: &LineSymbol, visit: &mut impl FnMut([LinePoint; 2])) {
+        let [from, to] = leg;
+        let nearest_m = self.nearest_m(leg);
+        let margin_m = MARGIN_PX * self.px * self.meters_per_px_at(nearest_m);
+        let reach = Rect::around([from.at.truncate(), to.at.truncate()]).grown(margin_m);
+        let [low, high] = self.z;
+        let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
+        if !(reach.meets(&self.extent) && self.frustum.may_see(min, max)) {
+            return;
+        }
+        let length_m = from.at.distance(to.at);
+        if length_m > LONGEST_LEG * nearest_m && length_m > SHORTEST_LEG * symbol.alignment.width.widest_m() {
+            let direction = (to.at - from.at).truncate().normalize_or_zero();
+            let middle = from.middle(&to, direction);
+            let middle = LinePoint { at: middle.at.truncate().extend(self.z_at(middle.at)), ..middle };
+            self.divide([from, middle], symbol, visit);
+            self.divide([middle, to], symbol, visit);
+        } else {
+            visit(leg);
+        }
+    }
+
+    /// How near a leg comes to the eye.
+    fn nearest_m(&self, [from, to]: [LinePoint; 2]) -> f64 {
+        let (eye, leg) = (self.camera.eye().as_dvec3(), to.at - from.at);
+        let part = ((eye - from.at).dot(leg) / leg.length_squared()).clamp(0.0, 1.0);
+        eye.distance(from.at + leg * part)
+    }
+
+    fn vertex(&self, symbol: &LineSymbol, point: &LinePoint) -> SymbolVertex {
+        let meters_per_px = self.px * self.meters_per_px(point);
+        let true_m = symbol.alignment.width.at(point.station_m);
+        let drawn_m = drawn_width_m(true_m, symbol.least_px, meters_per_px);
+        // Where a symbol begins beside the ribbon that is wide enough, its casing begins with nothing.
+        let casing_m = (2.0 * CASING_PX * meters_per_px).min(CASING_RISE * (drawn_m - true_m));
+        let show = if drawn_m > true_m {
+            RibbonShow::Replaced
+        } else if true_m < MARKED_PX * meters_per_px {
+            RibbonShow::Plain
+        } else {
+            RibbonShow::Full
+        };
+        SymbolVertex { at: point.at.truncate(), true_m, drawn_m, casing_m: drawn_m + casing_m, show }
+    }
+
+    /// Meters of level ground, across a line, in a pixel across the line on the picture.
+    fn meters_per_px(&self, point: &LinePoint) -> f64 {
+        let [right, up, forward] =
+            [self.camera.right(), self.camera.up(), self.camera.forward()].map(|axis| axis.as_dvec3());
+        let offset = point.at - self.camera.eye().as_dvec3();
+        let depth_m = offset.dot(forward).max(f64::from(self.camera.planes().0));
+        let on_picture = |way: DVec2| {
+            let way = way.extend(0.0);
+            let away = way.dot(forward) / depth_m;
+            DVec2::new(way.dot(right) - offset.dot(right) * away, way.dot(up) - offset.dot(up) * away)
+        };
+        let [along, across] = [point.along, point.along.perp()].map(on_picture);
+        let foreshortened = across.perp_dot(along.normalize_or_zero()).abs();
+        self.meters_per_px_at(depth_m) / foreshortened.max(1.0 / MOST_FORESHORTENING)
+    }
+
+    fn meters_per_px_at(&self, depth_m: f64) -> f64 {
+        1.0 / f64::from(self.camera.pixels_per_meter((depth_m as f32).max(self.camera.planes().0)))
+    }
+
+    fn z_at(&self, at: DVec3) -> f64 {
+        self.ground.displayed_z(at.truncate()).unwrap_or(at.z)
+    }
+
+    /// The vertices of a line without those that cannot be told from a straight line (Douglas and Peucker 1973).
+    fn points(&self, line: &Polyline) -> Vec<LinePoint> {
+        let z = f64::from(self.z[0]);
+        let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
+        let points: Vec<DVec3> = line.points().iter().map(on_ground).collect();
+        let eye = self.camera.eye().as_dvec3();
+        let slack_m = |at: &DVec3| SLACK_PX * self.meters_per_px_at(at.distance(eye));
+        let slacks_m: Vec<f64> = points.iter().map(slack_m).collect();
+        let kept = kept(line.points(), &slacks_m);
+        let direction = |from: usize, to: usize| {
+            let way = |place: usize| line.points()[kept[place]];
+            (way(to) - way(from)).normalize_or_zero()
+        };
+        let last = kept.len() - 1;
+        let along = |place: usize| {
+            let [before, after] =
+                [place.saturating_sub(1), place.min(last - 1)].map(|from| direction(from, from + 1));
+            (before + after).try_normalize().unwrap_or(after)
+        };
+        let point = |(place, &index): (usize, &usize)| LinePoint {
+            at: points[index],
+            station_m: line.stations()[index],
+            along: along(place),
+        };
+        kept.iter().enumerate().map(point).collect()
+    }
+}
+
+/// The indices of the points, both ends among them, between which straight lines pass every other point by at most its
+/// slack. A ring has no line between its ends (NaN) and is divided in any case.
+fn kept(points: &[DVec2], slacks: &[f64]) -> Vec<usize> {
+    let (mut kept, mut open) = (vec![0], vec![points.len() - 1]);
+    while let (Some(&from), Some(&to)) = (kept.last(), open.last()) {
+        let ends = (points[from], points[to]);
+        let excess = |&index: &usize| segment::distance_squared(ends, points[index]).sqrt() / slacks[index];
+        let farthest = (from + 1..to).map(|index| (excess(&index), index)).max_by(|a, b| a.0.total_cmp(&b.0));
+        match farthest.filter(|(excess, _)| *excess > 1.0 || excess.is_nan()) {
+            Some((_, index)) => open.push(index),
+            None => kept.extend(open.pop()),
+        }
+    }
+    kept
+}
+
+/// Strokes a run of vertices, its ends round.
+fn stroke_run(run: &[SymbolVertex], width: fn(&SymbolVertex) -> f64, plan: &mut PlanMesh) {
+    let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
+    let Some(widths) = Profile::new(line.stations().to_vec(), run.iter().map(width).collect()) else {
+        return;
+    };
+    let points = line.points();
+    let last = points.len() - 1;
+    for [end, inner] in [[0, 1], [last, last - 1]] {
+        let outward = (points[end] - points[inner]).normalize_or_zero();
+        cap(points[end], outward * widths.values()[end] / 2.0, plan);
+    }
+    let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
+    stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), plan);
+}
+
+/// Half a disc about a line's end, on the side of `outward`, which is as long as its radius.
+fn cap(center: DVec2, outward: DVec2, plan: &mut PlanMesh) {
+    let mut vertex = |at: DVec2| plan.vertex(PlanVertex { at, uv: Vec2::ZERO });
+    let middle = vertex(center);
+    let corner = |index: u32| {
+        let angle = std::f64::consts::PI * (f64::from(index) / f64::from(CAP_SIDES) - 0.5);
+        vertex(center + DVec2::new(libm::cos(angle), libm::sin(angle)).rotate(outward))
+    };
+    let rim: Vec<_> = (0..=CAP_SIDES).map(corner).collect();
+    rim.windows(2).for_each(|pair| plan.triangle([middle, pair[0], pair[1]]));
+}

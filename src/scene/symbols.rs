@@ -1,0 +1,98 @@
+//! The line symbols of roads and rivers: how wide a line is drawn where its true width would be lost.
+//!
+//! A map draws a road as wide as its class needs to be told from the others, whatever its width on the ground. So does a
+//! picture: a line is drawn as wide as it is, or as its class's least width on the picture, whichever is more. Only
+//! pictures are; the ground, its heights, exports and reports have the true width.
+
+use crate::draw::list::FeatureId;
+use crate::earthworks::alignment::{Alignment, Support};
+use crate::ribbon::junction::Street;
+use crate::ribbon::texture::RibbonSurface;
+
+/// Least widths of paved roads: those at least so many meters wide, pixels.
+const PAVED: [(f64, f64); 4] = [(9.0, 5.0), (6.5, 3.5), (4.0, 2.5), (0.0, 1.5)];
+
+/// Of rivers: a river that a map of a county shows as two banks, one that has a name, and a stream.
+const WATER: [(f64, f64); 3] = [(40.0, 3.0), (8.0, 2.0), (0.0, 1.2)];
+
+/// Of gravel roads.
+const GRAVEL_PX: f64 = 1.5;
+
+/// Of tracks and paths.
+const TRACK_PX: f64 = 1.0;
+
+/// The height of the picture that least widths are for, in pixels; they grow with it, as type does.
+const PICTURE_PX: f64 = 1080.0;
+
+/// A road or river as a line on a map.
+pub struct LineSymbol {
+    /// Its centerline and true width.
+    pub alignment: Alignment,
+    /// What it is made of.
+    pub surface: RibbonSurface,
+    /// The least width it is drawn with, in pixels of a picture 1080 lines high; a higher class has a greater one.
+    pub least_px: f64,
+    /// The feature it belongs to.
+    pub feature: FeatureId,
+}
+
+impl LineSymbol {
+    /// The symbol of a street; `None` in a tunnel.
+    pub fn of(street: &Street, feature: FeatureId) -> Option<Self> {
+        let Street { alignment, width_m, surface, .. } = street;
+        let least_px = least_px(*surface, *width_m);
+        let symbol = || Self { alignment: alignment.clone(), surface: *surface, least_px, feature };
+        (alignment.support != Support::Tunnel).then(symbol)
+    }
+}
+
+/// Pixels of a picture `height_px` high in one pixel of those that least widths are for.
+pub fn px_scale(height_px: u32) -> f64 {
+    f64::from(height_px) / PICTURE_PX
+}
+
+/// The width in meters that a line of `true_m` is drawn with where a pixel is `meters_per_px` wide.
+pub fn drawn_width_m(true_m: f64, least_px: f64, meters_per_px: f64) -> f64 {
+    true_m.max(least_px * meters_per_px)
+}
+
+/// The least width of a line's class, in pixels of a picture 1080 lines high.
+fn least_px(surface: RibbonSurface, width_m: f64) -> f64 {
+    let class_of = |classes: &[(f64, f64)]| {
+        let class = classes.iter().find(|(from_m, _)| width_m >= *from_m);
+        class.map_or(TRACK_PX, |&(_, least_px)| least_px)
+    };
+    match surface {
+        RibbonSurface::River => class_of(&WATER),
+        RibbonSurface::Track => TRACK_PX,
+        RibbonSurface::Gravel => GRAVEL_PX,
+        _ => class_of(&PAVED),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_as_wide_as_it_is_or_as_its_class_needs() {
+        assert_eq!(drawn_width_m(6.0, 2.5, 0.1), 6.0);
+        assert_eq!(drawn_width_m(6.0, 2.5, 2.4), 6.0);
+        assert_eq!(drawn_width_m(6.0, 2.5, 20.0), 50.0);
+    }
+
+    #[test]
+    fn least_widths_fall_from_class_to_class() {
+        let roads = [12.0, 7.0, 5.0, 3.0].map(|width_m| least_px(RibbonSurface::Asphalt, width_m));
+        assert_eq!(roads, [5.0, 3.5, 2.5, 1.5]);
+        assert_eq!(least_px(RibbonSurface::Gravel, 12.0), 1.5);
+        assert_eq!(least_px(RibbonSurface::Track, 12.0), 1.0);
+        let rivers = [60.0, 12.0, 3.0].map(|width_m| least_px(RibbonSurface::River, width_m));
+        assert_eq!(rivers, [3.0, 2.0, 1.2]);
+    }
+
+    #[test]
+    fn a_picture_twice_as_high_has_lines_twice_as_wide() {
+        assert_eq!([540, 1080, 2160].map(px_scale), [0.5, 1.0, 2.0]);
+    }
+}
