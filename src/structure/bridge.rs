@@ -11,7 +11,7 @@
 //!        ╲9───────────8╱         soffit
 //! ```
 //!
-//! A deck is planned true to scale: [`sections`], [`deck`], [`end_parapets`]. [`build`] takes its sections with elevations
+//! A deck is planned true to scale: [`sections`], [`deck()`], [`end_parapets`]. [`build`] takes its sections with elevations
 //! as they are drawn, on which all that is built keeps its own height. A road may be drawn much wider than any is, to be
 //! seen on a small picture; then what is built for it is magnified as well.
 
