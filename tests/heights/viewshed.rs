@@ -231,3 +231,16 @@ fn the_answer_is_the_same_for_any_number_of_threads() {
     assert_eq!(with(1), with(2));
     assert_eq!(with(1), with(5));
 }
+
+#[test]
+fn a_line_along_a_diagonal_is_swept_as_it_is_walked() {
+    let lattice = ground(3, (18, 56), DVec2::splat(10.0), 0.0, 7_439_385_862_337_633_148);
+    let options = ViewshedOptions {
+        observer: SightEnd { at: ORIGIN + DVec2::new(160.0, 350.0), above_m: 0.0 },
+        target_above_m: 1.6,
+        range_m: f64::INFINITY,
+        sector: Sector::ALL,
+        curvature: Curvature::FLAT,
+    };
+    assert_eq!(differences(&lattice, &options), []);
+}

@@ -266,6 +266,11 @@ impl Horizon {
             }
         }
         let MergedBucket { mut pieces, is_changed, .. } = merged;
+        // A crossing may be rounded to the end of the bucket. A piece there covers nothing, and on the last ray, which belongs
+        // to the last bucket, it would hide the pieces that end there.
+        while pieces.len() > 1 && pieces.last().is_some_and(|piece| piece.u >= last) {
+            pieces.pop();
+        }
         if is_changed {
             std::mem::swap(&mut pieces, &mut self.buckets[index].pieces);
             self.low[index] = self.least(index);
