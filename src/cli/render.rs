@@ -172,7 +172,7 @@ fn as_json(path: &Path, rendered: &RenderedScene, times: &[(&'static str, f64)])
 fn triangles(scene: &SceneModel, list: &DrawList) -> BTreeMap<&'static str, usize> {
     let mut counts = BTreeMap::new();
     for item in &list.items {
-        let feature = (item.feature.0 as usize).checked_sub(2).and_then(|index| scene.features.get(index));
+        let feature = item.feature.index().and_then(|index| scene.features.get(index));
         *counts.entry(feature.map_or("ground", |feature| feature.kind.noun(2))).or_default() +=
             item.triangles.len();
     }

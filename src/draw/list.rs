@@ -36,6 +36,11 @@ impl FeatureId {
     pub const NONE: Self = Self(0);
     /// The bare ground.
     pub const GROUND: Self = Self(1);
+
+    /// Which feature it is, counted from 0; `None` for nothing and for the ground.
+    pub fn index(self) -> Option<usize> {
+        Some(self.0.checked_sub(Self::GROUND.0 + 1)? as usize)
+    }
 }
 
 /// A corner of a triangle to draw.

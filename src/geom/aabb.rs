@@ -28,6 +28,16 @@ impl Aabb {
         self.max - self.min
     }
 
+    /// The point of the box that is nearest to `at`.
+    pub fn nearest_to(&self, at: Vec3) -> Vec3 {
+        at.clamp(self.min, self.max)
+    }
+
+    /// The corner of the box that is farthest from `at`.
+    pub fn farthest_from(&self, at: Vec3) -> Vec3 {
+        Vec3::select((at - self.min).abs().cmpgt((at - self.max).abs()), self.min, self.max)
+    }
+
     /// The radius of the sphere through the corners.
     pub fn radius(&self) -> f32 {
         self.size().length() * 0.5
@@ -44,5 +54,13 @@ mod tests {
         assert_eq!((bounds.min, bounds.max), (Vec3::new(1.0, 0.0, 0.0), Vec3::new(3.0, 4.0, 4.0)));
         assert_eq!((bounds.center(), bounds.radius()), (Vec3::splat(2.0), 3.0));
         assert_eq!(Aabb::around([]), None);
+    }
+
+    #[test]
+    fn a_box_is_nearest_on_its_side_and_farthest_at_a_corner() {
+        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::new(4.0, 3.0, 2.0) };
+        let at = Vec3::new(1.0, 9.0, -1.0);
+        assert_eq!(bounds.nearest_to(at), Vec3::new(1.0, 3.0, 0.0));
+        assert_eq!(bounds.farthest_from(at), Vec3::new(4.0, 0.0, 2.0));
     }
 }

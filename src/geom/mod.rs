@@ -18,6 +18,7 @@ pub mod rect;
 pub mod rect_tree;
 pub mod region;
 pub mod segment;
+pub mod simplify;
 pub mod triangle;
 pub mod wkt;
 pub mod wkt_writer;

@@ -1,5 +1,7 @@
 //! Profiles: values along a line, straight between stations.
 
+use crate::geom::simplify::simplified;
+
 /// A piecewise-linear value over stations: at least two, finite, never falling. NaN is no value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
@@ -73,23 +75,12 @@ impl Profile {
     /// Peucker 1973).
     pub fn bends(&self, slack: f64) -> Vec<f64> {
         let (stations, values) = (&self.stations, &self.values);
-        let last = stations.len() - 1;
-        let mut kept = vec![false; stations.len()];
-        (kept[0], kept[last]) = (true, true);
-        let mut open = vec![(0, last)];
-        while let Some((from, to)) = open.pop() {
+        let off = |from: usize, to: usize, index: usize| {
             let run = stations[to] - stations[from];
-            let off = |&index: &usize| {
-                let part = if run > 0.0 { (stations[index] - stations[from]) / run } else { 0.0 };
-                (values[index] - (values[from] + (values[to] - values[from]) * part)).abs()
-            };
-            let worst = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-            if let Some(worst) = worst.filter(|worst| off(worst) > slack) {
-                kept[worst] = true;
-                open.extend([(from, worst), (worst, to)]);
-            }
-        }
-        stations.iter().zip(kept).filter(|(_, kept)| *kept).map(|(&station, _)| station).collect()
+            let part = if run > 0.0 { (stations[index] - stations[from]) / run } else { 0.0 };
+            (values[index] - (values[from] + (values[to] - values[from]) * part)).abs()
+        };
+        simplified(stations.len(), slack, off).into_iter().map(|index| stations[index]).collect()
     }
 
     /// The steepest rise or fall, of those over more than `least_run`.

@@ -80,8 +80,7 @@ fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
     if feature == FeatureId::GROUND {
         return "ground".into();
     }
-    let index = feature.0.checked_sub(FeatureId::GROUND.0 + 1);
-    let feature = index.and_then(|index| features.get(index as usize));
+    let feature = feature.index().and_then(|index| features.get(index));
     feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
         "" => kind.noun(1).to_owned(),
         name => format!("{} {name}", kind.noun(1)),

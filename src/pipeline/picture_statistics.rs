@@ -1,6 +1,8 @@
 //! What a script wants to know of a picture before furniture covers it: how much of it is ground, and how light.
 
-use crate::draw::color::{Srgba, linear_from_srgb};
+use glam::Vec3;
+
+use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::render::picture::Rendering;
 
@@ -36,11 +38,10 @@ impl PictureStatistics {
     pub fn new(picture: &Rendering) -> Self {
         let count = picture.features.len().max(1) as f64;
         let filled = picture.features.iter().filter(|&&feature| feature != FeatureId::NONE).count();
-        let linear: [f32; 256] = std::array::from_fn(|channel| linear_from_srgb(channel as u8));
         let mut histogram = vec![0u64; STEPS];
         let pixels = picture.pixels.data().iter().zip(&picture.features);
         for (color, _) in pixels.filter(|&(_, &feature)| feature == FeatureId::GROUND) {
-            histogram[(lightness(*color, &linear) * 100.0).round() as usize] += 1;
+            histogram[(lightness(*color) * 100.0).round() as usize] += 1;
         }
         let ground: u64 = histogram.iter().sum();
         Self {
@@ -78,9 +79,8 @@ impl Lightness {
 }
 
 /// L* of a color.
-fn lightness(Srgba([red, green, blue, _]): Srgba, linear: &[f32; 256]) -> f32 {
-    let luminance =
-        0.2126 * linear[red as usize] + 0.7152 * linear[green as usize] + 0.0722 * linear[blue as usize];
+fn lightness(color: Srgba) -> f32 {
+    let luminance = color.linear().dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let scaled =
         if luminance > 0.008_856 { libm::cbrtf(luminance) } else { 7.787 * luminance + 16.0 / 116.0 };
     (116.0 * scaled - 16.0).clamp(0.0, 100.0)
@@ -93,8 +93,7 @@ mod tests {
 
     #[test]
     fn lightness_is_that_of_the_commission() {
-        let linear: [f32; 256] = std::array::from_fn(|channel| linear_from_srgb(channel as u8));
-        let of = |gray: u8| lightness(Srgba::opaque(gray, gray, gray), &linear);
+        let of = |gray: u8| lightness(Srgba::opaque(gray, gray, gray));
         for (gray, wanted) in [(0, 0.0), (10, 2.74), (119, 50.03), (255, 100.0)] {
             assert!((of(gray) - wanted).abs() < 0.02, "{gray}: {}", of(gray));
         }

@@ -46,7 +46,7 @@ impl SceneBuilder {
 
     /// The feature of an id; `None` for the ground and beyond the last.
     pub fn feature(&self, id: FeatureId) -> Option<&SceneFeature> {
-        self.features.get(id.0.checked_sub(FeatureId::GROUND.0 + 1)? as usize)
+        self.features.get(id.index()?)
     }
 
     /// The name of a feature; may be empty.

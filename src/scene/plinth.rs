@@ -23,12 +23,11 @@ pub fn base_z((min, max): (Vec3, Vec3)) -> f32 {
     min.z - (f64::from((max - min).truncate().max_element()) * DEPTH) as f32
 }
 
-/// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`.
+/// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`, down to world Z `base`.
 ///
 /// A border edge gets a wall where there is no ground beyond it: at the lattice's border and around holes, not
 /// where a neighboring patch is merely out of view.
-pub fn plinth(ground: &DrawMesh, lattice: &Lattice) -> DrawMesh {
-    let base = lattice.height_range().0 - (lattice.extent().size().max_element() * DEPTH) as f32;
+pub fn plinth(ground: &DrawMesh, lattice: &Lattice, base: f32) -> DrawMesh {
     let mut walls = DrawMesh::default();
     for (from, to) in border_edges(ground) {
         let along = to.truncate() - from.truncate();
@@ -113,7 +112,7 @@ mod tests {
     fn walls_stand_at_the_world_s_edge_and_face_outward_but_not_at_the_edge_of_view() {
         let lattice =
             Lattice::new(DVec2::new(700.0, 900.0), DVec2::splat(10.0), 3, vec![5.0; 6]).expect("sound");
-        let walls = plinth(&western_cell(&lattice), &lattice);
+        let walls = plinth(&western_cell(&lattice), &lattice, 0.0);
         assert_eq!(walls.triangles.len(), 6, "south, west and north");
         for triangle in &walls.triangles {
             let [a, b, c] = triangle.map(|id| Vec3::from(walls.vertices[id.index()].position));

@@ -295,6 +295,12 @@ impl Lattice {
         post.row as usize * self.columns as usize + post.column as usize
     }
 
+    /// The rectangle of all posts in map coordinates.
+    pub fn map_extent(&self) -> Rect {
+        let Rect { min, max } = self.extent();
+        Rect { min: self.origin + min, max: self.origin + max }
+    }
+
     /// The post of an [index](Self::index).
     pub fn post_at(&self, index: usize) -> Post {
         let columns = self.columns as usize;

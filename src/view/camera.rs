@@ -4,6 +4,8 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::geom::aabb::Aabb;
+
 /// The eye, its orthonormal basis, the field of view and the size of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -42,6 +44,11 @@ pub enum CameraError {
     /// Near and far are not `0 < near < far`.
     #[error("the near and far planes are {0} m and {1} m, they must satisfy 0 < near < far")]
     Planes(f32, f32),
+}
+
+/// A distance behind the box `ground` from `eye`, in any direction, in meters: a far plane that cuts nothing of it off.
+pub fn far_m(ground: &Aabb, eye: Vec3) -> f32 {
+    eye.distance(ground.farthest_from(eye)) * 1.5 + 1000.0
 }
 
 impl Camera {

@@ -67,8 +67,8 @@ impl Terrain {
 
     /// The map coordinates of the south-west and north-east post.
     pub fn extent(&self) -> (DVec2, DVec2) {
-        let (lattice, extent) = (self.ground.lattice(), self.ground.lattice().extent());
-        (lattice.origin() + extent.min, lattice.origin() + extent.max)
+        let extent = self.ground.lattice().map_extent();
+        (extent.min, extent.max)
     }
 
     /// Answers heights one by one and in batches, from many threads.

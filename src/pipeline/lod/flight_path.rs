@@ -5,14 +5,15 @@ use std::fmt::{self, Display};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, Vec2};
 
+use crate::geom::aabb::Aabb;
 use crate::geom::rect::Rect;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::lod::station_file::{self, StationFileError};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
-use crate::view::camera::{Camera, CameraError};
+use crate::view::camera::{Camera, CameraError, far_m};
 use crate::view::flight::{self, CircularFlight, FlightStation, GroundClearance, StraightFlight};
 
 /// Posts along a side of the block around whose center the circle is flown.
@@ -87,7 +88,7 @@ impl FlightPath {
         let Rect { min, max } = lattice.extent();
         let (min, max) = (min.as_vec2().extend(low), max.as_vec2().extend(high));
         let camera = |(station, frame): (FlightStation, usize)| {
-            let camera = station.camera(0.5, far_m(min, max, station.eye));
+            let camera = station.camera(0.5, far_m(&Aabb { min, max }, station.eye));
             camera.map_err(|source| FlightError::Camera { path: self.clone(), frame, source })
         };
         self.stations(frames, lattice, (low + high) * 0.5)?.into_iter().zip(1..).map(camera).collect()
@@ -129,12 +130,6 @@ fn ground_z(lattice: &Lattice, at: Vec2, missing_m: f32) -> f32 {
     let at: DVec2 = at.as_dvec2().clamp(min, max);
     let height = ground_height(lattice, Interpolation::Bilinear, at).height_m();
     height.map_or(missing_m, |height| height as f32)
-}
-
-/// A distance behind the box of the ground from `eye`, in any direction.
-fn far_m(min: Vec3, max: Vec3, eye: Vec3) -> f32 {
-    let farthest = Vec3::select((eye - min).abs().cmpgt((eye - max).abs()), min, max);
-    eye.distance(farthest) * 1.5 + 1000.0
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 /// The cameras for a scene whose vectors, if any, lie within `vectors` in the scene's system; the first is the default.
 pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
     let lattice = &scene.lattice;
-    let ground = map_extent(lattice);
+    let ground = lattice.map_extent();
     let mut cameras = vec![CameraDraft {
         name: "overview",
         about: "The whole ground from the south, as large as it fits into the picture.",
@@ -60,12 +60,6 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
         }
     }));
     cameras
-}
-
-/// The rectangle of a lattice's posts in map coordinates.
-pub(super) fn map_extent(lattice: &Lattice) -> Rect {
-    let Rect { min, max } = lattice.extent();
-    Rect { min: min + lattice.origin(), max: max + lattice.origin() }
 }
 
 /// The block of the ground with the greatest difference of heights and half a block around it, from the south-west post on;

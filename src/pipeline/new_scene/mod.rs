@@ -25,7 +25,7 @@ use crate::description::parse::parse;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::pipeline::files::{self, SystemError, WriteFileError};
-use crate::pipeline::new_scene::cameras::{cameras, map_extent};
+use crate::pipeline::new_scene::cameras::cameras;
 use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
@@ -132,7 +132,7 @@ fn complete(
     };
     let mut scene = built(&draft)?;
     let vectors = extent(vectors, &scene.crs);
-    draft.extent = worth_cropping(vectors, map_extent(&scene.lattice));
+    draft.extent = worth_cropping(vectors, scene.lattice.map_extent());
     if draft.extent.is_some() {
         scene = built(&draft)?;
     }

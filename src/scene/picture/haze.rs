@@ -6,6 +6,7 @@
 use glam::Vec3;
 
 use crate::draw::lighting::Haze;
+use crate::geom::aabb::Aabb;
 use crate::view::camera::Camera;
 
 /// Transmittance at the far edge of the scene in a view from above.
@@ -19,9 +20,9 @@ const PLAN_DOWN: f32 = 0.985;
 /// meters from the near edge at which 63 % is haze, 0 for clear air; `None` fits it to the view.
 pub(super) fn haze(color: Vec3, stated_m: Option<f32>, camera: &Camera, (min, max): (Vec3, Vec3)) -> Haze {
     let eye = camera.eye();
-    let near_m = eye.distance(eye.clamp(min, max));
-    let farthest = Vec3::select((eye - min).abs().cmpgt((eye - max).abs()), min, max);
-    let depth_m = eye.distance(farthest) - near_m;
+    let scene = Aabb { min, max };
+    let near_m = eye.distance(scene.nearest_to(eye));
+    let depth_m = eye.distance(scene.farthest_from(eye)) - near_m;
     let distance_m = match stated_m {
         Some(0.0) => f32::INFINITY,
         Some(stated_m) => stated_m,

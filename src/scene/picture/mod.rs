@@ -14,14 +14,15 @@ mod uprights;
 
 use std::sync::Arc;
 
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
+use crate::geom::aabb::Aabb;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
 use crate::scene::{SceneModel, SceneView, ViewAim};
-use crate::view::camera::{Camera, CameraError};
+use crate::view::camera::{Camera, CameraError, far_m};
 
 /// The draw list of a scene for one camera.
 pub struct ViewDraw {
@@ -43,9 +44,7 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
         ViewAim::At { eye, target } => (eye, target),
         ViewAim::Fitted(fitted) => fitted_aim(scene, &fitted, view.fov_y_rad, size),
     };
-    let farthest = Vec3::select((eye - min).abs().cmpgt((eye - max).abs()), min, max);
-    let far = eye.distance(farthest) * 1.5 + 1000.0;
-    Camera::new(eye, target, view.fov_y_rad, size, (0.5, far))
+    Camera::new(eye, target, view.fov_y_rad, size, (0.5, far_m(&Aabb { min, max }, eye)))
 }
 
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.

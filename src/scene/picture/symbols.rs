@@ -20,6 +20,7 @@ use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::geom::segment;
+use crate::geom::simplify::simplified;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::drape;
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
@@ -271,7 +272,7 @@ impl<'a> SymbolView<'a> {
         self.ground.displayed_z(at.truncate()).unwrap_or(at.z)
     }
 
-    /// The vertices of a line without those that cannot be told from a straight line (Douglas and Peucker 1973).
+    /// The vertices of a line without those that cannot be told from a straight line.
     fn points(&self, line: &Polyline) -> Vec<LinePoint> {
         let z = f64::from(self.z[0]);
         let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
@@ -279,7 +280,11 @@ impl<'a> SymbolView<'a> {
         let eye = self.camera.eye().as_dvec3();
         let slack_m = |at: &DVec3| SLACK_PX * self.meters_per_px_at(at.distance(eye));
         let slacks_m: Vec<f64> = points.iter().map(slack_m).collect();
-        let kept = kept(line.points(), &slacks_m);
+        let flat = line.points();
+        let off = |from: usize, to: usize, index: usize| {
+            segment::distance_squared((flat[from], flat[to]), flat[index]).sqrt() / slacks_m[index]
+        };
+        let kept = simplified(flat.len(), 1.0, off);
         let direction = |from: usize, to: usize| {
             let way = |place: usize| line.points()[kept[place]];
             (way(to) - way(from)).normalize_or_zero()
@@ -297,22 +302,6 @@ impl<'a> SymbolView<'a> {
         };
         kept.iter().enumerate().map(point).collect()
     }
-}
-
-/// The indices of the points, both ends among them, between which straight lines pass every other point by at most its
-/// slack. A ring has no line between its ends (NaN) and is divided in any case.
-fn kept(points: &[DVec2], slacks: &[f64]) -> Vec<usize> {
-    let (mut kept, mut open) = (vec![0], vec![points.len() - 1]);
-    while let (Some(&from), Some(&to)) = (kept.last(), open.last()) {
-        let ends = (points[from], points[to]);
-        let excess = |&index: &usize| segment::distance_squared(ends, points[index]).sqrt() / slacks[index];
-        let farthest = (from + 1..to).map(|index| (excess(&index), index)).max_by(|a, b| a.0.total_cmp(&b.0));
-        match farthest.filter(|(excess, _)| *excess > 1.0 || excess.is_nan()) {
-            Some((_, index)) => open.push(index),
-            None => kept.extend(open.pop()),
-        }
-    }
-    kept
 }
 
 /// Strokes a run of vertices, its ends round.
