@@ -50,7 +50,12 @@ fn ground(kind: u32, (columns, rows): (u32, u32), cell: DVec2, holes: f64, seed:
         };
         if seeded.part() < holes { f32::NAN } else { height as f32 }
     };
-    let heights = (0..columns * rows).map(|index| height(index % columns, index / columns)).collect();
+    let mut heights: Vec<f32> =
+        (0..columns * rows).map(|index| height(index % columns, index / columns)).collect();
+    if heights.iter().all(|height| height.is_nan()) {
+        // A lattice without any data is none.
+        heights[0] = 17.0;
+    }
     Lattice::new(ORIGIN, cell, columns, heights).expect("sound")
 }
 
@@ -241,6 +246,17 @@ fn a_line_along_a_diagonal_is_swept_as_it_is_walked() {
         range_m: f64::INFINITY,
         sector: Sector::ALL,
         curvature: Curvature::FLAT,
+    };
+    assert_eq!(differences(&lattice, &options), []);
+}
+
+/// Straight up a column of posts, with holes on both sides of it.
+#[test]
+fn a_line_along_a_column_between_holes_is_swept_as_it_is_walked() {
+    let lattice = ground(0, (30, 33), DVec2::new(10.3, 27.1), 0.3, 15_841_423_109_550_663_990);
+    let options = ViewshedOptions {
+        observer: SightEnd { at: ORIGIN + DVec2::new(1.0, 21.0) * lattice.cell(), above_m: 50.0 },
+        ..options(ORIGIN)
     };
     assert_eq!(differences(&lattice, &options), []);
 }

@@ -292,6 +292,8 @@ impl Sweep<'_> {
     /// Adds the ring's own edges to the horizon.
     fn ring_edges(&mut self) {
         let ray_error = self.ray_error(self.ring.x);
+        // Rungs and diagonals to a post are cut short of it by the error of the strip before.
+        let strip_ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
         let error = self.ring.error;
         for j in self.ring.first..self.ring.end() {
             let (is_prominent, next_is_prominent) =
@@ -301,7 +303,7 @@ impl Sweep<'_> {
             }
             let Some(post) = self.ring.get(j) else { continue };
             if is_prominent && (self.ring.is_gap(j - 1) || self.ring.is_gap(j + 1)) {
-                let (u0, u1) = (post.u - ray_error, post.u + ray_error);
+                let (u0, u1) = (post.u - strip_ray_error, post.u + strip_ray_error);
                 self.horizon.doubt(Doubt { u0, u1, v: post.v + error });
             }
             let Some(next) = self.ring.get(j + 1) else { continue };
