@@ -4,10 +4,10 @@ use glam::{U64Vec2, UVec2};
 
 use crate::dem::error::DemErrorKind;
 
-/// The most samples of a raster in memory: 2²⁸, a gigabyte of 32-bit floats.
+/// The most samples of a raster in memory: 16,385 a side, a gigabyte of 32-bit floats.
 ///
 /// Arbitrary: larger than any terrain that fits a scene, small enough that a forged header cannot exhaust the memory.
-pub const MOST_SAMPLES: u64 = 1 << 28;
+pub const MOST_SAMPLES: u64 = 16_385 * 16_385;
 
 /// Bytes that a packed file of any size may decode to: sparse files hold almost nothing.
 const SPARSE_BYTES: u64 = 64 << 20;

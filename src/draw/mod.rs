@@ -3,6 +3,7 @@
 
 pub mod color;
 pub mod ground;
+pub mod ground_levels;
 pub mod lighting;
 pub mod list;
 pub mod material;

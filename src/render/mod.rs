@@ -6,7 +6,6 @@
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
-mod ground_levels;
 mod mip_levels;
 pub mod picture;
 

@@ -100,7 +100,7 @@ pub fn build(
         contours: style::contours(document),
         lighting: style::lighting(document),
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
-        map: OnceLock::new(),
+        maps: Default::default(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),
         lattice,

@@ -59,6 +59,9 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::water_cover::{WaterCover, water_cover};
 
+/// The levels of its posts at which a scene's ground may be drawn; a coarser one is drawn from the last of them.
+pub const MAP_LEVELS: usize = 8;
+
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
     /// The picture's title.
@@ -90,7 +93,7 @@ pub struct SceneModel {
     /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
     /// `None` fits haze to each view.
     pub haze_m: Option<f32>,
-    map: OnceLock<Arc<GroundMap>>,
+    maps: [OnceLock<Arc<GroundMap>>; MAP_LEVELS],
     infers_water: bool,
     water: OnceLock<WaterCover>,
     /// Areas, rivers, lakes and roads, in drawing order.
@@ -325,9 +328,10 @@ impl SceneModel {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
     }
 
-    /// What the ground looks like, its light computed on first use.
-    pub fn map(&self) -> &Arc<GroundMap> {
-        self.map.get_or_init(|| Arc::new(style::ground_map(self)))
+    /// What the ground looks like at a level of its posts, its light computed on first use: 0 is every post, each further
+    /// level every second one of the level before. There are [`MAP_LEVELS`].
+    pub fn map(&self, level: usize) -> &Arc<GroundMap> {
+        self.maps[level].get_or_init(|| Arc::new(style::ground_map(self, level as u32)))
     }
 
     /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
@@ -355,9 +359,9 @@ impl SceneModel {
         sea.into_iter().chain(lakes).map(off).collect()
     }
 
-    /// Whether [`SceneModel::map`] has been made.
+    /// Whether [`SceneModel::map`] has been made at any level.
     pub fn is_lit(&self) -> bool {
-        self.map.get().is_some()
+        self.maps.iter().any(|map| map.get().is_some())
     }
 
     /// The view called `name`, or the first where no name is given.

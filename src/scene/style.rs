@@ -2,8 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use glam::Vec3;
-use rayon::prelude::*;
+use glam::{Vec2, Vec3};
 
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
@@ -11,6 +10,7 @@ use crate::description::document::Document;
 use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
+use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::draw::lighting::Lighting;
 use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
@@ -89,45 +89,47 @@ pub fn lighting(document: &Document) -> Lighting {
     Lighting { to_sun: to_sun.normalize_or(Vec3::Z), ..Lighting::default() }
 }
 
-/// The height, slope and light of every post.
-pub fn ground_map(scene: &SceneModel) -> GroundMap {
+/// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
+/// before, smoothed.
+pub fn ground_map(scene: &SceneModel, number: u32) -> GroundMap {
     let lattice = &scene.lattice;
     let (light, water) = rayon::join(
         || TerrainLight::new(scene.ground().lattice(), scene.lighting.to_sun),
         || &scene.water().is_water,
     );
     let columns = lattice.columns() as usize;
-    let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(lattice.heights().len());
-    posts.par_chunks_exact_mut(columns).enumerate().for_each(|(row, posts)| {
+    let row = |row: usize| {
         let first = row * columns;
         let heights = filled_heights(&lattice.heights()[first..][..columns], scene.height_range_m.0);
         let slopes = lattice.slopes_of_row(row as u32);
         let light = light.sun(row).into_iter().zip(light.sky(row));
-        for ((post, (height_m, slopes)), (sun_visibility, sky_visibility)) in
-            posts.iter_mut().zip(heights.into_iter().zip(slopes)).zip(light)
-        {
-            *post = GroundPost {
+        let posts = heights.into_iter().zip(slopes).zip(light).map(
+            |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
                 height_m,
                 slope_east: scene.scale.world_z(slopes.x),
                 slope_north: scene.scale.world_z(slopes.y),
                 sun_visibility,
                 sky_visibility,
                 water: 0.0,
-            };
-        }
+            },
+        );
+        let mut posts: Vec<GroundPost> = posts.collect();
         for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
             post.water = if is_water { 1.0 } else { 0.0 };
         }
-    });
+        posts
+    };
+    let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
+    let GroundLevel { size, posts } = level(all, number, row);
     GroundMap {
-        origin: glam::Vec2::ZERO,
-        cell: lattice.cell().as_vec2(),
-        columns: lattice.columns(),
-        rows: lattice.rows(),
+        origin: Vec2::ZERO,
+        cell: lattice.cell().as_vec2() * (1u32 << number) as f32,
+        columns: size.columns,
+        rows: size.rows,
         posts,
         ramp: scene.ramp.clone(),
         contours: scene.contours,
-        form_level: form_level(lattice),
+        form_level: form_level(lattice).saturating_sub(number),
     }
 }
 

@@ -6,10 +6,10 @@
 use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
-use crate::render::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 
 #[derive(Debug)]
 pub struct GroundShader<'a> {

@@ -20,10 +20,10 @@ use bytemuck::cast_slice;
 use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground_levels::{PostCount, coarser_levels};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::memory::texture;
-use crate::render::ground_levels::{PostCount, coarser_levels};
 
 /// More levels than the largest texture has; the length of the shader's array.
 pub const MOST_LEVELS: usize = 24;

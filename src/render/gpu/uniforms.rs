@@ -4,11 +4,11 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::ground::WaterColor;
+use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
-use crate::render::ground_levels::PostCount;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
 use crate::view::camera::Camera;
 

@@ -71,11 +71,15 @@ fn listed(
     viewer: Viewer<'_>,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
+    let level = match viewer {
+        Viewer::Camera(camera) => ground::map_level(scene, camera),
+        Viewer::Anyone => 0,
+    };
     if !scene.is_lit() {
         progress("lighting terrain");
     }
-    let mut list =
-        DrawList { ground: Some(Arc::clone(scene.map())), lighting: scene.lighting, ..DrawList::default() };
+    let map = Arc::clone(scene.map(level));
+    let mut list = DrawList { ground: Some(map), lighting: scene.lighting, ..DrawList::default() };
     if let Viewer::Camera(camera) = viewer {
         list.lighting.haze = haze::haze(scene.lighting.haze.color, scene.haze_m, camera, scene.bounds);
     }

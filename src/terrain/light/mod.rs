@@ -1,7 +1,7 @@
 //! The light that reaches each post past other terrain: shares of the sun and of the sky.
 //!
 //! Light is computed on reduced lattices of bounded size and read at the full one row by row, so that it is never held
-//! for every post. A lattice of 4097 × 4097 posts takes less than half a second on two cores and 250 MB at the
+//! for every post. A lattice of 4097 × 4097 posts takes less than half a second on two cores and 130 MB at the
 //! most, of which 50 MB stay until the light is dropped; larger ones take no more than reading their heights.
 
 use glam::Vec3;

@@ -14,8 +14,6 @@
 //! the cost is constant per post. Where the ground has more posts than a picture has pixels, the sheets are swept over a
 //! reduced lattice whose posts cast what any post around them casts; heights are compared with them post by post.
 
-use std::borrow::Cow;
-
 use glam::{Vec2, Vec2Swizzles, Vec3, Vec3Swizzles};
 
 use crate::terrain::light::field::{CoarseField, Reduction};
@@ -108,32 +106,38 @@ fn sheet(heights: &CoarseField, level: Vec2, tangent: f32) -> CoarseField<'stati
     let casting = heights.reduced(heights.factor(MOST_CELLS), &caster);
     let steps = (level / casting.cell).abs();
     if steps.y >= steps.x {
-        swept(&casting, level, tangent)
-    } else {
-        swept(&casting.transposed(), level.yx(), tangent).transposed()
+        return swept(casting, level, tangent);
     }
+    // One field at a time is held beside its transpose.
+    let turned = casting.transposed();
+    drop(casting);
+    swept(turned, level.yx(), tangent).transposed()
 }
 
-/// Sweeps from row to row away from the sun, which is `level` and more north or south than east or west in cells.
-fn swept(casting: &CoarseField, level: Vec2, tangent: f32) -> CoarseField<'static> {
-    let per_row = casting.cell.y / level.y.abs();
-    let aside = level.x * per_row / casting.cell.x;
+/// Sweeps from row to row away from the sun, which is `level` and more north or south than east or west in cells: the
+/// heights that cast become those in shadow.
+fn swept(mut field: CoarseField<'static>, level: Vec2, tangent: f32) -> CoarseField<'static> {
+    let per_row = field.cell.y / level.y.abs();
+    let aside = level.x * per_row / field.cell.x;
     let (first, part) = (1.0 + aside.floor(), aside - aside.floor());
     let drop = per_row * tangent;
-    let mut shadow = vec![NOTHING; casting.values.len()];
+    let (columns, rows) = (field.columns, field.rows);
+    let heights = field.values.to_mut();
     // One value more at the western end and two at the eastern end, where nothing casts a shadow.
-    let mut before = vec![NOTHING; casting.columns + 3];
-    for step in 0..casting.rows {
-        let row = if level.y > 0.0 { casting.rows - 1 - step } else { step };
-        let shadow = &mut shadow[row * casting.columns..][..casting.columns];
+    let mut before = vec![NOTHING; columns + 3];
+    let mut shadow = vec![NOTHING; columns];
+    for step in 0..rows {
+        let row = if level.y > 0.0 { rows - 1 - step } else { step };
+        let line = &mut heights[row * columns..][..columns];
         for (shadow, pair) in shadow.iter_mut().zip(before[first as usize..].windows(2)) {
             *shadow = between(pair[0], pair[1], part) - drop;
         }
-        for (before, (casting, shadow)) in before[1..].iter_mut().zip(casting.line(row).iter().zip(shadow)) {
-            *before = casting.max(*shadow);
+        for ((before, line), shadow) in before[1..].iter_mut().zip(line).zip(&shadow) {
+            *before = line.max(*shadow);
+            *line = *shadow;
         }
     }
-    CoarseField { values: Cow::Owned(shadow), ..*casting }
+    field
 }
 
 /// The height between two, linear where both cast a shadow; else that of the nearer.

@@ -1,0 +1,193 @@
+//! The coarser levels of a ground map, from which far ground is read.
+//!
+//! A picture of large ground reads no post of the finest levels: it is made with a map that begins at the level it shows
+//! ([`level`]), and the finer ones pass by row by row.
+//!
+//! A far pixel spans many posts, and a single reading would make hillshade sparkle. Each level holds every second post
+//! of the one before, smoothed (Williams 1983). `n` posts become `n / 2 + 1`, where texels would halve rounding down:
+//! posts stay in place, so that the first post of every level is the map's first. The last post of a level may lie
+//! past the map's border.
+
+use std::iter::successors;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::draw::ground::{GroundMap, GroundPost};
+
+/// The number of posts of a level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PostCount {
+    /// Posts per row.
+    pub columns: u32,
+    /// Rows of posts.
+    pub rows: u32,
+}
+
+/// Posts at twice the distance of the level before.
+#[derive(Debug)]
+pub struct GroundLevel {
+    /// The number of posts.
+    pub size: PostCount,
+    /// The posts, row by row from the south-west.
+    pub posts: Vec<GroundPost>,
+}
+
+impl PostCount {
+    /// The posts of a map itself.
+    pub fn from_map(map: &GroundMap) -> Self {
+        Self { columns: map.columns, rows: map.rows }
+    }
+
+    /// The next coarser level; `None` after two posts a side.
+    pub fn halved(self) -> Option<Self> {
+        let Self { columns, rows } = self;
+        (columns.max(rows) > 2).then_some(Self { columns: columns / 2 + 1, rows: rows / 2 + 1 })
+    }
+}
+
+/// The coarser levels of a checked `map`, the finest first, down to two posts a side. Each level is made when it is
+/// taken; earlier ones are not kept.
+pub fn coarser_levels(map: &GroundMap) -> impl Iterator<Item = GroundLevel> {
+    let next = |size: PostCount, posts: &[GroundPost]| {
+        size.halved()?;
+        Some(level(size, 1, |row| posts[row * size.columns as usize..][..size.columns as usize].to_vec()))
+    };
+    successors(next(PostCount::from_map(map), &map.posts), move |level| next(level.size, &level.posts))
+}
+
+/// Level `number` over posts that `row` makes one row at a time, as [`coarser_levels`] would make it of all of them; 0 is
+/// the posts themselves. Levels end at two posts a side.
+///
+/// Finer levels are never held: each thread keeps two rows a level.
+pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost> + Sync) -> GroundLevel {
+    /// Rows made together; those that two portions share are made twice.
+    const PORTION: usize = 32;
+    let sizes: Vec<PostCount> =
+        successors(Some(size), |size| size.halved()).take(number as usize + 1).collect();
+    let size = sizes[sizes.len() - 1];
+    let (columns, rows) = (size.columns as usize, size.rows as usize);
+    let mut posts: Vec<GroundPost> = bytemuck::zeroed_vec(columns * rows);
+    posts.par_chunks_mut(PORTION * columns).enumerate().for_each(|(portion, posts)| {
+        let first = portion * PORTION;
+        let made = rows_of(&sizes, first..(first + PORTION).min(rows), &row);
+        posts.chunks_exact_mut(columns).zip(made).for_each(|(posts, row)| posts.copy_from_slice(&row));
+    });
+    GroundLevel { size, posts }
+}
+
+/// Adds `weight` times `post`.
+pub fn add_weighted(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
+    *sum = sum.zip_with(post, |sum, value| sum + value * weight);
+}
+
+/// Rows of the last of the levels of these sizes.
+fn rows_of<'a>(
+    sizes: &'a [PostCount],
+    rows: Range<usize>,
+    finest: &'a dyn Fn(usize) -> Vec<GroundPost>,
+) -> Box<dyn Iterator<Item = Vec<GroundPost>> + 'a> {
+    let (size, finer) = match sizes {
+        [.., finer, size] => (size, finer),
+        _ => return Box::new(rows.map(finest)),
+    };
+    // Post `i` is made of posts `2 i − 1`, `2 i` and `2 i + 1`; past the border the border's posts are repeated.
+    let (columns, last) = (size.columns as usize, finer.rows as usize - 1);
+    let from = (2 * rows.start).saturating_sub(1).min(last)..(2 * rows.end).min(last + 1);
+    let mut source =
+        rows_of(&sizes[..sizes.len() - 1], from, finest).map(move |row| halved_row(&row, columns));
+    let mut before = None;
+    Box::new(rows.map(move |row| {
+        let south = before.take().or_else(|| if row > 0 { source.next() } else { None });
+        let own = source.next();
+        let north = source.next();
+        let own = own.or_else(|| south.clone()).unwrap_or_default();
+        let south = south.unwrap_or_else(|| own.clone());
+        let north = north.unwrap_or_else(|| own.clone());
+        let blend = |((south, own), north)| smoothed([south, own, north]);
+        let row = south.iter().zip(&own).zip(&north).map(blend).collect();
+        before = Some(north);
+        row
+    }))
+}
+
+/// Every second post of a row, smoothed along it.
+fn halved_row(row: &[GroundPost], count: usize) -> Vec<GroundPost> {
+    let at = |index: usize| &row[index.min(row.len() - 1)];
+    (0..count)
+        .map(|index| smoothed([at((2 * index).saturating_sub(1)), at(2 * index), at(2 * index + 1)]))
+        .collect()
+}
+
+/// A post smoothed with its neighbors.
+fn smoothed([before, own, after]: [&GroundPost; 3]) -> GroundPost {
+    before
+        .zip_with(after, |before, after| 0.25 * (before + after))
+        .zip_with(own, |around, own| around + 0.5 * own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::draw::ground::ColorRamp;
+    use glam::Vec2;
+
+    fn posts(size: PostCount, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
+        let post = |index: u32| GroundPost {
+            height_m: height(index % size.columns, index / size.columns),
+            ..GroundPost::default()
+        };
+        (0..size.columns * size.rows).map(post).collect()
+    }
+
+    #[test]
+    fn levels_shrink_to_two_posts_a_side() {
+        let sizes = |columns, rows| -> Vec<_> {
+            let all = successors(Some(PostCount { columns, rows }), |size| size.halved());
+            all.map(|size| (size.columns, size.rows)).collect()
+        };
+        assert_eq!(sizes(9, 4), [(9, 4), (5, 3), (3, 2), (2, 2)]);
+        assert_eq!(sizes(1, 5), [(1, 5), (1, 3), (1, 2)]);
+        assert_eq!(sizes(1, 1).len(), 1);
+        assert!(sizes(u32::MAX, 2).len() <= 33);
+    }
+
+    #[test]
+    fn a_plane_stays_a_plane_away_from_the_border() {
+        let height = |column: u32, row: u32| column as f32 * 3.0 - row as f32;
+        let from = PostCount { columns: 33, rows: 17 };
+        let fine = posts(from, height);
+        let level = level(from, 1, |row| fine[row * 33..][..33].to_vec());
+        let plane = posts(level.size, |column, row| height(2 * column, 2 * row));
+        for (index, (post, plane)) in (0..).zip(level.posts.iter().zip(&plane)) {
+            let (column, row) = (index % level.size.columns, index / level.size.columns);
+            if (1..level.size.columns - 1).contains(&column) && (1..level.size.rows - 1).contains(&row) {
+                assert_eq!(post.height_m, plane.height_m, "{column}, {row}");
+            }
+        }
+    }
+    #[test]
+    fn a_level_made_at_once_is_that_made_of_the_level_before() {
+        let height = |column: u32, row: u32| ((column * 7 + row * row * 3) % 31) as f32;
+        for size in [(300, 77), (64, 129), (5, 1), (1, 9), (2, 2)] {
+            let size = PostCount { columns: size.0, rows: size.1 };
+            let columns = size.columns as usize;
+            let map = GroundMap {
+                origin: Vec2::ZERO,
+                cell: Vec2::ONE,
+                columns: size.columns,
+                rows: size.rows,
+                posts: posts(size, height),
+                ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
+                contours: None,
+                form_level: 0,
+            };
+            for (number, step_by_step) in (1..).zip(coarser_levels(&map)) {
+                let at_once = level(size, number, |row| map.posts[row * columns..][..columns].to_vec());
+                assert_eq!(at_once.size, step_by_step.size);
+                assert!(at_once.posts == step_by_step.posts, "level {number} of {size:?}");
+            }
+        }
+    }
+}
