@@ -147,7 +147,7 @@ table! {
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
         /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
-            otherwise "eight times the longest side of the terrain, its drawn height included";
+            otherwise "fitted to the view";
     }
 
     /// `[style.contours]`.
@@ -162,10 +162,14 @@ table! {
 
     /// `[style.light]`.
     struct LightTable {
-        /// Direction of the sun: north-west by default, since hills lit from below right look like holes.
-        azimuth: f64 = key::number(DIRECTION, "°"), default 315;
+        /// Direction of the sun.
+        azimuth: Option<f64> = key::number(DIRECTION, "°"),
+            otherwise "the upper left of the picture, as on maps: hills lit from below look like holes";
         /// Height of the sun above the horizon.
-        altitude: f64 = key::number(Above(0.0, 90.0), "°"), default 45;
+        altitude: Option<f64> = key::number(Above(0.0, 90.0), "°"), otherwise "40";
+        /// Date and time, such as "2026-06-21T09:30:00+02:00": the sun stands where it stood over the middle of the
+        /// scene then.
+        time: Option<Stated<String>> = key::filled_text(), otherwise "the sun of `azimuth` and `altitude`";
     }
 
     /// `[[label]]`.

@@ -19,6 +19,7 @@ pub mod rect_tree;
 pub mod region;
 pub mod segment;
 pub mod simplify;
+pub mod sun_position;
 pub mod triangle;
 pub mod wkt;
 pub mod wkt_writer;

@@ -27,6 +27,7 @@ use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
 use crate::scene::sources::Sources;
 use crate::scene::style;
+use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::WorldFrame;
@@ -98,7 +99,7 @@ pub fn build(
         heights,
         ramp: style::ramp(document, height_range_m)?,
         contours: style::contours(document),
-        lighting: style::lighting(document),
+        sunlight: Sunlight::new(document, &crs, lattice.extent().center())?,
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
         maps: Default::default(),
         infers_water: document.terrain.infer_water,

@@ -16,6 +16,7 @@ pub mod buildings;
 pub mod fences;
 pub mod footprint;
 pub mod ground;
+pub mod ground_map;
 pub mod models;
 pub mod near;
 pub mod picture;
@@ -26,6 +27,7 @@ pub mod roads;
 pub mod scatter;
 pub mod sources;
 pub mod style;
+pub mod sunlight;
 pub mod symbols;
 pub mod vertical_scale;
 pub mod views;
@@ -40,7 +42,6 @@ use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
-use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
@@ -50,17 +51,16 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
+use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
 use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::water_cover::{WaterCover, water_cover};
-
-/// The levels of its posts at which a scene's ground may be drawn; a coarser one is drawn from the last of them.
-pub const MAP_LEVELS: usize = 8;
 
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
@@ -88,12 +88,12 @@ pub struct SceneModel {
     pub ramp: ColorRamp,
     /// Lines of equal height on the ground.
     pub contours: Option<Contours>,
-    /// Light and sky.
-    pub lighting: Lighting,
+    /// Where the light comes from.
+    pub sunlight: Sunlight,
     /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
     /// `None` fits haze to each view.
     pub haze_m: Option<f32>,
-    maps: [OnceLock<Arc<GroundMap>>; MAP_LEVELS],
+    maps: GroundMapCache,
     infers_water: bool,
     water: OnceLock<WaterCover>,
     /// Areas, rivers, lakes and roads, in drawing order.
@@ -328,10 +328,9 @@ impl SceneModel {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
     }
 
-    /// What the ground looks like at a level of its posts, its light computed on first use: 0 is every post, each further
-    /// level every second one of the level before. There are [`MAP_LEVELS`].
-    pub fn map(&self, level: usize) -> &Arc<GroundMap> {
-        self.maps[level].get_or_init(|| Arc::new(style::ground_map(self, level as u32)))
+    /// What the ground looks like, its light computed unless the last picture had the same; `making` is called before.
+    pub fn map(&self, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
+        self.maps.get(self, key, making)
     }
 
     /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
@@ -359,9 +358,9 @@ impl SceneModel {
         sea.into_iter().chain(lakes).map(off).collect()
     }
 
-    /// Whether [`SceneModel::map`] has been made at any level.
+    /// Whether [`SceneModel::map`] has been made.
     pub fn is_lit(&self) -> bool {
-        self.maps.iter().any(|map| map.get().is_some())
+        !self.maps.is_empty()
     }
 
     /// The view called `name`, or the first where no name is given.

@@ -1,20 +1,11 @@
-//! How the ground looks: ramp, contours, light and haze.
-
-use std::f32::consts::FRAC_PI_2;
-
-use glam::{Vec2, Vec3};
+//! How the ground looks: ramp and contours.
 
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::words::RampName;
 use crate::draw::color::Srgba;
-use crate::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use crate::draw::ground_levels::{GroundLevel, PostCount, level};
-use crate::draw::lighting::Lighting;
-use crate::scene::SceneModel;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::light::TerrainLight;
+use crate::draw::ground::{ColorRamp, Contours};
 
 /// The tints of an atlas, from the lowest ground to the highest. Their lightness rises steadily (L* 61 to 94), so that
 /// tint never works against shade.
@@ -78,92 +69,6 @@ pub fn contours(document: &Document) -> Option<Contours> {
         color: contours.color.map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.0)),
         width_px: 1.0,
     })
-}
-
-/// The document's light.
-pub fn lighting(document: &Document) -> Lighting {
-    let light = &document.style.light;
-    let (azimuth, altitude) = ((light.azimuth as f32).to_radians(), (light.altitude as f32).to_radians());
-    let level = libm::sinf(FRAC_PI_2 - altitude);
-    let to_sun = Vec3::new(libm::sinf(azimuth) * level, libm::cosf(azimuth) * level, libm::sinf(altitude));
-    Lighting { to_sun: to_sun.normalize_or(Vec3::Z), ..Lighting::default() }
-}
-
-/// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
-/// before, smoothed.
-pub fn ground_map(scene: &SceneModel, number: u32) -> GroundMap {
-    let lattice = &scene.lattice;
-    let (light, water) = rayon::join(
-        || TerrainLight::new(scene.ground().lattice(), scene.lighting.to_sun),
-        || &scene.water().is_water,
-    );
-    let columns = lattice.columns() as usize;
-    let row = |row: usize| {
-        let first = row * columns;
-        let heights = filled_heights(&lattice.heights()[first..][..columns], scene.height_range_m.0);
-        let slopes = lattice.slopes_of_row(row as u32);
-        let light = light.sun(row).into_iter().zip(light.sky(row));
-        let posts = heights.into_iter().zip(slopes).zip(light).map(
-            |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
-                height_m,
-                slope_east: scene.scale.world_z(slopes.x),
-                slope_north: scene.scale.world_z(slopes.y),
-                sun_visibility,
-                sky_visibility,
-                water: 0.0,
-            },
-        );
-        let mut posts: Vec<GroundPost> = posts.collect();
-        for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
-            post.water = if is_water { 1.0 } else { 0.0 };
-        }
-        posts
-    };
-    let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
-    let GroundLevel { size, posts } = level(all, number, row);
-    GroundMap {
-        origin: Vec2::ZERO,
-        cell: lattice.cell().as_vec2() * (1u32 << number) as f32,
-        columns: size.columns,
-        rows: size.rows,
-        posts,
-        ramp: scene.ramp.clone(),
-        contours: scene.contours,
-        form_level: form_level(lattice).saturating_sub(number),
-    }
-}
-
-/// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.
-const FORM_SHARE: f64 = 1.0 / 100.0;
-
-/// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
-fn form_level(lattice: &Lattice) -> u32 {
-    let form_m = lattice.extent().size().max_element() * FORM_SHARE;
-    libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
-}
-
-/// The heights of a row, where posts without data take the nearest height of the row, or the lowest: they only color
-/// pixels within half a cell of the edge of data.
-fn filled_heights(row: &[f32], lowest: f32) -> Vec<f32> {
-    let mut heights = row.to_vec();
-    if row.iter().any(|height| height.is_nan()) {
-        spread(heights.iter_mut());
-        spread(heights.iter_mut().rev());
-        heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = lowest);
-    }
-    heights
-}
-
-/// Sets heights that are NaN to the one before.
-fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
-    let mut last = f32::NAN;
-    for height in row {
-        if height.is_nan() {
-            *height = last;
-        } else {
-            last = *height;
-        }
-    }
 }
 
 #[cfg(test)]

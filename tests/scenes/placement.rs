@@ -76,6 +76,29 @@ fn the_ground_alone_is_the_scene_s_and_no_scene_is_lit_before_a_picture() {
 }
 
 #[test]
+fn the_sun_of_a_time_stands_over_the_middle_of_the_scene() {
+    // The sun's noon at 91.5° west, almost on the equator, at the equinox.
+    let noon = scene("[style.light]\ntime = \"2026-03-20T18:13:30Z\"\n").expect("sound");
+    assert!(noon.sunlight.altitude_rad > 1.56, "{:?}", noon.sunlight);
+    let fault = |light: &str| scene(&format!("[style.light]\n{light}\n")).err().expect("refused");
+    assert!(fault("time = \"yesterday\"").contains("\"yesterday\" is not a date and time with an offset"));
+    assert!(fault("time = \"2026-03-20T06:00:00Z\"").contains("below the horizon"));
+    let both = fault("time = \"2026-03-20T18:00:00Z\"\nazimuth = 90");
+    assert!(both.contains("`azimuth` and `altitude` have no effect beside `time`"), "{both}");
+}
+
+#[test]
+fn a_picture_of_wide_ground_has_a_ground_map_of_its_pixels() {
+    let scene = scene("[[camera]]\nname = \"all\"\n").expect("sound");
+    let cell = |width: u32| {
+        let size = (width, width * 9 / 16);
+        let camera = camera(&scene, &scene.cameras[0], size).expect("sound");
+        build_draw_list(&scene, &camera, &|_| ()).list.ground.expect("there is ground").cell.x
+    };
+    assert_eq!([1600, 64, 30].map(cell), [10.0, 20.0, 40.0]);
+}
+
+#[test]
 fn the_ground_alone_reads_no_model_without_a_pad() {
     let missing =
         |footing: &str| format!("[[model]]\nfile = \"none.obj\"\nat = [700, 900]\nfooting = \"{footing}\"\n");

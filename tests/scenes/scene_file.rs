@@ -246,7 +246,7 @@ fn the_ground_and_its_look_are_read() {
     let contours = style.contours.as_ref().expect("contours");
     assert_eq!((contours.interval, contours.major_every), (20.0, 10));
     assert_eq!(contours.color, Some(Color([0x80, 0x55, 0x2a, 0x80])));
-    assert_eq!((style.light.azimuth, style.light.altitude), (225.0, 90.0));
+    assert_eq!((style.light.azimuth, style.light.altitude), (Some(225.0), Some(90.0)));
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn a_ramp_may_be_a_word_and_tables_may_be_inline() {
         format!("{LEAST}[style]\nramp = \"desert\"\ncontours = {{ interval = 5 }}\nlight.azimuth = 3\n");
     let style = read(&text).unwrap_or_else(|errors| panic!("{errors}")).style;
     assert_eq!(*style.ramp, RampChoice::Named(RampName::Desert));
-    assert!(style.contours.is_some() && style.light.azimuth == 3.0);
+    assert!(style.contours.is_some() && style.light.azimuth == Some(3.0));
 }
 
 /// What stands after [`LEAST`] (whose two lines come first), and what the messages must contain.

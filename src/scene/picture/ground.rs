@@ -8,9 +8,9 @@ use crate::draw::material::{Albedo, Material, NormalSource};
 use crate::geom::aabb::Aabb;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
+use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
 use crate::scene::plinth::{base_z, plinth};
-use crate::scene::{MAP_LEVELS, SceneModel};
 use crate::view::camera::Camera;
 
 /// Makes draw vertices of bare positions.
@@ -33,7 +33,7 @@ impl MeshSink<Vec3> for GroundSink {
 
 /// The coarsest level of the ground's posts at which none is farther from the next than a pixel is wide where the ground
 /// comes nearest to the camera: a picture of wide ground reads none of the finer levels.
-pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> usize {
+pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> u32 {
     let (min, max) = scene.bounds;
     let (ground, forward) = (Aabb { min, max }, camera.forward());
     let depth_m = (ground.center() - camera.eye()).dot(forward) - 0.5 * ground.size().dot(forward.abs());
@@ -42,7 +42,8 @@ pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> usize {
     }
     let pixel_m = camera.pixels_per_meter(depth_m).recip();
     let posts = pixel_m / scene.lattice.cell().max_element() as f32;
-    (libm::log2f(posts).max(0.0) as usize).min(MAP_LEVELS - 1)
+    let most = (scene.lattice.columns().max(scene.lattice.rows()) - 1).ilog2();
+    (libm::log2f(posts.max(1.0)) as u32).min(most)
 }
 
 /// Adds the ground and returns the walls below its edge.

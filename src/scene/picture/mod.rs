@@ -16,9 +16,11 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
+use crate::draw::lighting::Lighting;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::geom::aabb::Aabb;
 use crate::roam::displayed::DisplayedTerrain;
+use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
 use crate::scene::{SceneModel, SceneView, ViewAim};
@@ -71,17 +73,17 @@ fn listed(
     viewer: Viewer<'_>,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    let level = match viewer {
-        Viewer::Camera(camera) => ground::map_level(scene, camera),
-        Viewer::Anyone => 0,
+    let camera = match viewer {
+        Viewer::Camera(camera) => Some(camera),
+        Viewer::Anyone => None,
     };
-    if !scene.is_lit() {
-        progress("lighting terrain");
-    }
-    let map = Arc::clone(scene.map(level));
-    let mut list = DrawList { ground: Some(map), lighting: scene.lighting, ..DrawList::default() };
-    if let Viewer::Camera(camera) = viewer {
-        list.lighting.haze = haze::haze(scene.lighting.haze.color, scene.haze_m, camera, scene.bounds);
+    let to_sun = scene.sunlight.to_sun(camera);
+    let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
+    let map = scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain"));
+    let lighting = Lighting { to_sun, ..Lighting::default() };
+    let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
+    if let Some(camera) = camera {
+        list.lighting.haze = haze::haze(lighting.haze.color, scene.haze_m, camera, scene.bounds);
     }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();

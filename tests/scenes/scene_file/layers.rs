@@ -51,8 +51,8 @@ fn what_is_included_comes_first_and_what_is_stated_counts() {
     assert_eq!(*document.terrain.dem, ["a.tif"]);
     assert_eq!(document.terrain.tolerance_px, 2.0);
     let light = &document.style.light;
-    assert_eq!(light.azimuth, 90.0);
-    assert_eq!(light.altitude, 60.0);
+    assert_eq!(light.azimuth, Some(90.0));
+    assert_eq!(light.altitude, Some(60.0));
     assert_eq!((file(&document, 0), file(&document, 1)), ("first", "second"));
 }
 

@@ -1,0 +1,122 @@
+//! The ground map of a picture: heights, slopes and light at the level of the posts that the picture shows.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::{Vec2, Vec3};
+
+use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground_levels::{GroundLevel, PostCount, level};
+use crate::scene::SceneModel;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::light::TerrainLight;
+
+/// What a scene's ground map depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundMapKey {
+    /// 0 for every post, each further level for every second post of the one before, smoothed.
+    pub level: u32,
+    /// Unit vector toward the sun.
+    pub to_sun: Vec3,
+}
+
+/// The ground map that was made last: pictures of one view after the other share it.
+#[derive(Debug, Default)]
+pub struct GroundMapCache(Mutex<Option<(GroundMapKey, Arc<GroundMap>)>>);
+
+impl GroundMapCache {
+    /// The map of a scene; `making` is called before it is made.
+    pub(super) fn get(&self, scene: &SceneModel, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*last {
+            Some((of, map)) if *of == key => Arc::clone(map),
+            _ => {
+                making();
+                // The one before is dropped first.
+                *last = None;
+                let map = Arc::new(ground_map(scene, key));
+                *last = Some((key, Arc::clone(&map)));
+                map
+            }
+        }
+    }
+
+    /// Whether no map has been made.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_none()
+    }
+}
+
+/// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
+/// before, smoothed.
+fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
+    let lattice = &scene.lattice;
+    let (light, water) =
+        rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), || &scene.water().is_water);
+    let columns = lattice.columns() as usize;
+    let row = |row: usize| {
+        let first = row * columns;
+        let heights = filled_heights(&lattice.heights()[first..][..columns], scene.height_range_m.0);
+        let slopes = lattice.slopes_of_row(row as u32);
+        let light = light.sun(row).into_iter().zip(light.sky(row));
+        let posts = heights.into_iter().zip(slopes).zip(light).map(
+            |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
+                height_m,
+                slope_east: scene.scale.world_z(slopes.x),
+                slope_north: scene.scale.world_z(slopes.y),
+                sun_visibility,
+                sky_visibility,
+                water: 0.0,
+            },
+        );
+        let mut posts: Vec<GroundPost> = posts.collect();
+        for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
+            post.water = if is_water { 1.0 } else { 0.0 };
+        }
+        posts
+    };
+    let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
+    let GroundLevel { size, posts } = level(all, number, row);
+    GroundMap {
+        origin: Vec2::ZERO,
+        cell: lattice.cell().as_vec2() * (1u32 << number) as f32,
+        columns: size.columns,
+        rows: size.rows,
+        posts,
+        ramp: scene.ramp.clone(),
+        contours: scene.contours,
+        form_level: form_level(lattice).saturating_sub(number),
+    }
+}
+
+/// The generalized ground keeps forms wider than this share of the extent: about as many as a map of the whole names.
+const FORM_SHARE: f64 = 1.0 / 100.0;
+
+/// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
+fn form_level(lattice: &Lattice) -> u32 {
+    let form_m = lattice.extent().size().max_element() * FORM_SHARE;
+    libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
+}
+
+/// The heights of a row, where posts without data take the nearest height of the row, or the lowest: they only color
+/// pixels within half a cell of the edge of data.
+fn filled_heights(row: &[f32], lowest: f32) -> Vec<f32> {
+    let mut heights = row.to_vec();
+    if row.iter().any(|height| height.is_nan()) {
+        spread(heights.iter_mut());
+        spread(heights.iter_mut().rev());
+        heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = lowest);
+    }
+    heights
+}
+
+/// Sets heights that are NaN to the one before.
+fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
+    let mut last = f32::NAN;
+    for height in row {
+        if height.is_nan() {
+            *height = last;
+        } else {
+            last = *height;
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Where a scene's light comes from: from the upper left of each picture, as on maps, or from where the sun stands.
+
+use std::f32::consts::FRAC_PI_4;
+
+use glam::{DVec2, Vec2, Vec3};
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::geom::crs::Crs;
+use crate::geom::sun_position::{SunPosition, sun_position, unix_seconds};
+use crate::view::camera::Camera;
+
+/// Where the light of a scene comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sunlight {
+    /// Clockwise from north, radians; `None` for the upper left of each picture: forms that are lit from below look like
+    /// holes.
+    pub azimuth_rad: Option<f32>,
+    /// Above the horizon, radians.
+    pub altitude_rad: f32,
+}
+
+/// The sun's height in degrees where it is not stated: low enough that gentle forms show.
+const ALTITUDE_DEG: f64 = 40.0;
+
+/// The light follows the camera in steps of this many degrees, so that a small turn does not move the shadows.
+const STEP_DEG: f32 = 30.0;
+
+impl Sunlight {
+    /// The document's light. `middle` is the middle of the scene in map coordinates of `crs`.
+    ///
+    /// # Errors
+    /// A time at which the sun is below the horizon, one that is not a time, or one together with an angle.
+    pub fn new(document: &Document, crs: &Crs, middle: DVec2) -> Result<Self, Diagnostic> {
+        let light = &document.style.light;
+        let Some(time) = &light.time else {
+            return Ok(Self {
+                azimuth_rad: light.azimuth.map(|degrees| degrees.to_radians() as f32),
+                altitude_rad: light.altitude.unwrap_or(ALTITUDE_DEG).to_radians() as f32,
+            });
+        };
+        if light.azimuth.is_some() || light.altitude.is_some() {
+            let message = "`azimuth` and `altitude` have no effect beside `time`";
+            return Err(document.error(time, message).with_help("remove either"));
+        }
+        let seconds = unix_seconds(time).ok_or_else(|| {
+            let help = "write it as RFC 3339 does: \"2026-06-21T09:30:00+02:00\", or ending in Z for UTC";
+            document
+                .error(time, format!("\"{}\" is not a date and time with an offset", **time))
+                .with_help(help)
+        })?;
+        let failed = |error| document.error(time, format!("the sun's position is unknown here: {error}"));
+        let wgs84 = Crs::wgs84();
+        let place = crs.transform(&wgs84, middle).map_err(failed)?;
+        let north = crs.transform(&wgs84, middle + DVec2::Y * 1000.0).map_err(failed)?;
+        let SunPosition { azimuth_rad, altitude_rad } = sun_position(seconds, place);
+        if altitude_rad <= 0.0 {
+            let message = format!("the sun is {:.1}° below the horizon then", -altitude_rad.to_degrees());
+            return Err(document.error(time, message).with_help("name a time of day"));
+        }
+        // Where the map's north points, seen on the globe.
+        let turn = libm::atan2((north.x - place.x) * libm::cos(place.y.to_radians()), north.y - place.y);
+        Ok(Self { azimuth_rad: Some((azimuth_rad - turn) as f32), altitude_rad: altitude_rad as f32 })
+    }
+
+    /// Unit vector toward the sun in a picture of `camera`; without one, as on a map with north above.
+    pub fn to_sun(&self, camera: Option<&Camera>) -> Vec3 {
+        let azimuth = self.azimuth_rad.unwrap_or_else(|| {
+            let heading = camera.map_or(Vec2::Y, |camera| (camera.forward() + camera.up()).truncate());
+            let step = STEP_DEG.to_radians();
+            (libm::atan2f(heading.x, heading.y) / step).round() * step - FRAC_PI_4
+        });
+        let level = libm::cosf(self.altitude_rad);
+        let to_sun = Vec3::new(
+            libm::sinf(azimuth) * level,
+            libm::cosf(azimuth) * level,
+            libm::sinf(self.altitude_rad),
+        );
+        to_sun.normalize_or(Vec3::Z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::parse::parse_bytes;
+
+    /// East of a zone's meridian the map's north points to the east of north.
+    #[test]
+    fn azimuths_of_the_sun_count_from_the_map_s_north() {
+        let text = b"[terrain]\ndem = \"a.tif\"\n[style.light]\ntime = \"2026-06-21T10:38:00Z\"\n";
+        let document = parse_bytes("scene.toml", text).expect("sound");
+        let crs = Crs::from_epsg(32633).expect("known");
+        let light = Sunlight::new(&document, &crs, DVec2::new(800_000.0, 7_000_000.0)).expect("by day");
+        let azimuth = light.azimuth_rad.expect("stated").to_degrees();
+        assert!((azimuth - (180.0 - 5.3)).abs() < 0.5, "{azimuth} at noon, 21° east and 63° north");
+    }
+
+    #[test]
+    fn the_light_comes_from_the_upper_left_of_every_picture_and_keeps_still_in_small_turns() {
+        let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7 };
+        for heading in 0..360 {
+            let toward = Vec2::from_angle((90.0 - heading as f32).to_radians());
+            for down in [0.1, 0.8, 50.0] {
+                let camera =
+                    Camera::new(Vec3::ZERO, toward.extend(-down), 0.5, (16, 9), (1.0, 9.0)).expect("sound");
+                let to_sun = light.to_sun(Some(&camera));
+                assert!(to_sun.dot(camera.right()) < -0.15, "left: {heading} {down}");
+                assert!(to_sun.truncate().dot(toward) > 0.15, "above: {heading} {down}");
+            }
+        }
+        let north_west = light.to_sun(None);
+        assert!((north_west.x + north_west.y).abs() < 1e-6 && north_west.x < 0.0, "{north_west}");
+    }
+}
