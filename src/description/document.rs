@@ -164,7 +164,7 @@ table! {
     struct LightTable {
         /// Direction of the sun.
         azimuth: Option<f64> = key::number(DIRECTION, "°"),
-            otherwise "the upper left of the picture, as on maps: hills lit from below look like holes";
+            otherwise "the left of the picture, the upper left in a view from above: hills lit from below look like holes";
         /// Height of the sun above the horizon.
         altitude: Option<f64> = key::number(Above(0.0, 90.0), "°"), otherwise "40";
         /// Date and time, such as "2026-06-21T09:30:00+02:00": the sun stands where it stood over the middle of the

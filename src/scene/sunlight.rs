@@ -1,6 +1,5 @@
-//! Where a scene's light comes from: from the upper left of each picture, as on maps, or from where the sun stands.
-
-use std::f32::consts::FRAC_PI_4;
+//! Where a scene's light comes from: from the left of each picture, the upper left in views from above, as on maps; or
+//! from where the sun stood at a time.
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -24,7 +23,13 @@ pub struct Sunlight {
 const ALTITUDE_DEG: f64 = 40.0;
 
 /// The light follows the camera in steps of this many degrees, so that a small turn does not move the shadows.
-const STEP_DEG: f32 = 30.0;
+const STEP_DEG: f32 = 15.0;
+
+/// How far to the left of the viewing direction the light comes from, degrees: in a view from above, where light from
+/// below right would turn hills into holes; and in a view from the side, where fronts of buildings would be dark.
+const LEFT_DEG: [f32; 2] = [45.0, 110.0];
+/// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
+const PITCH_DEG: [f32; 2] = [45.0, 25.0];
 
 impl Sunlight {
     /// The document's light. `middle` is the middle of the scene in map coordinates of `crs`.
@@ -66,9 +71,14 @@ impl Sunlight {
     /// Unit vector toward the sun in a picture of `camera`; without one, as on a map with north above.
     pub fn to_sun(&self, camera: Option<&Camera>) -> Vec3 {
         let azimuth = self.azimuth_rad.unwrap_or_else(|| {
-            let heading = camera.map_or(Vec2::Y, |camera| (camera.forward() + camera.up()).truncate());
-            let step = STEP_DEG.to_radians();
-            (libm::atan2f(heading.x, heading.y) / step).round() * step - FRAC_PI_4
+            let (heading, down) = camera.map_or((Vec2::Y, 1.0), |camera| {
+                ((camera.forward() + camera.up()).truncate(), -camera.forward().z)
+            });
+            let pitch = libm::asinf(down.clamp(-1.0, 1.0)).to_degrees();
+            let share = ((pitch - PITCH_DEG[0]) / (PITCH_DEG[1] - PITCH_DEG[0])).clamp(0.0, 1.0);
+            let left = LEFT_DEG[0] + (LEFT_DEG[1] - LEFT_DEG[0]) * share;
+            let azimuth = libm::atan2f(heading.x, heading.y).to_degrees() - left;
+            ((azimuth / STEP_DEG).round() * STEP_DEG).to_radians()
         });
         let level = libm::cosf(self.altitude_rad);
         let to_sun = Vec3::new(
@@ -97,16 +107,17 @@ mod tests {
     }
 
     #[test]
-    fn the_light_comes_from_the_upper_left_of_every_picture_and_keeps_still_in_small_turns() {
+    fn the_light_comes_from_the_left_of_every_picture_and_from_the_upper_left_of_one_from_above() {
         let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7 };
         for heading in 0..360 {
             let toward = Vec2::from_angle((90.0 - heading as f32).to_radians());
-            for down in [0.1, 0.8, 50.0] {
-                let camera =
-                    Camera::new(Vec3::ZERO, toward.extend(-down), 0.5, (16, 9), (1.0, 9.0)).expect("sound");
+            for down in [0.1, 0.8, 1.2, 50.0] {
+                let camera = Camera::new(Vec3::ZERO, toward.extend(-down), 0.5, (16, 9), (1.0, 9.0));
+                let camera = camera.expect("sound");
                 let to_sun = light.to_sun(Some(&camera));
-                assert!(to_sun.dot(camera.right()) < -0.15, "left: {heading} {down}");
-                assert!(to_sun.truncate().dot(toward) > 0.15, "above: {heading} {down}");
+                assert!(to_sun.dot(camera.right()) < -0.4, "left: {heading} {down}");
+                let is_above = to_sun.truncate().dot(toward) > 0.0;
+                assert_eq!(is_above, down > 0.5, "above: {heading} {down}");
             }
         }
         let north_west = light.to_sun(None);

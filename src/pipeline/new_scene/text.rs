@@ -112,7 +112,7 @@ fn style(draft: &SceneDraft) -> String {
         let _ = writeln!(out, "[style.contours]\ninterval = {interval}\nmajor_every = 5");
     }
     out.push_str(
-        "\n# The light comes from the upper left of each picture; `azimuth` and `altitude` put it elsewhere, and a date and\n\
+        "\n# The light comes from the left of each picture; `azimuth` and `altitude` put it elsewhere, and a date and\n\
          # time puts it where the sun stood then.\n[style.light]\n# time = \"2026-06-21T09:30:00Z\"\n",
     );
     out
