@@ -9,6 +9,7 @@ pub mod gpu;
 mod ground_levels;
 mod mip_levels;
 pub mod picture;
+mod shadow;
 
 use crate::draw::list::DrawList;
 use crate::render::cpu::{CpuRenderError, RenderQuality};
