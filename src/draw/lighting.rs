@@ -1,7 +1,8 @@
 //! Light, relief shading, haze and sky: one formula for both renderers.
 //!
 //! A point of a solid with albedo `a` and unit normal `n` shows
-//! `lit = a · (sun · max(n·to_sun, 0) + mix(bounce, sky, (n.z + 1) / 2))`; the ground and what is draped on it is shaded
+//! `lit = a · (s · sun · max(n·to_sun, 0) + o · mix(bounce, sky, (n.z + 1) / 2))`, `s` and `o` being the shares of the
+//! sun and of the sky that reach it past other solids; the ground and what is draped on it is shaded
 //! as a relief map, see [`ReliefShading`]. `d` meters from the eye both show `mix(lit, haze.color, 1 − exp(−max(d − haze.near_m, 0) / haze.distance_m))`. Where nothing is drawn,
 //! a ray with unit direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
 
@@ -37,6 +38,20 @@ pub struct Haze {
     pub distance_m: f32,
 }
 
+/// The shares of the light that reach a point past solids, each 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReceivedLight {
+    /// Of the sun.
+    pub sun: f32,
+    /// Of the sky.
+    pub sky: f32,
+}
+
+impl ReceivedLight {
+    /// All light: a point in the open.
+    pub const ALL: Self = Self { sun: 1.0, sky: 1.0 };
+}
+
 impl Default for Lighting {
     /// The cartographic convention: light from the north-west, 45° high, on a clear day.
     fn default() -> Self {
@@ -52,10 +67,15 @@ impl Default for Lighting {
 }
 
 impl Lighting {
-    /// The light that a point of a solid returns, before haze; see the module's formula.
+    /// The light that a point of a solid in the open returns, before haze; see the module's formula.
     pub fn shade(&self, albedo: Vec3, normal: Vec3) -> Vec3 {
-        let direct = self.sun * normal.dot(self.to_sun).max(0.0);
-        let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5);
+        self.shade_received(albedo, normal, ReceivedLight::ALL)
+    }
+
+    /// The light that a point of a solid returns that receives a part of the light, before haze.
+    pub fn shade_received(&self, albedo: Vec3, normal: Vec3, received: ReceivedLight) -> Vec3 {
+        let direct = self.sun * (normal.dot(self.to_sun).max(0.0) * received.sun);
+        let ambient = self.bounce.lerp(self.sky, normal.z * 0.5 + 0.5) * received.sky;
         albedo * (direct + ambient)
     }
 

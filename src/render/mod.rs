@@ -8,6 +8,7 @@ pub mod cpu;
 pub mod gpu;
 mod mip_levels;
 pub mod picture;
+mod shadow;
 
 use crate::draw::list::DrawList;
 use crate::render::cpu::{CpuRenderError, RenderQuality};

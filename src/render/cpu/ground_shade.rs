@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
-use crate::draw::lighting::{ReliefPoint, ReliefShading};
+use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
 
@@ -33,16 +33,16 @@ impl<'a> GroundShader<'a> {
         Self { map, posts_per_meter: map.cell.recip(), coarser, relief: ReliefShading::new(to_sun) }
     }
 
-    /// The light that the ground returns at a point, before haze; see [`ReliefShading`].
-    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
+    /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
+    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, hit: &FacePoint, received: ReceivedLight) -> Vec3 {
         let mut form = GroundPoint::default();
         let level = self.coarser.len().min(self.map.form_level as usize);
         self.add_bilinear(&mut form, hit.world.truncate(), level, 1.0);
         let point = ReliefPoint {
             normal: point.post.normal(),
             form: form.post.normal(),
-            sun_visibility: point.post.sun_visibility,
-            sky_visibility: point.post.sky_visibility,
+            sun_visibility: point.post.sun_visibility * received.sun,
+            sky_visibility: point.post.sky_visibility * received.sky,
             elevation: self.map.ramp.elevation(point.post.height_m),
         };
         self.relief.shade(albedo, &point)

@@ -26,7 +26,7 @@
 //! triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces; a third of each texture
 //! and of the ground map for their coarser levels, and as much again of a texture with holes for its alpha.
 
-mod alpha;
+pub(in crate::render) mod alpha;
 mod band;
 mod blend;
 mod clip;
@@ -35,9 +35,9 @@ mod geometry;
 mod ground_shade;
 mod hit;
 mod occlusion;
-mod pattern;
+pub(in crate::render) mod pattern;
 mod plane;
-mod raster;
+pub(in crate::render) mod raster;
 mod screen;
 mod shade;
 mod texture;
@@ -57,6 +57,7 @@ use crate::render::cpu::shade::Shader;
 use crate::render::cpu::tile::TileContext;
 use crate::render::cpu::visibility::TILE;
 use crate::render::picture::Rendering;
+use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
 
 /// Samples and filter of a picture.
@@ -112,7 +113,8 @@ pub fn render(
     let screen = Screen::new(camera);
     let geometry = ScreenGeometry::new(list, &screen)
         .ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))?;
-    let shader = Shader::new(list, &screen, quality.anisotropy.clamp(1, 16));
+    let shadows = Shadows::new(list, camera);
+    let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
     Ok(match quality.samples {
         SampleCount::One => draw(&screen, &geometry, &shader, &ONE),
         SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR),

@@ -5,6 +5,7 @@ use std::cell::LazyCell;
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::cpu::cutout::Cutout;
@@ -13,11 +14,13 @@ use crate::render::cpu::ground_shade::GroundShader;
 use crate::render::cpu::hit::{Barycentric, FacePoint};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
+use crate::render::shadow::{ShadowReceiver, Shadows};
 
 #[derive(Debug)]
 pub struct Shader<'a> {
     list: &'a DrawList,
     screen: &'a Screen,
+    shadows: &'a Shadows,
     textures: Vec<Texture<'a>>,
     ground: Option<GroundShader<'a>>,
     most_taps: u32,
@@ -38,10 +41,11 @@ pub struct Shaded {
 
 impl<'a> Shader<'a> {
     /// The shader of a checked list. `most_taps` bounds the readings of a texture along a grazing pixel.
-    pub fn new(list: &'a DrawList, screen: &'a Screen, most_taps: u32) -> Self {
+    pub fn new(list: &'a DrawList, screen: &'a Screen, shadows: &'a Shadows, most_taps: u32) -> Self {
         Self {
             list,
             screen,
+            shadows,
             textures: list.textures.par_iter().map(Texture::new).collect(),
             ground: list.ground.as_deref().map(|map| GroundShader::new(map, list.lighting.to_sun)),
             most_taps,
@@ -78,8 +82,14 @@ impl<'a> Shader<'a> {
         };
         let lighting = &self.list.lighting;
         let mut color = match (material.normals, &ground) {
-            (NormalSource::Ground, Some((ground, point))) => ground.lit(albedo, point, &hit),
-            _ => lighting.shade(albedo, vertices.normal(item, face)),
+            (NormalSource::Ground, Some((ground, point))) => {
+                ground.lit(albedo, point, &hit, self.received(&hit, ShadowReceiver::Ground, true))
+            }
+            _ => {
+                let normal = vertices.normal(item, face);
+                let is_sunlit = normal.dot(lighting.to_sun) > 0.0;
+                lighting.shade_received(albedo, normal, self.received(&hit, ShadowReceiver::Solid, is_sunlit))
+            }
         };
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);
@@ -87,6 +97,16 @@ impl<'a> Shader<'a> {
         // Clamped before samples are averaged, as in a picture with 8-bit samples: an overexposed surface would
         // otherwise spoil the smooth border of its neighbor.
         Shaded { color: color.max(Vec3::ZERO).min(Vec3::ONE), alpha }
+    }
+
+    /// The light that reaches a point past solids; the sun is looked for only where the surface turns to it.
+    fn received(&self, hit: &FacePoint, receiver: ShadowReceiver, is_sunlit: bool) -> ReceivedLight {
+        let sun = self.shadows.sun.as_ref().filter(|_| is_sunlit);
+        let sky = self.shadows.sky.as_ref();
+        ReceivedLight {
+            sun: sun.map_or(1.0, |map| map.sun(hit.world, hit.right.cross(hit.down), receiver)),
+            sky: sky.map_or(1.0, |map| map.contact(hit.world, receiver)),
+        }
     }
 
     /// A masked face with its mask; a face without a mask has no hole.

@@ -18,6 +18,7 @@ mod passes;
 mod pipelines;
 mod plan;
 mod readback;
+mod shadow;
 mod uniforms;
 mod upload;
 
@@ -30,6 +31,7 @@ use crate::render::gpu::plan::Plan;
 use crate::render::gpu::readback::Targets;
 use crate::render::gpu::upload::Resources;
 use crate::render::picture::Rendering;
+use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
 
 /// The picture of `list` as `camera` sees it, drawn by the first adapter found: Vulkan's, else OpenGL's.
@@ -47,6 +49,7 @@ pub fn render(list: &DrawList, camera: &Camera) -> Result<Rendering, GpuError> {
 pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Rendering, GpuError> {
     list.check()?;
     let plan = Plan::new(list, camera);
+    let shadows = Shadows::new(list, camera);
     let (layouts, pipelines) = gpu.guarded("building its shaders", || {
         let layouts = Layouts::new(gpu);
         let pipelines = Pipelines::new(gpu, &layouts, &plan);
@@ -54,7 +57,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
     })?;
     let (resources, targets) = gpu.guarded("loading the scene", || {
         let targets = Targets::new(gpu, camera.size())?;
-        Ok((Resources::upload(gpu, &layouts, list, camera)?, targets))
+        Ok((Resources::upload(gpu, &layouts, list, camera, &shadows)?, targets))
     })?;
     gpu.guarded("drawing the picture", || {
         let recording = Recording {

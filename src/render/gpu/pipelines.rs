@@ -42,7 +42,7 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
 
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0: constants, ground posts, ramp.
+    /// Group 0: constants, ground posts, ramp, shadows.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, at a dynamic offset.
     pub surface: wgpu::BindGroupLayout,
@@ -92,6 +92,8 @@ impl Layouts {
             frame: group(&[
                 (both, uniform(size_of::<FrameUniforms>(), false)),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
+                (fragment, texture(wgpu::TextureSampleType::Uint)),
+                (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
             ]),

@@ -25,6 +25,15 @@ struct Frame {
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
+    shadows: array<ShadowView, 2>, // of the sun, of the sky
+}
+
+// ShadowMap.
+struct ShadowView {
+    across: array<vec4f, 2>, // xyz of the axes across the light; texel per depth, base-2 logarithm of level 0's texel
+    toward: vec4f,           // xyz toward the light, number of levels; 0 where there is no map
+    levels: array<vec4f, 8>, // corner of the first texel, texel in meters
+    tables: array<vec4u, 8>, // columns and rows of pages, first entry in `shadow_pages`
 }
 
 struct Surface {
@@ -51,6 +60,10 @@ const MASK_LEVEL_BIAS = -1.0;
 @group(0) @binding(2) var ground_coarse: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
 @group(0) @binding(3) var ramp_stops: texture_2d<f32>;
+// One texel a page: its number from 1 or 0, the greatest heights of solids and of the ground as bits of f32.
+@group(0) @binding(4) var shadow_pages: texture_2d<u32>;
+// The heights of solids and of the ground, page by page.
+@group(0) @binding(5) var shadow_texels: texture_2d<f32>;
 @group(1) @binding(0) var<uniform> material: Surface;
 // Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
@@ -234,10 +247,169 @@ fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
 }
 
-// Lighting::shade.
-fn lit(albedo: vec3f, normal: vec3f) -> vec3f {
-    let direct = frame.sun.rgb * max(dot(normal, frame.to_sun.xyz), 0.0);
-    let ambient = mix(frame.bounce.rgb, frame.sky.rgb, normal.z * 0.5 + 0.5);
+// The constants of render/shadow.
+const TABLE_COLUMNS = 1024u;
+const PAGE_COLUMNS = 64u;
+const PAGE = 32;
+const NOTHING = -1e30;
+const MOST_RADIUS = 5.0;
+const LEAST_RADIUS = 1.5;
+const SPREAD = 0.013 * 1.25;
+const BIAS_TEXELS = 0.05;
+const BIAS_PER_METER = 1e-6;
+const FULL_TEXELS = 1.0;
+const STEEPEST = 20.0;
+const CONTACT_RADIUS = 3.0;
+const GROUND_CONTACT = 0.9;
+const WALL_CONTACT = 0.35;
+
+// A point as a map sees it: its level, its place in texels, its height toward the light.
+struct ShadowPlace {
+    table: vec4u,
+    texel_m: f32,
+    at: vec2f,
+    height: f32,
+}
+
+fn turned(map: u32, v: vec3f) -> vec3f {
+    return vec3f(
+        dot(frame.shadows[map].across[0].xyz, v),
+        dot(frame.shadows[map].across[1].xyz, v),
+        dot(frame.shadows[map].toward.xyz, v),
+    );
+}
+
+fn shadow_place(map: u32, offset: vec3f) -> ShadowPlace {
+    let texel = max(dot(offset, frame.forward.xyz) * frame.shadows[map].across[0].w, 1.17549435e-38);
+    let exponent = i32(bitcast<u32>(texel) >> 23u) - 127;
+    let above = exponent - i32(frame.shadows[map].across[1].w);
+    let index = clamp(above, 0, i32(frame.shadows[map].toward.w) - 1);
+    let level = frame.shadows[map].levels[index];
+    let here = turned(map, offset);
+    return ShadowPlace(frame.shadows[map].tables[index], level.z, (here.xy - level.xy) / level.z, here.z);
+}
+
+fn shadow_page(table: vec4u, page: vec2i) -> vec4u {
+    if any(page < vec2i(0)) || any(page >= vec2i(table.xy)) {
+        return vec4u(0u, bitcast<u32>(f32(NOTHING)), bitcast<u32>(f32(NOTHING)), 0u);
+    }
+    let index = table.z + u32(page.y) * table.x + u32(page.x);
+    return textureLoad(shadow_pages, vec2u(index % TABLE_COLUMNS, index / TABLE_COLUMNS), 0);
+}
+
+// The greatest heights of the pages within `radius`.
+fn shadow_highest(place: ShadowPlace, radius: f32) -> vec2f {
+    let low = vec2i(floor((place.at - radius) / f32(PAGE)));
+    let high = vec2i(floor((place.at + radius) / f32(PAGE)));
+    var highest = vec2f(NOTHING);
+    for (var row = low.y; row <= high.y; row += 1) {
+        for (var column = low.x; column <= high.x; column += 1) {
+            highest = max(highest, bitcast<vec2f>(shadow_page(place.table, vec2i(column, row)).yz));
+        }
+    }
+    return highest;
+}
+
+// A texel's heights of solids and of the ground.
+fn shadow_texel(table: vec4u, at: vec2i) -> vec2f {
+    let page = vec2i(floor(vec2f(at) / f32(PAGE)));
+    let number = shadow_page(table, page).x;
+    if number == 0u {
+        return vec2f(NOTHING);
+    }
+    let corner = vec2u((number - 1u) % PAGE_COLUMNS, (number - 1u) / PAGE_COLUMNS) * u32(PAGE);
+    return textureLoad(shadow_texels, corner + vec2u(at - page * PAGE), 0).xy;
+}
+
+fn shadow_height(heights: vec2f, on_solid: bool) -> f32 {
+    return select(heights.x, max(heights.x, heights.y), on_solid);
+}
+
+// The weight of all texels within `radius`, of those that cast, and of these times their height.
+fn shadow_cover(place: ShadowPlace, radius: f32, rise: vec2f, bias: f32, on_solid: bool) -> vec3f {
+    let low = vec2i(ceil(place.at - 0.5 - radius));
+    let high = vec2i(floor(place.at - 0.5 + radius));
+    var sum = vec3f(0.0);
+    for (var y = low.y; y <= high.y; y += 1) {
+        for (var x = low.x; x <= high.x; x += 1) {
+            let aside = vec2f(vec2i(x, y)) + 0.5 - place.at;
+            let tent = max(1.0 - abs(aside) / radius, vec2f(0.0));
+            let top = shadow_height(shadow_texel(place.table, vec2i(x, y)), on_solid);
+            let height = top - (place.height + dot(rise, aside));
+            let share = clamp((height - bias) / (FULL_TEXELS * place.texel_m), 0.0, 1.0) * tent.x * tent.y;
+            sum += vec3f(tent.x * tent.y, share, share * height);
+        }
+    }
+    return sum;
+}
+
+fn face_rise(normal: vec3f) -> vec2f {
+    let toward = select(max(normal.z, 1e-30), min(normal.z, -1e-30), normal.z < 0.0);
+    let rise = -normal.xy / toward;
+    let steepness = length(rise);
+    return rise * min(1.0, STEEPEST / max(steepness, 1e-30));
+}
+
+// ShadowMap::sun.
+fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
+    if frame.shadows[0].toward.w == 0.0 {
+        return 1.0;
+    }
+    let offset = world - frame.eye.xyz;
+    let place = shadow_place(0u, offset);
+    let highest = shadow_height(shadow_highest(place, MOST_RADIUS), on_solid) - place.height;
+    if highest <= 0.0 {
+        return 1.0;
+    }
+    let rise = face_rise(turned(0u, normal)) * place.texel_m;
+    let error = BIAS_TEXELS * place.texel_m + BIAS_PER_METER * length(offset);
+    let bias = error * (1.0 + length(rise) / place.texel_m);
+    let search = clamp(SPREAD * highest / place.texel_m, LEAST_RADIUS, MOST_RADIUS);
+    let found = shadow_cover(place, search, rise, bias, on_solid);
+    if found.y == 0.0 {
+        return 1.0;
+    }
+    if found.y >= found.x {
+        return 0.0;
+    }
+    let breadth = clamp(SPREAD * (found.z / found.y) / place.texel_m, LEAST_RADIUS, MOST_RADIUS);
+    if breadth >= search {
+        return 1.0 - found.y / found.x;
+    }
+    let shade = shadow_cover(place, breadth, rise, bias, on_solid);
+    return 1.0 - shade.y / shade.x;
+}
+
+// ShadowMap::contact.
+fn contact_share(world: vec3f, on_solid: bool) -> f32 {
+    if frame.shadows[1].toward.w == 0.0 {
+        return 1.0;
+    }
+    let place = shadow_place(1u, world - frame.eye.xyz);
+    let highest = shadow_highest(place, CONTACT_RADIUS);
+    let reach = CONTACT_RADIUS * place.texel_m;
+    if select(highest.x <= place.height, highest.y <= place.height - reach, on_solid) {
+        return 1.0;
+    }
+    let low = vec2i(ceil(place.at - 0.5 - CONTACT_RADIUS));
+    let high = vec2i(floor(place.at - 0.5 + CONTACT_RADIUS));
+    var sum = vec2f(0.0);
+    for (var y = low.y; y <= high.y; y += 1) {
+        for (var x = low.x; x <= high.x; x += 1) {
+            let aside = vec2f(vec2i(x, y)) + 0.5 - place.at;
+            let tent = max(1.0 - abs(aside) / CONTACT_RADIUS, vec2f(0.0));
+            let texel = shadow_texel(place.table, vec2i(x, y));
+            let hidden = select((texel.x - place.height) / reach, 1.0 - (place.height - texel.y) / reach, on_solid);
+            sum += vec2f(1.0, clamp(hidden, 0.0, 1.0)) * (tent.x * tent.y);
+        }
+    }
+    return 1.0 - select(GROUND_CONTACT, WALL_CONTACT, on_solid) * sum.y / sum.x;
+}
+
+// Lighting::shade_received.
+fn lit(albedo: vec3f, normal: vec3f, received: vec2f) -> vec3f {
+    let direct = frame.sun.rgb * (max(dot(normal, frame.to_sun.xyz), 0.0) * received.x);
+    let ambient = mix(frame.bounce.rgb, frame.sky.rgb, normal.z * 0.5 + 0.5) * received.y;
     return albedo * (direct + ambient);
 }
 
@@ -246,7 +418,7 @@ fn facing_sun(normal: vec3f) -> f32 {
 }
 
 // ReliefShading::shade, with the same constants.
-fn relief_lit(albedo: vec3f, post: Post, at: vec2f) -> vec3f {
+fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let shares = vec3f(0.55, 0.20, 0.25);
     let normal = normalize(vec3f(-post.slope, 1.0));
     let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope, 1.0));
@@ -254,7 +426,7 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f) -> vec3f {
     for (var side = 0; side < 4; side += 1) {
         sides += max(dot(normal, frame.sides[side].xyz), 0.0) * frame.sides[side].w;
     }
-    let shade = dot(shares, vec3f(facing_sun(normal) * post.visibility.x, sides, facing_sun(form)));
+    let shade = dot(shares, vec3f(facing_sun(normal) * post.visibility.x * received.x, sides, facing_sun(form)));
     let level = dot(shares, vec3f(facing_sun(vec3f(0.0, 0.0, 1.0)), 0.5, facing_sun(vec3f(0.0, 0.0, 1.0))));
     let low = stop_at(0u).w;
     let high = stop_at(frame.ground_size.x - 1u).w;
@@ -264,7 +436,7 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f) -> vec3f {
     let cool = vec3f(0.80, 0.90, 1.12);
     let warm = vec3f(1.06, 1.0, 0.90);
     let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
-    return albedo * tint * (brightness * mix(0.5, 1.0, post.visibility.y));
+    return albedo * tint * (brightness * mix(0.5, 1.0, post.visibility.y * received.y));
 }
 
 // The normal on the side that is seen; the triangle's own where its corners have none.
@@ -295,6 +467,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     var light = vec3f(0.0);
     let right = dpdx(in.world.xy);
     let down = dpdy(in.world.xy);
+    let face = cross(dpdx(in.world), dpdy(in.world));
     if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
         let post = ground_at(in.world.xy, right, down);
         if (flags & FROM_GROUND_ALBEDO) != 0u {
@@ -306,10 +479,17 @@ fn shade(in: Varying, front: bool) -> vec4f {
             let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water);
             color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
         }
-        light = relief_lit(color.rgb, post, in.world.xy);
+        if (flags & FROM_GROUND_NORMAL) != 0u {
+            let received = vec2f(sun_share(in.world, face, false), contact_share(in.world, false));
+            light = relief_lit(color.rgb, post, in.world.xy, received);
+        }
     }
     if (flags & FROM_GROUND_NORMAL) == 0u {
-        light = lit(color.rgb, normal);
+        var received = vec2f(1.0, contact_share(in.world, true));
+        if dot(normal, frame.to_sun.xyz) > 0.0 {
+            received.x = sun_share(in.world, face, true);
+        }
+        light = lit(color.rgb, normal, received);
     }
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));

@@ -9,7 +9,9 @@ use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
+use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
+use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
 
 /// Ramp stops in one row of their texture; any number below the smallest texture limit works.
@@ -43,6 +45,7 @@ pub struct FrameUniforms {
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
+    shadows: [ShadowView; 2],
 }
 
 /// The constants of a material: `Surface` in the shader.
@@ -67,7 +70,7 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    pub fn new(list: &DrawList, camera: &Camera) -> Self {
+    pub fn new(list: &DrawList, camera: &Camera, shadows: &Shadows) -> Self {
         let tan = camera.tan_half_fov();
         let (near, far) = camera.planes();
         let (width, height) = camera.size();
@@ -89,6 +92,7 @@ impl FrameUniforms {
             sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
             water: with(WaterColor::SURFACE.linear(), 1.0),
             deep: with(WaterColor::DEEP.linear(), 1.0),
+            shadows: ShadowView::both(shadows),
             ..Self::ground(list)
         }
     }

@@ -14,8 +14,10 @@ use crate::render::gpu::error::GpuError;
 use crate::render::gpu::ground::GroundTextures;
 use crate::render::gpu::memory::{texture, view};
 use crate::render::gpu::pipelines::Layouts;
+use crate::render::gpu::shadow::ShadowTextures;
 use crate::render::gpu::uniforms::{FrameUniforms, Instance, RAMP_COLUMNS, SurfaceConstants};
 use crate::render::mip_levels::smaller_levels;
+use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
 
 #[derive(Debug)]
@@ -46,7 +48,13 @@ fn form(material: &Material) -> usize {
 }
 
 impl Resources {
-    pub fn upload(gpu: &Gpu, layouts: &Layouts, list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
+    pub fn upload(
+        gpu: &Gpu,
+        layouts: &Layouts,
+        list: &DrawList,
+        camera: &Camera,
+        shadows: &Shadows,
+    ) -> Result<Self, GpuError> {
         let mut mesh_used = vec![false; list.meshes.len()];
         for item in list.items.iter().filter(|item| !item.triangles.is_empty()) {
             mesh_used[item.mesh.0 as usize] = true;
@@ -59,7 +67,7 @@ impl Resources {
         let white = [Pixels::filled(1, 1, Srgba::WHITE)];
         Ok(Self {
             meshes: meshes.collect::<Result<_, _>>()?,
-            frame: frame(gpu, layouts, list, camera)?,
+            frame: frame(gpu, layouts, list, camera, shadows)?,
             instances: instances(gpu, list)?,
             surfaces,
             surface_stride,
@@ -114,15 +122,17 @@ fn frame(
     layouts: &Layouts,
     list: &DrawList,
     camera: &Camera,
+    shadows: &Shadows,
 ) -> Result<wgpu::BindGroup, GpuError> {
-    let constants = FrameUniforms::new(list, camera);
+    let constants = FrameUniforms::new(list, camera, shadows);
     let what = || "the camera".into();
     let buffer = gpu.filled_buffer(what, wgpu::BufferUsages::UNIFORM, bytes_of(&constants))?;
     let ground = GroundTextures::upload(gpu, list.ground.as_deref())?;
     let ramp = ramp_stops(gpu, list.ground.as_deref());
-    let [posts, coarse, ramp] = [&ground.posts, &ground.coarse, &ramp].map(view);
-    let [posts, coarse, ramp] = [&posts, &coarse, &ramp].map(wgpu::BindingResource::TextureView);
-    Ok(bind(gpu, &layouts.frame, [buffer.as_entire_binding(), posts, coarse, ramp]))
+    let shadows = ShadowTextures::upload(gpu, shadows)?;
+    let views = [&ground.posts, &ground.coarse, &ramp, &shadows.pages, &shadows.texels].map(view);
+    let [posts, coarse, ramp, pages, texels] = views.each_ref().map(wgpu::BindingResource::TextureView);
+    Ok(bind(gpu, &layouts.frame, [buffer.as_entire_binding(), posts, coarse, ramp, pages, texels]))
 }
 
 /// Every stop as linear red, green, blue and its height, in rows of [`RAMP_COLUMNS`].

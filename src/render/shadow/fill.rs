@@ -1,0 +1,247 @@
+//! Rasterizes triangles to the pages of a level.
+//!
+//! Coverage is that of the picture's rasterizer, at the centers of texels. A triangle's height at a texel comes from its
+//! plane, clamped to its corners, so that a surface does not shade itself.
+
+use glam::{Vec2, Vec3, Vec3Swizzles};
+use rayon::prelude::*;
+
+use crate::draw::list::DrawList;
+use crate::draw::material::AlphaMode;
+use crate::render::cpu::alpha::AlphaMask;
+use crate::render::cpu::pattern::ONE;
+use crate::render::cpu::raster::{PixelWindow, cover, doubled_area, snapped};
+use crate::render::shadow::casters::{CasterTriangle, Casters};
+use crate::render::shadow::levels::PageRange;
+use crate::render::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
+
+/// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
+const GUARD_TEXELS: f32 = 8192.0;
+
+/// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
+/// shade reaches.
+const FLOATING_TEXELS: f32 = 3.0;
+
+pub struct Filling<'a> {
+    pub list: &'a DrawList,
+    pub casters: &'a Casters,
+    pub ground: &'a [CasterTriangle],
+    pub level: &'a ShadowLevel,
+    pub purpose: ShadowPurpose,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum CasterKind {
+    Solid,
+    Ground,
+}
+
+struct LevelTriangle<'a> {
+    triangle: &'a CasterTriangle,
+    kind: CasterKind,
+    range: PageRange,
+}
+
+/// The pages of one row of a level.
+struct PageRow {
+    row: u32,
+    /// The place among those stored, by column.
+    places: Vec<Option<usize>>,
+    texels: Vec<ShadowTexel>,
+    /// The least height of a face that looks down, by texel; only for contact.
+    undersides: Vec<f32>,
+}
+
+/// A triangle's functions over a level, in texels.
+struct TexelPlane<'a> {
+    start: Vec2,
+    height: f32,
+    rise: Vec2,
+    range: [f32; 2],
+    looks_down: bool,
+    mask: Option<TexelMask<'a>>,
+}
+
+/// The alpha of a masked triangle over a level.
+struct TexelMask<'a> {
+    mask: Option<&'a AlphaMask>,
+    cutoff: f32,
+    /// Texture coordinates and vertex alpha at the start, and their change per texel.
+    start: Vec3,
+    across: Vec3,
+    along: Vec3,
+}
+
+impl Filling<'_> {
+    /// The texels of the stored pages of the level, whose entries are `pages`; sets the greatest values of each.
+    pub fn texels(&self, pages: &mut [ShadowPage]) -> Vec<ShadowTexel> {
+        let on_level = |kind: CasterKind| {
+            move |triangle| {
+                let range = self.level.pages_near(triangle, 0.0)?;
+                Some(LevelTriangle { triangle, kind, range })
+            }
+        };
+        let solids = self.casters.triangles.par_iter().filter_map(on_level(CasterKind::Solid));
+        let ground = self.ground.par_iter().filter_map(on_level(CasterKind::Ground));
+        let triangles: Vec<LevelTriangle> = solids.chain(ground).collect();
+        let columns = self.level.columns as usize;
+        let rows = pages.par_chunks_exact_mut(columns).enumerate();
+        let rows: Vec<_> = rows.map(|(row, pages)| self.row(row as u32, pages, &triangles)).collect();
+        rows.concat()
+    }
+
+    fn row(&self, row: u32, pages: &mut [ShadowPage], triangles: &[LevelTriangle]) -> Vec<ShadowTexel> {
+        let mut stored = 0;
+        let place = |page: &ShadowPage| {
+            stored += usize::from(page.number > 0);
+            (page.number > 0).then(|| stored - 1)
+        };
+        let places: Vec<_> = pages.iter().map(place).collect();
+        let texels = vec![ShadowTexel::EMPTY; stored * (PAGE * PAGE) as usize];
+        let undersides = match self.purpose {
+            ShadowPurpose::Sun => Vec::new(),
+            ShadowPurpose::Contact => vec![f32::MAX; texels.len()],
+        };
+        let mut work = PageRow { row, places, texels, undersides };
+        if stored > 0 {
+            for triangle in triangles.iter().filter(|on| on.range.from[1] <= row && row < on.range.to[1]) {
+                self.draw(triangle, &mut work);
+            }
+        }
+        let floating_m = FLOATING_TEXELS * self.level.texel_m;
+        for (texel, underside) in work.texels.iter_mut().zip(&work.undersides) {
+            if *underside < f32::MAX && underside - texel.ground > floating_m {
+                texel.solid = NOTHING;
+            }
+        }
+        let kept = pages.iter_mut().filter(|page| page.number > 0);
+        for (page, texels) in kept.zip(work.texels.chunks_exact((PAGE * PAGE) as usize)) {
+            page.highest = texels.iter().fold(ShadowTexel::EMPTY, |highest, &texel| highest.highest(texel));
+        }
+        work.texels
+    }
+
+    fn draw(&self, on: &LevelTriangle, work: &mut PageRow) {
+        let columns = on.range.from[0]..on.range.to[0];
+        if columns.clone().all(|column| work.places[column as usize].is_none()) {
+            return;
+        }
+        let origin = Vec2::from(self.level.origin).extend(0.0);
+        let scale = Vec3::new(1.0 / self.level.texel_m, 1.0 / self.level.texel_m, 1.0);
+        let corners = on.triangle.corners.map(|corner| (corner - origin) * scale);
+        let Some(plane) = self.plane(on, corners) else { return };
+        let size = [self.level.columns * PAGE, self.level.rows * PAGE];
+        let outline = cut(corners.map(|corner| corner.xy()), size);
+        let snap = |corner: Vec2| [snapped(f64::from(corner.x)), snapped(f64::from(corner.y))];
+        for pair in outline.get(1..).unwrap_or_default().windows(2) {
+            let [a, b, c] = [outline[0], pair[0], pair[1]].map(snap);
+            let turned = if doubled_area(&[a, b, c]) < 0 { [a, c, b] } else { [a, b, c] };
+            if doubled_area(&turned) == 0 {
+                continue;
+            }
+            let touched = PixelWindow::around(&turned, size);
+            for column in columns.clone() {
+                let Some(place) = work.places[column as usize] else { continue };
+                let corner = [column * PAGE, work.row * PAGE];
+                let page = PixelWindow { from: corner, to: corner.map(|side| side + PAGE) };
+                let first = place * (PAGE * PAGE) as usize;
+                let texels = &mut work.texels[first..][..(PAGE * PAGE) as usize];
+                let mut undersides = work.undersides.get_mut(first..).filter(|_| plane.looks_down);
+                cover(&turned, &ONE, page.intersection(touched), |x, y, _| {
+                    let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - plane.start;
+                    if plane.is_hole(at) {
+                        return;
+                    }
+                    let index = ((y - corner[1]) * PAGE + x - corner[0]) as usize;
+                    let height = plane.height_at(at);
+                    let texel = &mut texels[index];
+                    if let Some(undersides) = &mut undersides {
+                        undersides[index] = undersides[index].min(height);
+                    }
+                    match on.kind {
+                        CasterKind::Solid => texel.solid = texel.solid.max(height),
+                        CasterKind::Ground => texel.ground = texel.ground.max(height),
+                    }
+                });
+            }
+        }
+    }
+
+    /// The functions of a triangle; `None` where it is seen edge-on.
+    fn plane(&self, on: &LevelTriangle, corners: [Vec3; 3]) -> Option<TexelPlane<'_>> {
+        let [a, b, c] = corners;
+        let (ab, ac) = (b - a, c - a);
+        let area = ab.xy().perp_dot(ac.xy());
+        // The change over one texel of what changes by `second` and `third` to those corners.
+        let across = |second: f32, third: f32| (second * ac.y - third * ab.y) / area;
+        let along = |second: f32, third: f32| (third * ab.x - second * ac.x) / area;
+        let rise = Vec2::new(across(ab.z, ac.z), along(ab.z, ac.z));
+        let heights = corners.map(|corner| corner.z);
+        let least = heights.into_iter().fold(f32::MAX, f32::min);
+        let most = heights.into_iter().fold(f32::MIN, f32::max);
+        let item = &self.list.items[on.triangle.item as usize];
+        let material = &self.list.materials[item.material.0 as usize];
+        let mask = if let AlphaMode::Mask(cutoff) = material.alpha {
+            let mesh = &self.list.meshes[item.mesh.0 as usize];
+            let values = mesh.triangles[on.triangle.triangle as usize].map(|id| {
+                let vertex = &mesh.vertices[id.index()];
+                Vec2::from(vertex.uv).extend(vertex.color.alpha() * material.base_color.alpha())
+            });
+            let [start, second, third] = [values[0], values[1] - values[0], values[2] - values[0]];
+            Some(TexelMask {
+                mask: material.texture.and_then(|id| self.casters.masks.get(&id.0)),
+                cutoff,
+                start,
+                across: (second * ac.y - third * ab.y) / area,
+                along: (third * ab.x - second * ac.x) / area,
+            })
+        } else {
+            None
+        };
+        let looks_down = on.kind == CasterKind::Solid && area < 0.0 && !material.two_sided;
+        let range = [least, most];
+        rise.is_finite().then_some(TexelPlane { start: a.xy(), height: a.z, rise, range, looks_down, mask })
+    }
+}
+
+impl TexelPlane<'_> {
+    fn height_at(&self, offset: Vec2) -> f32 {
+        (self.height + self.rise.dot(offset)).max(self.range[0]).min(self.range[1])
+    }
+
+    fn is_hole(&self, offset: Vec2) -> bool {
+        let Some(mask) = &self.mask else { return false };
+        let here = mask.start + mask.across * offset.x + mask.along * offset.y;
+        let alpha = mask.mask.map_or(1.0, |alphas| {
+            let footprint = alphas.footprint(mask.across.xy(), mask.along.xy(), 1);
+            alphas.sample(here.xy(), &footprint)
+        });
+        alpha * here.z < mask.cutoff
+    }
+}
+
+/// The part of a triangle that the rasterizer's coordinates can hold (Sutherland and Hodgman 1974).
+fn cut(corners: [Vec2; 3], size: [u32; 2]) -> Vec<Vec2> {
+    let low = Vec2::splat(-GUARD_TEXELS);
+    let high = Vec2::new(size[0] as f32, size[1] as f32) + GUARD_TEXELS;
+    let mut outline = corners.to_vec();
+    if corners.iter().all(|corner| corner.cmpge(low).all() && corner.cmple(high).all()) {
+        return outline;
+    }
+    for (axis, limit, sign) in [(0, low.x, 1.0), (1, low.y, 1.0), (0, high.x, -1.0), (1, high.y, -1.0)] {
+        let inside = |corner: Vec2| (corner[axis] - limit) * sign;
+        let mut kept = Vec::with_capacity(outline.len() + 1);
+        for (index, &here) in outline.iter().enumerate() {
+            let next = outline[(index + 1) % outline.len()];
+            let (from, to) = (inside(here), inside(next));
+            if from >= 0.0 {
+                kept.push(here);
+            }
+            if (from >= 0.0) != (to >= 0.0) {
+                kept.push(here + (next - here) * (from / (from - to)));
+            }
+        }
+        outline = kept;
+    }
+    outline
+}

@@ -1,0 +1,164 @@
+//! The levels of a map: what the camera sees at their depths, as pages that solids touch.
+
+use glam::Vec3;
+
+use crate::draw::list::DrawList;
+use crate::render::shadow::casters::{CasterTriangle, Casters, LightBox, ground_triangles};
+use crate::render::shadow::fill::Filling;
+use crate::render::shadow::{
+    LevelScale, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage,
+    ShadowPurpose, ShadowTexel,
+};
+use crate::view::camera::Camera;
+
+/// The most pages along a side of a level: its texels fit the rasterizer's sub-pixel coordinates.
+const MOST_SIDE: f32 = 512.0;
+
+/// How often texels are doubled until a map fits its limits; 2^24 covers every float that a picture can need.
+const MOST_DOUBLINGS: u32 = 24;
+
+/// Pages are stored for what lies this many texels from a solid, as far as filters read.
+const PAGE_MARGIN: f32 = MOST_RADIUS + 1.0;
+
+/// A range of pages in both directions, its end excluded.
+#[derive(Clone, Copy, Debug)]
+pub struct PageRange {
+    pub from: [u32; 2],
+    pub to: [u32; 2],
+}
+
+impl ShadowMap {
+    /// The map of `casters` with texels of up to `texel_px` pixels; `None` where none of their shadows is seen.
+    pub(super) fn new(
+        list: &DrawList,
+        camera: &Camera,
+        casters: &Casters,
+        texel_px: f32,
+        purpose: ShadowPurpose,
+    ) -> Option<Self> {
+        let pixel = 2.0 * camera.tan_half_fov().y / camera.size().1 as f32;
+        let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
+            let scale =
+                LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
+            plan(camera, casters, scale)
+        });
+        let (scale, levels, pages) = planned?;
+        let stored = pages.iter().filter(|page| page.number > 0).count();
+        if stored == 0 {
+            return None;
+        }
+        let mut map = Self {
+            eye: camera.eye(),
+            forward: camera.forward(),
+            axes: casters.axes,
+            scale,
+            levels,
+            pages,
+            texels: Vec::with_capacity(stored * (PAGE * PAGE) as usize),
+        };
+        let all = map.levels.iter().fold(LightBox::EMPTY, |all, level| all.union(level.bounds()));
+        let ground = ground_triangles(list, camera.eye(), &casters.axes, all);
+        for level in map.levels.clone() {
+            let range = level.first as usize..(level.first + level.columns * level.rows) as usize;
+            let filling = Filling { list, casters, ground: &ground, level: &level, purpose };
+            map.texels.extend(filling.texels(&mut map.pages[range]));
+        }
+        Some(map)
+    }
+}
+
+/// The levels of a scale with their pages numbered; `None` where they exceed the limits.
+fn plan(
+    camera: &Camera,
+    casters: &Casters,
+    mut scale: LevelScale,
+) -> Option<(LevelScale, Vec<ShadowLevel>, Vec<ShadowPage>)> {
+    let [least, most] = casters.depths_m.map(|depth| scale.exponent(depth));
+    scale.least = least.max(most - (MOST_LEVELS as i32 - 1));
+    let (mut levels, mut pages, mut stored) = (Vec::new(), Vec::new(), 0);
+    for exponent in scale.least..=most {
+        let texel_m = libm::exp2f(exponent as f32);
+        let nearest = if exponent == scale.least { 0.0 } else { texel_m };
+        // A level reaches a little beyond its depths, since renderers round differently.
+        let depths = [nearest * 0.98, texel_m * 2.04].map(|texel| texel / scale.texel_per_depth);
+        let seen = slab(camera, casters, depths).intersection(casters.bounds);
+        let seen =
+            if seen.is_empty() { LightBox { low: glam::Vec2::ZERO, high: glam::Vec2::ZERO } } else { seen };
+        let bounds = seen.grown(PAGE_MARGIN * texel_m);
+        let sides = ((bounds.high - bounds.low) / (texel_m * PAGE as f32)).ceil();
+        if !(sides.x <= MOST_SIDE && sides.y <= MOST_SIDE) {
+            return None;
+        }
+        let [columns, rows] = [sides.x, sides.y].map(|side| (side as u32).max(1));
+        let level =
+            ShadowLevel { origin: bounds.low.to_array(), texel_m, columns, rows, first: pages.len() as u32 };
+        for is_touched in level.touched(&casters.triangles) {
+            stored += u32::from(is_touched);
+            let number = if is_touched { stored } else { 0 };
+            pages.push(ShadowPage { number, highest: ShadowTexel::EMPTY });
+        }
+        if stored as usize > MOST_PAGES {
+            return None;
+        }
+        levels.push(level);
+    }
+    Some((scale, levels, pages))
+}
+
+/// What the camera sees between two depths, across the light.
+fn slab(camera: &Camera, casters: &Casters, depths: [f32; 2]) -> LightBox {
+    let tan = camera.tan_half_fov();
+    let mut corners = [Vec3::ZERO; 8];
+    for (index, corner) in corners.iter_mut().enumerate() {
+        let side = |bit: usize| if index & bit == 0 { -1.0 } else { 1.0 };
+        let ray = camera.forward() + camera.right() * (tan.x * side(1)) + camera.up() * (tan.y * side(2));
+        *corner = casters.axes.turned(ray * depths[index >> 2]);
+    }
+    LightBox::around(&corners)
+}
+
+impl ShadowLevel {
+    pub fn bounds(&self) -> LightBox {
+        let low = glam::Vec2::from(self.origin);
+        let side = glam::Vec2::new(self.columns as f32, self.rows as f32) * (PAGE as f32 * self.texel_m);
+        LightBox { low, high: low + side }
+    }
+
+    /// The pages within [`PAGE_MARGIN`] texels of a triangle's box; `None` where there are none.
+    pub fn pages_near(&self, triangle: &CasterTriangle, margin: f32) -> Option<PageRange> {
+        let near = LightBox::around(&triangle.corners).grown(margin * self.texel_m);
+        if near.intersection(self.bounds()).is_empty() {
+            return None;
+        }
+        let page = |at: glam::Vec2| {
+            let page = (at - glam::Vec2::from(self.origin)) / (self.texel_m * PAGE as f32);
+            // Casts saturate.
+            [(page.x as u32).min(self.columns - 1), (page.y as u32).min(self.rows - 1)]
+        };
+        let (from, last) = (page(near.low), page(near.high));
+        Some(PageRange { from, to: last.map(|page| page + 1) })
+    }
+
+    /// Whether a solid is on or near each page. Counts the boxes that begin and end, so that a box costs the same
+    /// however large it is.
+    fn touched(&self, triangles: &[CasterTriangle]) -> Vec<bool> {
+        let stride = self.columns as usize + 1;
+        let mut counts = vec![0i64; stride * (self.rows as usize + 1)];
+        for range in triangles.iter().filter_map(|triangle| self.pages_near(triangle, PAGE_MARGIN)) {
+            let [[left, bottom], [right, top]] =
+                [range.from, range.to].map(|at| at.map(|page| page as usize));
+            counts[bottom * stride + left] += 1;
+            counts[bottom * stride + right] -= 1;
+            counts[top * stride + left] -= 1;
+            counts[top * stride + right] += 1;
+        }
+        for index in 0..counts.len() {
+            let west = if index % stride > 0 { counts[index - 1] } else { 0 };
+            let south = if index >= stride { counts[index - stride] } else { 0 };
+            let both = if index % stride > 0 && index >= stride { counts[index - stride - 1] } else { 0 };
+            counts[index] += west + south - both;
+        }
+        let rows = counts.chunks_exact(stride).take(self.rows as usize);
+        rows.flat_map(|row| row[..stride - 1].iter().map(|&count| count > 0)).collect()
+    }
+}
