@@ -100,6 +100,7 @@ pub fn build(
         contours: style::contours(document),
         lighting: style::lighting(document),
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
+        table: document.style.table,
         map: OnceLock::new(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),
