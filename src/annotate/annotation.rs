@@ -7,6 +7,7 @@ use glam::Vec2;
 
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
+use crate::annotate::rim::RimMark;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::description::words::LabelKind;
 
@@ -15,6 +16,8 @@ use crate::description::words::LabelKind;
 pub struct Annotations {
     /// Names and heights, in any order.
     pub labels: Vec<PictureLabel>,
+    /// Coordinates along the edge of the block; those that come first are drawn first.
+    pub rim: Vec<RimMark>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.

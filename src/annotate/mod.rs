@@ -31,6 +31,7 @@ mod pixel_box;
 mod place;
 mod positions;
 pub mod report;
+pub mod rim;
 pub mod scale_bar;
 mod sheet;
 mod text;

@@ -10,7 +10,7 @@ use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
 use crate::annotate::sheet::Sheet;
-use crate::annotate::{credit, legend, north, scale_bar, title};
+use crate::annotate::{credit, legend, north, rim, scale_bar, title};
 use crate::draw::pixels::Pixels;
 
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
@@ -23,11 +23,13 @@ const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationReport {
     let mut composer = Composer::new(pixels.width(), pixels.height());
     let furniture = Furniture::lay_out(annotations, &mut composer);
-    let boxes: Vec<PixelBox> = furniture.drawings.iter().map(Drawing::bounds).collect();
+    let mut boxes: Vec<PixelBox> = furniture.drawings.iter().map(Drawing::bounds).collect();
+    let marks = rim::draw_marks(&annotations.rim, &boxes, &mut composer);
+    boxes.extend(marks.iter().map(Drawing::bounds));
     let mut report = AnnotationReport { left_out: furniture.left_out, ..AnnotationReport::default() };
     furniture.drawings.iter().for_each(|drawing| report.add_texts(&drawing.texts));
     let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.drawings.iter().chain([&labels]));
+    paint(pixels, furniture.drawings.iter().chain(&marks).chain([&labels]));
     report
 }
 

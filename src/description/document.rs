@@ -48,7 +48,7 @@ use crate::description::reader::TableReader;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
-use crate::description::words::{HeightEncodingWord, LabelKind};
+use crate::description::words::{HeightEncodingWord, LabelKind, TableTop};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -148,6 +148,9 @@ table! {
         /// to the view where it is not stated: faint in an overview, more where the horizon shows, none in plan.
         haze: Option<f64> = key::number(Within(0.0, 1e9), "m"),
             otherwise "fitted to the view";
+        /// What the block stands on, with its shadow and coordinates along its near edges, in a picture that shows its
+        /// edge from outside and no horizon.
+        table: TableTop = key::word::<TableTop>(), default "paper";
     }
 
     /// `[style.contours]`.

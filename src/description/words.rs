@@ -73,6 +73,14 @@ words! {
         Gray = "gray": "dark to light",
     }
 
+    /// What the block of terrain stands on where its edge is in view from outside.
+    enum TableTop {
+        Paper = "paper": "white paper that ends in the backdrop",
+        Wood = "wood": "boards of light wood",
+        Ground = "ground": "plain ground, the color of dry clay",
+        None = "none": "nothing; no coordinates are written along its edge",
+    }
+
     /// How the colors of a PNG encode heights.
     enum HeightEncodingWord {
         TerrainRgb = "terrain-rgb": "Mapbox Terrain-RGB",

@@ -4,11 +4,13 @@
 //! `lit = a · (s · sun · max(n·to_sun, 0) + o · mix(bounce, sky, (n.z + 1) / 2))`, `s` and `o` being the shares of the
 //! sun and of the sky that reach it past other solids; the ground and what is draped on it is shaded
 //! as a relief map, see [`ReliefShading`]. `d` meters from the eye both show `mix(lit, haze.color, 1 − exp(−max(d − haze.near_m, 0) / haze.distance_m))`. Where nothing is drawn,
-//! a ray with unit direction `r` shows `mix(haze.color, zenith, sqrt(max(r.z, 0)))`.
+//! the [`Backdrop`] shows.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use glam::{Vec2, Vec3};
+
+use crate::draw::backdrop::Backdrop;
 
 /// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +27,8 @@ pub struct Lighting {
     pub haze: Haze,
     /// The sky's color overhead.
     pub zenith: Vec3,
+    /// What shows where nothing is drawn.
+    pub backdrop: Backdrop,
 }
 
 /// Haze that thickens with distance.
@@ -62,6 +66,7 @@ impl Default for Lighting {
             bounce: Vec3::new(0.16, 0.14, 0.12),
             haze: Haze { color: Vec3::new(0.66, 0.76, 0.86), near_m: 0.0, distance_m: f32::INFINITY },
             zenith: Vec3::new(0.16, 0.34, 0.66),
+            backdrop: Backdrop::Sky,
         }
     }
 }
@@ -83,12 +88,6 @@ impl Lighting {
     pub fn add_haze(&self, color: Vec3, distance_m: f32) -> Vec3 {
         let clear = libm::expf(-(distance_m - self.haze.near_m).max(0.0) / self.haze.distance_m);
         self.haze.color.lerp(color, clear)
-    }
-
-    /// The color of the sky in direction `ray`, which need not be of unit length.
-    pub fn sky_color(&self, ray: Vec3) -> Vec3 {
-        let rise = ray.normalize_or_zero().z.max(0.0).sqrt();
-        self.haze.color.lerp(self.zenith, rise)
     }
 }
 

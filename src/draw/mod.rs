@@ -1,6 +1,7 @@
 //! Draw lists: the contract between scenes and renderers. They state the content of a picture, not the method of
 //! drawing.
 
+pub mod backdrop;
 pub mod color;
 pub mod ground;
 pub mod ground_levels;

@@ -6,6 +6,7 @@ use crate::annotate::annotation::{Annotations, PictureLabel};
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
@@ -15,6 +16,7 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
     let furniture = scene.furniture;
     Annotations {
         labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
+        rim: rim_marks(scene, camera),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
         north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),

@@ -30,6 +30,7 @@ pub mod picture_statistics;
 pub mod positions;
 pub mod profile;
 pub mod raster_file;
+pub mod rim;
 pub mod scene_file;
 pub mod service;
 pub mod sight;

@@ -101,6 +101,7 @@ pub fn build(
         contours: style::contours(document),
         sunlight: Sunlight::new(document, &crs, lattice.extent().center())?,
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
+        table: document.style.table,
         maps: Default::default(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),

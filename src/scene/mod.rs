@@ -29,9 +29,11 @@ pub mod sources;
 pub mod style;
 pub mod sunlight;
 pub mod symbols;
+pub mod table_shadow;
 pub mod vertical_scale;
 pub mod views;
 pub mod water;
+pub mod wood;
 pub mod world_frame;
 
 use std::sync::{Arc, OnceLock};
@@ -39,7 +41,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
-use crate::description::words::{Anchor, Clamp, Footing, LabelKind};
+use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::list::{DrawMesh, FeatureId};
@@ -93,6 +95,8 @@ pub struct SceneModel {
     /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
     /// `None` fits haze to each view.
     pub haze_m: Option<f32>,
+    /// What the block stands on where it is seen as a whole.
+    pub table: TableTop,
     maps: GroundMapCache,
     infers_water: bool,
     water: OnceLock<WaterCover>,

@@ -1,5 +1,14 @@
 //! The block under the ground: walls from the edge of the displayed ground down to a level base, so that a terrain seen
-//! whole looks like a sand table, not like a sheet in the air.
+//! whole looks like a sand table, not like a sheet in the air. The walls show the soil in section:
+//!
+//! ```text
+//!   ╱╲__╱╲   the ground
+//!  ╱╲__╱╲ ╲  topsoil: follows the ground
+//!  │       │ subsoil: down to a fixed depth below the lowest ground
+//!  ├───────┤ clay
+//!  ├───────┤ rock, down to the base
+//!  └───────┘
+//! ```
 
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
@@ -12,30 +21,60 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
 /// The depth of the base below the lowest ground, as a part of the ground's longer side.
-const DEPTH: f64 = 0.02;
+const DEPTH: f64 = 0.03;
 
-/// The wall's color at the ground and at the base: a cut through soil.
-const TOP: Srgba = Srgba::opaque(196, 168, 136);
-const FOOT: Srgba = Srgba::opaque(132, 110, 90);
+/// The thickness of the topsoil, as a part of the depth of the base.
+const TOPSOIL: f32 = 0.2;
+
+/// The levels of the strata between the base and the lowest ground, from below, as parts of that depth. All lie below
+/// the topsoil of the lowest ground, so that no stratum is cut by it.
+const LEVELS: [f32; 2] = [0.34, 0.66];
+
+/// The colors of the strata from below, each at its lower and at its upper edge: rock, clay, subsoil, topsoil. Muted, so
+/// that the ground stays the picture's subject.
+const STRATA: [[Srgba; 2]; 4] = [
+    [Srgba::opaque(118, 108, 99), Srgba::opaque(130, 119, 108)],
+    [Srgba::opaque(160, 128, 100), Srgba::opaque(168, 136, 106)],
+    [Srgba::opaque(190, 163, 127), Srgba::opaque(200, 174, 138)],
+    [Srgba::opaque(98, 79, 61), Srgba::opaque(110, 90, 69)],
+];
 
 /// World Z of the foot of the walls under a ground that is drawn over `bounds`.
 pub fn base_z((min, max): (Vec3, Vec3)) -> f32 {
     min.z - (f64::from((max - min).truncate().max_element()) * DEPTH) as f32
 }
 
-/// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`, down to world Z `base`.
+/// The heights of the strata under a place.
+#[derive(Clone, Copy, Debug)]
+struct SoilSection {
+    base_z: f32,
+    depth_m: f32,
+}
+
+impl SoilSection {
+    /// World Z of the base, the edges between strata and the ground, from below, where the ground is at `ground_z`.
+    fn levels(&self, ground_z: f32) -> [f32; STRATA.len() + 1] {
+        let at = |part: f32| self.base_z + self.depth_m * part;
+        [at(0.0), at(LEVELS[0]), at(LEVELS[1]), ground_z - self.depth_m * TOPSOIL, ground_z]
+    }
+}
+
+/// Walls under the border edges of `ground`, a mesh of the displayed heights in `lattice`, which is drawn over
+/// `bounds`, down to [`base_z`].
 ///
 /// A border edge gets a wall where there is no ground beyond it: at the lattice's border and around holes, not
 /// where a neighboring patch is merely out of view.
-pub fn plinth(ground: &DrawMesh, lattice: &Lattice, base: f32) -> DrawMesh {
+pub fn plinth(ground: &DrawMesh, lattice: &Lattice, bounds: (Vec3, Vec3)) -> DrawMesh {
     let mut walls = DrawMesh::default();
+    let base_z = base_z(bounds);
+    let section = SoilSection { base_z, depth_m: bounds.0.z - base_z };
     for (from, to) in border_edges(ground) {
         let along = to.truncate() - from.truncate();
         let Some(outward) = Vec2::new(along.y, -along.x).try_normalize() else {
             continue;
         };
         if !is_ground_beyond(lattice, (from + to).truncate() / 2.0, outward) {
-            add_wall(&mut walls, (from, to), base, outward);
+            add_wall(&mut walls, (from, to), &section, outward);
         }
     }
     walls
@@ -71,15 +110,19 @@ fn is_ground_beyond(lattice: &Lattice, middle: Vec2, outward: Vec2) -> bool {
     matches!(ground_height(lattice, Interpolation::Planar, beyond), Answer::Height(_))
 }
 
-fn add_wall(walls: &mut DrawMesh, (from, to): (Vec3, Vec3), base: f32, outward: Vec2) {
-    let mut corner = |at: Vec3, color: Srgba| {
-        let normal = outward.extend(0.0).to_array();
-        walls.vertex(DrawVertex { position: at.to_array(), normal, uv: [0.0; 2], color })
-    };
-    let corners =
-        [corner(from.with_z(base), FOOT), corner(to.with_z(base), FOOT), corner(to, TOP), corner(from, TOP)];
-    walls.triangle([corners[0], corners[1], corners[2]]);
-    walls.triangle([corners[0], corners[2], corners[3]]);
+/// Adds a wall in strata under the edge from `from` to `to`.
+fn add_wall(walls: &mut DrawMesh, (from, to): (Vec3, Vec3), section: &SoilSection, outward: Vec2) {
+    let normal = outward.extend(0.0).to_array();
+    let levels = [from, to].map(|end| section.levels(end.z));
+    for (stratum, colors) in STRATA.iter().enumerate() {
+        let mut corner = |end: usize, edge: usize| {
+            let position = [from, to][end].with_z(levels[end][stratum + edge]).to_array();
+            walls.vertex(DrawVertex { position, normal, uv: [0.0; 2], color: colors[edge] })
+        };
+        let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        walls.triangle([corners[0], corners[1], corners[2]]);
+        walls.triangle([corners[0], corners[2], corners[3]]);
+    }
 }
 
 #[cfg(test)]
@@ -112,12 +155,22 @@ mod tests {
     fn walls_stand_at_the_world_s_edge_and_face_outward_but_not_at_the_edge_of_view() {
         let lattice =
             Lattice::new(DVec2::new(700.0, 900.0), DVec2::splat(10.0), 3, vec![5.0; 6]).expect("sound");
-        let walls = plinth(&western_cell(&lattice), &lattice, 0.0);
-        assert_eq!(walls.triangles.len(), 6, "south, west and north");
+        let bounds = (Vec3::Z * 5.0, Vec3::new(20.0, 10.0, 5.0));
+        let walls = plinth(&western_cell(&lattice), &lattice, bounds);
+        assert_eq!(walls.triangles.len(), 3 * 2 * STRATA.len(), "south, west and north");
         for triangle in &walls.triangles {
             let [a, b, c] = triangle.map(|id| Vec3::from(walls.vertices[id.index()].position));
             let normal = Vec3::from(walls.vertices[triangle[0].index()].normal);
             assert!((b - a).cross(c - a).dot(normal) > 0.0, "{a} {b} {c} faces {normal}");
         }
+    }
+
+    #[test]
+    fn strata_are_level_below_the_lowest_ground_and_the_topsoil_follows_the_ground() {
+        let section = SoilSection { base_z: 100.0, depth_m: 50.0 };
+        let (low, high) = (section.levels(150.0), section.levels(900.0));
+        assert!(low.windows(2).all(|pair| pair[0] < pair[1]), "{low:?}");
+        assert_eq!(low[..3], high[..3]);
+        assert_eq!((low[0], high[4], high[4] - high[3]), (100.0, 900.0, low[4] - low[3]));
     }
 }

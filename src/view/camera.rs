@@ -101,6 +101,11 @@ impl Camera {
         self.up
     }
 
+    /// From `point` toward the eye, in world space; of any length.
+    pub fn toward_eye(&self, point: Vec3) -> Vec3 {
+        self.eye - point
+    }
+
     /// Width and height of the picture in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)

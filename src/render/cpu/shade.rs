@@ -62,8 +62,9 @@ impl<'a> Shader<'a> {
         material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
     }
 
-    pub fn sky(&self, at: [f32; 2]) -> Vec3 {
-        self.list.lighting.sky_color(self.screen.ray_at(at))
+    pub fn backdrop(&self, at: [f32; 2]) -> Vec3 {
+        let down = at[1] / self.screen.size[1] as f32;
+        self.list.lighting.backdrop_color(self.screen.ray_at(at), down)
     }
 
     pub fn shade(&self, face: &ScreenFace, at: [f32; 2]) -> Shaded {

@@ -119,7 +119,7 @@ fn resolve<const N: usize>(
         let first = left.trailing_zeros() as usize;
         let mask = left & samples_alike(frame, &scratch.visibility, (x, y), first);
         let color = match faces[first] {
-            FaceId::NONE => frame.shader.sky(center),
+            FaceId::NONE => frame.shader.backdrop(center),
             id => frame.shader.shade(frame.geometry.face(id), frame.pattern.centroid_in(x, y, mask)).color,
         };
         for (sample, slot) in colors.iter_mut().enumerate() {

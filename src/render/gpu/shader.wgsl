@@ -17,6 +17,8 @@ struct Frame {
     bounce: vec4f,        // rgb
     haze: vec4f,          // rgb, 1 / distance
     zenith: vec4f,        // rgb, distance at which haze begins
+    studio_top: vec4f,    // rgb, 1 where the backdrop is the studio's
+    studio_bottom: vec4f, // rgb, Backdrop::HORIZON
     sides: array<vec4f, 4>, // xyz toward a side light, its share
     water: vec4f,         // rgb at the surface
     deep: vec4f,          // rgb of deep water

@@ -1,4 +1,4 @@
-// The sky behind everything, by Lighting::sky_at: one triangle that covers the picture.
+// What shows where nothing is drawn, by src/draw/backdrop.rs: one triangle that covers the picture.
 //
 // `Frame` is declared in shader.wgsl, which this file is appended to.
 
@@ -10,8 +10,15 @@ fn sky_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn sky_color(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
+    let down = pixel.y / frame.depth.w;
+    if frame.studio_top.w > 0.5 {
+        return vec4f(mix(frame.studio_top.rgb, frame.studio_bottom.rgb, down), 1.0);
+    }
     let x = (pixel.x / frame.depth.z * 2.0 - 1.0) / frame.right.w;
-    let y = (1.0 - pixel.y / frame.depth.w * 2.0) / frame.up.w;
+    let y = (1.0 - down * 2.0) / frame.up.w;
     let ray = normalize(frame.forward.xyz + frame.right.xyz * x + frame.up.xyz * y);
-    return vec4f(mix(frame.haze.rgb, frame.zenith.rgb, sqrt(max(ray.z, 0.0))), 1.0);
+    let up = max(ray.z, 0.0);
+    let horizon = frame.studio_bottom.w;
+    let rise = up * (2.0 - up) * (up * (1.0 + horizon) / (up + horizon));
+    return vec4f(mix(frame.haze.rgb, frame.zenith.rgb, rise), 1.0);
 }

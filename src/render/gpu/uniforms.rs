@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::draw::backdrop::Backdrop;
 use crate::draw::ground::WaterColor;
 use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
@@ -37,6 +38,8 @@ pub struct FrameUniforms {
     bounce: [f32; 4],
     haze: [f32; 4],
     zenith: [f32; 4],
+    studio_top: [f32; 4],
+    studio_bottom: [f32; 4],
     sides: [[f32; 4]; 4],
     water: [f32; 4],
     deep: [f32; 4],
@@ -89,6 +92,11 @@ impl FrameUniforms {
             bounce: with(light.bounce, 0.0),
             haze: with(light.haze.color, 1.0 / light.haze.distance_m),
             zenith: with(light.zenith, light.haze.near_m),
+            studio_top: with(
+                Backdrop::STUDIO_TOP.linear(),
+                if light.backdrop == Backdrop::Studio { 1.0 } else { 0.0 },
+            ),
+            studio_bottom: with(Backdrop::STUDIO_BOTTOM.linear(), Backdrop::HORIZON),
             sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
             water: with(WaterColor::SURFACE.linear(), 1.0),
             deep: with(WaterColor::DEEP.linear(), 1.0),

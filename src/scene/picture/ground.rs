@@ -10,7 +10,7 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
-use crate::scene::plinth::{base_z, plinth};
+use crate::scene::plinth::plinth;
 use crate::view::camera::Camera;
 
 /// Makes draw vertices of bare positions.
@@ -50,7 +50,7 @@ pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> u32 {
 pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &DisplayedTerrain) -> DrawMesh {
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
-    let walls = plinth(&sink.0, scene.ground().lattice(), base_z(scene.bounds));
+    let walls = plinth(&sink.0, scene.ground().lattice(), scene.bounds);
     let material = list.add_material(Material {
         name: "ground".into(),
         normals: NormalSource::Ground,

@@ -7,14 +7,13 @@ use glam::Vec3;
 
 use crate::draw::lighting::Haze;
 use crate::geom::aabb::Aabb;
+use crate::scene::picture::setting::PictureSetting;
 use crate::view::camera::Camera;
 
 /// Transmittance at the far edge of the scene in a view from above.
 const OVERVIEW_CLEAR: f32 = 0.94;
 /// Transmittance at the far edge of the scene where the horizon shows.
 const HORIZON_CLEAR: f32 = 0.62;
-/// A view is a plan where it looks down more steeply than this: sine of the angle below the horizon.
-const PLAN_DOWN: f32 = 0.985;
 
 /// The haze of `color` for a camera over the scene between the corners `min` and `max`. `stated_m` is the distance in
 /// meters from the near edge at which 63 % is haze, 0 for clear air; `None` fits it to the view.
@@ -26,12 +25,11 @@ pub(super) fn haze(color: Vec3, stated_m: Option<f32>, camera: &Camera, (min, ma
     let distance_m = match stated_m {
         Some(0.0) => f32::INFINITY,
         Some(stated_m) => stated_m,
-        None if -camera.forward().z > PLAN_DOWN => f32::INFINITY,
-        None => {
-            let top = camera.forward() + camera.up() * camera.tan_half_fov().y;
-            let clear = if top.z > 0.0 { HORIZON_CLEAR } else { OVERVIEW_CLEAR };
-            -depth_m / libm::logf(clear)
-        }
+        None => match PictureSetting::new(camera, (min, max)) {
+            PictureSetting::Plan => f32::INFINITY,
+            PictureSetting::Block | PictureSetting::Ground => -depth_m / libm::logf(OVERVIEW_CLEAR),
+            PictureSetting::Landscape => -depth_m / libm::logf(HORIZON_CLEAR),
+        },
     };
     Haze { color, near_m, distance_m }
 }

@@ -8,14 +8,17 @@ mod ground;
 mod haze;
 mod models;
 pub mod recut;
+pub mod setting;
 mod solids;
 mod symbols;
+mod table;
 mod uprights;
 
 use std::sync::Arc;
 
 use glam::Mat4;
 
+use crate::description::words::TableTop;
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::geom::aabb::Aabb;
@@ -23,6 +26,7 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
+use crate::scene::picture::setting::PictureSetting;
 use crate::scene::{SceneModel, SceneView, ViewAim};
 use crate::view::camera::{Camera, CameraError, far_m};
 
@@ -67,6 +71,11 @@ pub fn draw_list(
     listed(scene, displayed, Viewer::Anyone, progress)
 }
 
+/// Whether `camera` shows the scene as a block on a table.
+pub fn shows_table(scene: &SceneModel, camera: &Camera) -> bool {
+    scene.table != TableTop::None && PictureSetting::new(camera, scene.bounds) == PictureSetting::Block
+}
+
 fn listed(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,
@@ -84,6 +93,7 @@ fn listed(
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     if let Some(camera) = camera {
         list.lighting.haze = haze::haze(lighting.haze.color, scene.haze_m, camera, scene.bounds);
+        list.lighting.backdrop = PictureSetting::new(camera, scene.bounds).backdrop();
     }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
@@ -91,6 +101,11 @@ fn listed(
     drapes::add(&mut list, scene, displayed, viewer);
     progress("setting models");
     ground::add_plinth(&mut list, walls);
+    if let Viewer::Camera(camera) = viewer
+        && shows_table(scene, camera)
+    {
+        table::add(&mut list, scene);
+    }
     solids::add(&mut list, scene);
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);

@@ -1,0 +1,95 @@
+//! Coordinates along the edge of a block of terrain: ticks that point away from it, each with its number.
+
+use glam::Vec2;
+
+use crate::annotate::composer::Composer;
+use crate::annotate::drawing::Drawing;
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::annotate::sheet::SOFT_INK;
+use crate::annotate::text::TextStyle;
+
+/// The size of the numbers, the length of a tick, and the gap between them, in design pixels.
+const SIZE: f32 = 13.0;
+const TICK: f32 = 8.0;
+const GAP: f32 = 4.0;
+
+/// A coordinate at the edge of the block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RimMark {
+    /// The place on the edge: pixels from the picture's upper left corner, Y down.
+    pub at_px: Vec2,
+    /// The direction away from the block; marks without one are left out.
+    pub outward: Vec2,
+    /// The coordinate.
+    pub text: String,
+}
+
+/// Draws the marks that fit: inside the margin, off the furniture in `taken`, and off each other, the first before the
+/// later. Returns one drawing per mark that is drawn.
+pub(in crate::annotate) fn draw_marks(
+    marks: &[RimMark],
+    taken: &[PixelBox],
+    composer: &mut Composer,
+) -> Vec<Drawing> {
+    let mut drawn: Vec<Drawing> = Vec::new();
+    let sheet = composer.sheet;
+    let within = sheet.bounds().grown(-sheet.px(3.0));
+    for mark in marks {
+        let Some(drawing) = draw(mark, composer) else { continue };
+        let bounds = drawing.bounds();
+        let spaced = bounds.grown(sheet.px(6.0));
+        let is_free = !taken.iter().any(|other| other.overlaps(&spaced))
+            && !drawn.iter().any(|other| other.bounds().overlaps(&spaced));
+        if within.holds(&bounds) && is_free {
+            drawn.push(drawing);
+        }
+    }
+    drawn
+}
+
+fn draw(mark: &RimMark, composer: &mut Composer) -> Option<Drawing> {
+    let sheet = composer.sheet;
+    let outward = mark.outward.try_normalize().filter(|_| mark.at_px.is_finite())?;
+    let line = composer.line(&mark.text, composer.style(SIZE, TextStyle::REGULAR));
+    let end = mark.at_px + outward * sheet.px(TICK);
+    let half = Vec2::new(line.advance, line.style.cap_px()) * 0.5;
+    let center = end + outward * (outward.abs().dot(half) + sheet.px(GAP));
+    let mut drawing = Drawing::default();
+    drawing.line(PixelSegment { from: mark.at_px, to: end }, sheet.hairline(), SOFT_INK);
+    drawing.write_haloed(&line, (center + Vec2::new(-half.x, half.y)).round(), sheet.px(1.5), SOFT_INK);
+    Some(drawing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mark(x: f32, y: f32, outward: Vec2) -> RimMark {
+        RimMark { at_px: Vec2::new(x, y), outward, text: "345 000 E".into() }
+    }
+
+    #[test]
+    fn a_mark_stands_outside_the_edge_and_reads_away_from_it() {
+        let mut composer = Composer::new(1920, 1080);
+        for outward in [Vec2::Y, Vec2::NEG_X, Vec2::new(0.5, 0.8)] {
+            let drawings = draw_marks(&[mark(900.0, 500.0, outward)], &[], &mut composer);
+            let toward = (drawings[0].bounds().center() - Vec2::new(900.0, 500.0)).normalize();
+            assert!(toward.dot(outward.normalize()) > 0.9, "{outward}: {toward}");
+        }
+    }
+
+    #[test]
+    fn marks_that_meet_furniture_each_other_or_the_border_are_left_out() {
+        let mut composer = Composer::new(1920, 1080);
+        let marks = [
+            mark(900.0, 500.0, Vec2::Y),
+            mark(910.0, 500.0, Vec2::Y),
+            mark(1200.0, 500.0, Vec2::Y),
+            mark(1915.0, 500.0, Vec2::X),
+            mark(300.0, 500.0, Vec2::ZERO),
+            mark(f32::NAN, 500.0, Vec2::Y),
+        ];
+        let panel = PixelBox::at(Vec2::new(1150.0, 480.0), Vec2::splat(100.0));
+        assert_eq!(draw_marks(&marks, &[panel], &mut composer).len(), 1);
+    }
+}

@@ -1,0 +1,93 @@
+//! The setting of a picture, by its camera: a plan, a model on a table, or a landscape under the sky.
+
+use glam::Vec3;
+
+use crate::draw::backdrop::Backdrop;
+use crate::scene::plinth::base_z;
+use crate::view::camera::Camera;
+
+/// A view is a plan where it looks down more steeply than this: sine of the angle below the horizon.
+const PLAN_DOWN: f32 = 0.985;
+
+/// Points along each side of the block that are looked for in the picture: the part of a side between two of them is
+/// narrower than a picture of any use.
+const RIM_POINTS: u16 = 64;
+
+/// What a picture shows the scene as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureSetting {
+    /// Seen from straight above.
+    Plan,
+    /// Looked down upon, its edge in view from outside: a block on a table.
+    Block,
+    /// Looked down upon from within: nothing but ground.
+    Ground,
+    /// The horizon is in view.
+    Landscape,
+}
+
+impl PictureSetting {
+    /// The setting of a picture of the ground in the box `bounds` by `camera`.
+    pub fn new(camera: &Camera, bounds: (Vec3, Vec3)) -> Self {
+        let top = camera.forward() + camera.up() * camera.tan_half_fov().y;
+        if -camera.forward().z > PLAN_DOWN {
+            Self::Plan
+        } else if top.z > 0.0 {
+            Self::Landscape
+        } else if !is_inside(camera.eye(), bounds) && is_rim_in_view(camera, bounds) {
+            Self::Block
+        } else {
+            Self::Ground
+        }
+    }
+
+    /// What shows behind the scene.
+    pub fn backdrop(self) -> Backdrop {
+        if self == Self::Landscape { Backdrop::Sky } else { Backdrop::Studio }
+    }
+}
+
+/// Whether an eye is within the block: over it, and below its highest ground.
+fn is_inside(eye: Vec3, (min, max): (Vec3, Vec3)) -> bool {
+    eye.truncate().cmpge(min.truncate()).all() && eye.cmple(max).all()
+}
+
+/// Whether the picture shows a point of the block's lower or upper edges.
+fn is_rim_in_view(camera: &Camera, (min, max): (Vec3, Vec3)) -> bool {
+    let (width, height) = camera.size();
+    let is_seen = |point: Vec3| {
+        camera.project(point).is_some_and(|seen| {
+            (0.0..=width as f32).contains(&seen.pixel.x) && (0.0..=height as f32).contains(&seen.pixel.y)
+        })
+    };
+    let levels = [base_z((min, max)), min.z, max.z];
+    (0..=RIM_POINTS).map(|step| f32::from(step) / f32::from(RIM_POINTS)).any(|part| {
+        let at = min.lerp(max, part);
+        let around = [(at.x, min.y), (at.x, max.y), (min.x, at.y), (max.x, at.y)];
+        around.iter().any(|&(x, y)| levels.iter().any(|&z| is_seen(Vec3::new(x, y, z))))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: (Vec3, Vec3) = (Vec3::ZERO, Vec3::new(10_000.0, 8000.0, 900.0));
+
+    fn setting(eye: (f32, f32, f32), target: (f32, f32, f32)) -> PictureSetting {
+        let camera = Camera::new(eye.into(), target.into(), 0.5, (160, 90), (1.0, 1e6)).expect("sound");
+        PictureSetting::new(&camera, BOUNDS)
+    }
+
+    #[test]
+    fn the_camera_decides_what_the_scene_is_shown_as() {
+        let from_above = setting((5000.0, -9000.0, 12_000.0), (5000.0, 4000.0, 0.0));
+        assert_eq!(from_above, PictureSetting::Block);
+        assert_eq!(from_above.backdrop(), Backdrop::Studio);
+        let along = setting((5000.0, -9000.0, 1200.0), (5000.0, 4000.0, 900.0));
+        assert_eq!((along, along.backdrop()), (PictureSetting::Landscape, Backdrop::Sky));
+        assert_eq!(setting((5000.0, 3990.0, 20_000.0), (5000.0, 4000.0, 0.0)), PictureSetting::Plan);
+        assert_eq!(setting((5000.0, 3000.0, 800.0), (5000.0, 3900.0, 0.0)), PictureSetting::Ground);
+        assert_eq!(setting((5000.0, 500.0, 850.0), (5000.0, -300.0, 0.0)), PictureSetting::Ground);
+    }
+}

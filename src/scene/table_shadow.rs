@@ -1,0 +1,162 @@
+//! The shadow of the block on its table.
+//!
+//! The block is read as a coarse height field over the table. From a place of the table one looks toward the sun: of the
+//! samples on the way, the one that stands highest over the ray decides how much of the sun is hidden. The sun's edge is
+//! taken far wider than it is, as if by a large lamp, so that the shadow is sharp at the block's foot and softens away from
+//! it. Where block and table meet, a narrow darker rim shows that the block rests on it.
+
+use glam::{DVec2, UVec2, Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::geom::rect::Rect;
+use crate::terrain::lattice::{Lattice, Post};
+
+/// How the block keeps light from a table.
+#[derive(Clone, Copy, Debug)]
+pub struct TableShadow<'a> {
+    /// The drawn ground.
+    pub ground: &'a Lattice,
+    /// World Z of the table.
+    pub table_z: f32,
+    /// Unit vector toward the sun.
+    pub to_sun: Vec3,
+}
+
+/// Meters by which the half-shadow widens per meter from what throws it: a large lamp, not the sun (0.009).
+const SOFTNESS: f32 = 0.16;
+
+/// The shade where the sun is hidden, and where the block meets the table.
+const CAST: f32 = 0.5;
+const CONTACT: f32 = 0.5;
+
+/// The reach of the contact shade, as a share of the map's side.
+const CONTACT_REACH: f32 = 0.012;
+
+/// The most samples on the way to the sun: beyond them a low sun's shadow ends.
+const MOST_STEPS: u32 = 512;
+
+/// Samples of the block's height, row by row from the south; NaN where there is no ground.
+struct BlockHeights {
+    size: UVec2,
+    cell: Vec2,
+    heights: Vec<f32>,
+}
+
+impl TableShadow<'_> {
+    /// The shade, 0 for full light, on `side` × `side` places over the rectangle `table` of world X and Y, in rows from
+    /// its north-west corner. `side` is at least 2.
+    pub fn map(&self, table: &Rect, side: u32) -> Vec<f32> {
+        let step = table.size().as_vec2() / (side - 1) as f32;
+        let corner = Vec2::new(table.min.x as f32, table.max.y as f32);
+        let place = |index: usize| {
+            let (x, y) = (index as u32 % side, index as u32 / side);
+            corner + Vec2::new(x as f32, -(y as f32)) * step
+        };
+        let block = BlockHeights::new(self.ground, step.min_element());
+        let count = (side * side) as usize;
+        let cast: Vec<f32> = (0..count)
+            .into_par_iter()
+            .map(|index| self.hidden_share(&block, place(index), step.min_element()))
+            .collect();
+        let covered = (0..count).map(|index| f32::from(block.at(place(index)).is_finite())).collect();
+        let reach = ((side as f32 * CONTACT_REACH) as usize).max(1);
+        let contact = blurred(blurred(covered, side as usize, reach), side as usize, reach);
+        cast.iter()
+            .zip(contact)
+            .map(|(cast, near)| 1.0 - (1.0 - cast * CAST) * (1.0 - near * CONTACT))
+            .collect()
+    }
+
+    /// The share of the sun that is hidden from a place on the table.
+    fn hidden_share(&self, block: &BlockHeights, place: Vec2, step_m: f32) -> f32 {
+        let level = self.to_sun.truncate();
+        let Some(toward) = level.try_normalize() else { return 0.0 };
+        let rise = self.to_sun.z / level.length();
+        let hidden = (1..=MOST_STEPS).map(|step| {
+            let way_m = step as f32 * step_m;
+            let over = block.at(place + toward * way_m) - self.table_z - way_m * rise;
+            (over / (way_m * SOFTNESS + step_m) * 0.5 + 0.5).clamp(0.0, 1.0)
+        });
+        // Where there is no ground the height is NaN, which `max` passes over.
+        hidden.fold(0.0, f32::max)
+    }
+}
+
+impl BlockHeights {
+    /// Samples about `step_m` apart, at posts.
+    fn new(ground: &Lattice, step_m: f32) -> Self {
+        let last = UVec2::new(ground.columns() - 1, ground.rows() - 1);
+        let extent = ground.extent().size();
+        let size = (extent / f64::from(step_m)).ceil().as_uvec2().clamp(UVec2::splat(2), last + 1);
+        let post = |index: u32| {
+            let part = UVec2::new(index % size.x, index / size.x).as_dvec2() / (size - 1).as_dvec2();
+            let at = (part * last.as_dvec2()).round().as_uvec2();
+            ground.height(Post { column: at.x, row: at.y })
+        };
+        let cell = (extent / (size - 1).max(UVec2::ONE).as_dvec2()).as_vec2();
+        Self { size, cell, heights: (0..size.x * size.y).map(post).collect() }
+    }
+
+    /// The height of the nearest sample; NaN off the block.
+    fn at(&self, place: Vec2) -> f32 {
+        let index = (place / self.cell).round();
+        let is_on = index.cmpge(Vec2::ZERO).all() && index.cmplt(self.size.as_vec2()).all();
+        let index = index.as_uvec2();
+        if is_on { self.heights[(index.y * self.size.x + index.x) as usize] } else { f32::NAN }
+    }
+}
+
+/// A square map with each value replaced by the mean of the square around it that reaches `reach` values far.
+fn blurred(map: Vec<f32>, side: usize, reach: usize) -> Vec<f32> {
+    let along = |map: &[f32], at: &dyn Fn(usize, usize) -> usize| {
+        let mut means = vec![0.0; map.len()];
+        for line in 0..side {
+            for place in 0..side {
+                let near = place.saturating_sub(reach)..(place + reach + 1).min(side);
+                let count = near.len() as f32;
+                means[at(line, place)] = near.map(|near| map[at(line, near)]).sum::<f32>() / count;
+            }
+        }
+        means
+    };
+    let rows = along(&map, &|line, place| line * side + place);
+    along(&rows, &|line, place| place * side + line)
+}
+
+/// The rectangle of world X and Y that a lattice covers, grown by `margin_m` on all sides.
+pub fn table_rect(ground: &Lattice, margin_m: f64) -> Rect {
+    Rect { min: DVec2::ZERO, max: ground.extent().size() }.grown(margin_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shadow_falls_away_from_the_sun_and_softens_with_distance() {
+        // A block of 1 km, 100 m high, under a sun in the west, 45° high.
+        let ground = Lattice::new(DVec2::ZERO, DVec2::splat(20.0), 51, vec![100.0; 51 * 51]).expect("sound");
+        let to_sun = Vec3::new(-1.0, 0.0, 1.0).normalize();
+        let side = 201;
+        let shadow = TableShadow { ground: &ground, table_z: 0.0, to_sun };
+        let map = shadow.map(&table_rect(&ground, 500.0), side);
+        // One place each 10 m; the middle row, by its distance from the eastern and from the western wall.
+        let row = &map[100 * side as usize..][..side as usize];
+        let (east, west) = (|m: usize| row[150 + m / 10], |m: usize| row[50 - m / 10]);
+        assert!(east(50) > 0.4 && west(50) < 0.05, "{} {}", east(50), west(50));
+        assert!(east(250) < 0.02 && west(250) == 0.0);
+        assert!(east(80) > east(100) && east(100) > east(120), "{row:?}");
+        assert!(west(10) > west(30), "the foot is darker");
+    }
+
+    #[test]
+    fn a_hole_in_the_ground_throws_no_shadow() {
+        let mut heights = vec![100.0; 51 * 51];
+        heights.iter_mut().enumerate().filter(|(index, _)| index % 51 > 20).for_each(|(_, z)| *z = f32::NAN);
+        let ground = Lattice::new(DVec2::ZERO, DVec2::splat(20.0), 51, heights).expect("sound");
+        let shadow = TableShadow { ground: &ground, table_z: 0.0, to_sun: Vec3::new(-0.6, 0.0, 0.8) };
+        let map = shadow.map(&table_rect(&ground, 500.0), 201);
+        assert_eq!(map[100 * 201 + 150 + 5], 0.0);
+        assert!(map[100 * 201 + 50 + 45] > 0.4);
+    }
+}
