@@ -6,6 +6,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::draw::water::WaterColor;
 
 /// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,31 +100,6 @@ impl ColorRamp {
     }
 }
 
-/// The colors of standing water on the ground map: near the shore and at depth; one blue for all water.
-///
-/// Water covers `clamp((water − 0.5) · 4 + 0.5, 0, 1)` of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaterColor;
-
-impl WaterColor {
-    /// Water at the height of 0 and above.
-    pub const SURFACE: Srgba = Srgba::opaque(92, 150, 190);
-    /// Deep water.
-    pub const DEEP: Srgba = Srgba::opaque(52, 100, 152);
-    /// The height in meters at which water is taken to be deep.
-    pub const DEEP_M: f32 = -1000.0;
-
-    /// The share of a pixel that is under water, from the mean of [`GroundPost::water`] around it.
-    pub fn cover(water: f32) -> f32 {
-        ((water - 0.5) * 4.0 + 0.5).clamp(0.0, 1.0)
-    }
-
-    /// The color of water over a bed at `height_m`, in linear light.
-    pub fn linear_at(height_m: f32) -> Vec3 {
-        Self::SURFACE.linear().lerp(Self::DEEP.linear(), (height_m / Self::DEEP_M).clamp(0.0, 1.0).sqrt())
-    }
-}
-
 /// Contour lines of constant width on the picture.
 ///
 /// At a pixel, `w` is the change of height across one pixel, `sqrt((∂h/∂x)² + (∂h/∂y)²)` on the screen. A line
@@ -201,7 +177,7 @@ impl GroundMap {
     pub fn albedo(&self, post: &GroundPost, change_m: f32) -> Vec3 {
         let land = self.ramp.linear_at(post.height_m);
         let water = WaterColor::cover(post.water);
-        let bare = if water > 0.0 { land.lerp(WaterColor::linear_at(post.height_m), water) } else { land };
+        let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
         let Some(contours) = &self.contours else { return bare };
         let strength = contours.strength(post.height_m, change_m) * (1.0 - water);
         bare.lerp(contours.color.linear(), strength * contours.color.alpha())

@@ -52,6 +52,8 @@ pub struct Material {
     pub normals: NormalSource,
     /// The source of the color.
     pub albedo: Albedo,
+    /// Whether it is water, which mirrors the sky; on the ground map, posts say so.
+    pub is_water: bool,
 }
 
 impl Material {
@@ -72,6 +74,7 @@ impl Default for Material {
             two_sided: false,
             normals: NormalSource::Vertex,
             albedo: Albedo::Surface,
+            is_water: false,
         }
     }
 }

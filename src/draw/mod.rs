@@ -9,3 +9,4 @@ pub mod lighting;
 pub mod list;
 pub mod material;
 pub mod pixels;
+pub mod water;

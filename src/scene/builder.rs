@@ -100,7 +100,7 @@ pub fn described(kind: &str, name: &str) -> String {
 fn layer_of(surface: RibbonSurface) -> u8 {
     match surface {
         RibbonSurface::Cover(_) | RibbonSurface::Border => 0,
-        RibbonSurface::Bank => 1,
+        RibbonSurface::Bank | RibbonSurface::ShoreLine => 1,
         RibbonSurface::River | RibbonSurface::Confluence => 2,
         RibbonSurface::Lake => 3,
         // Shoulders are laid before tracks and so lie below them.

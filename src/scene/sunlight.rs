@@ -27,7 +27,7 @@ const STEP_DEG: f32 = 15.0;
 
 /// How far to the left of the viewing direction the light comes from, degrees: in a view from above, where light from
 /// below right would turn hills into holes; and in a view from the side, where fronts of buildings would be dark.
-const LEFT_DEG: [f32; 2] = [45.0, 110.0];
+const LEFT_DEG: [f32; 2] = [45.0, 100.0];
 /// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
 const PITCH_DEG: [f32; 2] = [45.0, 25.0];
 
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_light_comes_from_the_left_of_every_picture_and_from_the_upper_left_of_one_from_above() {
+    fn the_light_comes_from_the_left_of_every_picture_and_from_above_of_steep_ones() {
         let light = Sunlight { azimuth_rad: None, altitude_rad: 0.7 };
         for heading in 0..360 {
             let toward = Vec2::from_angle((90.0 - heading as f32).to_radians());

@@ -1,11 +1,14 @@
-//! The line symbols of roads and rivers: how wide a line is drawn where its true width would be lost.
+//! The line symbols of roads, rivers and shores: how wide a line is drawn where its true width would be lost.
 //!
 //! A map draws a road as wide as its class needs to be told from the others, whatever its width on the ground. So does a
 //! picture: a line is drawn as wide as it is, or as its class's least width on the picture, whichever is more. Only
 //! pictures are; the ground, its heights, exports and reports have the true width.
 
+use glam::DVec2;
+
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::{Alignment, Support};
+use crate::geom::polyline::Polyline;
 use crate::ribbon::junction::Street;
 use crate::ribbon::texture::RibbonSurface;
 
@@ -20,6 +23,12 @@ const GRAVEL_PX: f64 = 1.5;
 
 /// Of tracks and paths.
 const TRACK_PX: f64 = 1.0;
+
+/// The width of a shore's line on the ground in meters.
+const SHORE_M: f64 = 0.3;
+
+/// Of shores, of which the outer half shows beside the lake.
+const SHORE_PX: f64 = 1.9;
 
 /// The height of the picture that least widths are for, in pixels; they grow with it, as type does.
 const PICTURE_PX: f64 = 1080.0;
@@ -44,6 +53,14 @@ impl LineSymbol {
         let symbol = || Self { alignment: alignment.clone(), surface: *surface, least_px, feature };
         (alignment.support != Support::Tunnel).then(symbol)
     }
+
+    /// The symbol of the shore along a closed outline, as wide on the ground as a strip of wet sand; `None` for an outline
+    /// without length.
+    pub fn of_shore(outline: &[DVec2], feature: FeatureId) -> Option<Self> {
+        let line = Polyline::new(outline.iter().chain(outline.first()).copied(), 0.0)?;
+        let alignment = Alignment::on_ground(line, SHORE_M);
+        Some(Self { alignment, surface: RibbonSurface::ShoreLine, least_px: SHORE_PX, feature })
+    }
 }
 
 /// Pixels of a picture `height_px` high in one pixel of those that least widths are for.
@@ -64,6 +81,7 @@ fn least_px(surface: RibbonSurface, width_m: f64) -> f64 {
     };
     match surface {
         RibbonSurface::River => class_of(&WATER),
+        RibbonSurface::ShoreLine => SHORE_PX,
         RibbonSurface::Track => TRACK_PX,
         RibbonSurface::Gravel => GRAVEL_PX,
         _ => class_of(&PAVED),

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::draw::water::WaterColor;
 use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::ground_shade::GroundShader;
@@ -92,6 +93,13 @@ impl<'a> Shader<'a> {
                 lighting.shade_received(albedo, normal, self.received(&hit, ShadowReceiver::Solid, is_sunlit))
             }
         };
+        let water = match (material.albedo, &ground) {
+            (Albedo::GroundMap, Some((_, point))) => WaterColor::cover(point.post.water),
+            _ => f32::from(u8::from(material.is_water)),
+        };
+        if water > 0.0 {
+            color = lighting.mirror_sky(color, hit.world - self.screen.eye.as_vec3(), water);
+        }
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);
         }

@@ -48,6 +48,7 @@ const FROM_GROUND_NORMAL = 1u;
 const FROM_GROUND_ALBEDO = 2u;
 const MASK = 4u;
 const BLEND = 8u;
+const WATER = 16u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -415,6 +416,21 @@ fn lit(albedo: vec3f, normal: vec3f, received: vec2f) -> vec3f {
     return albedo * (direct + ambient);
 }
 
+// Lighting::sky_color of a ray of unit length.
+fn sky_at(ray: vec3f) -> vec3f {
+    let up = max(ray.z, 0.0);
+    let horizon = frame.studio_bottom.w;
+    return mix(frame.haze.rgb, frame.zenith.rgb, up * (2.0 - up) * (up * (1.0 + horizon) / (up + horizon)));
+}
+
+// Lighting::mirror_sky.
+fn mirror_sky(color: vec3f, toward: vec3f, water: f32) -> vec3f {
+    let ray = normalize(toward);
+    let grazing = 1.0 - clamp(-ray.z, 0.0, 1.0);
+    let share = mix(0.02, 0.5, grazing * grazing * grazing * grazing * grazing);
+    return mix(color, sky_at(vec3f(ray.xy, -ray.z)), share * water);
+}
+
 fn facing_sun(normal: vec3f) -> f32 {
     return max(dot(normal, frame.to_sun.xyz), 0.0);
 }
@@ -467,6 +483,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     var color = surface(in);
     let normal = vertex_normal(in, front);
     var light = vec3f(0.0);
+    var water_share = select(0.0, 1.0, (flags & WATER) != 0u);
     let right = dpdx(in.world.xy);
     let down = dpdy(in.world.xy);
     let face = cross(dpdx(in.world), dpdy(in.world));
@@ -478,8 +495,10 @@ fn shade(in: Varying, front: bool) -> vec4f {
             // WaterColor.
             let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
             let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
-            let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water);
+            let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
+            let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water) * shore;
             color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
+            water_share = water;
         }
         if (flags & FROM_GROUND_NORMAL) != 0u {
             let received = vec2f(sun_share(in.world, face, false), contact_share(in.world, false));
@@ -493,6 +512,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
         }
         light = lit(color.rgb, normal, received);
     }
+    light = mirror_sky(light, in.world - frame.eye.xyz, water_share);
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
 }

@@ -17,8 +17,5 @@ fn sky_color(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let x = (pixel.x / frame.depth.z * 2.0 - 1.0) / frame.right.w;
     let y = (1.0 - down * 2.0) / frame.up.w;
     let ray = normalize(frame.forward.xyz + frame.right.xyz * x + frame.up.xyz * y);
-    let up = max(ray.z, 0.0);
-    let horizon = frame.studio_bottom.w;
-    let rise = up * (2.0 - up) * (up * (1.0 + horizon) / (up + horizon));
-    return vec4f(mix(frame.haze.rgb, frame.zenith.rgb, rise), 1.0);
+    return vec4f(sky_at(ray), 1.0);
 }

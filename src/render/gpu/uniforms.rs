@@ -4,11 +4,11 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::backdrop::Backdrop;
-use crate::draw::ground::WaterColor;
 use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::draw::water::WaterColor;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
@@ -22,6 +22,7 @@ const FROM_GROUND_NORMAL: u32 = 1;
 const FROM_GROUND_ALBEDO: u32 = 2;
 const MASK: u32 = 4;
 const BLEND: u32 = 8;
+const WATER: u32 = 16;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -136,6 +137,7 @@ impl SurfaceConstants {
     pub fn new(material: &Material) -> Self {
         let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
         let albedo = if material.albedo == Albedo::GroundMap { FROM_GROUND_ALBEDO } else { 0 };
+        let water = if material.is_water { WATER } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -143,7 +145,7 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha, 0, 0, 0],
+            flags: [normal | albedo | alpha | water, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

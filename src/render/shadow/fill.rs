@@ -146,7 +146,8 @@ impl Filling<'_> {
                 let page = PixelWindow { from: corner, to: corner.map(|side| side + PAGE) };
                 let first = place * (PAGE * PAGE) as usize;
                 let texels = &mut work.texels[first..][..(PAGE * PAGE) as usize];
-                let mut undersides = work.undersides.get_mut(first..).filter(|_| plane.looks_down);
+                let mut undersides =
+                    work.undersides.get_mut(first..).filter(|all| plane.looks_down && !all.is_empty());
                 cover(&turned, &ONE, page.intersection(touched), |x, y, _| {
                     let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - plane.start;
                     if plane.is_hole(at) {

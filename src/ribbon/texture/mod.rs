@@ -8,6 +8,7 @@ mod water;
 use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
+use crate::draw::water::WaterColor;
 use crate::ribbon::texture::road::{Center, RoadMarkings};
 
 /// What a ribbon is made of.
@@ -41,6 +42,8 @@ pub enum RibbonSurface {
     Bank,
     /// Still water.
     Lake,
+    /// The line along the shore of still water.
+    ShoreLine,
     /// The floor of a trench.
     Trench,
     /// The dashes of a boundary.
@@ -72,6 +75,11 @@ impl RibbonSurface {
             Self::Asphalt | Self::AsphaltSolid | Self::AsphaltEdges => Self::AsphaltPlain,
             other => other,
         }
+    }
+
+    /// Whether it is open water.
+    pub fn is_water(self) -> bool {
+        matches!(self, Self::River | Self::Confluence | Self::Lake)
     }
 
     /// Whether the ground shows through it.
@@ -109,7 +117,8 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
             RibbonSurface::Bank => water::bank(u, grain),
             RibbonSurface::Cover(cover) => cover::texel(cover, u, v, grain),
             RibbonSurface::Border => Srgba::WHITE,
-            RibbonSurface::Lake => shade([92, 150, 190], (grain - 0.5) * 5.0),
+            RibbonSurface::Lake => water::lake(grain),
+            RibbonSurface::ShoreLine => WaterColor::SHORE_LINE,
         }
     })
 }

@@ -15,6 +15,11 @@ pub(super) fn stream(grain: f32) -> Srgba {
     shade([92, 150, 190], (grain - 0.5) * 8.0)
 }
 
+/// Still water.
+pub(super) fn lake(grain: f32) -> Srgba {
+    shade([92, 150, 190], (grain - 0.5) * 5.0)
+}
+
 /// A bank, from its outer edge on either side: damp green that fades into the ground.
 pub(super) fn bank(u: f32, grain: f32) -> Srgba {
     /// How far from the edge, as a part of banks and water together, the bank is opaque.

@@ -53,8 +53,14 @@ pub(super) fn add(
             mesh
         })
         .collect();
-    let (rivers, roads): (Vec<_>, Vec<_>) =
-        draped.into_iter().partition(|draped| draped.symbol.surface == RibbonSurface::River);
+    let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
+    for draped in draped {
+        match draped.symbol.surface {
+            RibbonSurface::ShoreLine => shores.push(draped),
+            RibbonSurface::River => rivers.push(draped),
+            _ => roads.push(draped),
+        }
+    }
     let mut ribbons = Ribbons { list, materials: BTreeMap::new() };
     let mut order: Vec<_> =
         scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
@@ -68,7 +74,8 @@ pub(super) fn add(
             add_mesh(ribbons.list, mesh, material, DepthLayer::Draped(ribbon.layer), ribbon.feature);
         }
     };
-    for (layer, symbols) in [(BELOW_RIVERS, rivers), (BELOW_ROADS, roads)] {
+    // Mouths of rivers lie over shores.
+    for (layer, symbols) in [(BELOW_RIVERS, shores), (BELOW_RIVERS, rivers), (BELOW_ROADS, roads)] {
         add_up_to(&mut ribbons, layer);
         ribbons.add_symbols(symbols, DepthLayer::Draped(layer));
     }
@@ -134,6 +141,7 @@ fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> 
         texture: Some(texture),
         alpha: if surface.lets_through() { AlphaMode::Blend } else { AlphaMode::Opaque },
         normals: NormalSource::Ground,
+        is_water: surface.is_water(),
         ..Material::default()
     }
 }
@@ -146,6 +154,7 @@ fn flat_material(part: &str, surface: RibbonSurface, light: f32) -> Material {
         name: format!("{part} of {surface:?}").to_lowercase(),
         base_color: Srgba::from_linear(sum * light / texture.data().len() as f32),
         normals: NormalSource::Ground,
+        is_water: surface.is_water() && light == 1.0,
         ..Material::default()
     }
 }

@@ -25,6 +25,7 @@ use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::drape;
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use crate::ribbon::texture::RibbonSurface;
 use crate::scene::SceneModel;
 use crate::scene::symbols::{LineSymbol, drawn_width_m, px_scale};
 use crate::terrain::full_resolution::FullResolution;
@@ -102,7 +103,9 @@ pub(super) fn symbols<'a>(
     let view = SymbolView::new(scene, camera);
     let seen: Vec<_> = scene.symbols.par_iter().map(|symbol| (symbol, view.seen(symbol))).collect();
     let mut shows = BTreeMap::new();
-    for (symbol, show) in seen.iter().filter_map(|(symbol, seen)| Some((symbol, seen.show?))) {
+    // A shore lies beside its lake and does not take its place.
+    let in_place = seen.iter().filter(|(symbol, _)| symbol.surface != RibbonSurface::ShoreLine);
+    for (symbol, show) in in_place.filter_map(|(symbol, seen)| Some((symbol, seen.show?))) {
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }

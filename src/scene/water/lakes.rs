@@ -19,6 +19,7 @@ use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::near::Clipped;
 use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
+use crate::scene::symbols::LineSymbol;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::vector::feature::Polygon;
@@ -56,6 +57,8 @@ pub fn lay(
             let level = level_of(document, lake, &attributes, &shore, collected)?;
             let feature = flood(lattice, name, &shape, &shore, level, collected);
             collected.lay(plan.plan, RibbonSurface::Lake, feature);
+            let outlines = std::iter::once(&shape.exterior).chain(&shape.holes);
+            collected.symbols.extend(outlines.filter_map(|outline| LineSymbol::of_shore(outline, feature)));
         }
     }
     Ok(())
