@@ -30,6 +30,8 @@ pub struct Legend {
     pub high_m: f32,
     /// The factor by which the picture stretches heights; noted where it is not 1.
     pub vertical_exaggeration: f32,
+    /// The greatest scale of a model that is drawn larger than it is, as a symbol.
+    pub model_enlargement: Option<f32>,
     /// Height between contour lines in meters, where there are any.
     pub contour_interval: Option<f32>,
     /// A line that names the vertical datum, for instance `Heights: NAVD88`.
@@ -84,6 +86,9 @@ fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TypesetLine)>
     let exaggeration = legend.vertical_exaggeration;
     if exaggeration.is_finite() && exaggeration != 1.0 {
         texts.push(format!("Heights ×{}", format_trimmed(exaggeration.into(), 2)));
+    }
+    if let Some(enlargement) = legend.model_enlargement {
+        texts.push(format!("Models up to ×{}", format_trimmed(enlargement.into(), 1)));
     }
     if let Some(datum) = &legend.vertical_datum {
         texts.extend(written_lines(datum, 1).0);
@@ -148,6 +153,7 @@ mod tests {
             low_m: 321.0,
             high_m: 1062.0,
             vertical_exaggeration: 1.5,
+            model_enlargement: None,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),
         }
@@ -186,6 +192,7 @@ mod tests {
         let plain =
             Legend { vertical_exaggeration: 1.0, contour_interval: None, vertical_datum: None, ..legend() };
         let notes = |legend: &Legend| notes(legend, &mut Composer::new(1920, 1080)).len();
-        assert_eq!((notes(&plain), notes(&legend())), (0, 3));
+        let symbols = Legend { model_enlargement: Some(60.0), ..legend() };
+        assert_eq!([&plain, &legend(), &symbols].map(notes), [0, 3, 4]);
     }
 }

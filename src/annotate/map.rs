@@ -222,6 +222,7 @@ mod tests {
                 low_m: 0.0,
                 high_m: 100.0,
                 vertical_exaggeration: 1.0,
+                model_enlargement: None,
                 contour_interval: None,
                 vertical_datum: None,
             },

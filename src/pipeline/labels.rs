@@ -71,7 +71,17 @@ fn legend(scene: &SceneModel) -> Legend {
         low_m,
         high_m,
         vertical_exaggeration: scene.scale.0,
+        model_enlargement: enlargement(scene),
         contour_interval: scene.contours.map(|contours| contours.interval_m),
         vertical_datum: datum.map(|name| format!("Heights: {name}")),
     }
+}
+
+/// Models drawn at more than this many times their size are symbols; trees and the like differ by less.
+const ENLARGED: f32 = 2.0;
+
+/// The greatest scale of a model, where it makes a symbol of it.
+fn enlargement(scene: &SceneModel) -> Option<f32> {
+    let greatest = scene.placements.iter().map(|placement| placement.scale).fold(0.0, f32::max);
+    (greatest > ENLARGED).then_some(greatest)
 }

@@ -68,6 +68,7 @@ pub fn viewshed_map(
             low_m,
             high_m,
             vertical_exaggeration: 1.0,
+            model_enlargement: None,
             contour_interval: None,
             vertical_datum: text.vertical_datum,
         },

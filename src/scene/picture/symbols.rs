@@ -55,6 +55,9 @@ const MOST_FORESHORTENING: f64 = 3.0;
 /// Markings narrower than this road, in pixels of a picture 1080 lines high, are lost, and gray its pavement.
 const MARKED_PX: f64 = 6.0;
 
+/// A dash of a track and the gap after it, in pixels of a picture 1080 lines high.
+const DASH_PX: [f64; 2] = [7.0, 4.0];
+
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
 
@@ -115,9 +118,14 @@ pub(super) fn symbols<'a>(
             drape(plan, displayed, &mut mesh);
             mesh
         };
+        let runs = if symbol.surface == RibbonSurface::Track {
+            seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect()
+        } else {
+            seen.runs
+        };
         let strokes = |width: fn(&SymbolVertex) -> f64| {
             let mut plan = PlanMesh::default();
-            seen.runs.iter().for_each(|run| stroke_run(run, width, &mut plan));
+            runs.iter().for_each(|run| stroke_run(run, width, &mut plan));
             mesh(&plan)
         };
         let is_cased = symbol.least_px >= LEAST_CASED_PX;
@@ -136,6 +144,20 @@ struct SymbolVertex {
     drawn_m: f64,
     casing_m: f64,
     show: RibbonShow,
+}
+
+impl SymbolVertex {
+    /// The vertex `part` of the way to another.
+    fn toward(&self, to: &Self, part: f64) -> Self {
+        let blend = |from: f64, to: f64| from + (to - from) * part;
+        Self {
+            at: self.at.lerp(to.at, part),
+            true_m: blend(self.true_m, to.true_m),
+            drawn_m: blend(self.drawn_m, to.drawn_m),
+            casing_m: blend(self.casing_m, to.casing_m),
+            show: self.show,
+        }
+    }
 }
 
 /// What a camera sees of a line.
@@ -307,6 +329,39 @@ impl<'a> SymbolView<'a> {
     }
 }
 
+/// The dashes of a line whose width is `least_px` on the picture.
+fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
+    let mut dashes = vec![Vec::from_iter(run.first().copied())];
+    // Pixels since the dash began.
+    let mut along_px = 0.0;
+    for leg in run.windows(2) {
+        let mean_m_per_px = 0.5 * (leg[0].drawn_m + leg[1].drawn_m) / least_px;
+        let length_px = leg[0].at.distance(leg[1].at) / mean_m_per_px;
+        let mut from_px = 0.0;
+        while from_px < length_px {
+            let is_dash = along_px < DASH_PX[0];
+            let end_px = if is_dash { DASH_PX[0] } else { DASH_PX[0] + DASH_PX[1] };
+            let to_px = (from_px + end_px - along_px).min(length_px);
+            let vertex = leg[0].toward(&leg[1], to_px / length_px);
+            if is_dash {
+                dashes.last_mut().expect("there is always one").push(vertex);
+            }
+            along_px += to_px - from_px;
+            from_px = to_px;
+            if along_px >= end_px - 1e-9 {
+                if !is_dash {
+                    dashes.push(vec![vertex]);
+                    along_px = 0.0;
+                } else {
+                    along_px = end_px;
+                }
+            }
+        }
+    }
+    dashes.retain(|dash| dash.len() > 1);
+    dashes
+}
+
 /// Strokes a run of vertices, its ends round.
 fn stroke_run(run: &[SymbolVertex], width: fn(&SymbolVertex) -> f64, plan: &mut PlanMesh) {
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
@@ -333,4 +388,30 @@ fn cap(center: DVec2, outward: DVec2, plan: &mut PlanMesh) {
     };
     let rim: Vec<_> = (0..=CAP_SIDES).map(corner).collect();
     rim.windows(2).for_each(|pair| plan.triangle([middle, pair[0], pair[1]]));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_and_gaps_keep_their_length_on_the_picture_as_the_line_recedes() {
+        // A line on which a pixel grows from one meter to three.
+        let vertex = |step: u32| {
+            let x = f64::from(step) * 10.0;
+            let drawn_m = 1.0 + x / 500.0;
+            let at = DVec2::new(x, 0.0);
+            SymbolVertex { at, true_m: 0.5, drawn_m, casing_m: drawn_m, show: RibbonShow::Replaced }
+        };
+        let run: Vec<SymbolVertex> = (0..=100).map(vertex).collect();
+        let dashes = dashes(&run, 1.0);
+        // ∫ dx / (1 + x / 500) from 0 to 1000 is 549 pixels.
+        assert_eq!(dashes.len(), (549.3 / (DASH_PX[0] + DASH_PX[1])) as usize + 1);
+        for pair in dashes.windows(2) {
+            let [from, to, next] = [pair[0][0], pair[0][pair[0].len() - 1], pair[1][0]];
+            let px = |a: SymbolVertex, b: SymbolVertex| a.at.distance(b.at) / (0.5 * (a.drawn_m + b.drawn_m));
+            assert!((px(from, to) - DASH_PX[0]).abs() < 0.05, "{from:?} {to:?}");
+            assert!((px(to, next) - DASH_PX[1]).abs() < 0.05, "{to:?} {next:?}");
+        }
+    }
 }
