@@ -117,19 +117,21 @@ table! {
         /// Height of sample value 0 of a gray PNG or RAW file.
         height_offset: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// A value that means no data, besides the one that the file declares.
-        nodata: Option<f64> = key::number(Within(-1e10, 1e10), ""), otherwise "what the file declares";
+        nodata: Option<f64> = key::number(Within(-1e39, 1e39), ""), otherwise "what the file declares";
         /// How the colors of a PNG encode heights.
         height_encoding: Option<HeightEncodingWord> = key::word::<HeightEncodingWord>(), otherwise "none; color PNG needs it";
         /// That the file is RAW, and its layout, such as `1201x1201:i16be`.
         raw: Option<Stated<String>> = key::filled_text(), otherwise "the file is not RAW";
         /// What heights are counted from, such as `NAVD88`; printed, never computed with.
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
-        /// Whether samples without data that others enclose are filled by a membrane.
-        fill_voids: bool = key::switch(), default false;
+        /// Whether samples without data that others enclose are filled by a membrane, up to 100000 at a place; `true` fills
+        /// the source as well, so that height queries on it see no voids.
+        fill_voids: Option<bool> = key::switch(), otherwise "the ground is filled, the source stays as it is read";
         /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
         infer_water: bool = key::switch(), default true;
         /// Points around the part that the scene is made of, such as two corners of a map.
-        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole model";
+        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),
+            otherwise "the whole model; of one in degrees or turned against north, the largest part with straight edges";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.
