@@ -41,10 +41,12 @@ pub struct PictureLabel {
     pub anchor_px: Vec2,
     /// The upper end of the leader line; `None`, or a point not above the anchor, leaves its length to the placement.
     pub top_px: Option<Vec2>,
-    /// Meters from the eye to the place; among labels of a kind the nearer are placed first.
+    /// Meters from the eye to the place; among labels of a rank and kind the nearer are placed first.
     pub depth_m: f32,
     /// Whether the place is seen, not hidden behind terrain.
     pub visible: bool,
-    /// Decides importance, type and symbol.
+    /// Decides type and symbol, and importance among labels of the same rank.
     pub kind: LabelKind,
+    /// The lower, the more important.
+    pub rank: f64,
 }

@@ -104,9 +104,9 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> LabelField {
     }
 }
 
-/// Kind first, then the nearer, then by text; equal labels keep the input's order.
+/// Rank first, then kind, then the nearer, then by text; equal labels keep the input's order.
 fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
-    let rank = |kind| match kind {
+    let by_kind = |kind| match kind {
         LabelKind::Summit => 0,
         LabelKind::Place => 1,
         LabelKind::Water => 2,
@@ -114,7 +114,7 @@ fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
     };
     let mut order: Vec<_> = labels.iter().enumerate().collect();
     order.sort_by(|(_, a), (_, b)| {
-        let by_rank = rank(a.kind).cmp(&rank(b.kind));
+        let by_rank = a.rank.total_cmp(&b.rank).then(by_kind(a.kind).cmp(&by_kind(b.kind)));
         by_rank.then(a.depth_m.total_cmp(&b.depth_m)).then_with(|| a.text.cmp(&b.text))
     });
     order
@@ -303,7 +303,15 @@ mod tests {
     fn label(text: &str, x: f32, y: f32) -> PictureLabel {
         let anchor_px = Vec2::new(x, y);
         let text = text.to_owned();
-        PictureLabel { text, anchor_px, top_px: None, depth_m: 1000.0, visible: true, kind: LabelKind::Place }
+        PictureLabel {
+            text,
+            anchor_px,
+            top_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            kind: LabelKind::Place,
+            rank: 0.0,
+        }
     }
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
@@ -331,12 +339,14 @@ mod tests {
     }
 
     #[test]
-    fn summits_go_before_places_and_the_near_before_the_far() {
+    fn the_lower_rank_goes_first_then_summits_before_places_and_the_near_before_the_far() {
         let far = PictureLabel { depth_m: 9000.0, ..label("far", 400.0, 500.0) };
         let near = PictureLabel { depth_m: 900.0, ..label("near", 402.0, 500.0) };
         let summit = PictureLabel { kind: LabelKind::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };
         assert_eq!(draw(&[far.clone(), near.clone()]).1.placed, ["near"]);
-        assert_eq!(draw(&[far, near, summit]).1.placed, ["summit"]);
+        assert_eq!(draw(&[far.clone(), near.clone(), summit.clone()]).1.placed, ["summit"]);
+        let [near, summit] = [near, summit].map(|label| PictureLabel { rank: 1.0, ..label });
+        assert_eq!(draw(&[near, summit, far]).1.placed, ["far"], "whatever is of a lower rank");
     }
 
     #[test]

@@ -16,7 +16,9 @@ use crate::pipeline::scene_file::open_scene;
 Every layer of the vector files is surveyed: lines with `highway` become roads by class, with `waterway` rivers, with \
 `barrier` fences and walls, with `power` power lines; polygons of water become lakes, with `building` buildings, with \
 `landuse`, `natural` or `leisure` areas. A layer without such properties is classified by its name (roads, rivers, \
-lakes, buildings). What is left is named in a comment.
+lakes, buildings). The schemas of Geofabrik, BGT, TIGER/Line, Ordnance Survey and BD TOPO are known as well. Cities, \
+towns, villages and peaks with names become labels, the most important first. What is left is named in a comment, with \
+its properties.
 
 No file is overwritten, and none is copied.")]
 pub struct NewArguments {
@@ -29,7 +31,7 @@ pub struct NewArguments {
     /// Vector files for the features on the ground
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub vectors: Vec<PathBuf>,
-    /// The picture's title [default: the elevation file's name]
+    /// The picture's title [default: the place's name from the vectors, else the elevation file's]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
     /// The coordinate system of an elevation file that names none, for example EPSG:32616

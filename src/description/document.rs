@@ -39,12 +39,14 @@ use crate::description::bounds::Bounds::{self, Above, Within};
 use crate::description::color::{Color, RampChoice};
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::Diagnostic;
+use crate::description::feature_value::DefaultedValue;
 use crate::description::features::{
-    AreaTable, BridgeTable, BuildingTable, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable,
-    ScatterTable,
+    AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
+    RoadTable, ScatterTable,
 };
 use crate::description::key;
 use crate::description::reader::TableReader;
+use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
@@ -115,19 +117,21 @@ table! {
         /// Height of sample value 0 of a gray PNG or RAW file.
         height_offset: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// A value that means no data, besides the one that the file declares.
-        nodata: Option<f64> = key::number(Within(-1e10, 1e10), ""), otherwise "what the file declares";
+        nodata: Option<f64> = key::number(Within(-1e39, 1e39), ""), otherwise "what the file declares";
         /// How the colors of a PNG encode heights.
         height_encoding: Option<HeightEncodingWord> = key::word::<HeightEncodingWord>(), otherwise "none; color PNG needs it";
         /// That the file is RAW, and its layout, such as `1201x1201:i16be`.
         raw: Option<Stated<String>> = key::filled_text(), otherwise "the file is not RAW";
         /// What heights are counted from, such as `NAVD88`; printed, never computed with.
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
-        /// Whether samples without data that others enclose are filled by a membrane.
-        fill_voids: bool = key::switch(), default false;
+        /// Whether samples without data that others enclose are filled by a membrane, up to 100000 at a place; `true` fills
+        /// the source as well, so that height queries on it see no voids.
+        fill_voids: Option<bool> = key::switch(), otherwise "the ground is filled, the source stays as it is read";
         /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
         infer_water: bool = key::switch(), default true;
         /// Points around the part that the scene is made of, such as two corners of a map.
-        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole model";
+        extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),
+            otherwise "the whole model; of one in degrees or turned against north, the largest part with straight edges";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).
         cell: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "what the file states";
         /// Factor by which heights are stretched when they are drawn.
@@ -177,16 +181,39 @@ table! {
 
     /// `[[label]]`.
     struct LabelTable {
-        /// The text; `{height}` becomes the ground's elevation in whole meters.
-        text: String = key::filled_text(), required;
+        /// The text; `{height}` becomes the ground's elevation in whole meters. With `file`: an expression, such as `name`;
+        /// in its result `{property}` becomes the value of that property, as in `'{name} {ele} m'`.
+        text: Stated<String> = key::filled_text(), required;
         /// The place that it names.
-        at: Stated<[f64; 2]> = key::point(), required;
-        /// Coordinate system of `at`.
-        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
+        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `file`";
+        /// Instead of `at`: a vector file whose features are labeled, points where they are, lines at the middle of their
+        /// longest piece on the ground, polygons at a point inside.
+        file: Option<Stated<String>> = key::file(), otherwise "by `at`";
+        /// With `file`: the layer of a file that holds several.
+        layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer";
+        /// With `file`: the features that are labeled, as in other tables.
+        selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features";
+        /// Coordinate system of `at`, or of a file that names none or a wrong one.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
+        /// The lower, the more important: labels that find no free place beside more important ones are left out. Features
+        /// for which an expression gives no number come last.
+        rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
+        /// With `file`: how many features are labeled at most, the most important first; of those with the same rank the
+        /// longer or larger, then the earlier in the file.
+        most: u32 = key::integer(1, 4096), default 1000;
         /// Height above the ground at which the leader line starts.
         height: f64 = key::number(Within(0.0, 1e7), "m"), default 0;
         /// What the label names.
         kind: LabelKind = key::word::<LabelKind>(), default "place";
+    }
+    check(reader) {
+        reader.exclude("file", "at");
+        reader.need_either("at", "file", "add `at = [x, y]`, or `file = \"name.geojson\"` for a label a feature");
+        if reader.key_span("file").is_some() {
+            reader.need_expression("text");
+        } else {
+            reader.without_effect(&["layer", "where", "most"], "on a label without a `file`", "name a `file`, or remove it");
+        }
     }
 
     /// `[[camera]]`: an eye and what it looks at, or, without them, a view that fills the picture.
@@ -253,6 +280,19 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+    }
+}
+
+impl LabelTable {
+    /// The features that it labels; `None` for a label at one place.
+    pub fn source(&self) -> Option<FeatureSource> {
+        self.file.is_some().then(|| FeatureSource {
+            points: None,
+            file: self.file.clone(),
+            layer: self.layer.clone(),
+            selection: self.selection.clone(),
+            crs: self.crs.clone(),
+        })
     }
 }
 

@@ -134,6 +134,15 @@ impl<'r, 't> TableReader<'r, 't> {
         }
     }
 
+    /// Reports an error where the text of `key` is not an expression.
+    pub fn need_expression(&mut self, key: &str) {
+        if let Some((name, value)) = self.entry(key) {
+            let key_span = name.span();
+            // The error is all that counts: what uses the text parses it again.
+            let _ = KeyValue { context: self.context, table: &self.name, key, key_span, value }.expression();
+        }
+    }
+
     /// Reads a required key; `None` where it is missing or its value is wrong.
     pub fn required<V, A: Copy, F: Field<V>>(
         &mut self,

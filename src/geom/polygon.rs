@@ -150,6 +150,34 @@ pub fn cut_away(mut polygon: Vec<DVec2>, window: &[DVec2], outside: &mut Vec<Vec
     }
 }
 
+/// The middle of the widest span inside a polygon's `rings` and `rect` along three level lines, and the width of that span;
+/// `None` where none of them meets the polygon. A place for a name: inside, and away from the outline to either side.
+pub fn inner_point<'a>(
+    rings: impl IntoIterator<Item = &'a [DVec2]> + Clone,
+    rect: &Rect,
+) -> Option<(DVec2, f64)> {
+    let around = rings.clone().into_iter().flatten().copied();
+    let part = Rect::around(around).intersection(rect);
+    if part.is_empty() {
+        return None;
+    }
+    // The middle first: of equal spans the first counts.
+    let spans = [0.5, 0.25, 0.75].into_iter().filter_map(|share| {
+        let y = part.min.y + part.size().y * share;
+        let crossed = |(from, to): (DVec2, DVec2)| {
+            let crosses = (from.y > y) != (to.y > y);
+            crosses.then(|| from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y))
+        };
+        let mut crossings: Vec<f64> = rings.clone().into_iter().flat_map(edges).filter_map(crossed).collect();
+        crossings.sort_by(f64::total_cmp);
+        let clipped = |pair: &[f64]| (pair[0].max(part.min.x), pair[1].min(part.max.x));
+        let spans = crossings.chunks_exact(2).map(clipped).filter(|(west, east)| west < east);
+        let widest = spans.reduce(|best, next| if next.1 - next.0 > best.1 - best.0 { next } else { best });
+        widest.map(|(west, east)| (DVec2::new((west + east) / 2.0, y), east - west))
+    });
+    spans.reduce(|best, next| if next.1 > best.1 { next } else { best })
+}
+
 /// The smallest rectangle around the ring.
 pub fn bounds(ring: &[DVec2]) -> Rect {
     Rect::around(ring.iter().copied())
@@ -161,6 +189,22 @@ mod tests {
 
     fn square(low: f64, high: f64) -> Vec<DVec2> {
         vec![DVec2::new(low, low), DVec2::new(high, low), DVec2::new(high, high), DVec2::new(low, high)]
+    }
+
+    #[test]
+    fn an_inner_point_lies_in_the_widest_span_within_the_rectangle() {
+        let all = Rect { min: DVec2::splat(-99.0), max: DVec2::splat(99.0) };
+        // The letter L: its middle lies on its foot, not between its arms.
+        let corners = [(0.0, 0.0), (10.0, 0.0), (10.0, 3.0), (2.0, 3.0), (2.0, 10.0), (0.0, 10.0)];
+        let letter = corners.map(|(x, y)| DVec2::new(x, y));
+        assert_eq!(inner_point([&letter[..]], &all), Some((DVec2::new(5.0, 2.5), 10.0)));
+        let (outer, hole) = (square(0.0, 10.0), square(2.0, 8.0));
+        let (at, _) = inner_point([&outer[..], &hole[..]], &all).expect("there is ground around the hole");
+        assert!(contains([&outer[..], &hole[..]], at), "{at}");
+        let west = Rect { min: DVec2::splat(-99.0), max: DVec2::new(4.0, 99.0) };
+        assert_eq!(inner_point([&outer[..]], &west), Some((DVec2::new(2.0, 5.0), 4.0)));
+        let beyond = Rect { min: DVec2::splat(20.0), max: DVec2::splat(99.0) };
+        assert_eq!(inner_point([&outer[..]], &beyond), None);
     }
 
     #[test]

@@ -37,6 +37,7 @@ fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<P
         visible: is_visible(picture, ground.pixel, ground.depth_m)
             || is_visible(picture, top.pixel, top.depth_m),
         kind: label.kind,
+        rank: label.rank,
     })
 }
 

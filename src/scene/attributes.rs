@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::description::expression::Expression;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use crate::description::scalar::Scalar;
-use crate::vector::feature::VectorLayer;
+use crate::vector::feature::{Geometry, VectorLayer};
 
 /// The properties of one feature; none for a feature that the scene file itself states.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +32,12 @@ impl Attributes {
             serde_json::Value::String(value) => Some(Scalar::Text(value.clone())),
             _ => None,
         }
+    }
+
+    /// The feature's shape as its file has it; `None` where the scene file itself states the feature.
+    pub fn geometry(&self) -> Option<&Geometry> {
+        let (layer, feature) = self.feature.as_ref()?;
+        Some(&layer.features[*feature].geometry)
     }
 
     /// The feature's name: the one given in the scene file, else its property `name`, else empty.
@@ -69,6 +75,11 @@ impl Attributes {
             count_default(key, &default.to_string(), counts);
             default
         })
+    }
+
+    /// The result of an expression; `None` where it gives none.
+    pub fn evaluated(&self, expression: &Expression) -> Option<Scalar> {
+        expression.value(&|name| self.get(name))
     }
 
     /// Whether a property is present and not negative.

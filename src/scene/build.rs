@@ -88,7 +88,7 @@ pub fn build(
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let labels = views::labels(&frame, &lattice)?;
+    let labels = views::labels(&sources, &lattice, &mut collected.notes)?;
     let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =

@@ -8,9 +8,11 @@ use glam::DVec2;
 use crate::dem::crop::crop;
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::{RawLayout, RawLayoutError};
+use crate::dem::largest_rectangle::{largest_rectangle, outside};
 use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
+use crate::dem::undeclared::{UndeclaredNodata, undeclared_nodata};
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
@@ -23,7 +25,7 @@ use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {
-    /// The raster as read; tiles joined, voids filled where the scene says so.
+    /// The raster as read; tiles joined, voids filled where the scene file says so.
     pub source: Arc<Raster>,
     /// The heights in the scene's system, before earthworks.
     pub lattice: Lattice,
@@ -42,23 +44,42 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let dem = &document.terrain.dem;
     let mut notes = Vec::new();
     let mut source = joined(document, assets, &mut notes)?;
-    if document.terrain.fill_voids {
-        notes.push(voids::fill(&mut source).note());
+    notes.extend(undeclared_nodata(&source).into_iter().map(|UndeclaredNodata { value, evidence }| {
+        format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]")
+    }));
+    let mut filled = None;
+    match document.terrain.fill_voids {
+        Some(true) => notes.push(voids::fill(&mut source).note()),
+        // The source stays as it is read: the ground alone is without holes.
+        None if voids::count(&source).0 > 0 => {
+            let mut ground = source.clone();
+            notes.push(voids::fill(&mut ground).note());
+            filled = Some(ground);
+        }
+        None | Some(false) => {}
     }
-    let metric = metric(document, &source)?;
+    let metric = metric(document, filled.as_ref().unwrap_or(&source), &mut notes)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
     Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system.
-fn metric<'a>(document: &Document, source: &'a Raster) -> Result<Cow<'a, Raster>, Diagnostic> {
+fn metric<'a>(
+    document: &Document,
+    source: &'a Raster,
+    notes: &mut Vec<String>,
+) -> Result<Cow<'a, Raster>, Diagnostic> {
     /// Samples beside the extent that warping reads.
     const BESIDE: u32 = 4;
     let dem = &document.terrain.dem;
     let failed = |error| document.error(dem, error);
     let Some(extent) = &document.terrain.extent else {
-        return warp::to_metric(source, document.crs.as_ref()).map_err(failed);
+        let metric = warp::to_metric(source, document.crs.as_ref()).map_err(failed)?;
+        return Ok(match warp::resamples(source, document.crs.as_ref()).map_err(failed)? {
+            true => straightened(metric, source, document.crs.as_ref(), notes),
+            false => metric,
+        });
     };
     let crs = warp::metric_crs(source, document.crs.as_ref()).map_err(failed)?;
     let scene = crs.clone().unwrap_or_else(Crs::local);
@@ -78,6 +99,59 @@ fn metric<'a>(document: &Document, source: &'a Raster) -> Result<Cow<'a, Raster>
             .error(extent, message)
             .with_help("name points on the model, or remove `extent` to take all of it")
     })
+}
+
+/// A raster that was warped without the empty wedges that this leaves along its sides: the largest rectangle that holds
+/// data all through. Where the data has a ragged border of its own, such as a coast, so that this would cost too much of
+/// it, the wedges alone are cut.
+fn straightened<'a>(
+    warped: Cow<'a, Raster>,
+    source: &Raster,
+    target: Option<&Crs>,
+    notes: &mut Vec<String>,
+) -> Cow<'a, Raster> {
+    /// Of the ground between the wedges, the share that may not be lost to the border of the data.
+    const LITTLE_LOST: f64 = 0.8;
+    /// Where less is kept nothing is cut: a model that lies so far aslant is better seen whole.
+    const LEAST_KEPT: f64 = 0.5;
+    let cut_of = |outside: &[bool]| {
+        let inside = outside.iter().filter(|outside| !**outside).count() as u64;
+        (largest_rectangle(outside, warped.width), inside)
+    };
+    let (mut rect, mut inside) = cut_of(&outside(&warped));
+    if rect.area() == warped.samples.len() as u64 {
+        return warped;
+    }
+    if (rect.area() as f64) < inside as f64 * LITTLE_LOST {
+        let framed = warp::framed(source);
+        let frame = warp::to_metric(&framed, target).ok();
+        let Some(frame) = frame.filter(|frame| (frame.width, frame.height) == (warped.width, warped.height))
+        else {
+            return warped;
+        };
+        let (between_wedges, inside_frame) = cut_of(&outside(&frame));
+        if (rect.area() as f64) < between_wedges.area() as f64 * LITTLE_LOST {
+            (rect, inside) = (between_wedges, inside_frame);
+        }
+    }
+    let kept = rect.area() as f64 / inside.max(1) as f64;
+    if kept < LEAST_KEPT {
+        return warped;
+    }
+    let center = |column: u32, row: u32| {
+        warped.map_from_grid.transform_point2(DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5))
+    };
+    let far = (rect.left + rect.width - 1, rect.top + rect.height - 1);
+    let beside = warped.spacing().min_element() / 4.0;
+    let part = Rect::around([center(rect.left, rect.top), center(far.0, far.1)]).grown(beside);
+    let Some(part) = crop(&warped, &part, 0) else { return warped };
+    let cut = (1.0 - kept) * 100.0;
+    let system = warped.crs.as_ref().map_or("north up", Crs::name);
+    notes.push(format!(
+        "{cut:.1} % of the elevation model is cut off along its border, so that its edges are straight in {system}; \
+         `extent` under [terrain] names another part"
+    ));
+    Cow::Owned(part)
 }
 
 /// The document's elevation files as one raster.

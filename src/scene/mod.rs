@@ -13,6 +13,7 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
+pub mod feature_labels;
 pub mod fences;
 pub mod footprint;
 pub mod ground;
@@ -288,6 +289,8 @@ pub struct SceneLabel {
     pub anchor: Vec3,
     /// The kind of thing that it names.
     pub kind: LabelKind,
+    /// The lower, the more important; never NaN.
+    pub rank: f64,
 }
 
 /// A view of the scene.

@@ -92,6 +92,15 @@ impl<'a> Sources<'a> {
         self.place_all(source, points, |point, place| place(point))
     }
 
+    /// The features of a file, each once, and the system of their shapes.
+    ///
+    /// # Errors
+    /// The file cannot be read or holds no feature that matches.
+    pub fn features(&self, source: &FeatureSource) -> Result<(Crs, Vec<Attributes>), Diagnostic> {
+        let (crs, features) = self.shapes(source, |_| vec![()])?;
+        Ok((crs, features.into_iter().map(|feature| feature.attributes).collect()))
+    }
+
     /// The shapes that `pick` takes from every feature that matches, unplaced.
     fn shapes<T>(
         &self,

@@ -6,29 +6,50 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, LabelTable};
 use crate::description::stated::Stated;
 use crate::geom::rect::Rect;
+use crate::scene::attributes::Attributes;
+use crate::scene::feature_labels;
+use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{FittedView, SceneLabel, SceneView, ViewAim};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// The document's labels, `{height}` filled in.
+/// The document's labels, `{height}` filled in; those of files with notes on the features without a label.
 ///
 /// # Errors
-/// A label lies off the ground.
-pub fn labels(frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Vec<SceneLabel>, Diagnostic> {
-    let label = |table: &LabelTable| {
-        let world = frame.point(&table.at, table.crs.as_ref())?;
-        let ground = frame.on_ground(lattice, &table.at, world)?;
-        let elevation = whole_meters(frame.scale.elevation_m(ground.z));
-        Ok(SceneLabel {
-            text: table.text.replace("{height}", &elevation),
-            ground,
-            anchor: ground + Vec3::Z * table.height as f32,
-            kind: table.kind,
-        })
-    };
-    frame.document.labels.iter().map(label).collect()
+/// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
+pub fn labels(
+    sources: &Sources<'_>,
+    lattice: &Lattice,
+    notes: &mut Vec<String>,
+) -> Result<Vec<SceneLabel>, Diagnostic> {
+    let mut labels = Vec::new();
+    for table in &sources.frame.document.labels {
+        match &table.at {
+            Some(at) => labels.push(label(table, at, sources.frame, lattice)?),
+            None => labels.extend(feature_labels::labels(table, sources, lattice, notes)?),
+        }
+    }
+    Ok(labels)
+}
+
+fn label(
+    table: &LabelTable,
+    at: &Stated<[f64; 2]>,
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+) -> Result<SceneLabel, Diagnostic> {
+    let world = frame.point(at, table.crs.as_ref())?;
+    let ground = frame.on_ground(lattice, at, world)?;
+    let elevation = whole_meters(frame.scale.elevation_m(ground.z));
+    Ok(SceneLabel {
+        text: table.text.replace("{height}", &elevation),
+        ground,
+        anchor: ground + Vec3::Z * table.height as f32,
+        kind: table.kind,
+        rank: feature_labels::rank(table, &Attributes::default()),
+    })
 }
 
 /// A height in whole meters, without a sign before 0.

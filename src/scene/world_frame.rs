@@ -70,6 +70,12 @@ impl<'a> WorldFrame<'a> {
         }
     }
 
+    /// The ground at a world position, as it is drawn; `None` off the model and where it holds no data.
+    pub fn ground_at(&self, lattice: &Lattice, world: DVec2) -> Option<Vec3> {
+        let height = ground_height(lattice, Interpolation::Planar, world + self.origin).height_m()?;
+        Some(world.as_vec2().extend(self.scale.world_z(height as f32)))
+    }
+
     fn off_the_model(&self, lattice: &Lattice, at: &Stated<[f64; 2]>) -> Diagnostic {
         let [x, y] = **at;
         let (low, high) = (self.origin, self.origin + lattice.extent().max);

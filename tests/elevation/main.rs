@@ -9,3 +9,4 @@ mod gridding;
 mod mosaics;
 mod paging;
 mod raster_writers;
+mod straight_edges;

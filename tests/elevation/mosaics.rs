@@ -157,9 +157,12 @@ fn a_scene_joins_tiles_fills_voids_and_states_a_datum_where_it_asks_for_it() {
     assert!((filled - 4.0).abs() < 1e-6, "{filled}");
     assert_eq!(datum.as_deref(), Some("NAVD88"));
 
-    let (notes, left, datum) =
-        scene(&scratch, "[terrain]\ndem = \"b.asc\"\ncrs = \"EPSG:32633\"\n").expect("sound");
-    assert!(left.is_nan() && datum.is_none() && !notes.join("\n").contains("filled"));
+    let plain = "[terrain]\ndem = \"b.asc\"\ncrs = \"EPSG:32633\"\n";
+    let (notes, left, datum) = scene(&scratch, plain).expect("sound");
+    assert!(left.is_nan() && datum.is_none(), "the source stays as it is read");
+    assert!(notes.join("\n").contains("1 samples in 1 voids filled"), "{notes:?}");
+    let (notes, left, _) = scene(&scratch, &format!("{plain}fill_voids = false\n")).expect("sound");
+    assert!(left.is_nan() && !notes.join("\n").contains("filled"));
 }
 
 #[test]

@@ -68,6 +68,7 @@ fn label(text: &str, kind: LabelKind, x: f32, y: f32, depth_m: f32) -> PictureLa
         depth_m,
         visible: true,
         kind,
+        rank: 0.0,
     }
 }
 
@@ -140,6 +141,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
                 depth_m: 1000.0 + n as f32,
                 visible: n % 9 != 0,
                 kind: kinds[n as usize % 4],
+                rank: 0.0,
             }
         })
         .collect();
@@ -284,6 +286,7 @@ proptest! {
             depth_m: *depth_m,
             visible: *visible,
             kind: [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Point][text.len() % 4],
+            rank: top.0.into(),
         }).collect();
         let all = Annotations { labels, title: Some(title), ..Annotations::default() };
         let (_, report) = annotated(400, 250, &all);

@@ -7,6 +7,7 @@ mod assets;
 mod clearance;
 mod detail;
 mod instances;
+mod labels;
 mod models;
 mod odd_scenes;
 mod own_models;

@@ -111,6 +111,25 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
     Ok(with_crs(metric, system.as_ref()))
 }
 
+/// Whether [`to_metric`] computes new samples: the raster lies in another system, or turned in its own.
+///
+/// # Errors
+/// [`WarpError`]: see [`to_metric`].
+pub fn resamples(raster: &Raster, target: Option<&Crs>) -> Result<bool, WarpError> {
+    let system = metric_crs(raster, target)?;
+    Ok(raster.crs.as_ref().or(system.as_ref()) != system.as_ref() || !raster.is_axis_aligned())
+}
+
+/// A raster with data all through the smallest rectangle of its grid around the samples with data, and none beyond: warped,
+/// it shows what of the result lies outside that rectangle.
+pub fn framed(raster: &Raster) -> Raster {
+    let frame = data_extent(raster).unwrap_or(Rect::EMPTY);
+    let (width, count) = (raster.width as usize, raster.samples.len());
+    let center = |index: usize| DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5);
+    let sample = |index: usize| if frame.contains(center(index)) { 0.0 } else { f32::NAN };
+    Raster { samples: Samples::F32((0..count).map(sample).collect()), ..raster.without_samples() }
+}
+
 /// The system that [`to_metric`] brings a raster to; `None` where the raster names none and no `target` is given.
 ///
 /// # Errors

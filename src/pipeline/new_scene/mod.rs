@@ -11,8 +11,10 @@
 
 mod cameras;
 mod folder;
+mod rules;
 mod survey;
 mod text;
+mod title;
 
 use std::fs;
 use std::io;
@@ -21,6 +23,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use crate::annotate::nice::NiceNumber;
+use crate::dem::undeclared::undeclared_nodata;
 use crate::description::parse::parse;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
@@ -48,7 +51,8 @@ pub struct NewSceneOptions {
     pub dem: Vec<PathBuf>,
     /// Vector files.
     pub vectors: Vec<PathBuf>,
-    /// The title; the name of the first elevation file where `None`.
+    /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
+    /// first elevation file.
     pub title: Option<String>,
     /// The coordinate system of elevation that names none, as a scene file states it.
     pub crs: Option<String>,
@@ -99,17 +103,21 @@ pub fn write(
     let allowed = folder.folders_to_allow(options.dem.iter().chain(&options.vectors))?;
 
     progress("reading elevation");
-    let title = options.title.clone().unwrap_or_else(|| title_of(&options.dem[0]));
-    let draft = SceneDraft { title, dem, crs: options.crs.clone(), ..SceneDraft::default() };
+    let draft = SceneDraft { dem, crs: options.crs.clone(), ..SceneDraft::default() };
     let is_new = !options.folder.exists();
     let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
     fs::create_dir_all(&options.folder).map_err(system)?;
-    let draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
+    let mut draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
         if is_new {
             // Does nothing where the folder is no longer empty.
             let _ = fs::remove_dir(&options.folder);
         }
     })?;
+    if let Some(title) = &options.title {
+        draft.title = title.clone();
+    } else if draft.title.is_empty() {
+        draft.title = title::of_file(&options.dem[0]);
+    }
     files::write(&path, text::scene(&draft, &vectors).as_bytes())?;
     Ok(WrittenScene { path, allowed })
 }
@@ -118,7 +126,7 @@ fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewScen
     Ok(VectorDraft { file: folder.relative(file)?, layers: survey::layers(file)? })
 }
 
-/// Completes the draft from the elevation: heights, extent and cameras.
+/// Completes the draft from the elevation: heights, extent and cameras, and the title where the vectors have one.
 fn complete(
     path: &Path,
     mut draft: SceneDraft,
@@ -131,11 +139,14 @@ fn complete(
         Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
     };
     let mut scene = built(&draft)?;
-    let vectors = extent(vectors, &scene.crs);
+    let surveyed = vectors;
+    let vectors = extent(surveyed, &scene.crs);
     draft.extent = worth_cropping(vectors, scene.lattice.map_extent());
     if draft.extent.is_some() {
         scene = built(&draft)?;
     }
+    draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
+    draft.title = title::of_vectors(surveyed, &scene).unwrap_or_default();
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
@@ -183,10 +194,4 @@ fn worth_cropping(vectors: Rect, ground: Rect) -> Option<Rect> {
         let half = covered.size().max(DVec2::splat(longer * NARROWEST)) / 2.0 + longer * MARGIN;
         Rect { min: covered.center() - half, max: covered.center() + half }.intersection(&ground)
     })
-}
-
-/// A title from a file name.
-fn title_of(file: &Path) -> String {
-    let words = files::file_stem(file).replace(['_', '-'], " ");
-    if words.trim().is_empty() { "A scene".into() } else { words }
 }

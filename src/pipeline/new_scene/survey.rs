@@ -2,21 +2,27 @@
 //!
 //! Each [`TableRule`] is a table that could be written, with the expression that selects its features. The expression
 //! is evaluated for every feature, so that the counts are those of the scene, and no table is written that selects
-//! nothing. Where no rule matches a layer, its name may still say what it holds.
+//! nothing. Where no rule matches a layer, its name may still say what it holds. The names of places and districts are
+//! kept, since one of them may be the scene's title.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::ptr;
 use std::sync::Arc;
 
 use glam::DVec2;
+use serde_json::Value;
 
 use crate::description::expression::Expression;
+use crate::description::scalar::Scalar;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
+use crate::pipeline::new_scene::rules::{BOUNDARIES, LabelRule, RULES, TableRule};
 use crate::scene::attributes::Attributes;
 use crate::vector::error::VectorError;
-use crate::vector::feature::{Geometry, VectorLayer};
+use crate::vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
 
@@ -26,11 +32,16 @@ pub(super) struct SurveyedLayer {
     pub name: Option<String>,
     /// The tables that take something from it, in drawing order.
     pub matches: Vec<TableMatch>,
-    /// Features that no table takes: `lines`, `polygons` or `points`, and how many.
-    pub rest: Vec<(&'static str, usize)>,
+    /// Features that no table takes, by shape.
+    pub rest: Vec<LeftFeatures>,
+    /// The names of cities, towns and the like.
+    pub places: Vec<NamedPlace>,
+    /// Districts with administrative boundaries.
+    pub districts: Vec<NamedDistrict>,
     /// Its coordinate system.
     pub crs: Crs,
-    /// Corners and middles of the sides of the box of its features, in its system; none where it has no feature.
+    /// Corners and middles of the sides of the box of the features that tables draw, boundaries apart, in its system; of
+    /// all features where there are none of these, and none where it has no feature.
     pub corners: Vec<DVec2>,
 }
 
@@ -50,22 +61,33 @@ pub(super) enum FeatureSelection {
     All,
 }
 
-/// A table that may be written.
-pub(super) struct TableRule {
-    pub table: &'static str,
-    /// The kind of its features.
-    pub what: &'static str,
-    /// Their shape, as [`Geometry::kind`] names it.
-    pub shape: &'static str,
-    /// The expression that selects them.
-    pub condition: &'static str,
-    /// The width in meters of features that are drawn to scale.
-    pub width_m: Option<f64>,
-    /// Further keys as they are written.
-    pub keys: &'static [&'static str],
-    /// Parts of the name of a layer or a file that holds nothing else.
-    pub names: &'static [&'static str],
+/// The features of one shape that no table takes.
+pub(super) struct LeftFeatures {
+    /// `lines`, `polygons` or `points`.
+    pub kind: &'static str,
+    pub count: usize,
+    /// The [`MOST_EXAMPLES`] properties that most of them have, each with a value.
+    pub examples: Vec<(String, Value)>,
 }
+
+/// The place of a name that may be the title of a scene.
+pub(super) struct NamedPlace {
+    pub name: String,
+    /// The lower, the more important.
+    pub rank: f64,
+    pub at: DVec2,
+}
+
+/// A district with a name.
+pub(super) struct NamedDistrict {
+    pub name: String,
+    /// OpenStreetMap's `admin_level`: the higher, the smaller the district.
+    pub level: f64,
+    pub polygons: Vec<Polygon>,
+}
+
+/// As many properties as a reader looks over.
+const MOST_EXAMPLES: usize = 12;
 
 /// A vector file that cannot be surveyed.
 #[derive(Debug, thiserror::Error)]
@@ -77,128 +99,6 @@ pub enum SurveyError {
     #[error(transparent)]
     Vector(#[from] FileError<VectorError>),
 }
-
-/// The rules in the order in which tables are written: what lies lower first.
-pub(super) static RULES: [TableRule; 12] = [
-    TableRule {
-        table: "area",
-        what: "Land cover",
-        shape: "polygons",
-        condition: "(landuse in ('forest', 'meadow', 'grass', 'farmland', 'farm', 'orchard', 'vineyard', \
-                    'residential', 'commercial', 'retail', 'industrial', 'military', 'village_green', \
-                    'recreation_ground') or natural in ('wood', 'scrub', 'heath', 'grassland', 'wetland', 'sand', \
-                    'beach', 'bare_rock', 'scree') or leisure in ('park', 'garden', 'pitch', 'golf_course', \
-                    'nature_reserve')) and not building",
-        width_m: None,
-        keys: &[
-            "cover = \"match(landuse ?? natural ?? leisure, 'forest', 'forest', 'wood', 'forest', 'scrub', \
-                 'scrub', 'heath', 'scrub', 'farmland', 'field', 'farm', 'field', 'orchard', 'orchard', 'vineyard', \
-                 'orchard', 'residential', 'built-up', 'commercial', 'built-up', 'retail', 'built-up', \
-                 'industrial', 'industry', 'military', 'restricted', 'wetland', 'wetland', 'sand', 'sand', \
-                 'beach', 'sand', 'bare_rock', 'rock', 'scree', 'rock', 'meadow')\"",
-        ],
-        names: &[],
-    },
-    TableRule {
-        table: "lake",
-        what: "Lakes",
-        shape: "polygons",
-        condition: "natural = 'water' or landuse = 'reservoir' or waterway = 'riverbank'",
-        width_m: None,
-        keys: &["level_rule = \"lowest\""],
-        names: &["lake", "water", "reservoir"],
-    },
-    TableRule {
-        table: "river",
-        what: "Streams",
-        shape: "lines",
-        condition: "waterway in ('stream', 'ditch', 'drain', 'brook')",
-        width_m: Some(3.0),
-        keys: &[],
-        names: &["stream", "creek"],
-    },
-    TableRule {
-        table: "river",
-        what: "Rivers",
-        shape: "lines",
-        condition: "waterway in ('river', 'canal')",
-        width_m: Some(12.0),
-        keys: &[],
-        names: &["river", "waterway"],
-    },
-    TableRule {
-        table: "road",
-        what: "Tracks and paths",
-        shape: "lines",
-        condition: "highway in ('track', 'path', 'footway', 'cycleway', 'bridleway', 'steps')",
-        width_m: Some(2.5),
-        keys: &["surface = \"track\""],
-        names: &["track", "trail", "path"],
-    },
-    TableRule {
-        table: "road",
-        what: "Streets",
-        shape: "lines",
-        condition: "highway in ('unclassified', 'residential', 'living_street', 'pedestrian', 'service', 'road')",
-        width_m: Some(5.0),
-        keys: &["surface = \"if(surface in ('unpaved', 'gravel', 'dirt', 'ground'), 'gravel', 'asphalt')\""],
-        names: &["road", "street"],
-    },
-    TableRule {
-        table: "road",
-        what: "Country roads",
-        shape: "lines",
-        condition: "highway in ('secondary', 'secondary_link', 'tertiary', 'tertiary_link')",
-        width_m: Some(7.0),
-        keys: &["surface = \"if(surface in ('unpaved', 'gravel', 'dirt', 'ground'), 'gravel', 'asphalt')\""],
-        names: &[],
-    },
-    TableRule {
-        table: "road",
-        what: "Main roads",
-        shape: "lines",
-        condition: "highway in ('motorway', 'motorway_link', 'trunk', 'trunk_link', 'primary', 'primary_link')",
-        width_m: Some(10.0),
-        keys: &["surface = \"asphalt\""],
-        names: &["highway"],
-    },
-    TableRule {
-        table: "building",
-        what: "Buildings",
-        shape: "polygons",
-        condition: "building",
-        width_m: None,
-        keys: &["height = \"height ?? `building:levels` * 3 ?? levels * 3 ?? 6\""],
-        names: &["building", "footprint", "house"],
-    },
-    TableRule {
-        table: "fence",
-        what: "Fences, walls and hedges",
-        shape: "lines",
-        condition: "barrier in ('fence', 'wall', 'hedge', 'city_wall', 'retaining_wall')",
-        width_m: None,
-        keys: &["kind = \"match(barrier, 'fence', 'fence', 'hedge', 'hedge', 'wall')\""],
-        names: &["fence"],
-    },
-    TableRule {
-        table: "fence",
-        what: "Power lines",
-        shape: "lines",
-        condition: "power in ('line', 'minor_line')",
-        width_m: None,
-        keys: &["kind = \"power-line\""],
-        names: &["power"],
-    },
-    TableRule {
-        table: "fence",
-        what: "Boundaries",
-        shape: "lines",
-        condition: "boundary = 'administrative' and not highway and not waterway",
-        width_m: None,
-        keys: &["kind = \"boundary\""],
-        names: &["boundar", "border"],
-    },
-];
 
 /// Surveys each layer of a vector file.
 ///
@@ -228,13 +128,13 @@ pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
 /// The layers of one file without the matches that another layer is named after: of a file with a layer of all
 /// buildings, the schools are among them.
 fn without_excerpts(mut layers: Vec<SurveyedLayer>) -> Vec<SurveyedLayer> {
-    for rule in &RULES {
+    for rule in RULES {
         let is_named_after =
             |layer: &SurveyedLayer| rule.is_named_in(layer.name.as_deref().unwrap_or_default());
-        let takes = |layer: &SurveyedLayer| layer.matches.iter().any(|found| found.rule.what == rule.what);
+        let takes = |layer: &SurveyedLayer| layer.matches.iter().any(|found| ptr::eq(found.rule, rule));
         if layers.iter().any(|layer| is_named_after(layer) && takes(layer)) {
             for layer in layers.iter_mut().filter(|layer| !is_named_after(layer)) {
-                layer.matches.retain(|found| found.rule.what != rule.what);
+                layer.matches.retain(|found| !ptr::eq(found.rule, rule));
             }
         }
     }
@@ -254,76 +154,253 @@ fn distinct(names: Vec<String>) -> Vec<String> {
 /// Surveys a layer; `title` is its own name or that of its file.
 fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> SurveyedLayer {
     let mut taken = vec![false; layer.features.len()];
+    // What the scene is about: not what no table takes, nor boundaries, which reach far out to sea, nor distant names.
+    let mut around = Rect::EMPTY;
     let mut matches = Vec::new();
-    for rule in &RULES {
+    let mut places = Vec::new();
+    for rule in RULES {
         let condition = Expression::parse(rule.condition).expect("a test parses every condition");
         let takes = |&index: &usize| {
-            rule.fits(&layer.features[index].geometry)
+            fits(rule, &layer.features[index].geometry)
                 && Attributes::new(Arc::clone(&layer), index).holds(&condition)
         };
         let indices: Vec<usize> = (0..taken.len()).filter(takes).collect();
         let count = indices.len();
+        if let Some(label) = rule.label.as_ref().filter(|label| label.is_title) {
+            places.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
+        }
+        if rule.what != BOUNDARIES && rule.label.is_none() {
+            let vertices = indices.iter().flat_map(|&index| layer.features[index].geometry.vertices());
+            around = vertices.fold(around, |around, vertex| around.with(*vertex));
+        }
         indices.into_iter().for_each(|index| taken[index] = true);
         let selection =
             if count == taken.len() { FeatureSelection::All } else { FeatureSelection::ByCondition };
         matches.extend((count > 0).then_some(TableMatch { rule, count, selection }));
     }
     if let (true, Some(found)) = (matches.is_empty(), match_by_name(&layer, title)) {
-        taken = layer.features.iter().map(|feature| found.rule.fits(&feature.geometry)).collect();
+        taken = layer.features.iter().map(|feature| fits(found.rule, &feature.geometry)).collect();
         matches.push(found);
     }
-    let rest = ["lines", "polygons", "points"].map(|kind| {
-        let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken);
-        (kind, left.filter(|(feature, _)| feature.geometry.kind() == kind).count())
-    });
-    let bounds = Rect::around(layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied()));
+    let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken).map(|(feature, _)| feature);
+    let left: Vec<&Feature> = left.collect();
+    let rest = ["lines", "polygons", "points"].into_iter().filter_map(|kind| left_features(&left, kind));
+    let rest = rest.collect();
+    let all = layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied());
+    let bounds = if around.is_empty() { Rect::around(all) } else { around };
     let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
-    let rest = rest.into_iter().filter(|rest| rest.1 > 0).collect();
-    SurveyedLayer { name, matches, rest, crs: layer.crs.clone(), corners }
+    let districts = districts(&layer);
+    SurveyedLayer { name, matches, rest, places, districts, crs: layer.crs.clone(), corners }
 }
 
 /// The table that the name of a layer suggests.
 fn match_by_name(layer: &VectorLayer, title: &str) -> Option<TableMatch> {
     RULES.iter().filter(|rule| rule.is_named_in(title)).find_map(|rule| {
-        let count = layer.features.iter().filter(|feature| rule.fits(&feature.geometry)).count();
+        let count = layer.features.iter().filter(|feature| fits(rule, &feature.geometry)).count();
         (count > 0).then_some(TableMatch { rule, count, selection: FeatureSelection::All })
     })
 }
 
-impl TableRule {
-    fn fits(&self, geometry: &Geometry) -> bool {
-        geometry.kind() == self.shape
-    }
+fn fits(rule: &TableRule, geometry: &Geometry) -> bool {
+    geometry.kind() == rule.shape
+}
 
-    fn is_named_in(&self, title: &str) -> bool {
-        let title = title.to_lowercase();
-        self.names.iter().any(|name| title.contains(name))
+/// The features of a shape among those `left`, with the properties that most of them have, each with its first value;
+/// `None` where there are none.
+fn left_features(left: &[&Feature], kind: &'static str) -> Option<LeftFeatures> {
+    let of_kind = || left.iter().filter(|feature| feature.geometry.kind() == kind);
+    let mut found: BTreeMap<&str, (usize, &Value)> = BTreeMap::new();
+    for (name, value) in of_kind().flat_map(|feature| &feature.properties) {
+        let says_something = match value {
+            Value::String(text) => !text.trim().is_empty(),
+            Value::Number(_) | Value::Bool(_) => true,
+            _ => false,
+        };
+        if says_something {
+            found.entry(name).or_insert((0, value)).0 += 1;
+        }
     }
+    let mut found: Vec<_> = found.into_iter().collect();
+    // Stable: by name where equally many have them.
+    found.sort_by_key(|(_, (count, _))| std::cmp::Reverse(*count));
+    let example = |(name, (_, value)): (&str, (usize, &Value))| (name.to_owned(), value.clone());
+    let examples = found.into_iter().take(MOST_EXAMPLES).map(example).collect();
+    let count = of_kind().count();
+    (count > 0).then_some(LeftFeatures { kind, count, examples })
+}
+
+fn named_place(layer: &Arc<VectorLayer>, index: usize, label: &LabelRule) -> Option<NamedPlace> {
+    let attributes = Attributes::new(Arc::clone(layer), index);
+    let evaluated = |text: &str| attributes.evaluated(&Expression::parse(text).ok()?);
+    let name = match evaluated(label.name)? {
+        Scalar::Text(name) => name.trim().to_owned(),
+        Scalar::Bool(_) | Scalar::Number(_) => return None,
+    };
+    let at = *layer.features[index].geometry.vertices().next()?;
+    let rank = evaluated(label.rank)?.number()?;
+    (!name.is_empty()).then_some(NamedPlace { name, rank, at })
+}
+
+/// The districts of a layer, by the tags of OpenStreetMap.
+fn districts(layer: &VectorLayer) -> Vec<NamedDistrict> {
+    let district = |feature: &Feature| {
+        let text = |property: &str| feature.properties.get(property).and_then(Value::as_str).map(str::trim);
+        let name = text("name").filter(|name| !name.is_empty())?;
+        let level = feature.properties.get("admin_level")?;
+        let level =
+            level.as_f64().or_else(|| level.as_str()?.trim().parse().ok()).filter(|at| at.is_finite())?;
+        let polygons = feature.polygons();
+        let is_district = text("boundary") == Some("administrative") && !polygons.is_empty();
+        is_district.then(|| NamedDistrict { name: name.to_owned(), level, polygons: polygons.to_vec() })
+    };
+    layer.features.iter().filter_map(district).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::parse::parse;
-
-    #[test]
-    fn every_rule_makes_a_table_that_is_understood() {
-        for rule in &RULES {
-            let width = rule.width_m.map(|width_m| format!("width = {width_m}\n")).unwrap_or_default();
-            let table = format!(
-                "[terrain]\ndem = \"a\"\n[[{}]]\nfile = \"b\"\nwhere = {}\n{width}{}\n",
-                rule.table,
-                serde_json::Value::from(rule.condition),
-                rule.keys.join("\n")
-            );
-            parse("rule.toml", &table).unwrap_or_else(|errors| panic!("{errors}"));
-        }
-    }
 
     #[test]
     fn of_openstreetmap_the_complete_layers_are_taken() {
         let names = ["points", "lines", "multipolygons", "roads", "water"].map(String::from).to_vec();
         assert_eq!(distinct(names), ["points", "lines", "multipolygons"]);
         assert_eq!(distinct(vec!["roads".into(), "water".into()]), ["roads", "water"]);
+    }
+
+    /// The tables that take something from a layer of features of one shape with these properties: what they are and how
+    /// many they take, and how many features are left.
+    fn surveyed(title: &str, kind: &str, properties: &[&str]) -> (Vec<(&'static str, usize)>, usize) {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
+        let feature = |properties: &&str| Feature {
+            geometry: match kind {
+                "points" => Geometry::Points(vec![DVec2::ZERO]),
+                "lines" => Geometry::Lines(vec![corners.to_vec()]),
+                _ => Geometry::Polygons(vec![Polygon { exterior: corners.to_vec(), holes: Vec::new() }]),
+            },
+            elevations: None,
+            properties: serde_json::from_str(properties).expect("an object"),
+        };
+        let features = properties.iter().map(feature).collect();
+        let layer = VectorLayer { features, crs: Crs::wgs84(), notes: Vec::new() };
+        let found = survey(Arc::new(layer), None, title);
+        let left = found.rest.iter().map(|rest| rest.count).sum();
+        (found.matches.iter().map(|found| (found.rule.what, found.count)).collect(), left)
+    }
+
+    #[test]
+    fn the_schemas_of_many_countries_are_recognized() {
+        type Case =
+            (&'static str, &'static str, &'static [&'static str], &'static [(&'static str, usize)], usize);
+        let cases: [Case; 17] = [
+            (
+                "gis_osm_roads_free_1",
+                "lines",
+                &[r#"{"fclass": "primary"}"#, r#"{"fclass": "track_grade3"}"#, r#"{"fclass": "busway"}"#],
+                &[("Tracks and paths", 1), ("Main roads", 1)],
+                1,
+            ),
+            ("gis_osm_landuse", "polygons", &[r#"{"fclass": "forest"}"#], &[("Land cover", 1)], 0),
+            (
+                "bgt_wegdeel",
+                "polygons",
+                &[r#"{"bgt_functie": "fietspad", "bgt_fysiekvoorkomen": "erf"}"#],
+                &[("Carriageways and paths as areas (BGT)", 1)],
+                0,
+            ),
+            (
+                "bgt_waterdeel",
+                "polygons",
+                &[r#"{"bgt_type": "waterloop"}"#, r#"{"bgt_type": "greppel, droge sloot"}"#],
+                &[("Water (BGT)", 1)],
+                1,
+            ),
+            (
+                "bgt_begroeidterreindeel",
+                "polygons",
+                &[r#"{"bgt_fysiekvoorkomen": "loofbos"}"#],
+                &[("Plant cover (BGT)", 1)],
+                0,
+            ),
+            ("onbegroeidterreindeel", "polygons", &[r#"{"oms": 1}"#], &[("Bare ground (BGT)", 1)], 0),
+            ("pand", "polygons", &[r#"{"identificatieBAGPND": "0344"}"#], &[("Buildings (BGT, BAG)", 1)], 0),
+            (
+                "tl_2023_08031_roads",
+                "lines",
+                &[
+                    r#"{"MTFCC": "S1100"}"#,
+                    r#"{"MTFCC": "S1400"}"#,
+                    r#"{"MTFCC": "S1500"}"#,
+                    r#"{"MTFCC": "R1011"}"#,
+                ],
+                &[("Trails (TIGER)", 1), ("Streets (TIGER)", 1), ("Main roads (TIGER)", 1)],
+                1,
+            ),
+            ("linearwater", "lines", &[r#"{"MTFCC": "H3010"}"#], &[("Streams and rivers (TIGER)", 1)], 0),
+            (
+                "areawater",
+                "polygons",
+                &[r#"{"MTFCC": "H2030"}"#, r#"{"MTFCC": "H3010"}"#],
+                &[("Lakes (TIGER)", 1)],
+                1,
+            ),
+            (
+                "RoadLink",
+                "lines",
+                &[r#"{"class": "A Road"}"#, r#"{"class": "B Road"}"#, r#"{"class": "Unknown"}"#],
+                &[("Streets (OS)", 1), ("Country roads (OS)", 1), ("Main roads (OS)", 1)],
+                0,
+            ),
+            ("Road", "lines", &[r#"{"CLASSIFICA": "Local Street"}"#], &[("Streets (OS)", 1)], 0),
+            (
+                "WatercourseLink",
+                "lines",
+                &[r#"{"form": "inlandRiver"}"#, r#"{"form": "lake"}"#],
+                &[("Watercourses (OS)", 1)],
+                1,
+            ),
+            ("SU_Woodland", "polygons", &[r#"{"FEATCODE": 15400}"#], &[("Woods", 1)], 0),
+            (
+                "TRONCON_DE_ROUTE",
+                "lines",
+                &[r#"{"NATURE": "Chemin"}"#, r#"{"NATURE": "Route à 1 chaussée", "LARGEUR": 4.5}"#],
+                &[("Tracks and paths (BD TOPO)", 1), ("Roads (BD TOPO)", 1)],
+                0,
+            ),
+            (
+                "TRONCON_HYDROGRAPHIQUE",
+                "lines",
+                &[r#"{"NATURE": "Ecoulement naturel"}"#],
+                &[("Watercourses (BD TOPO)", 1)],
+                0,
+            ),
+            (
+                "BATIMENT",
+                "polygons",
+                &[r#"{"NATURE": "Indifférenciée", "HAUTEUR": 7.5}"#],
+                &[("Buildings (BD TOPO)", 1)],
+                0,
+            ),
+        ];
+        for (title, kind, properties, wanted, left) in cases {
+            assert_eq!(surveyed(title, kind, properties), (wanted.to_vec(), left), "{title}");
+        }
+    }
+
+    #[test]
+    fn no_two_rules_take_the_same_feature() {
+        let values = RULES.iter().flat_map(|rule| rule.condition.split('\'').skip(1).step_by(2));
+        for value in values {
+            let rules = |property: &str| {
+                let properties = serde_json::json!({ property: value, "name": "a", "NAME": "a" }).to_string();
+                ["points", "lines", "polygons"].map(|kind| surveyed("", kind, &[&properties]).0)
+            };
+            for property in
+                ["highway", "fclass", "nature", "class", "MTFCC", "place", "bgt_fysiekvoorkomen", "form"]
+            {
+                for taken in rules(property) {
+                    assert!(taken.len() <= 1, "{property} = {value}: {taken:?}");
+                }
+            }
+        }
     }
 }

@@ -1,12 +1,15 @@
 //! The text of a new scene file, with the comments that its editor needs.
 
 use std::fmt::Write;
+use std::ptr;
 
 use serde_json::Value;
 
+use crate::dem::undeclared::UndeclaredNodata;
 use crate::geom::rect::Rect;
 use crate::pipeline::new_scene::cameras::CameraDraft;
-use crate::pipeline::new_scene::survey::{FeatureSelection, RULES, SurveyedLayer, TableMatch};
+use crate::pipeline::new_scene::rules::RULES;
+use crate::pipeline::new_scene::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
 
 /// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]
@@ -14,6 +17,8 @@ pub(super) struct SceneDraft {
     pub title: String,
     /// The elevation files as the scene file names them.
     pub dem: Vec<String>,
+    /// Values that may mean no data without being declared so.
+    pub nodata: Vec<UndeclaredNodata>,
     /// The coordinate system that the user states.
     pub crs: Option<String>,
     /// The name of the scene's coordinate system.
@@ -51,9 +56,9 @@ pub(super) fn scene(draft: &SceneDraft, vectors: &[VectorDraft]) -> String {
         .iter()
         .flat_map(|VectorDraft { file, layers }| layers.iter().map(move |layer| LayerSource { file, layer }))
         .collect();
-    for rule in &RULES {
+    for rule in RULES {
         for &source in &sources {
-            for found in source.layer.matches.iter().filter(|found| found.rule.what == rule.what) {
+            for found in source.layer.matches.iter().filter(|found| ptr::eq(found.rule, rule)) {
                 table(&mut out, source, found);
             }
         }
@@ -88,6 +93,9 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     let _ = writeln!(out, "dem = {dem}");
     if let Some(crs) = &draft.crs {
         let _ = writeln!(out, "crs = {}", quoted(crs));
+    }
+    for UndeclaredNodata { value, evidence } in &draft.nodata {
+        let _ = writeln!(out, "# In the file {evidence}. If that means no data:\n# nodata = {value}");
     }
     if let Some(extent) = &draft.extent {
         let corners = corners(extent);
@@ -127,29 +135,64 @@ fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
     if found.selection == FeatureSelection::ByCondition {
         let _ = writeln!(out, "where = {}", quoted(rule.condition));
     }
-    if let Some(width_m) = rule.width_m {
-        let _ = writeln!(out, "width = {width_m}");
+    if let Some(label) = &rule.label {
+        let _ = writeln!(out, "text = {}", quoted(label.text));
+        let _ = writeln!(out, "rank = {}\nmost = {}", quoted(label.rank), label.most);
     }
     for key in rule.keys {
         let _ = writeln!(out, "{key}");
     }
 }
 
-/// Tables, commented out, for the features that no table takes.
+/// Tables, commented out, for the features that no table takes, with their properties.
 fn rest(out: &mut String, source: LayerSource<'_>) {
-    for (kind, count) in &source.layer.rest {
-        let (head, condition) = match *kind {
-            "lines" => ("# [[fence]]\n# kind = \"boundary\"", "name = '...'"),
-            "polygons" => ("# [[area]]\n# cover = \"meadow\"", "name = '...'"),
-            _ => ("# [[model]]\n# file = \"model.glb\"\n# [model.instances]", "natural = 'tree'"),
+    for LeftFeatures { kind, count, examples } in &source.layer.rest {
+        let named = examples.iter().map(|(name, _)| name).find(|name| name.eq_ignore_ascii_case("name"));
+        let head = match (*kind, named) {
+            ("lines", _) => "# [[fence]]\n# kind = \"boundary\"".to_owned(),
+            ("polygons", _) => "# [[area]]\n# cover = \"meadow\"".to_owned(),
+            (_, Some(name)) => format!("# [[label]]\n# text = {}", quoted(name)),
+            (_, None) => "# [[model]]\n# file = \"conifer\"\n# [model.instances]".to_owned(),
         };
         let _ = writeln!(out, "\n# In no table of this file ({count} {kind}); to draw them:");
         let _ = writeln!(out, "{head}\n# file = {}", quoted(source.file));
         if let Some(name) = &source.layer.name {
             let _ = writeln!(out, "# layer = {}", quoted(name));
         }
-        let _ = writeln!(out, "# where = \"{condition}\"");
+        let mut telling = examples.iter().filter(|(name, _)| Some(name) != named);
+        if let Some(condition) = telling.find_map(|(name, value)| condition(name, value)) {
+            let _ = writeln!(out, "# where = {}", quoted(&condition));
+        }
+        if !examples.is_empty() {
+            let _ = writeln!(out, "# Their properties, each with a value that it has:");
+        }
+        for (name, value) in examples {
+            let shown: String = value.to_string().chars().take(MOST_SHOWN).collect();
+            let _ =
+                writeln!(out, "#   {} = {shown}", if is_plain(name) { name.clone() } else { quoted(name) });
+        }
     }
+}
+
+/// The most characters of an example.
+const MOST_SHOWN: usize = 60;
+
+/// The condition that a property has a value, where both are plain and short.
+fn condition(name: &str, value: &Value) -> Option<String> {
+    let value = match value {
+        Value::String(text) if text.len() < MOST_SHOWN => format!("'{}'", text.replace('\'', "''")),
+        Value::Number(number) => number.to_string(),
+        _ => return None,
+    };
+    // The identifiers of OpenStreetMap select one feature each.
+    (is_plain(name) && !name.contains("id")).then(|| format!("{name} = {value}"))
+}
+
+/// Whether a name needs no quotation marks in an expression.
+fn is_plain(name: &str) -> bool {
+    let mut letters = name.chars();
+    letters.next().is_some_and(|first| first.is_ascii_alphabetic())
+        && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
 fn camera(out: &mut String, camera: &CameraDraft) {

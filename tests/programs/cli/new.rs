@@ -114,7 +114,10 @@ fn swellendam_becomes_roads_rivers_lakes_and_buildings() {
         "# Country roads (36).",
         "# Buildings (4708).",
         "layer = \"roads\"",
-        "# In no table of this file (5 points)",
+        "title = \"Swellendam\"",
+        "# nodata = 0\n",
+        "# Places (5).\n[[label]]\nfile = ",
+        "\nmost = 15\n",
     ] {
         assert!(text.contains(wanted), "{wanted} in\n{text}");
     }
@@ -135,14 +138,78 @@ fn the_layers_of_an_openstreetmap_extract_are_told_apart() {
 }
 
 #[test]
+fn a_scene_is_named_after_its_place_and_cut_to_what_stands_in_it() {
+    let scratch = Scratch::new();
+    let post =
+        |column: i32, row: i32| 300.0 + 50.0 * (f64::from(column) * 0.1).sin() * (f64::from(row) * 0.1).cos();
+    let heights = (0..200).flat_map(|row| (0..200).map(move |column| format!("{:.1}", post(column, row))));
+    let grid = "ncols 200\nnrows 200\nxllcorner 500000\nyllcorner 4000000\ncellsize 50\n".to_owned();
+    let grid = grid + &heights.collect::<Vec<_>>().join(" ");
+    scratch.write("project/data/valley.asc", grid);
+    let feature = |properties: &str, kind: &str, at: &str| {
+        format!(
+            r#"{{"type": "Feature", "properties": {properties}, "geometry": {{"type": "{kind}", "coordinates": {at}}}}}"#
+        )
+    };
+    let features = [
+        feature(r#"{"place": "hamlet", "name": "Nook"}"#, "Point", "[503900, 4004000]"),
+        feature(r#"{"place": "town", "name": "Beyond"}"#, "Point", "[700000, 4004000]"),
+        feature(r#"{"natural": "peak", "name": "Horn", "ele": 341}"#, "Point", "[505000, 4005000]"),
+        feature(r#"{"highway": "residential"}"#, "LineString", "[[503000, 4003500], [506000, 4006000]]"),
+        feature(r#"{"route": "ferry"}"#, "LineString", "[[503000, 4003500], [509900, 4009900]]"),
+        feature(
+            r#"{"boundary": "administrative", "admin_level": "6", "name": "The Shire"}"#,
+            "Polygon",
+            "[[[400000, 3900000], [600000, 3900000], [600000, 4100000], [400000, 4100000], [400000, 3900000]]]",
+        ),
+    ];
+    let collection = |features: &[String]| {
+        let crs = r#""crs": {"type": "name", "properties": {"name": "EPSG:32616"}}"#;
+        format!(r#"{{"type": "FeatureCollection", {crs}, "features": [{}]}}"#, features.join(", "))
+    };
+    // One kind of shape a file, as most have.
+    scratch.write("project/data/points.geojson", collection(&features[..3]));
+    scratch.write("project/data/lines.geojson", collection(&features[3..5]));
+    scratch.write("project/data/shire.geojson", collection(&features[5..]));
+    new(&scratch, &["--vectors", "data/points.geojson", "data/lines.geojson"]).ok();
+    let text = text_of(&scratch);
+    for wanted in [
+        "title = \"Nook\"",
+        "# Peaks (1).\n[[label]]",
+        "text = \"if(has(ele), '{name}\\n{ele} m', name)\"",
+        "most = 10",
+        "# where = \"route = 'ferry'\"\n",
+        "#   route = \"ferry\"\n",
+    ] {
+        assert!(text.contains(wanted), "{wanted} in\n{text}");
+    }
+    std::fs::remove_dir_all(scratch.at("project/scene")).expect("it was written");
+    new(&scratch, &["--vectors", "data/points.geojson", "data/shire.geojson"]).ok();
+    assert!(
+        text_of(&scratch).contains("title = \"The Shire\""),
+        "of a hamlet the district\n{}",
+        text_of(&scratch)
+    );
+    std::fs::remove_dir_all(scratch.at("project/scene")).expect("it was written");
+    new(&scratch, &[]).ok();
+    assert!(text_of(&scratch).contains("title = \"Valley\""));
+}
+
+#[test]
 fn a_layer_without_properties_is_taken_for_what_its_name_says() {
     let Some(folder) = data("scenes/taunton_uk") else { return };
     let scratch = Scratch::new();
     let vectors = ["buildings.shp", "lines.shp", "trees.shp"].map(|name| folder.join(name));
     let vectors: Vec<&Path> = vectors.iter().map(|path| path.as_path()).collect();
     let (text, _) = of_data(&scratch, &folder.join("dtm.tif"), &vectors);
-    for wanted in ["# Buildings (401).\n[[building]]", "# In no table of this file (4 lines)", "# [[model]]"]
-    {
+    for wanted in [
+        "title = \"DTM\"",
+        "# Buildings (401).\n[[building]]",
+        "# In no table of this file (4 lines)",
+        "# [[model]]",
+        "# where = \"Tree_speci = 'CEDAR OF LEBANON'\"",
+        "#   Tree_speci = \"CEDAR OF LEBANON\"",
+    ] {
         assert!(text.contains(wanted), "{wanted} in\n{text}");
     }
 }

@@ -1,0 +1,200 @@
+//! Labels of the features of a vector file.
+//!
+//! Features are taken in the order of their rank, and no more is done for a feature than its rank and its size until
+//! it is its turn, so that of a large file the few that count are placed and written.
+
+use std::collections::BTreeSet;
+
+use glam::{DVec2, Vec3};
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::LabelTable;
+use crate::description::expression::Expression;
+use crate::description::scalar::Scalar;
+use crate::geom::crs::Crs;
+use crate::geom::polygon::{doubled_area, inner_point};
+use crate::geom::polyline::Polyline;
+use crate::scene::SceneLabel;
+use crate::scene::attributes::Attributes;
+use crate::scene::near::MERGE_M;
+use crate::scene::sources::Sources;
+use crate::scene::views::whole_meters;
+use crate::scene::world_frame::WorldFrame;
+use crate::terrain::lattice::Lattice;
+use crate::vector::feature::{Geometry, Polygon};
+
+/// Longer texts name nothing; they are cut here.
+const MOST_LETTERS: usize = 1000;
+
+/// The labels of the features that `table` names, in the order of their rank. `notes` gets a line for features without
+/// one.
+///
+/// # Errors
+/// The file cannot be read or holds no feature that matches.
+pub fn labels(
+    table: &LabelTable,
+    sources: &Sources<'_>,
+    lattice: &Lattice,
+    notes: &mut Vec<String>,
+) -> Result<Vec<SceneLabel>, Diagnostic> {
+    let frame = sources.frame;
+    let Some(source) = table.source() else { return Ok(Vec::new()) };
+    let text = Expression::parse(&table.text).map_err(|error| frame.document.error(&table.text, error))?;
+    let (crs, features) = sources.features(&source)?;
+    let mut features: Vec<RankedFeature> =
+        features.into_iter().map(|attributes| RankedFeature::new(table, attributes)).collect();
+    // Stable: the file's order decides in the end.
+    features.sort_by(|a, b| a.rank.total_cmp(&b.rank).then(b.size.total_cmp(&a.size)));
+    let (most, count) = (table.most as usize, features.len());
+    let (mut labels, mut left_out, mut lines) = (Vec::new(), LeftOut::default(), BTreeSet::new());
+    for (index, RankedFeature { attributes, rank, .. }) in features.into_iter().enumerate() {
+        if labels.len() == most {
+            left_out.beyond = count - index;
+            break;
+        }
+        let Some(text) = attributes.evaluated(&text).and_then(|text| written(&text)) else {
+            left_out.nameless += 1;
+            continue;
+        };
+        // The pieces that a river or a road consists of in a file carry its name once, on the longest.
+        let is_line = matches!(attributes.geometry(), Some(Geometry::Lines(_)));
+        if is_line && lines.contains(&text) {
+            continue;
+        }
+        let Some(ground) = attributes.geometry().and_then(|shape| place(shape, &crs, frame, lattice)) else {
+            left_out.off += 1;
+            continue;
+        };
+        let elevation = whole_meters(frame.scale.elevation_m(ground.z));
+        let Some(filled) = filled(&text, &elevation, &attributes) else {
+            left_out.nameless += 1;
+            continue;
+        };
+        if is_line {
+            lines.insert(text);
+        }
+        let anchor = ground + Vec3::Z * table.height as f32;
+        labels.push(SceneLabel { text: filled, ground, anchor, kind: table.kind, rank });
+    }
+    notes.extend(left_out.note(source.file.as_ref().map_or("", |file| file.as_str()), most));
+    Ok(labels)
+}
+
+/// The rank of a feature in `table`; infinite where an expression gives none.
+pub fn rank(table: &LabelTable, attributes: &Attributes) -> f64 {
+    match table.rank.stated() {
+        Some(rank) => attributes.value(Some(rank)).unwrap_or(f64::INFINITY),
+        None => *table.rank.default(),
+    }
+}
+
+/// A feature with what decides its turn.
+struct RankedFeature {
+    attributes: Attributes,
+    rank: f64,
+    /// The length of lines and the area of polygons in the file's own unit; 0 for points.
+    size: f64,
+}
+
+impl RankedFeature {
+    fn new(table: &LabelTable, attributes: Attributes) -> Self {
+        let rank = rank(table, &attributes);
+        let size = attributes.geometry().map_or(0.0, size);
+        // NaN would come before all others.
+        Self { attributes, rank, size: if size.is_finite() { size } else { 0.0 } }
+    }
+}
+
+fn size(shape: &Geometry) -> f64 {
+    let length = |line: &Vec<DVec2>| line.windows(2).map(|leg| leg[0].distance(leg[1])).sum::<f64>();
+    match shape {
+        Geometry::Points(_) => 0.0,
+        Geometry::Lines(lines) => lines.iter().map(length).sum(),
+        Geometry::Polygons(polygons) => {
+            polygons.iter().map(|polygon| doubled_area(&polygon.exterior).abs()).sum()
+        }
+    }
+}
+
+/// The number of features without a label, by reason.
+#[derive(Default)]
+struct LeftOut {
+    nameless: usize,
+    off: usize,
+    beyond: usize,
+}
+
+impl LeftOut {
+    fn note(&self, file: &str, most: usize) -> Option<String> {
+        let reasons = [
+            (self.nameless, "give no text".to_owned()),
+            (self.off, "lie off the elevation model".to_owned()),
+            (self.beyond, format!("come after the {most} that `most` allows")),
+        ];
+        let told = reasons.iter().filter(|(count, _)| *count > 0);
+        let told: Vec<String> = told.map(|(count, why)| format!("{count} {why}")).collect();
+        (!told.is_empty()).then(|| format!("features of '{file}' without a label: {}", told.join(", ")))
+    }
+}
+
+/// A value as text; `None` for text without a letter.
+fn written(value: &Scalar) -> Option<String> {
+    let text = match value {
+        Scalar::Bool(value) => value.to_string(),
+        Scalar::Number(number) => number.to_string(),
+        Scalar::Text(text) => text.trim().chars().take(MOST_LETTERS).collect(),
+    };
+    (!text.is_empty()).then_some(text)
+}
+
+/// `text` with `{height}` and every `{property}` replaced; `None` where the feature does not have that property. A brace
+/// that is not closed stays.
+fn filled(text: &str, elevation: &str, attributes: &Attributes) -> Option<String> {
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some((before, name, after)) = next_brace(rest) {
+        out.push_str(before);
+        match name {
+            "height" => out.push_str(elevation),
+            _ => out.push_str(&attributes.get(name).and_then(|value| written(&value))?),
+        }
+        rest = after;
+    }
+    out.push_str(rest);
+    Some(out)
+}
+
+/// What is before, in, and after the first pair of braces.
+fn next_brace(text: &str) -> Option<(&str, &str, &str)> {
+    let (before, rest) = text.split_once('{')?;
+    let (name, after) = rest.split_once('}')?;
+    Some((before, name, after))
+}
+
+/// The place on the ground that names a shape of the system `crs`; `None` where nothing of it lies on ground with data.
+fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
+    let extent = lattice.extent();
+    let world = |points: &[DVec2]| -> Option<Vec<DVec2>> {
+        points.iter().map(|&at| frame.world(crs, at).ok().filter(|at| at.is_finite())).collect()
+    };
+    let longest = |best: (DVec2, f64), next: (DVec2, f64)| if next.1 > best.1 { next } else { best };
+    let on_ground = |at: DVec2| frame.ground_at(lattice, at);
+    match shape {
+        Geometry::Points(points) => {
+            points.iter().find_map(|&point| frame.world(crs, point).ok().and_then(on_ground))
+        }
+        Geometry::Lines(lines) => {
+            let lines = lines.iter().filter_map(|line| Polyline::new(world(line)?, MERGE_M));
+            let pieces = lines.flat_map(|line| line.clip(&extent));
+            let middles = pieces.map(|piece| (piece.at(piece.length() / 2.0), piece.length()));
+            middles.reduce(longest).and_then(|(at, _)| on_ground(at))
+        }
+        Geometry::Polygons(polygons) => {
+            let inside = |polygon: &Polygon| {
+                let rings: Vec<Vec<DVec2>> =
+                    polygon.rings().map(|ring| world(ring)).collect::<Option<_>>()?;
+                inner_point(rings.iter().map(Vec::as_slice), &extent)
+            };
+            polygons.iter().filter_map(inside).reduce(longest).and_then(|(at, _)| on_ground(at))
+        }
+    }
+}
