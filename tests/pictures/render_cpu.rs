@@ -3,6 +3,7 @@
 mod hiding;
 mod hostile;
 mod landscape;
+mod shadows;
 mod surfaces;
 
 use glam::Vec3;

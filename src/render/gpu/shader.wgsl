@@ -262,7 +262,8 @@ const BIAS_TEXELS = 0.05;
 const BIAS_PER_METER = 1e-6;
 const FULL_TEXELS = 1.0;
 const STEEPEST = 20.0;
-const CONTACT_RADIUS = 3.0;
+const CONTACT_RADIUS = 2.0;
+const WALL_RADIUS = 1.0;
 const GROUND_CONTACT = 0.9;
 const WALL_CONTACT = 0.35;
 
@@ -300,17 +301,9 @@ fn shadow_page(table: vec4u, page: vec2i) -> vec4u {
     return textureLoad(shadow_pages, vec2u(index % TABLE_COLUMNS, index / TABLE_COLUMNS), 0);
 }
 
-// The greatest heights of the pages within `radius`.
-fn shadow_highest(place: ShadowPlace, radius: f32) -> vec2f {
-    let low = vec2i(floor((place.at - radius) / f32(PAGE)));
-    let high = vec2i(floor((place.at + radius) / f32(PAGE)));
-    var highest = vec2f(NOTHING);
-    for (var row = low.y; row <= high.y; row += 1) {
-        for (var column = low.x; column <= high.x; column += 1) {
-            highest = max(highest, bitcast<vec2f>(shadow_page(place.table, vec2i(column, row)).yz));
-        }
-    }
-    return highest;
+// The greatest heights around a point.
+fn shadow_highest(place: ShadowPlace) -> vec2f {
+    return bitcast<vec2f>(shadow_page(place.table, vec2i(floor(place.at / f32(PAGE)))).yz);
 }
 
 // A texel's heights of solids and of the ground.
@@ -360,7 +353,7 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
     }
     let offset = world - frame.eye.xyz;
     let place = shadow_place(0u, offset);
-    let highest = shadow_height(shadow_highest(place, MOST_RADIUS), on_solid) - place.height;
+    let highest = shadow_height(shadow_highest(place), on_solid) - place.height;
     if highest <= 0.0 {
         return 1.0;
     }
@@ -389,18 +382,19 @@ fn contact_share(world: vec3f, on_solid: bool) -> f32 {
         return 1.0;
     }
     let place = shadow_place(1u, world - frame.eye.xyz);
-    let highest = shadow_highest(place, CONTACT_RADIUS);
+    let highest = shadow_highest(place);
     let reach = CONTACT_RADIUS * place.texel_m;
     if select(highest.x <= place.height, highest.y <= place.height - reach, on_solid) {
         return 1.0;
     }
-    let low = vec2i(ceil(place.at - 0.5 - CONTACT_RADIUS));
-    let high = vec2i(floor(place.at - 0.5 + CONTACT_RADIUS));
+    let radius = select(CONTACT_RADIUS, WALL_RADIUS, on_solid);
+    let low = vec2i(ceil(place.at - 0.5 - radius));
+    let high = vec2i(floor(place.at - 0.5 + radius));
     var sum = vec2f(0.0);
     for (var y = low.y; y <= high.y; y += 1) {
         for (var x = low.x; x <= high.x; x += 1) {
             let aside = vec2f(vec2i(x, y)) + 0.5 - place.at;
-            let tent = max(1.0 - abs(aside) / CONTACT_RADIUS, vec2f(0.0));
+            let tent = max(1.0 - abs(aside) / radius, vec2f(0.0));
             let texel = shadow_texel(place.table, vec2i(x, y));
             let hidden = select((texel.x - place.height) / reach, 1.0 - (place.height - texel.y) / reach, on_solid);
             sum += vec2f(1.0, clamp(hidden, 0.0, 1.0)) * (tent.x * tent.y);

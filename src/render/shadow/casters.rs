@@ -1,12 +1,14 @@
 //! The triangles of a draw list in the space of a light.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat4, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawItem, DrawList};
 use crate::draw::material::AlphaMode;
+use crate::mesh::sink::VertexId;
 use crate::render::cpu::alpha::AlphaMask;
 use crate::render::mip_levels::smaller_levels;
 use crate::render::shadow::LightAxes;
@@ -15,9 +17,12 @@ use crate::view::camera::Camera;
 /// How far outside the picture a corner still counts as seen, as a share of its half.
 const SEEN_MARGIN: f32 = 1.05;
 
+/// Corners farther from the eye than this, in meters, are left out: squares of it are still finite.
+const FARTHEST_M: f32 = 1e15;
+
+/// A finite triangle, in meters from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterTriangle {
-    /// Meters from the eye along the light's axes; finite.
     pub corners: [Vec3; 3],
     pub item: u32,
     pub triangle: u32,
@@ -30,17 +35,24 @@ pub struct LightBox {
     pub high: Vec2,
 }
 
-/// The solids of a list that cast shadows, and the masks of their textures.
+/// What casts in a list, along the world's axes.
 #[derive(Debug)]
-pub struct Casters {
-    pub axes: LightAxes,
-    /// In the list's order.
-    pub triangles: Vec<CasterTriangle>,
-    pub bounds: LightBox,
+pub struct ListTriangles {
+    /// Of solids that cast shadows, in the list's order; never empty.
+    pub solids: Vec<CasterTriangle>,
+    /// Of the ground.
+    pub ground: Vec<CasterTriangle>,
     /// The least and greatest depth of what is seen, in meters; above 0.
     pub depths_m: [f32; 2],
-    /// By texture.
+    /// The masks of the textures of solids, by texture.
     pub masks: BTreeMap<u32, AlphaMask>,
+}
+
+/// Triangles along the axes of a light, each with its box.
+#[derive(Debug)]
+pub struct LightTriangles {
+    pub triangles: Vec<(CasterTriangle, LightBox)>,
+    pub bounds: LightBox,
 }
 
 impl LightBox {
@@ -70,82 +82,91 @@ impl LightBox {
     }
 }
 
-impl Casters {
-    /// What casts shadows in a checked list; `None` where nothing does or nothing is seen.
-    pub fn of_solids(list: &DrawList, camera: &Camera, axes: LightAxes) -> Option<Self> {
+impl ListTriangles {
+    /// What casts in a checked list; `None` where no solid does or nothing is seen.
+    pub fn new(list: &DrawList, camera: &Camera) -> Option<Self> {
         let is_caster = |item: &DrawItem| {
             let alpha = list.materials[item.material.0 as usize].alpha;
             item.layer == DepthLayer::Solid && alpha != AlphaMode::Blend && !item.triangles.is_empty()
         };
         let first = list.items.partition_point(|item| item.layer < DepthLayer::Solid);
-        let solids = &list.items[first..];
-        if !solids.iter().any(is_caster) {
+        if !list.items[first..].iter().any(is_caster) {
             return None;
         }
-        let lists: Vec<_> = (first..list.items.len())
-            .into_par_iter()
-            .filter(|&index| is_caster(&list.items[index]))
-            .map(|index| turned(list, camera.eye(), &axes, index))
-            .collect();
-        let triangles = lists.concat();
-        let bounds = triangles.par_iter().map(|triangle| LightBox::around(&triangle.corners));
-        let bounds = bounds.reduce(|| LightBox::EMPTY, LightBox::union);
-        let depths_m = seen_depths(list, camera)?;
-        (!bounds.is_empty()).then(|| Self { axes, triangles, bounds, depths_m, masks: masks(list, solids) })
+        let ground_end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
+        let triangles = |items: Range<usize>| -> Vec<CasterTriangle> {
+            let casting =
+                items.into_par_iter().filter(|&index| index < first || is_caster(&list.items[index]));
+            let lists: Vec<_> = casting.map(|index| item_triangles(list, camera.eye(), index)).collect();
+            lists.concat()
+        };
+        let (solids, ground) = (triangles(first..list.items.len()), triangles(0..ground_end));
+        let [of_solids, of_ground] = [&solids, &ground].map(|triangles| seen_depths(triangles, camera));
+        let depths_m = [of_solids[0].min(of_ground[0]), of_solids[1].max(of_ground[1])];
+        let masks = masks(list, &list.items[first..]);
+        (!solids.is_empty() && depths_m[0] <= depths_m[1]).then_some(Self { solids, ground, depths_m, masks })
     }
 }
 
-/// The triangles of the ground that lie over or under `bounds`.
-pub fn ground_triangles(
-    list: &DrawList,
-    eye: Vec3,
-    axes: &LightAxes,
-    bounds: LightBox,
-) -> Vec<CasterTriangle> {
-    let end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
-    let near =
-        |triangle: &CasterTriangle| !LightBox::around(&triangle.corners).intersection(bounds).is_empty();
-    (0..end).flat_map(|index| turned(list, eye, axes, index)).filter(near).collect()
+impl LightTriangles {
+    /// `triangles` along `axes`, those of them whose box meets `within`.
+    pub fn new(triangles: &[CasterTriangle], axes: &LightAxes, within: Option<LightBox>) -> Self {
+        let turned = |triangle: &CasterTriangle| {
+            let [a, b, c] = triangle.corners;
+            let corners = [axes.turned(a), axes.turned(b), axes.turned(c)];
+            let [a, b, c] = corners.map(Vec3::truncate);
+            let bounds = LightBox { low: a.min(b).min(c), high: a.max(b).max(c) };
+            let is_near = within.is_none_or(|within| !bounds.intersection(within).is_empty());
+            is_near.then_some((CasterTriangle { corners, ..*triangle }, bounds))
+        };
+        let triangles: Vec<_> = triangles.par_iter().with_min_len(1024).filter_map(turned).collect();
+        let bounds = triangles.iter().fold(LightBox::EMPTY, |all, (_, bounds)| all.union(*bounds));
+        Self { triangles, bounds }
+    }
 }
 
 /// The finite triangles of an item.
-fn turned(list: &DrawList, eye: Vec3, axes: &LightAxes, index: usize) -> Vec<CasterTriangle> {
+fn item_triangles(list: &DrawList, eye: Vec3, index: usize) -> Vec<CasterTriangle> {
     let item = &list.items[index];
     let mesh = &list.meshes[item.mesh.0 as usize];
     let to_world: DMat4 = item.world_from_mesh.as_dmat4();
     let eye = eye.as_dvec3();
-    let corner = |position: [f32; 3]| {
-        let offset = to_world.transform_point3(DVec3::from(position.map(f64::from))) - eye;
-        axes.turned(offset.as_vec3())
-    };
-    let triangles = item.triangles.clone().map(|triangle| {
-        let ids = mesh.triangles[triangle as usize];
-        let corners = ids.map(|id| corner(mesh.vertices[id.index()].position));
-        CasterTriangle { corners, item: index as u32, triangle }
-    });
-    triangles.filter(|triangle| triangle.corners.iter().all(|corner| corner.is_finite())).collect()
+    let corner =
+        |position: [f32; 3]| (to_world.transform_point3(Vec3::from(position).as_dvec3()) - eye).as_vec3();
+    let mut triangles = Vec::with_capacity(item.triangles.len());
+    for triangle in item.triangles.clone() {
+        let [a, b, c] = mesh.triangles[triangle as usize];
+        let position = |id: VertexId| corner(mesh.vertices[id.index()].position);
+        let corners = [position(a), position(b), position(c)];
+        if corners.iter().all(|corner| corner.abs().max_element() < FARTHEST_M) {
+            triangles.push(CasterTriangle { corners, item: index as u32, triangle });
+        }
+    }
+    triangles
 }
 
-/// The least and greatest depth of the vertices that the camera sees, in meters.
-fn seen_depths(list: &DrawList, camera: &Camera) -> Option<[f32; 2]> {
+/// The least and greatest depth of the corners that the camera sees, in meters.
+fn seen_depths(triangles: &[CasterTriangle], camera: &Camera) -> [f32; 2] {
     let tan = camera.tan_half_fov() * SEEN_MARGIN;
     let (near, far) = camera.planes();
-    let of_item = |item: &DrawItem| {
-        let mesh = &list.meshes[item.mesh.0 as usize];
-        let ids = mesh.triangles[item.triangles.start as usize..item.triangles.end as usize].iter().flatten();
-        ids.fold([f32::MAX, 0.0], |[least, most]: [f32; 2], id| {
-            let position = Vec3::from(mesh.vertices[id.index()].position);
-            let offset = item.world_from_mesh.transform_point3(position) - camera.eye();
-            let depth = offset.dot(camera.forward());
-            let aside = [offset.dot(camera.right()) / tan.x, offset.dot(camera.up()) / tan.y];
-            let is_seen = depth > near && depth < far && aside.iter().all(|part| part.abs() <= depth);
-            if is_seen { [least.min(depth), most.max(depth)] } else { [least, most] }
-        })
+    let (right, up) = (camera.right() / tan.x, camera.up() / tan.y);
+    let widened = |[least, most]: [f32; 2], triangle: &CasterTriangle| {
+        let mut range = [least, most];
+        for corner in &triangle.corners {
+            let depth = corner.dot(camera.forward());
+            let is_seen = depth > near
+                && depth < far
+                && corner.dot(right).abs() <= depth
+                && corner.dot(up).abs() <= depth;
+            if is_seen {
+                range = [range[0].min(depth), range[1].max(depth)];
+            }
+        }
+        range
     };
-    let drawn = list.items.par_iter().filter(|item| !matches!(item.layer, DepthLayer::Draped(_)));
     let wider = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let [least, most] = drawn.map(of_item).reduce(|| [f32::MAX, 0.0], wider);
-    (least <= most).then_some([least, most])
+    let none = || [f32::MAX, 0.0];
+    triangles.par_iter().with_min_len(1024).fold(none, widened).reduce(none, wider)
 }
 
 fn masks(list: &DrawList, solids: &[DrawItem]) -> BTreeMap<u32, AlphaMask> {

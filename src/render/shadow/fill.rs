@@ -6,13 +6,12 @@
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 
-use crate::draw::list::DrawList;
 use crate::draw::material::AlphaMode;
 use crate::render::cpu::alpha::AlphaMask;
-use crate::render::cpu::pattern::ONE;
-use crate::render::cpu::raster::{PixelWindow, cover, doubled_area, snapped};
-use crate::render::shadow::casters::{CasterTriangle, Casters};
-use crate::render::shadow::levels::PageRange;
+use crate::render::cpu::raster::{PixelWindow, doubled_area, snapped};
+use crate::render::shadow::casters::{CasterTriangle, LightTriangles};
+use crate::render::shadow::coverage::cover_centers;
+use crate::render::shadow::levels::{MapSource, PageRange};
 use crate::render::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
 
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
@@ -20,14 +19,23 @@ const GUARD_TEXELS: f32 = 8192.0;
 
 /// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
 /// shade reaches.
-const FLOATING_TEXELS: f32 = 3.0;
+const FLOATING_TEXELS: f32 = 2.0;
+
+/// Rows of pages that a triangle in a bucket reaches at the most.
+const SHORT_ROWS: u32 = 4;
 
 pub struct Filling<'a> {
-    pub list: &'a DrawList,
-    pub casters: &'a Casters,
-    pub ground: &'a [CasterTriangle],
+    pub source: &'a MapSource<'a>,
+    pub solids: &'a LightTriangles,
+    pub ground: &'a LightTriangles,
     pub level: &'a ShadowLevel,
-    pub purpose: ShadowPurpose,
+}
+
+/// The triangles of a level by the row of pages that they begin in, those of more than [`SHORT_ROWS`] rows apart: few
+/// rows ask for a triangle, and a list of enormous ones takes no more memory than any.
+struct RowBuckets {
+    short: Vec<Vec<u32>>,
+    tall: Vec<u32>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -75,22 +83,29 @@ struct TexelMask<'a> {
 impl Filling<'_> {
     /// The texels of the stored pages of the level, whose entries are `pages`; sets the greatest values of each.
     pub fn texels(&self, pages: &mut [ShadowPage]) -> Vec<ShadowTexel> {
-        let on_level = |kind: CasterKind| {
-            move |triangle| {
-                let range = self.level.pages_near(triangle, 0.0)?;
-                Some(LevelTriangle { triangle, kind, range })
+        let mut triangles = Vec::new();
+        for (kind, casters) in [(CasterKind::Solid, self.solids), (CasterKind::Ground, self.ground)] {
+            for (triangle, bounds) in &casters.triangles {
+                if let Some(range) = self.level.pages_near(*bounds, 0.0) {
+                    triangles.push(LevelTriangle { triangle, kind, range });
+                }
             }
-        };
-        let solids = self.casters.triangles.par_iter().filter_map(on_level(CasterKind::Solid));
-        let ground = self.ground.par_iter().filter_map(on_level(CasterKind::Ground));
-        let triangles: Vec<LevelTriangle> = solids.chain(ground).collect();
+        }
+        let buckets = RowBuckets::new(&triangles, self.level.rows);
         let columns = self.level.columns as usize;
         let rows = pages.par_chunks_exact_mut(columns).enumerate();
-        let rows: Vec<_> = rows.map(|(row, pages)| self.row(row as u32, pages, &triangles)).collect();
+        let rows: Vec<_> =
+            rows.map(|(row, pages)| self.row(row as u32, pages, &triangles, &buckets)).collect();
         rows.concat()
     }
 
-    fn row(&self, row: u32, pages: &mut [ShadowPage], triangles: &[LevelTriangle]) -> Vec<ShadowTexel> {
+    fn row(
+        &self,
+        row: u32,
+        pages: &mut [ShadowPage],
+        triangles: &[LevelTriangle],
+        buckets: &RowBuckets,
+    ) -> Vec<ShadowTexel> {
         let mut stored = 0;
         let place = |page: &ShadowPage| {
             stored += usize::from(page.number > 0);
@@ -98,14 +113,18 @@ impl Filling<'_> {
         };
         let places: Vec<_> = pages.iter().map(place).collect();
         let texels = vec![ShadowTexel::EMPTY; stored * (PAGE * PAGE) as usize];
-        let undersides = match self.purpose {
+        let undersides = match self.source.purpose {
             ShadowPurpose::Sun => Vec::new(),
             ShadowPurpose::Contact => vec![f32::MAX; texels.len()],
         };
         let mut work = PageRow { row, places, texels, undersides };
         if stored > 0 {
-            for triangle in triangles.iter().filter(|on| on.range.from[1] <= row && row < on.range.to[1]) {
-                self.draw(triangle, &mut work);
+            let below = row.saturating_sub(SHORT_ROWS - 1) as usize;
+            for &index in buckets.short[below..=row as usize].iter().flatten().chain(&buckets.tall) {
+                let on = &triangles[index as usize];
+                if on.range.from[1] <= row && row < on.range.to[1] {
+                    self.draw(on, &mut work);
+                }
             }
         }
         let floating_m = FLOATING_TEXELS * self.level.texel_m;
@@ -122,8 +141,8 @@ impl Filling<'_> {
     }
 
     fn draw(&self, on: &LevelTriangle, work: &mut PageRow) {
-        let columns = on.range.from[0]..on.range.to[0];
-        if columns.clone().all(|column| work.places[column as usize].is_none()) {
+        let columns = on.range.from[0] as usize..on.range.to[0] as usize;
+        if work.places[columns.clone()].iter().all(Option::is_none) {
             return;
         }
         let origin = Vec2::from(self.level.origin).extend(0.0);
@@ -141,14 +160,14 @@ impl Filling<'_> {
             }
             let touched = PixelWindow::around(&turned, size);
             for column in columns.clone() {
-                let Some(place) = work.places[column as usize] else { continue };
-                let corner = [column * PAGE, work.row * PAGE];
+                let Some(place) = work.places[column] else { continue };
+                let corner = [column as u32 * PAGE, work.row * PAGE];
                 let page = PixelWindow { from: corner, to: corner.map(|side| side + PAGE) };
                 let first = place * (PAGE * PAGE) as usize;
                 let texels = &mut work.texels[first..][..(PAGE * PAGE) as usize];
                 let mut undersides =
                     work.undersides.get_mut(first..).filter(|all| plane.looks_down && !all.is_empty());
-                cover(&turned, &ONE, page.intersection(touched), |x, y, _| {
+                cover_centers(&turned, page.intersection(touched), |x, y| {
                     let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - plane.start;
                     if plane.is_hole(at) {
                         return;
@@ -180,17 +199,17 @@ impl Filling<'_> {
         let heights = corners.map(|corner| corner.z);
         let least = heights.into_iter().fold(f32::MAX, f32::min);
         let most = heights.into_iter().fold(f32::MIN, f32::max);
-        let item = &self.list.items[on.triangle.item as usize];
-        let material = &self.list.materials[item.material.0 as usize];
+        let item = &self.source.list.items[on.triangle.item as usize];
+        let material = &self.source.list.materials[item.material.0 as usize];
         let mask = if let AlphaMode::Mask(cutoff) = material.alpha {
-            let mesh = &self.list.meshes[item.mesh.0 as usize];
+            let mesh = &self.source.list.meshes[item.mesh.0 as usize];
             let values = mesh.triangles[on.triangle.triangle as usize].map(|id| {
                 let vertex = &mesh.vertices[id.index()];
                 Vec2::from(vertex.uv).extend(vertex.color.alpha() * material.base_color.alpha())
             });
             let [start, second, third] = [values[0], values[1] - values[0], values[2] - values[0]];
             Some(TexelMask {
-                mask: material.texture.and_then(|id| self.casters.masks.get(&id.0)),
+                mask: material.texture.and_then(|id| self.source.triangles.masks.get(&id.0)),
                 cutoff,
                 start,
                 across: (second * ac.y - third * ab.y) / area,
@@ -202,6 +221,20 @@ impl Filling<'_> {
         let looks_down = on.kind == CasterKind::Solid && area < 0.0 && !material.two_sided;
         let range = [least, most];
         rise.is_finite().then_some(TexelPlane { start: a.xy(), height: a.z, rise, range, looks_down, mask })
+    }
+}
+
+impl RowBuckets {
+    fn new(triangles: &[LevelTriangle], rows: u32) -> Self {
+        let mut buckets = Self { short: vec![Vec::new(); rows as usize], tall: Vec::new() };
+        for (index, on) in (0..).zip(triangles) {
+            if on.range.to[1] - on.range.from[1] <= SHORT_ROWS {
+                buckets.short[on.range.from[1] as usize].push(index);
+            } else {
+                buckets.tall.push(index);
+            }
+        }
+        buckets
     }
 }
 

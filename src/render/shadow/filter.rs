@@ -9,7 +9,7 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use crate::render::shadow::{MOST_RADIUS, NOTHING, PAGE, ShadowLevel, ShadowMap, ShadowTexel};
+use crate::render::shadow::{MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage, ShadowTexel};
 
 /// The half-shadow's half breadth per meter of distance: the terrain's sun, 0.75° in radius, whose disc is as broad as
 /// a tent a quarter wider.
@@ -32,13 +32,20 @@ const FULL_TEXELS: f32 = 1.0;
 const STEEPEST: f32 = 20.0;
 
 /// The radius of contact shade, in texels of the sky's map.
-const CONTACT_RADIUS: f32 = 3.0;
+const CONTACT_RADIUS: f32 = 2.0;
+
+/// The radius within which a wall looks for the ground, in the same texels: ground is smooth.
+const WALL_RADIUS: f32 = 1.0;
 
 /// The share of the sky that solids hide from the ground in the corner of a tall wall.
 const GROUND_CONTACT: f32 = 0.9;
 
 /// The share of the sky that the ground hides from the foot of a wall.
 const WALL_CONTACT: f32 = 0.35;
+
+/// The base-2 logarithm of [`PAGE`], and what of a texel's place lies within its page.
+const PAGE_BITS: u32 = PAGE.trailing_zeros();
+const PAGE_MASK: i32 = PAGE as i32 - 1;
 
 /// What casts on a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,11 +56,24 @@ pub enum ShadowReceiver {
     Solid,
 }
 
-/// A window of texels around a point, each weighted by its distance: a tent in both directions.
-struct Readings<'a> {
+/// A point as a map sees it.
+struct ShadowPlace<'a> {
     map: &'a ShadowMap,
     level: &'a ShadowLevel,
+    /// In texels from the level's corner.
     at: Vec2,
+    /// Meters from the eye toward the light.
+    height: f32,
+}
+
+/// The plane of the face that receives.
+#[derive(Clone, Copy)]
+struct ReceivingPlane {
+    receiver: ShadowReceiver,
+    /// Meters toward the light per texel.
+    rise: Vec2,
+    /// The least height over it that casts, in meters.
+    bias: f32,
 }
 
 impl ShadowReceiver {
@@ -69,122 +89,125 @@ impl ShadowMap {
     /// The share of the sun that reaches a point of a face with this normal (any length, either side), 0..=1.
     pub fn sun(&self, world: Vec3, normal: Vec3, receiver: ShadowReceiver) -> f32 {
         let offset = world - self.eye;
-        let level = self.level_at(offset);
-        let here = self.axes.turned(offset);
-        let readings = Readings { map: self, level, at: level.position(here.xy()) };
-        let highest = receiver.height(readings.highest(MOST_RADIUS)) - here.z;
+        let place = self.place(offset);
+        let Some(highest) = place.highest() else { return 1.0 };
+        let highest = receiver.height(highest) - place.height;
         if highest <= 0.0 {
             return 1.0;
         }
-        let texel_m = level.texel_m;
+        let texel_m = place.level.texel_m;
         let rise = rise(self.axes.turned(normal)) * texel_m;
         let error_m = BIAS_TEXELS * texel_m + BIAS_PER_METER * offset.length();
-        let bias = error_m * (1.0 + rise.length() / texel_m);
+        let plane = ReceivingPlane { receiver, rise, bias: error_m * (1.0 + rise.length() / texel_m) };
         let radius = |height: f32| (SPREAD * height / texel_m).clamp(LEAST_RADIUS, MOST_RADIUS);
-        let covered = |radius: f32| {
-            // The weight of all texels, of those that cast, and of these times their height.
-            readings.sum(radius, |texel, aside, weight| {
-                let height = receiver.height(texel) - (here.z + rise.dot(aside));
-                let casting = ((height - bias) / (FULL_TEXELS * texel_m)).clamp(0.0, 1.0) * weight;
-                Vec3::new(weight, casting, casting * height)
-            })
-        };
         let search = radius(highest);
-        let found = covered(search);
+        let found = place.cover(search, &plane);
         if found.y == 0.0 || found.y >= found.x {
             return if found.y == 0.0 { 1.0 } else { 0.0 };
         }
         let breadth = radius(found.z / found.y);
-        let shade = if breadth < search { covered(breadth) } else { found };
+        let shade = if breadth < search { place.cover(breadth, &plane) } else { found };
         1.0 - shade.y / shade.x
     }
 
     /// The share of the sky that contact with solids, or of solids with the ground, leaves to a point, 0..=1.
     pub fn contact(&self, world: Vec3, receiver: ShadowReceiver) -> f32 {
-        let offset = world - self.eye;
-        let level = self.level_at(offset);
-        let here = self.axes.turned(offset);
-        let readings = Readings { map: self, level, at: level.position(here.xy()) };
-        let highest = readings.highest(CONTACT_RADIUS);
-        let reach_m = CONTACT_RADIUS * level.texel_m;
-        match receiver {
-            ShadowReceiver::Ground => {
-                if highest.solid <= here.z {
-                    return 1.0;
-                }
-                let hidden = readings.sum(CONTACT_RADIUS, |texel, _, weight| {
-                    Vec3::new(weight, weight * ((texel.solid - here.z) / reach_m).clamp(0.0, 1.0), 0.0)
-                });
-                1.0 - GROUND_CONTACT * hidden.y / hidden.x
-            }
-            ShadowReceiver::Solid => {
-                if highest.ground <= here.z - reach_m {
-                    return 1.0;
-                }
-                let hidden = readings.sum(CONTACT_RADIUS, |texel, _, weight| {
-                    let near = (1.0 - (here.z - texel.ground) / reach_m).clamp(0.0, 1.0);
-                    Vec3::new(weight, weight * near, 0.0)
-                });
-                1.0 - WALL_CONTACT * hidden.y / hidden.x
-            }
+        let place = self.place(world - self.eye);
+        let Some(highest) = place.highest() else { return 1.0 };
+        let reach_m = CONTACT_RADIUS * place.level.texel_m;
+        let (radius, strength, is_near) = match receiver {
+            ShadowReceiver::Ground => (CONTACT_RADIUS, GROUND_CONTACT, highest.solid > place.height),
+            ShadowReceiver::Solid => (WALL_RADIUS, WALL_CONTACT, highest.ground > place.height - reach_m),
+        };
+        if !is_near {
+            return 1.0;
         }
+        let (mut all, mut hidden) = (0.0, 0.0);
+        place.read(radius, |texel, _, weight| {
+            let share = match receiver {
+                ShadowReceiver::Ground => (texel.solid - place.height) / reach_m,
+                ShadowReceiver::Solid => 1.0 - (place.height - texel.ground) / reach_m,
+            };
+            all += weight;
+            hidden += weight * share.clamp(0.0, 1.0);
+        });
+        1.0 - strength * hidden / all
     }
 
-    fn level_at(&self, offset: Vec3) -> &ShadowLevel {
+    fn place(&self, offset: Vec3) -> ShadowPlace<'_> {
         let above = self.scale.exponent(offset.dot(self.forward)) - self.scale.least;
-        &self.levels[(above.max(0) as usize).min(self.levels.len() - 1)]
-    }
-
-    fn texel(&self, level: &ShadowLevel, [x, y]: [i32; 2]) -> ShadowTexel {
-        let (column, row) = (x.div_euclid(PAGE as i32), y.div_euclid(PAGE as i32));
-        let number = level.page(column, row).map_or(0, |index| self.pages[index].number);
-        let Some(page) = number.checked_sub(1) else { return ShadowTexel::EMPTY };
-        let (x, y) = (x.rem_euclid(PAGE as i32) as u32, y.rem_euclid(PAGE as i32) as u32);
-        self.texels[((page * PAGE + y) * PAGE + x) as usize]
+        let level = &self.levels[(above.max(0) as usize).min(self.levels.len() - 1)];
+        let here = self.axes.turned(offset);
+        let at = (here.xy() - Vec2::from(level.origin)) / level.texel_m;
+        ShadowPlace { map: self, level, at, height: here.z }
     }
 }
 
-impl ShadowLevel {
-    /// Where a point lies, in texels from the level's corner.
-    fn position(&self, across: Vec2) -> Vec2 {
-        (across - Vec2::from(self.origin)) / self.texel_m
+impl ShadowPlace<'_> {
+    /// The greatest values around the point; `None` where nothing is near.
+    fn highest(&self) -> Option<ShadowTexel> {
+        let page =
+            self.page((self.at.x.floor() as i32) >> PAGE_BITS, (self.at.y.floor() as i32) >> PAGE_BITS);
+        page.filter(|page| page.number > 0).map(|page| page.highest)
     }
 
-    fn page(&self, column: i32, row: i32) -> Option<usize> {
-        let is_inside = (0..self.columns as i32).contains(&column) && (0..self.rows as i32).contains(&row);
-        is_inside.then(|| self.first as usize + row as usize * self.columns as usize + column as usize)
+    fn page(&self, column: i32, row: i32) -> Option<&ShadowPage> {
+        // A negative number becomes a large one.
+        let (column, row) = (column as u32, row as u32);
+        if column >= self.level.columns || row >= self.level.rows {
+            return None;
+        }
+        self.map.pages.get((self.level.first + row * self.level.columns + column) as usize)
     }
-}
 
-impl Readings<'_> {
-    /// The greatest values of the pages within `radius`, at most a page wide.
-    fn highest(&self, radius: f32) -> ShadowTexel {
-        let page = |at: f32| (at / PAGE as f32).floor() as i32;
-        let (low, high) = (self.at - radius, self.at + radius);
-        let (rows, columns) = (page(low.y)..=page(high.y), page(low.x)..=page(high.x));
-        let mut highest = ShadowTexel { solid: NOTHING, ground: NOTHING };
-        for row in rows {
-            for column in columns.clone() {
-                if let Some(index) = self.level.page(column, row) {
-                    highest = highest.highest(self.map.pages[index].highest);
+    /// The weight of all texels within `radius`, of those that cast, and of these times their height.
+    fn cover(&self, radius: f32, plane: &ReceivingPlane) -> Vec3 {
+        let full = 1.0 / (FULL_TEXELS * self.level.texel_m);
+        let (mut all, mut casting, mut heights) = (0.0, 0.0, 0.0);
+        self.read(radius, |texel, aside, weight| {
+            all += weight;
+            let height =
+                plane.receiver.height(texel) - self.height - plane.rise.x * aside.x - plane.rise.y * aside.y;
+            if height > plane.bias {
+                let share = ((height - plane.bias) * full).min(1.0) * weight;
+                casting += share;
+                heights += share * height;
+            }
+        });
+        Vec3::new(all, casting, heights)
+    }
+
+    /// Calls `visit(texel, texels from the point, weight)` for the texels within `radius`, weighted by a tent in both
+    /// directions.
+    fn read(&self, radius: f32, mut visit: impl FnMut(ShadowTexel, Vec2, f32)) {
+        let [left, bottom] = [self.at.x, self.at.y].map(|at| (at - 0.5 - radius).ceil() as i32);
+        let [right, top] = [self.at.x, self.at.y].map(|at| (at - 0.5 + radius).floor() as i32);
+        let mut y = bottom;
+        while y <= top {
+            let aside_y = y as f32 + 0.5 - self.at.y;
+            let weight_y = (1.0 - aside_y.abs() / radius).max(0.0);
+            let mut line: &[ShadowTexel] = &[];
+            let mut x = left;
+            while x <= right {
+                if x == left || x & PAGE_MASK == 0 {
+                    line = self.line(x, y);
                 }
+                let aside_x = x as f32 + 0.5 - self.at.x;
+                let weight = (1.0 - aside_x.abs() / radius).max(0.0) * weight_y;
+                let texel = line.get((x & PAGE_MASK) as usize).copied().unwrap_or(ShadowTexel::EMPTY);
+                visit(texel, Vec2::new(aside_x, aside_y), weight);
+                x += 1;
             }
+            y += 1;
         }
-        highest
     }
 
-    /// The sum of `value(texel, texels from the point, weight)` over the texels within `radius`.
-    fn sum(&self, radius: f32, value: impl Fn(ShadowTexel, Vec2, f32) -> Vec3) -> Vec3 {
-        let (low, high) = ((self.at - 0.5 - radius).ceil(), (self.at - 0.5 + radius).floor());
-        let mut sum = Vec3::ZERO;
-        for y in low.y as i32..=high.y as i32 {
-            for x in low.x as i32..=high.x as i32 {
-                let aside = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - self.at;
-                let weight = (Vec2::ONE - aside.abs() / radius).max(Vec2::ZERO);
-                sum += value(self.map.texel(self.level, [x, y]), aside, weight.x * weight.y);
-            }
-        }
-        sum
+    /// The row of texels of the page with texel `(x, y)`; empty where it is not stored.
+    fn line(&self, x: i32, y: i32) -> &[ShadowTexel] {
+        let number = self.page(x >> PAGE_BITS, y >> PAGE_BITS).map_or(0, |page| page.number);
+        let Some(page) = number.checked_sub(1) else { return &[] };
+        let start = (page * PAGE + (y & PAGE_MASK) as u32) * PAGE;
+        &self.map.texels[start as usize..][..PAGE as usize]
     }
 }
 

@@ -1,12 +1,12 @@
 //! The levels of a map: what the camera sees at their depths, as pages that solids touch.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::draw::list::DrawList;
-use crate::render::shadow::casters::{CasterTriangle, Casters, LightBox, ground_triangles};
+use crate::render::shadow::casters::{LightBox, LightTriangles, ListTriangles};
 use crate::render::shadow::fill::Filling;
 use crate::render::shadow::{
-    LevelScale, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage,
+    LevelScale, LightAxes, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage,
     ShadowPurpose, ShadowTexel,
 };
 use crate::view::camera::Camera;
@@ -27,20 +27,26 @@ pub struct PageRange {
     pub to: [u32; 2],
 }
 
+/// What a map is made of.
+#[derive(Debug)]
+pub struct MapSource<'a> {
+    pub list: &'a DrawList,
+    pub camera: &'a Camera,
+    pub triangles: &'a ListTriangles,
+    pub axes: LightAxes,
+    pub purpose: ShadowPurpose,
+}
+
 impl ShadowMap {
-    /// The map of `casters` with texels of up to `texel_px` pixels; `None` where none of their shadows is seen.
-    pub(super) fn new(
-        list: &DrawList,
-        camera: &Camera,
-        casters: &Casters,
-        texel_px: f32,
-        purpose: ShadowPurpose,
-    ) -> Option<Self> {
+    /// The map with texels of up to `texel_px` pixels; `None` where no shadow is seen.
+    pub fn new(source: &MapSource, texel_px: f32) -> Option<Self> {
+        let (camera, axes) = (source.camera, &source.axes);
+        let solids = LightTriangles::new(&source.triangles.solids, axes, None);
         let pixel = 2.0 * camera.tan_half_fov().y / camera.size().1 as f32;
         let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
             let scale =
                 LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
-            plan(camera, casters, scale)
+            plan(source, &solids, scale)
         });
         let (scale, levels, pages) = planned?;
         let stored = pages.iter().filter(|page| page.number > 0).count();
@@ -50,18 +56,19 @@ impl ShadowMap {
         let mut map = Self {
             eye: camera.eye(),
             forward: camera.forward(),
-            axes: casters.axes,
+            axes: source.axes,
             scale,
             levels,
             pages,
             texels: Vec::with_capacity(stored * (PAGE * PAGE) as usize),
         };
         let all = map.levels.iter().fold(LightBox::EMPTY, |all, level| all.union(level.bounds()));
-        let ground = ground_triangles(list, camera.eye(), &casters.axes, all);
+        let ground = LightTriangles::new(&source.triangles.ground, axes, Some(all));
         for level in map.levels.clone() {
             let range = level.first as usize..(level.first + level.columns * level.rows) as usize;
-            let filling = Filling { list, casters, ground: &ground, level: &level, purpose };
-            map.texels.extend(filling.texels(&mut map.pages[range]));
+            let filling = Filling { source, solids: &solids, ground: &ground, level: &level };
+            map.texels.extend(filling.texels(&mut map.pages[range.clone()]));
+            level.spread_highest(&mut map.pages[range]);
         }
         Some(map)
     }
@@ -69,11 +76,11 @@ impl ShadowMap {
 
 /// The levels of a scale with their pages numbered; `None` where they exceed the limits.
 fn plan(
-    camera: &Camera,
-    casters: &Casters,
+    source: &MapSource,
+    solids: &LightTriangles,
     mut scale: LevelScale,
 ) -> Option<(LevelScale, Vec<ShadowLevel>, Vec<ShadowPage>)> {
-    let [least, most] = casters.depths_m.map(|depth| scale.exponent(depth));
+    let [least, most] = source.triangles.depths_m.map(|depth| scale.exponent(depth));
     scale.least = least.max(most - (MOST_LEVELS as i32 - 1));
     let (mut levels, mut pages, mut stored) = (Vec::new(), Vec::new(), 0);
     for exponent in scale.least..=most {
@@ -81,9 +88,8 @@ fn plan(
         let nearest = if exponent == scale.least { 0.0 } else { texel_m };
         // A level reaches a little beyond its depths, since renderers round differently.
         let depths = [nearest * 0.98, texel_m * 2.04].map(|texel| texel / scale.texel_per_depth);
-        let seen = slab(camera, casters, depths).intersection(casters.bounds);
-        let seen =
-            if seen.is_empty() { LightBox { low: glam::Vec2::ZERO, high: glam::Vec2::ZERO } } else { seen };
+        let seen = slab(source.camera, &source.axes, depths).intersection(solids.bounds);
+        let seen = if seen.is_empty() { LightBox { low: Vec2::ZERO, high: Vec2::ZERO } } else { seen };
         let bounds = seen.grown(PAGE_MARGIN * texel_m);
         let sides = ((bounds.high - bounds.low) / (texel_m * PAGE as f32)).ceil();
         if !(sides.x <= MOST_SIDE && sides.y <= MOST_SIDE) {
@@ -92,7 +98,7 @@ fn plan(
         let [columns, rows] = [sides.x, sides.y].map(|side| (side as u32).max(1));
         let level =
             ShadowLevel { origin: bounds.low.to_array(), texel_m, columns, rows, first: pages.len() as u32 };
-        for is_touched in level.touched(&casters.triangles) {
+        for is_touched in level.touched(solids) {
             stored += u32::from(is_touched);
             let number = if is_touched { stored } else { 0 };
             pages.push(ShadowPage { number, highest: ShadowTexel::EMPTY });
@@ -106,45 +112,62 @@ fn plan(
 }
 
 /// What the camera sees between two depths, across the light.
-fn slab(camera: &Camera, casters: &Casters, depths: [f32; 2]) -> LightBox {
+fn slab(camera: &Camera, axes: &LightAxes, depths: [f32; 2]) -> LightBox {
     let tan = camera.tan_half_fov();
     let mut corners = [Vec3::ZERO; 8];
     for (index, corner) in corners.iter_mut().enumerate() {
         let side = |bit: usize| if index & bit == 0 { -1.0 } else { 1.0 };
         let ray = camera.forward() + camera.right() * (tan.x * side(1)) + camera.up() * (tan.y * side(2));
-        *corner = casters.axes.turned(ray * depths[index >> 2]);
+        *corner = axes.turned(ray * depths[index >> 2]);
     }
     LightBox::around(&corners)
 }
 
 impl ShadowLevel {
     pub fn bounds(&self) -> LightBox {
-        let low = glam::Vec2::from(self.origin);
-        let side = glam::Vec2::new(self.columns as f32, self.rows as f32) * (PAGE as f32 * self.texel_m);
+        let low = Vec2::from(self.origin);
+        let side = Vec2::new(self.columns as f32, self.rows as f32) * (PAGE as f32 * self.texel_m);
         LightBox { low, high: low + side }
     }
 
-    /// The pages within [`PAGE_MARGIN`] texels of a triangle's box; `None` where there are none.
-    pub fn pages_near(&self, triangle: &CasterTriangle, margin: f32) -> Option<PageRange> {
-        let near = LightBox::around(&triangle.corners).grown(margin * self.texel_m);
-        if near.intersection(self.bounds()).is_empty() {
+    /// The pages within `margin` texels of a box; `None` where there are none.
+    pub fn pages_near(&self, bounds: LightBox, margin: f32) -> Option<PageRange> {
+        let (low, high) = (Vec2::from(self.origin), self.bounds().high);
+        let near = bounds.grown(margin * self.texel_m);
+        if !(near.low.x <= high.x && near.low.y <= high.y && near.high.x >= low.x && near.high.y >= low.y) {
             return None;
         }
-        let page = |at: glam::Vec2| {
-            let page = (at - glam::Vec2::from(self.origin)) / (self.texel_m * PAGE as f32);
-            // Casts saturate.
-            [(page.x as u32).min(self.columns - 1), (page.y as u32).min(self.rows - 1)]
-        };
-        let (from, last) = (page(near.low), page(near.high));
-        Some(PageRange { from, to: last.map(|page| page + 1) })
+        let (from, last) = (self.page_at(near.low), self.page_at(near.high));
+        Some(PageRange { from, to: [last[0] + 1, last[1] + 1] })
+    }
+
+    /// The page nearest to a place.
+    fn page_at(&self, at: Vec2) -> [u32; 2] {
+        let page = (at - Vec2::from(self.origin)) / (self.texel_m * PAGE as f32);
+        // Casts saturate.
+        [(page.x as u32).min(self.columns - 1), (page.y as u32).min(self.rows - 1)]
+    }
+
+    /// Sets the greatest values of each stored page to those of the pages around it too, so that a filter asks for one.
+    fn spread_highest(&self, pages: &mut [ShadowPage]) {
+        let (columns, rows) = (self.columns as usize, self.rows as usize);
+        let own: Vec<ShadowTexel> = pages.iter().map(|page| page.highest).collect();
+        for (index, page) in pages.iter_mut().enumerate().filter(|(_, page)| page.number > 0) {
+            let (column, row) = (index % columns, index / columns);
+            for y in row.saturating_sub(1)..(row + 2).min(rows) {
+                for x in column.saturating_sub(1)..(column + 2).min(columns) {
+                    page.highest = page.highest.highest(own[y * columns + x]);
+                }
+            }
+        }
     }
 
     /// Whether a solid is on or near each page. Counts the boxes that begin and end, so that a box costs the same
     /// however large it is.
-    fn touched(&self, triangles: &[CasterTriangle]) -> Vec<bool> {
+    fn touched(&self, solids: &LightTriangles) -> Vec<bool> {
         let stride = self.columns as usize + 1;
         let mut counts = vec![0i64; stride * (self.rows as usize + 1)];
-        for range in triangles.iter().filter_map(|triangle| self.pages_near(triangle, PAGE_MARGIN)) {
+        for range in solids.triangles.iter().filter_map(|(_, bounds)| self.pages_near(*bounds, PAGE_MARGIN)) {
             let [[left, bottom], [right, top]] =
                 [range.from, range.to].map(|at| at.map(|page| page as usize));
             counts[bottom * stride + left] += 1;

@@ -15,7 +15,7 @@
 //!   texel: [greatest height toward the light of a solid, of the displayed ground]
 //! ```
 //!
-//! [`casters`] turns triangles to the map's space, [`levels`] finds the pages, [`fill`] rasterizes them with integer
+//! [`casters`] turns triangles to the map's space, [`levels`] finds the pages, [`fill`] and [`coverage`] rasterize them with integer
 //! coverage, row of pages by row of pages in parallel; the greatest height does not depend on the order. [`filter`]
 //! reads them. Both renderers read the same map, so that they show the same shadows.
 //!
@@ -32,6 +32,7 @@
 //! there are at most [`MOST_PAGES`] pages, and from 9 to some 100 readings per pixel with a solid toward the light.
 
 mod casters;
+mod coverage;
 mod fill;
 mod filter;
 mod levels;
@@ -40,8 +41,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::list::DrawList;
-use crate::render::shadow::casters::Casters;
+use crate::render::shadow::casters::ListTriangles;
 pub use crate::render::shadow::filter::ShadowReceiver;
+use crate::render::shadow::levels::MapSource;
 use crate::view::camera::Camera;
 
 /// Texels along the side of a page: smaller pages fit solids closer, larger ones have fewer borders to look across.
@@ -56,7 +58,11 @@ pub const MOST_LEVELS: usize = 8;
 /// The shadow radius that filters read at the most, in texels: larger is softer and slower.
 const MOST_RADIUS: f32 = 5.0;
 
-/// Texels of the sky's map per pixel of the picture, by length: contact shade is blurred and needs few.
+/// The greatest side of a texel of the sun's map, in pixels of the picture; the least is half of it. Larger texels cost
+/// less and blur the shadows of what is only a few pixels high.
+const SUN_TEXEL_PX: f32 = 1.4;
+
+/// The same for the sky's map: contact shade is blurred and needs few.
 const SKY_TEXEL_PX: f32 = 4.0;
 
 /// The height of a texel where nothing is: finite, since shaders need not know infinity.
@@ -84,7 +90,7 @@ impl ShadowTexel {
 pub struct ShadowPage {
     /// Its number from 1; 0 where nothing is stored.
     pub number: u32,
-    /// The greatest values of its texels.
+    /// The greatest values of its texels and of those of the pages around it; nothing where nothing is stored.
     pub highest: ShadowTexel,
 }
 
@@ -131,7 +137,7 @@ pub struct ShadowMap {
 
 /// What a map is read for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ShadowPurpose {
+pub enum ShadowPurpose {
     /// Everything toward the light casts.
     Sun,
     /// Only what reaches down to the ground counts: a bridge high above it does not touch it.
@@ -151,12 +157,12 @@ impl Shadows {
     /// The maps of a checked list for what `camera` sees.
     pub fn new(list: &DrawList, camera: &Camera) -> Self {
         let to_sun = list.lighting.to_sun;
+        let Some(triangles) = ListTriangles::new(list, camera) else { return Self::default() };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);
-            let casters = Casters::of_solids(list, camera, axes)?;
-            ShadowMap::new(list, camera, &casters, texel_px, purpose)
+            ShadowMap::new(&MapSource { list, camera, triangles: &triangles, axes, purpose }, texel_px)
         };
-        let sun = if to_sun.z > 0.0 { map(to_sun, 1.0, ShadowPurpose::Sun) } else { None };
+        let sun = if to_sun.z > 0.0 { map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun) } else { None };
         Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact) }
     }
 }
@@ -182,5 +188,101 @@ impl LevelScale {
     pub fn exponent(&self, depth_m: f32) -> i32 {
         let texel_m = (depth_m * self.texel_per_depth).max(f32::MIN_POSITIVE);
         (texel_m.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32 - (f32::MAX_EXP - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec2};
+
+    use super::*;
+    use crate::draw::color::Srgba;
+    use crate::draw::list::{DepthLayer, DrawItem, DrawMesh, DrawVertex, FeatureId};
+    use crate::draw::material::Material;
+    use crate::mesh::sink::MeshSink;
+
+    fn rectangle(low: Vec2, high: Vec2, z: f32) -> DrawMesh {
+        let mut mesh = DrawMesh::default();
+        let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+        let ids = corners.map(|at| {
+            let (position, normal) = (at.extend(z).to_array(), [0.0, 0.0, 1.0]);
+            mesh.vertex(DrawVertex { position, normal, uv: [0.0; 2], color: Srgba::WHITE })
+        });
+        mesh.triangle([ids[0], ids[1], ids[2]]);
+        mesh.triangle([ids[0], ids[2], ids[3]]);
+        mesh
+    }
+
+    fn add(list: &mut DrawList, mesh: DrawMesh, layer: DepthLayer) {
+        let item = DrawItem {
+            triangles: 0..mesh.triangles.len() as u32,
+            mesh: list.add_mesh(mesh),
+            material: list.add_material(Material::default()),
+            world_from_mesh: Mat4::IDENTITY,
+            layer,
+            feature: FeatureId::GROUND,
+        };
+        list.items.push(item);
+    }
+
+    /// 100 km of ground, and on it roofs of 12 m, 30 m apart.
+    fn village(houses: u32) -> DrawList {
+        let mut list = DrawList::default();
+        add(&mut list, rectangle(Vec2::splat(-50_000.0), Vec2::splat(50_000.0), 0.0), DepthLayer::Ground);
+        for house in 0..houses {
+            let low = Vec2::new((house % 4) as f32, (house / 4) as f32) * 30.0;
+            add(&mut list, rectangle(low, low + 12.0, 8.0), DepthLayer::Solid);
+        }
+        list
+    }
+
+    fn looking(eye: Vec3) -> Camera {
+        Camera::new(eye, Vec3::ZERO, 0.8, (1920, 1080), (1.0, 200_000.0)).expect("sound")
+    }
+
+    #[test]
+    fn without_solids_there_is_no_map() {
+        let shadows = Shadows::new(&village(0), &looking(Vec3::new(0.0, -400.0, 200.0)));
+        assert!(shadows.sun.is_none() && shadows.sky.is_none());
+    }
+
+    #[test]
+    fn a_village_in_a_wide_land_takes_a_few_pages_with_texels_as_fine_as_pixels() {
+        for distance_m in [100.0, 1_000.0, 15_000.0] {
+            let camera = looking(Vec3::new(0.0, -0.8, 0.6) * distance_m);
+            let sun = Shadows::new(&village(12), &camera).sun.expect("solids");
+            let depth_m = (Vec3::ZERO - camera.eye()).dot(camera.forward());
+            let level = sun.levels[(sun.scale.exponent(depth_m) - sun.scale.least).max(0) as usize];
+            let pixel_m = 1.0 / camera.pixels_per_meter(depth_m);
+            assert!(level.texel_m <= pixel_m, "{} m of {pixel_m} m at {distance_m} m", level.texel_m);
+            let stored = sun.texels.len() / (PAGE * PAGE) as usize;
+            assert!((1..=2500).contains(&stored), "{stored} pages at {distance_m} m");
+        }
+    }
+
+    #[test]
+    fn a_roof_shades_what_lies_behind_it_from_the_sun_and_nothing_else() {
+        let list = village(1);
+        let camera = looking(Vec3::new(0.0, -80.0, 60.0));
+        let sun = Shadows::new(&list, &camera).sun.expect("a solid");
+        let to_sun = list.lighting.to_sun;
+        let under = Vec3::new(6.0, 6.0, 8.0) - to_sun * (8.0 / to_sun.z);
+        let share = |at: Vec3| sun.sun(at, Vec3::Z, ShadowReceiver::Ground);
+        assert_eq!(share(under), 0.0);
+        assert_eq!(share(under + Vec3::X * 20.0), 1.0);
+        assert_eq!(sun.sun(Vec3::new(6.0, 6.0, 8.0), Vec3::Z, ShadowReceiver::Solid), 1.0, "the roof itself");
+        let edge = under + Vec3::X * 6.0;
+        assert!((0.2..0.8).contains(&share(edge)), "{}", share(edge));
+    }
+
+    #[test]
+    fn hostile_corners_are_left_out_and_gigantic_ones_cut() {
+        for far in [1e9, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
+            let mut list = village(1);
+            add(&mut list, rectangle(Vec2::splat(-far), Vec2::splat(far), 500.0), DepthLayer::Solid);
+            let shadows = Shadows::new(&list, &looking(Vec3::new(0.0, -80.0, 60.0)));
+            let stored = shadows.sun.map_or(0, |map| map.texels.len()) / (PAGE * PAGE) as usize;
+            assert!(stored <= MOST_PAGES, "{stored} pages at {far}");
+        }
     }
 }
