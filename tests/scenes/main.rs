@@ -10,6 +10,7 @@ mod instances;
 mod models;
 mod odd_scenes;
 mod own_models;
+mod parallel;
 mod placement;
 mod recut;
 mod scatter;

@@ -9,7 +9,7 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
-use crate::scene::plinth::plinth;
+use crate::scene::plinth::{base_plate, plinth};
 
 /// Makes draw vertices of bare positions.
 struct GroundSink(DrawMesh);
@@ -44,8 +44,11 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &Displayed
     walls
 }
 
-/// Adds the walls.
-pub(super) fn add_plinth(list: &mut DrawList, walls: DrawMesh) {
+/// Adds the walls and, where they do not end straight, the plate that they stand on.
+pub(super) fn add_plinth(list: &mut DrawList, scene: &SceneModel, walls: DrawMesh) {
     let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
     add_mesh(list, walls, material, DepthLayer::Solid, FeatureId::GROUND);
+    if let Some(plate) = base_plate(scene.ground().lattice(), scene.bounds) {
+        add_mesh(list, plate, material, DepthLayer::Solid, FeatureId::GROUND);
+    }
 }
