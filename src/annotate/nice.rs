@@ -98,6 +98,20 @@ pub fn format_number(value: f64, decimals: usize) -> String {
     if value < 0.0 && !is_zero { format!("−{digits}") } else { digits }
 }
 
+/// The digits of a number with those before the point in groups of three: `4 650 000.5`.
+pub fn grouped(digits: &str) -> String {
+    let whole = digits.find('.').unwrap_or(digits.len());
+    let mut text = String::new();
+    for (index, character) in digits.char_indices() {
+        let before = digits[..index].ends_with(|other: char| other.is_ascii_digit());
+        if index < whole && before && (whole - index).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(character);
+    }
+    text
+}
+
 /// `value` with up to `decimals` digits after the point, without trailing zeros.
 pub fn format_trimmed(value: f64, decimals: usize) -> String {
     let text = format_number(value, decimals);

@@ -35,7 +35,7 @@ pub struct NorthArrow {
 impl NorthArrow {
     /// North as `camera` sees it on the ground at the middle of its picture.
     pub fn from_camera(camera: &Camera) -> Self {
-        let foreshortening = camera.forward().z.abs().max(LEAST_TILT);
+        let foreshortening = (camera.forward().z.abs() * camera.stretch()).clamp(LEAST_TILT, 1.0);
         // The right of the picture is level: its east and north parts are the cosine and the negative sine of the
         // heading. A level view, whose horizon would hide whether north is ahead, is tilted.
         let right = camera.right();

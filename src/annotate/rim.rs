@@ -5,11 +5,11 @@ use glam::Vec2;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::SOFT_INK;
+use crate::annotate::sheet::INK;
 use crate::annotate::text::TextStyle;
 
 /// The size of the numbers, the length of a tick, and the gap between them, in design pixels.
-const SIZE: f32 = 13.0;
+const SIZE: f32 = 14.0;
 const TICK: f32 = 8.0;
 const GAP: f32 = 4.0;
 
@@ -55,8 +55,8 @@ fn draw(mark: &RimMark, composer: &mut Composer) -> Option<Drawing> {
     let half = Vec2::new(line.advance, line.style.cap_px()) * 0.5;
     let center = end + outward * (outward.abs().dot(half) + sheet.px(GAP));
     let mut drawing = Drawing::default();
-    drawing.line(PixelSegment { from: mark.at_px, to: end }, sheet.hairline(), SOFT_INK);
-    drawing.write_haloed(&line, (center + Vec2::new(-half.x, half.y)).round(), sheet.px(1.5), SOFT_INK);
+    drawing.line(PixelSegment { from: mark.at_px, to: end }, sheet.hairline(), INK);
+    drawing.write_haloed(&line, (center + Vec2::new(-half.x, half.y)).round(), sheet.px(1.5), INK);
     Some(drawing)
 }
 

@@ -1,7 +1,7 @@
 //! The scale bar: a nice length, and the distance at which it is true, lower left.
 //!
 //! A perspective picture has no single scale. The bar states its distance from the eye, and is correct to half a pixel
-//! there for lines across the view.
+//! there for lines across the view. A picture by parallel rays has one, which is stated as a map's: `1:25 000 at 96 dpi`.
 //!
 //! ```text
 //!  0        2.5        5 km
@@ -13,7 +13,7 @@ use glam::Vec2;
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{NiceNumber, format_distance, format_number};
+use crate::annotate::nice::{NiceNumber, format_distance, format_number, format_trimmed, grouped};
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextStyle, TypesetLine};
@@ -29,14 +29,62 @@ const PARTS: i64 = 4;
 pub struct ScaleBar {
     /// Pixels that one meter across the view spans there.
     pub pixels_per_meter: f32,
-    /// The distance from the eye, in meters; printed under the bar.
-    pub distance_m: f32,
+    /// Where that holds; printed under the bar.
+    pub holds: ScaleExtent,
+}
+
+/// Where on a picture a scale holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ScaleExtent {
+    /// At a distance from the eye, in meters.
+    Distance(f32),
+    /// Everywhere.
+    Everywhere(MapScale),
+}
+
+/// The scale of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapScale {
+    /// `n` of 1:n.
+    pub denominator: f64,
+    /// Pixels per inch of the print on which it is true.
+    pub dpi: f32,
+}
+
+impl ScaleExtent {
+    fn is_sound(&self) -> bool {
+        match *self {
+            Self::Distance(distance_m) => distance_m.is_finite() && distance_m > 0.0,
+            Self::Everywhere(MapScale { denominator, dpi }) => {
+                denominator.is_finite() && denominator > 0.0 && dpi.is_finite() && dpi > 0.0
+            }
+        }
+    }
+
+    /// The note under the bar.
+    fn note(&self) -> String {
+        match *self {
+            Self::Distance(distance_m) => format!("at {} from the eye", format_distance(distance_m.into())),
+            Self::Everywhere(MapScale { denominator, dpi }) => {
+                let dpi = format_trimmed(f64::from(dpi), 1);
+                format!("1:{} at {dpi} dpi", grouped(&format_number(denominator, 0)))
+            }
+        }
+    }
 }
 
 impl ScaleBar {
     /// The scale of `camera` at `distance_m` meters along its viewing direction.
     pub fn at_distance(camera: &Camera, distance_m: f32) -> Self {
-        Self { pixels_per_meter: camera.pixels_per_meter(distance_m), distance_m }
+        let holds = ScaleExtent::Distance(distance_m);
+        Self { pixels_per_meter: camera.pixels_per_meter(distance_m), holds }
+    }
+
+    /// The scale of all of the picture of `camera`; `None` in perspective.
+    pub fn of_map(camera: &Camera) -> Option<Self> {
+        let dpi = camera.parallel_frame()?.dpi;
+        let scale = MapScale { denominator: camera.scale_denominator()?, dpi };
+        Some(Self { pixels_per_meter: camera.pixels_per_meter(1.0), holds: ScaleExtent::Everywhere(scale) })
     }
 }
 
@@ -52,7 +100,7 @@ struct NiceBar {
 /// shorter than a millimeter or longer than a hundred thousand kilometers.
 fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
     let scale = f64::from(bar.pixels_per_meter);
-    let is_sound = scale > 0.0 && bar.distance_m.is_finite() && bar.distance_m > 0.0;
+    let is_sound = scale > 0.0 && bar.holds.is_sound();
     let length = NiceNumber::at_most(f64::from(longest_px) / scale).filter(|_| is_sound)?;
     let is_sensible = (1e-3..=1e8).contains(&length.value());
     let length_px = libm::round(length.value() * scale) as f32;
@@ -62,8 +110,7 @@ fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
 /// The scale bar on its panel with the upper left corner at the origin; `None` where the scale is unusable.
 pub(in crate::annotate) fn compose(bar: &ScaleBar, composer: &mut Composer) -> Option<Drawing> {
     let measure = measure(bar, composer.sheet.px(LONGEST))?;
-    let note = format!("at {} from the eye", format_distance(bar.distance_m.into()));
-    let note = composer.line(&note, composer.style(14.0, TextStyle::REGULAR));
+    let note = composer.line(&bar.holds.note(), composer.style(14.0, TextStyle::REGULAR));
     Some(lay_out(&measure, Some(&note), composer))
 }
 
@@ -73,7 +120,7 @@ pub(in crate::annotate) fn compose_on_map(
     longest_px: f32,
     composer: &mut Composer,
 ) -> Option<Drawing> {
-    let measure = measure(&ScaleBar { pixels_per_meter, distance_m: 1.0 }, longest_px)?;
+    let measure = measure(&ScaleBar { pixels_per_meter, holds: ScaleExtent::Distance(1.0) }, longest_px)?;
     Some(lay_out(&measure, None, composer))
 }
 
@@ -142,7 +189,7 @@ mod tests {
     use super::*;
 
     fn bar(pixels_per_meter: f32) -> ScaleBar {
-        ScaleBar { pixels_per_meter, distance_m: 12_400.0 }
+        ScaleBar { pixels_per_meter, holds: ScaleExtent::Distance(12_400.0) }
     }
 
     #[test]
@@ -166,12 +213,25 @@ mod tests {
     }
 
     #[test]
+    fn a_map_states_its_scale_and_the_resolution_at_which_it_is_true() {
+        let note = |denominator, dpi| ScaleExtent::Everywhere(MapScale { denominator, dpi }).note();
+        assert_eq!(note(25_000.000_3, 96.0), "1:25 000 at 96 dpi");
+        assert_eq!(note(500.0, 72.5), "1:500 at 72.5 dpi");
+    }
+
+    #[test]
     fn a_scale_that_is_no_scale_has_no_bar() {
         for scale in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e30, 1e-30] {
             assert_eq!(measure(&bar(scale), 260.0), None, "{scale}");
         }
         for distance_m in [0.0, -5.0, f32::NAN, f32::INFINITY] {
-            assert_eq!(measure(&ScaleBar { pixels_per_meter: 0.05, distance_m }, 260.0), None);
+            assert_eq!(
+                measure(
+                    &ScaleBar { pixels_per_meter: 0.05, holds: ScaleExtent::Distance(distance_m) },
+                    260.0
+                ),
+                None
+            );
         }
     }
 

@@ -50,7 +50,7 @@ use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
-use crate::description::words::{HeightEncodingWord, LabelKind, TableTop};
+use crate::description::words::{CameraProjection, HeightEncodingWord, LabelKind, TableTop};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -220,6 +220,14 @@ table! {
     struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
         name: Stated<String> = key::filled_text(), required;
+        /// How the ground is drawn. All but `perspective` have one scale everywhere, and no eye.
+        projection: CameraProjection = key::word::<CameraProjection>(), default "perspective";
+        /// Of a camera that is not in perspective: `n` of the map scale 1:n, with the middle of what it `shows` in the
+        /// picture's middle.
+        scale: Option<f64> = key::number(Within(1.0, 1e9), ""),
+            otherwise "as large as what it shows fits the picture, `n` rounded up to two figures";
+        /// Pixels per inch of the print on which `scale` is true; 96 is that of screens.
+        dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96";
         /// Place of the eye.
         eye: Option<Stated<[f64; 2]>> = key::point(), otherwise "where the ground fills the picture";
         /// Height of the eye above the ground.
@@ -232,40 +240,31 @@ table! {
         look_at_height: f64 = key::number(Bounds::ELEVATION, "m"), default 0;
         /// Coordinate system of `eye` and `look_at`.
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`";
-        /// Of a camera without an eye: where it looks, clockwise from north.
+        /// Of a camera without an eye: where it looks, clockwise from north; the upper border of a plan.
         azimuth: Option<f64> = key::number(Within(-360.0, 360.0), "°"), otherwise "0";
         /// Of a camera without an eye: how far it looks down from the horizon.
-        pitch: Option<f64> = key::number(Within(5.0, 89.0), "°"), otherwise "what fills the picture best, from 40 to 50";
+        pitch: Option<f64> = key::number(Within(5.0, 89.0), "°"), otherwise "what fills the picture best, from 40 to 50; 45 of an orthographic one";
         /// Of a camera without an eye: points around what it shows, such as two corners of a map.
         shows: Option<Stated<Vec<[f64; 2]>>> = key::points(2), otherwise "the whole ground";
         /// Vertical field of view; 40 is about that of a normal lens held upright, 28 that of a portrait lens.
         field_of_view: Option<f64> = key::number(Within(1.0, 170.0), "°"), otherwise "40 with an eye, 28 without";
     }
     check(reader) {
-        if let (Some(_), Some(span)) = (reader.key_span("eye_height"), reader.value_span("eye_elevation")) {
-            let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
-            reader.error(span, "the eye has both a height and an elevation", help);
-        }
-        for (stated, missing) in [("eye", "look_at"), ("look_at", "eye")] {
-            if let (Some(span), None) = (reader.value_span(stated), reader.value_span(missing)) {
-                let help = "state both, or neither for a view that fills the picture";
-                reader.error(span, format!("the camera has `{stated}` without `{missing}`"), help);
-            }
-        }
-        if reader.value_span("eye").is_some() {
-            for key in ["azimuth", "pitch", "shows"] {
-                if let Some(span) = reader.key_span(key) {
-                    let message = format!("`{key}` has no effect on a camera with an `eye`");
-                    reader.error(span, message, "remove it, or remove `eye` and `look_at`");
-                }
-            }
+        let projection = projection.unwrap_or_default();
+        if projection == CameraProjection::Perspective {
+            let help = "set `projection` to plan, orthographic or oblique, or remove it";
+            reader.without_effect(&["scale", "dpi"], "in perspective, which has no single scale", help);
         } else {
-            for key in ["eye_height", "eye_elevation", "look_at_height"] {
-                if let Some(span) = reader.key_span(key) {
-                    let message = format!("`{key}` has no effect on a camera without an `eye`");
-                    reader.error(span, message, "state `eye` and `look_at`, or remove it");
-                }
+            let keys = ["eye", "eye_height", "eye_elevation", "look_at", "look_at_height", "field_of_view"];
+            let help = "state what it `shows`, or set `projection = \"perspective\"`";
+            reader.without_effect(&keys, "on a camera that is not in perspective", help);
+            if projection != CameraProjection::Orthographic {
+                let help = "set `projection = \"orthographic\"`, or remove it";
+                reader.without_effect(&["pitch"], "on a plan or an oblique picture", help);
             }
+        }
+        if projection == CameraProjection::Perspective {
+            check_eye(reader);
         }
     }
 
@@ -308,6 +307,35 @@ impl Document {
     /// An error about the bytes `span` of the scene file; `cause` is an error or a sentence.
     pub fn error_at(&self, span: Range<usize>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
         Diagnostic::new(&self.source, span, cause)
+    }
+}
+
+/// Reports keys of a camera in perspective that do not go together.
+fn check_eye(reader: &mut TableReader<'_, '_>) {
+    if let (Some(_), Some(span)) = (reader.key_span("eye_height"), reader.value_span("eye_elevation")) {
+        let help = "keep `eye_height` to measure from the ground, or `eye_elevation` to measure from the sea";
+        reader.error(span, "the eye has both a height and an elevation", help);
+    }
+    for (stated, missing) in [("eye", "look_at"), ("look_at", "eye")] {
+        if let (Some(span), None) = (reader.value_span(stated), reader.value_span(missing)) {
+            let help = "state both, or neither for a view that fills the picture";
+            reader.error(span, format!("the camera has `{stated}` without `{missing}`"), help);
+        }
+    }
+    if reader.value_span("eye").is_some() {
+        for key in ["azimuth", "pitch", "shows"] {
+            if let Some(span) = reader.key_span(key) {
+                let message = format!("`{key}` has no effect on a camera with an `eye`");
+                reader.error(span, message, "remove it, or remove `eye` and `look_at`");
+            }
+        }
+    } else {
+        for key in ["eye_height", "eye_elevation", "look_at_height"] {
+            if let Some(span) = reader.key_span(key) {
+                let message = format!("`{key}` has no effect on a camera without an `eye`");
+                reader.error(span, message, "state `eye` and `look_at`, or remove it");
+            }
+        }
     }
 }
 

@@ -73,6 +73,14 @@ words! {
         Gray = "gray": "dark to light",
     }
 
+    /// How a camera draws the ground.
+    enum CameraProjection {
+        Perspective = "perspective": "as an eye sees it: what is far is small",
+        Plan = "plan": "straight from above, as a map, with `azimuth` up; one scale, and heights do not show",
+        Orthographic = "orthographic": "by parallel rays along `azimuth` and `pitch`: one scale across the view",
+        Oblique = "oblique": "the ground as in plan, and heights straight up at the same scale (a military oblique)",
+    }
+
     /// What the block of terrain stands on where its edge is in view from outside.
     enum TableTop {
         Paper = "paper": "white paper that ends in the backdrop",

@@ -56,8 +56,11 @@ fn is_visible(picture: &Rendering, pixel: Vec2, depth_m: f32) -> bool {
     })
 }
 
-/// The scale bar for the distance of the ground at the picture's center, or at the first pixel with ground below it.
+/// The scale bar of a map's scale or, in perspective, for the distance of the ground at the picture's center, or at the first pixel with ground below it.
 fn scale_bar(camera: &Camera, picture: &Rendering) -> Option<ScaleBar> {
+    if let Some(bar) = ScaleBar::of_map(camera) {
+        return Some(bar);
+    }
     let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
     let middle = (height / 2..height).map(|row| picture.depth_m[row * width + width / 2]);
     let distance_m = middle.into_iter().find(|depth| depth.is_finite())?;

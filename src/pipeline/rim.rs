@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::annotate::nice::Ticks;
+use crate::annotate::nice::{Ticks, format_number, grouped};
 use crate::annotate::rim::RimMark;
 use crate::scene::SceneModel;
 use crate::scene::picture::shows_table;
@@ -13,6 +13,11 @@ use crate::view::camera::Camera;
 
 /// Coordinates along one edge at most: more than these run together.
 const MOST_MARKS: usize = 8;
+
+/// Where there is no ground at the border, the block ends further in: it is looked for in steps of this share of the
+/// block's longer side, so many times.
+const INWARD_STEP: f32 = 0.0025;
+const MOST_INWARD: u16 = 60;
 
 /// An edge of the block in plan.
 #[derive(Clone, Copy, Debug)]
@@ -53,17 +58,19 @@ fn edge_marks(edge: &BlockEdge, scene: &SceneModel, camera: &Camera) -> Vec<RimM
     let origin = scene.lattice.origin()[edge.axis];
     let (low, high) = (origin + f64::from(min[edge.axis]), origin + f64::from(max[edge.axis]));
     let ticks = Ticks::new(low, high, MOST_MARKS);
+    let side_m = (max - min).truncate().max_element();
     let ground = FullResolution { lattice: scene.ground().lattice() };
     let mark = |&value: &f64| {
-        let mut at = Vec3::splat(edge.at);
-        at[edge.axis] = (value - origin) as f32;
-        // A little inside: on the border itself rounding decides whether there is ground.
-        let inside = (at - edge.outward * (max - min).truncate().max_element() * 1e-5).truncate().as_dvec2();
-        let ground_z = ground.displayed_z(inside)? as f32;
+        let mut border = Vec3::splat(edge.at);
+        border[edge.axis] = (value - origin) as f32;
+        let inward = |step: u16| border - edge.outward * (side_m * (f32::from(step) * INWARD_STEP + 1e-5));
+        let (at, ground_z) = (0..MOST_INWARD)
+            .map(inward)
+            .find_map(|at| Some((at, ground.displayed_z(at.truncate().as_dvec2())? as f32)))?;
         let foot = at.with_z(base_z(scene.bounds));
         let faces_eye = edge.outward.dot(camera.toward_eye(foot)) > 0.0;
         let at = if faces_eye { foot } else { at.with_z(ground_z) };
-        let step = edge.outward * (max - min).truncate().max_element() * 0.01;
+        let step = edge.outward * side_m * 0.01;
         let [here, beyond] = [at, at + step].map(|point| camera.project(point).map(|seen| seen.pixel));
         let (at_px, outward): (Vec2, Vec2) = (here?, beyond? - here?);
         Some(RimMark { at_px, outward, text: coordinate(value, ticks.decimals, ["E", "N"][edge.axis]) })
@@ -73,17 +80,7 @@ fn edge_marks(edge: &BlockEdge, scene: &SceneModel, camera: &Camera) -> Vec<RimM
 
 /// A coordinate with its thousands apart, such as `4 650 000 N`.
 fn coordinate(value: f64, decimals: usize, letter: &str) -> String {
-    let digits = format!("{:.decimals$}", value.abs());
-    let (whole, rest) = digits.split_at(digits.find('.').unwrap_or(digits.len()));
-    let mut text = String::new();
-    for (index, digit) in whole.chars().enumerate() {
-        if index > 0 && (whole.len() - index).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    let sign = if value < 0.0 { "−" } else { "" };
-    format!("{sign}{text}{rest} {letter}")
+    format!("{} {letter}", grouped(&format_number(value, decimals)))
 }
 
 #[cfg(test)]

@@ -300,7 +300,7 @@ pub struct SceneView {
     pub name: String,
     /// From where it looks, and whereto.
     pub aim: ViewAim,
-    /// Vertical field of view in radians.
+    /// Vertical field of view in radians; without effect on parallel rays.
     pub fov_y_rad: f32,
 }
 
@@ -316,6 +316,8 @@ pub enum ViewAim {
     },
     /// From as near as what it shows fits into the picture.
     Fitted(FittedView),
+    /// By parallel rays, with one scale.
+    Parallel(ParallelView),
 }
 
 /// A view whose eye depends on the picture's shape.
@@ -325,6 +327,23 @@ pub struct FittedView {
     pub azimuth_rad: f32,
     /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
     pub pitch_rad: Option<f32>,
+    /// The ground that it shows, world X and Y; `None` for all of it.
+    pub shown: Option<Rect>,
+}
+
+/// A view by parallel rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallelView {
+    /// Where it looks, clockwise from north, radians.
+    pub azimuth_rad: f32,
+    /// How far it looks down from the horizon, radians; a right angle at most.
+    pub pitch_rad: f32,
+    /// How many times as many pixels a meter spans up the picture as across it.
+    pub stretch: f32,
+    /// `n` of its scale 1:n; `None` for the largest at which what it shows fits into the picture.
+    pub scale: Option<f64>,
+    /// Pixels per inch of the print on which that scale is true.
+    pub dpi: f64,
     /// The ground that it shows, world X and Y; `None` for all of it.
     pub shown: Option<Rect>,
 }

@@ -30,13 +30,16 @@ const TOPSOIL: f32 = 0.2;
 /// the topsoil of the lowest ground, so that no stratum is cut by it.
 const LEVELS: [f32; 2] = [0.34, 0.66];
 
-/// The colors of the strata from below, each at its lower and at its upper edge: rock, clay, subsoil, topsoil. Muted, so
-/// that the ground stays the picture's subject.
+/// The most posts without data, as a share of all, over which the block still has a rectangular base.
+const MOST_MISSING: f64 = 0.1;
+
+/// The colors of the strata from below, each at its lower and at its upper edge: rock, clay, subsoil, topsoil. Light, so that
+/// they can be told apart on walls in the shade.
 const STRATA: [[Srgba; 2]; 4] = [
-    [Srgba::opaque(118, 108, 99), Srgba::opaque(130, 119, 108)],
-    [Srgba::opaque(160, 128, 100), Srgba::opaque(168, 136, 106)],
-    [Srgba::opaque(190, 163, 127), Srgba::opaque(200, 174, 138)],
-    [Srgba::opaque(98, 79, 61), Srgba::opaque(110, 90, 69)],
+    [Srgba::opaque(166, 156, 147), Srgba::opaque(178, 168, 158)],
+    [Srgba::opaque(205, 174, 145), Srgba::opaque(213, 183, 154)],
+    [Srgba::opaque(234, 211, 178), Srgba::opaque(242, 221, 190)],
+    [Srgba::opaque(141, 116, 92), Srgba::opaque(153, 128, 102)],
 ];
 
 /// World Z of the foot of the walls under a ground that is drawn over `bounds`.
@@ -78,6 +81,37 @@ pub fn plinth(ground: &DrawMesh, lattice: &Lattice, bounds: (Vec3, Vec3)) -> Dra
         }
     }
     walls
+}
+
+/// The lowest stratum as a plate under all of the rectangle that `bounds` covers in plan, where the ground reaches its
+/// borders almost everywhere: a model that was turned into another coordinate system ends in steps, and its base is to
+/// be straight. `None` where the ground fills the rectangle, so that the walls are straight, or leaves much of it free.
+pub fn base_plate(lattice: &Lattice, bounds: (Vec3, Vec3)) -> Option<DrawMesh> {
+    let missing = lattice.heights().iter().filter(|height| height.is_nan()).count();
+    if missing == 0 || missing as f64 > MOST_MISSING * lattice.heights().len() as f64 {
+        return None;
+    }
+    let (min, max) = (bounds.0.truncate(), bounds.1.truncate());
+    let foot = base_z(bounds);
+    let top = foot + (bounds.0.z - foot) * LEVELS[0];
+    let mut plate = DrawMesh::default();
+    let mut quad = |corners: [Vec3; 4], normal: Vec3, colors: [Srgba; 2]| {
+        let normal = normal.to_array();
+        let ids = [0, 1, 2, 3].map(|corner: usize| {
+            let (position, color) = (corners[corner].to_array(), colors[corner / 2]);
+            plate.vertex(DrawVertex { position, normal, uv: [0.0; 2], color })
+        });
+        plate.triangle([ids[0], ids[1], ids[2]]);
+        plate.triangle([ids[0], ids[2], ids[3]]);
+    };
+    let ring = [min, Vec2::new(max.x, min.y), max, Vec2::new(min.x, max.y)];
+    for side in 0..4 {
+        let (from, to) = (ring[side], ring[(side + 1) % 4]);
+        let outward = Vec2::new(to.y - from.y, from.x - to.x).normalize_or_zero().extend(0.0);
+        quad([from.extend(foot), to.extend(foot), to.extend(top), from.extend(top)], outward, STRATA[0]);
+    }
+    quad(ring.map(|corner| corner.extend(top)), Vec3::Z, [STRATA[0][1]; 2]);
+    Some(plate)
 }
 
 /// The edges that belong to one triangle only, ground on their left, in a fixed order.
@@ -172,5 +206,23 @@ mod tests {
         assert!(low.windows(2).all(|pair| pair[0] < pair[1]), "{low:?}");
         assert_eq!(low[..3], high[..3]);
         assert_eq!((low[0], high[4], high[4] - high[3]), (100.0, 900.0, low[4] - low[3]));
+    }
+
+    #[test]
+    fn a_block_with_ragged_borders_has_a_straight_base_and_no_other_has_a_plate() {
+        let lattice = |missing: usize| {
+            let mut heights = vec![5.0; 100];
+            heights[..missing].fill(f32::NAN);
+            Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 10, heights).expect("sound")
+        };
+        let bounds = (Vec3::Z * 5.0, Vec3::new(90.0, 90.0, 5.0));
+        assert!(base_plate(&lattice(0), bounds).is_none() && base_plate(&lattice(40), bounds).is_none());
+        let plate = base_plate(&lattice(4), bounds).expect("a plate");
+        assert_eq!(plate.triangles.len(), 10);
+        for triangle in &plate.triangles {
+            let [a, b, c] = triangle.map(|id| Vec3::from(plate.vertices[id.index()].position));
+            let normal = Vec3::from(plate.vertices[triangle[0].index()].normal);
+            assert!((b - a).cross(c - a).dot(normal) > 0.0, "{a} {b} {c} faces {normal}");
+        }
     }
 }

@@ -40,6 +40,7 @@ struct BlockHeights {
     size: UVec2,
     cell: Vec2,
     heights: Vec<f32>,
+    highest: f32,
 }
 
 impl TableShadow<'_> {
@@ -58,6 +59,8 @@ impl TableShadow<'_> {
             .into_par_iter()
             .map(|index| self.hidden_share(&block, place(index), step.min_element()))
             .collect();
+        // The block's samples are coarse: their steps would show in the shadow's edge.
+        let cast = blurred(cast, side as usize, 1);
         let covered = (0..count).map(|index| f32::from(block.at(place(index)).is_finite())).collect();
         let reach = ((side as f32 * CONTACT_REACH) as usize).max(1);
         let contact = blurred(blurred(covered, side as usize, reach), side as usize, reach);
@@ -72,7 +75,11 @@ impl TableShadow<'_> {
         let level = self.to_sun.truncate();
         let Some(toward) = level.try_normalize() else { return 0.0 };
         let rise = self.to_sun.z / level.length();
-        let hidden = (1..=MOST_STEPS).map(|step| {
+        // Past this way nothing of the block reaches up to the half-shadow's edge.
+        let closing = (rise - SOFTNESS).max(1e-3);
+        let last_m = (block.highest - self.table_z + step_m).max(0.0) / closing;
+        let steps = ((last_m / step_m).ceil() as u32).min(MOST_STEPS);
+        let hidden = (1..=steps).map(|step| {
             let way_m = step as f32 * step_m;
             let over = block.at(place + toward * way_m) - self.table_z - way_m * rise;
             (over / (way_m * SOFTNESS + step_m) * 0.5 + 0.5).clamp(0.0, 1.0)
@@ -94,7 +101,9 @@ impl BlockHeights {
             ground.height(Post { column: at.x, row: at.y })
         };
         let cell = (extent / (size - 1).max(UVec2::ONE).as_dvec2()).as_vec2();
-        Self { size, cell, heights: (0..size.x * size.y).map(post).collect() }
+        let heights: Vec<f32> = (0..size.x * size.y).map(post).collect();
+        let highest = heights.iter().copied().fold(f32::MIN, f32::max);
+        Self { size, cell, heights, highest }
     }
 
     /// The height of the nearest sample; NaN off the block.

@@ -1,17 +1,20 @@
 //! Labels and cameras in world space.
 
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
+
 use glam::{DVec2, Vec3};
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, LabelTable};
 use crate::description::stated::Stated;
+use crate::description::words::CameraProjection;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FittedView, SceneLabel, SceneView, ViewAim};
+use crate::scene::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -76,6 +79,9 @@ const FITTED_FOV_DEG: f64 = 28.0;
 
 fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
     let (aim, fov_deg) = match (&table.eye, &table.look_at) {
+        _ if table.projection != CameraProjection::Perspective => {
+            (ViewAim::Parallel(parallel(table, frame, lattice)?), FITTED_FOV_DEG)
+        }
         (Some(eye), Some(look_at)) => (aimed(table, eye, look_at, frame, lattice)?, EYE_FOV_DEG),
         _ => (ViewAim::Fitted(fitted(table, frame, lattice)?), FITTED_FOV_DEG),
     };
@@ -113,6 +119,42 @@ fn aimed(
 
 fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<FittedView, Diagnostic> {
     let radians = |degrees: f64| degrees.to_radians() as f32;
+    Ok(FittedView {
+        azimuth_rad: radians(table.azimuth.unwrap_or(0.0)),
+        pitch_rad: table.pitch.map(radians),
+        shown: shown(table, frame, lattice)?,
+    })
+}
+
+/// The dots per inch of a screen, by convention.
+const SCREEN_DPI: f64 = 96.0;
+
+fn parallel(
+    table: &CameraTable,
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+) -> Result<ParallelView, Diagnostic> {
+    let radians = |degrees: f64| degrees.to_radians() as f32;
+    let (pitch_rad, stretch) = match table.projection {
+        CameraProjection::Plan => (FRAC_PI_2, 1.0),
+        // Rays that fall by 45° show level ground as it is where the picture is stretched by the square root of 2.
+        CameraProjection::Oblique => (FRAC_PI_4, SQRT_2),
+        CameraProjection::Orthographic | CameraProjection::Perspective => {
+            (table.pitch.map_or(FRAC_PI_4, radians), 1.0)
+        }
+    };
+    Ok(ParallelView {
+        azimuth_rad: radians(table.azimuth.unwrap_or(0.0)),
+        pitch_rad,
+        stretch,
+        scale: table.scale,
+        dpi: table.dpi.unwrap_or(SCREEN_DPI),
+        shown: shown(table, frame, lattice)?,
+    })
+}
+
+/// The ground around the points that a camera shows; `None` where it names none.
+fn shown(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Option<Rect>, Diagnostic> {
     let shown = table.shows.as_ref().map(|shows| {
         let crs = table.crs.as_ref().unwrap_or(&frame.points_crs);
         let corners: Result<Vec<DVec2>, _> =
@@ -127,11 +169,7 @@ fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Res
         }
         Ok(shown)
     });
-    Ok(FittedView {
-        azimuth_rad: radians(table.azimuth.unwrap_or(0.0)),
-        pitch_rad: table.pitch.map(radians),
-        shown: shown.transpose()?,
-    })
+    shown.transpose()
 }
 
 /// A note for each camera whose eye is under the ground.

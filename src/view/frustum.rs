@@ -1,8 +1,8 @@
 //! The five planes that bound a camera's view, for culling boxes.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use crate::view::camera::Camera;
+use crate::view::camera::{Camera, ViewProjection};
 use crate::view::planes;
 
 /// The left, right, bottom, top and far planes of a camera, normals inward.
@@ -20,15 +20,20 @@ impl Frustum {
     /// The frustum of `camera`.
     pub fn new(camera: &Camera) -> Self {
         let (eye, forward) = (camera.eye(), camera.forward());
-        let tan = camera.tan_half_fov();
-        let through_eye = |normal: Vec3| (normal, -normal.dot(eye));
+        let (right, up) = (camera.right(), camera.up());
+        // Past the eye, by how much a side opens per meter ahead, and by how much it lies aside.
+        let (tan, half_m) = match camera.projection() {
+            ViewProjection::Perspective { .. } => (camera.tan_half_fov(), Vec2::ZERO),
+            ViewProjection::Parallel(frame) => (Vec2::ZERO, frame.half_m),
+        };
+        let side = |normal: Vec3, aside_m: f32| (normal, aside_m - normal.dot(eye));
         let far_point = eye + forward * camera.planes().1;
         Self {
             planes: [
-                through_eye(forward * tan.x + camera.right()),
-                through_eye(forward * tan.x - camera.right()),
-                through_eye(forward * tan.y + camera.up()),
-                through_eye(forward * tan.y - camera.up()),
+                side(forward * tan.x + right, half_m.x),
+                side(forward * tan.x - right, half_m.x),
+                side(forward * tan.y + up, half_m.y),
+                side(forward * tan.y - up, half_m.y),
                 (-forward, forward.dot(far_point)),
             ],
         }
@@ -50,6 +55,8 @@ impl Frustum {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::axes::ViewAxes;
+    use crate::view::camera::ParallelFrame;
 
     #[test]
     fn a_box_is_culled_beside_and_behind_but_not_before_the_eye() {
@@ -61,5 +68,20 @@ mod tests {
         assert!(!unit_box_at(Vec3::new(100.0, 50.0, 0.0)));
         assert!(!unit_box_at(Vec3::new(0.0, 50.0, 60.0)));
         assert!(!unit_box_at(Vec3::Y * 1100.0));
+    }
+
+    #[test]
+    fn parallel_rays_see_a_slab() {
+        let axes = ViewAxes::new(0.0, 0.0);
+        let frame = ParallelFrame { half_m: Vec2::new(20.0, 10.0), dpi: 96.0 };
+        let camera = Camera::parallel(Vec3::ZERO, &axes, frame, (200, 100), (1.0, 1000.0)).expect("sound");
+        let frustum = Frustum::new(&camera);
+        let unit_box_at = |x: f32, y: f32, z: f32| {
+            let center = Vec3::new(x, y, z);
+            frustum.may_see(center - 1.0, center + 1.0)
+        };
+        assert!(unit_box_at(20.5, 500.0, 0.0) && unit_box_at(0.0, 900.0, -10.5));
+        assert!(!unit_box_at(21.5, 500.0, 0.0) && !unit_box_at(0.0, 900.0, -11.5));
+        assert!(!unit_box_at(0.0, 1100.0, 0.0));
     }
 }

@@ -1,5 +1,6 @@
 //! The camera, its frustum or ground wedge, flights, and the size of things on the picture.
 
+pub mod axes;
 pub mod camera;
 pub mod flight;
 pub mod frustum;

@@ -39,8 +39,11 @@ impl GroundWedge {
     /// All lines, as bits for [`GroundWedge::crossed_lines`].
     pub const ALL: u8 = 0b111;
 
-    /// The wedge of `camera`.
+    /// The wedge of `camera`; with parallel rays, which no wedge holds, one that culls nothing.
     pub fn new(camera: &Camera) -> Self {
+        if camera.parallel_frame().is_some() {
+            return Self { lines: [(Vec3::ZERO, 0.0); 3] };
+        }
         let (eye, right) = (camera.eye().truncate(), camera.right().truncate());
         // The camera's right is level, whatever its pitch.
         let heading = right.perp();

@@ -10,7 +10,7 @@ use sandtable::annotate::legend::Legend;
 use sandtable::annotate::north::NorthArrow;
 use sandtable::annotate::paint::annotate;
 use sandtable::annotate::report::{AnnotationReport, FurnitureKind};
-use sandtable::annotate::scale_bar::ScaleBar;
+use sandtable::annotate::scale_bar::{ScaleBar, ScaleExtent};
 use sandtable::description::words::LabelKind;
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::ColorRamp;
@@ -105,16 +105,18 @@ fn sheet(width: u32, height: u32) -> Annotations {
     ];
     let stops = stops.map(|(at, [r, g, b])| (at, Srgba::opaque(r, g, b))).to_vec();
     Annotations {
+        rim: Vec::new(),
         labels: labels(w, h),
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
         subtitle: Some("Anderson and Campbell Counties, Tennessee — view to the north-west".to_owned()),
         north: Some(NorthArrow { direction: Vec2::new(0.62, -0.50).normalize(), foreshortening: 0.45 }),
-        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.000_043, distance_m: 12_400.0 }),
+        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.000_043, holds: ScaleExtent::Distance(12_400.0) }),
         legend: Some(Legend {
             ramp: ColorRamp::new(stops).expect("rising stops"),
             low_m: 252.0,
             high_m: 1071.0,
             vertical_exaggeration: 1.5,
+            model_enlargement: None,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),
         }),
@@ -148,11 +150,12 @@ fn trouble(width: u32, height: u32) -> Annotations {
     labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
     labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
+        rim: Vec::new(),
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
         subtitle: Some("one\ntwo\nthree".to_owned()),
         north: Some(NorthArrow { direction: Vec2::new(-0.9, 0.2), foreshortening: 0.1 }),
-        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.13, distance_m: 4.2 }),
+        scale_bar: Some(ScaleBar { pixels_per_meter: h * 0.13, holds: ScaleExtent::Distance(4.2) }),
         legend: Some(Legend {
             low_m: -12.5,
             high_m: 31.0,
@@ -242,7 +245,7 @@ fn furniture_whose_figures_make_no_sense_is_left_out_and_reported() {
     let mut odd = Annotations { labels: vec![], ..sheet(960, 540) };
     odd.title = Some("\u{7}\n".to_owned());
     odd.subtitle = None;
-    odd.scale_bar = Some(ScaleBar { pixels_per_meter: f32::NAN, distance_m: 1.0 });
+    odd.scale_bar = Some(ScaleBar { pixels_per_meter: f32::NAN, holds: ScaleExtent::Distance(1.0) });
     odd.north = Some(NorthArrow { direction: Vec2::ZERO, foreshortening: 0.5 });
     odd.legend = odd.legend.map(|legend| Legend { low_m: 9.0, high_m: 9.0, ..legend });
     odd.credit = Some(String::new());

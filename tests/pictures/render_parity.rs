@@ -10,13 +10,17 @@
 use crate::common::adapters::gpus;
 use crate::common::forest::{forest, overlook};
 use crate::common::synthetic::{camera, scene, scene_with_contours};
-use glam::Vec3;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
+
+use glam::{Vec2, Vec3};
+use sandtable::draw::backdrop::Backdrop;
 use sandtable::draw::list::DrawList;
 use sandtable::render::cpu::{RenderQuality, SampleCount, render};
 use sandtable::render::gpu::render_on;
 use sandtable::render::picture::Rendering;
 use sandtable::scene::picture::build_draw_list;
-use sandtable::view::camera::Camera;
+use sandtable::view::axes::ViewAxes;
+use sandtable::view::camera::{Camera, ParallelFrame};
 
 /// How much two pictures differ.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +101,20 @@ fn a_view_straight_down_is_the_same_on_both() {
     let (eye, target) = (Vec3::new(320.0, 320.0, 900.0), Vec3::new(320.0, 320.0, 0.0));
     let camera = Camera::new(eye, target, 0.8, (400, 400), (1.0, 5000.0)).expect("sound");
     compare(&scene(), &camera, "from above");
+}
+
+#[test]
+fn parallel_rays_before_a_studio_give_the_same_picture_on_both() {
+    let mut list = scene();
+    list.lighting.backdrop = Backdrop::Studio;
+    list.lighting.haze.distance_m = f32::INFINITY;
+    for (azimuth, pitch, stretch) in [(0.0, FRAC_PI_2, 1.0), (0.6, 0.7, 1.0), (-0.5, FRAC_PI_4, SQRT_2)] {
+        let axes = ViewAxes::new(azimuth, pitch);
+        let frame = ParallelFrame { half_m: Vec2::new(420.0, 420.0 / stretch), dpi: 96.0 };
+        let eye = Vec3::new(320.0, 320.0, 40.0) - axes.forward * 1500.0;
+        let camera = Camera::parallel(eye, &axes, frame, (400, 400), (1.0, 3000.0)).expect("sound");
+        compare(&list, &camera, &format!("parallel rays at pitch {pitch}"));
+    }
 }
 
 #[test]

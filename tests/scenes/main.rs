@@ -11,6 +11,7 @@ mod labels;
 mod models;
 mod odd_scenes;
 mod own_models;
+mod parallel;
 mod placement;
 mod recut;
 mod scatter;

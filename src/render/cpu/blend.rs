@@ -20,7 +20,7 @@ const MOST_LAYERS: usize = 32;
 #[derive(Clone, Copy, Debug)]
 struct Fragment {
     face: FaceId,
-    inverse_depth: f32,
+    nearness: f32,
     mask: SampleMask,
 }
 
@@ -70,13 +70,9 @@ impl Blend {
                 seen |= SampleMask::from(is_before) << sample;
             }
             if seen != 0 {
-                let inverse_depth = face.inverse_depth(frame.pattern.centroid_in(x, y, seen));
+                let nearness = face.nearness(frame.pattern.centroid_in(x, y, seen));
                 let index = self.index(x, y);
-                insert(
-                    &mut self.pixels[index],
-                    Fragment { face: piece.face, inverse_depth, mask: seen },
-                    face,
-                );
+                insert(&mut self.pixels[index], Fragment { face: piece.face, nearness, mask: seen }, face);
             }
         });
     }
@@ -108,7 +104,7 @@ impl Blend {
 
 /// Inserts a fragment of `face` before the first of a pixel's fragments that does not lie in front of it.
 fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, face: &ScreenFace) {
-    let in_front = |other: &Fragment| other.inverse_depth > fragment.inverse_depth * face.reach;
+    let in_front = |other: &Fragment| other.nearness > fragment.nearness * face.reach;
     let place = pixel.iter().position(|other| !in_front(other)).unwrap_or(pixel.len());
     if place < MOST_LAYERS {
         pixel.insert(place, fragment);
@@ -116,7 +112,7 @@ fn insert(pixel: &mut Vec<Fragment>, fragment: Fragment, face: &ScreenFace) {
     }
 }
 
-/// Whether a transparent face at inverse depth `depth` shows before an opaque face. In the same plane a drape shows
+/// Whether a transparent face at nearness `depth` shows before an opaque face. In the same plane a drape shows
 /// over the ground and over drapes that come before it in the list; drapes that come after it cover it.
 fn is_before<const N: usize>(
     frame: &TileContext<N>,

@@ -62,12 +62,13 @@ fn crossing(inner: DVec3, d_inner: f64, outer: DVec3, d_outer: f64) -> DVec3 {
 }
 
 /// The part of the triangle before the near plane and inside the guard band, or `None` where it is off the picture.
-/// Corners are homogeneous pixels and must be finite.
+/// Corners are homogeneous pixels and must be finite; parallel rays have no near plane.
 pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
     let [width, height] = screen.size.map(f64::from);
     let all = |outside: &dyn Fn(&DVec3) -> bool| corners.iter().all(outside);
-    if all(&|p| p.z < screen.near)
-        || all(&|p| p.z > screen.far)
+    let (near, far) = if screen.is_parallel { (0.0, f64::INFINITY) } else { (screen.near, screen.far) };
+    if all(&|p| p.z < near)
+        || all(&|p| p.z > far)
         || all(&|p| p.x < 0.0)
         || all(&|p| p.x > width * p.z)
         || all(&|p| p.y < 0.0)
@@ -79,17 +80,13 @@ pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
     corners.into_iter().for_each(|corner| outline.push(corner));
     let [low, right, bottom] = [-GUARD_PX, width + GUARD_PX, height + GUARD_PX];
     let fits = |p: &DVec3| {
-        p.z >= screen.near
-            && p.x >= low * p.z
-            && p.y >= low * p.z
-            && p.x <= right * p.z
-            && p.y <= bottom * p.z
+        p.z >= near && p.x >= low * p.z && p.y >= low * p.z && p.x <= right * p.z && p.y <= bottom * p.z
     };
     if corners.iter().all(fits) {
         return Some(outline);
     }
     let outline = outline
-        .cut(|p| p.z - screen.near)
+        .cut(|p| p.z - near)
         .cut(|p| p.x - low * p.z)
         .cut(|p| right * p.z - p.x)
         .cut(|p| p.y - low * p.z)

@@ -20,6 +20,9 @@ use crate::render::cpu::screen::{Projection, Screen};
 /// Triangles per chunk; a power of two, so that a face's id splits into chunk and index.
 const CHUNK: u64 = 2048;
 
+/// The least [`drape_tolerance`] with parallel rays: eight times the rounding of a nearness to f32, 10 cm over 100 km.
+const PARALLEL_DRAPE_TOLERANCE: f64 = 1e-6;
+
 /// The most that [`drape_tolerance`] grows to where the eye is almost in the drape's plane.
 const MOST_DRAPE_TOLERANCE: f64 = 1e-3;
 
@@ -38,16 +41,16 @@ pub struct ScreenFace {
     pub triangle: u32,
     /// Depth and corner weights over the picture.
     pub planes: TrianglePlanes,
-    /// The least and greatest inverse depth of the part before the near plane.
+    /// The least and greatest nearness of the part before the near plane.
     pub range: [f32; 2],
     /// For draped items, 1 + the part of a depth by which it may lie behind; 1 for all others.
     pub reach: f32,
 }
 
 impl ScreenFace {
-    /// The inverse depth at a pixel position, clamped to the range of the face's corners.
-    pub fn inverse_depth(&self, at: [f32; 2]) -> f32 {
-        (self.planes.inverse_depth.at(at) as f32).max(self.range[0]).min(self.range[1])
+    /// The nearness at a pixel position, clamped to the range of the face's corners.
+    pub fn nearness(&self, at: [f32; 2]) -> f32 {
+        (self.planes.nearness.at(at) as f32).max(self.range[0]).min(self.range[1])
     }
 }
 
@@ -156,7 +159,12 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let Some(outline) = clipped(points, self.screen) else { return };
-        let Some(planes) = TrianglePlanes::from_corners(points) else { return };
+        let nearness = || offsets.map(|offset| self.screen.nearness(self.screen.depth_from_eye(offset)));
+        let planes = match self.screen.is_parallel {
+            false => TrianglePlanes::from_corners(points),
+            true => TrianglePlanes::from_parallel(points, nearness()),
+        };
+        let Some(planes) = planes else { return };
         if !(planes.faces_eye || self.two_sided) {
             return;
         }
@@ -166,10 +174,13 @@ impl<'a> ItemSetup<'a> {
             return;
         }
         let tolerance = match self.item.layer {
-            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen.eye),
+            DepthLayer::Draped(_) => drape_tolerance(&offsets, self.screen),
             DepthLayer::Ground | DepthLayer::Solid => 0.0,
         };
-        let range = inverse_depth_range(&outline, self.screen.near);
+        let range = match self.screen.is_parallel {
+            false => nearness_range(&outline, self.screen.near),
+            true => nearness().map(|corner| corner as f32).into_iter().fold([f32::MAX, f32::MIN], extended),
+        };
         let reach = (1.0 + tolerance) as f32;
         chunk.faces.push(ScreenFace { item: self.index, triangle, planes, range, reach });
     }
@@ -192,21 +203,35 @@ impl<'a> ItemSetup<'a> {
 
 /// The least and greatest `1 / w` among the corners. Cutting a triangle of astronomic size can leave a corner slightly
 /// before the near plane, or even behind the eye: both are clamped to what a camera sees.
-fn inverse_depth_range(outline: &Outline, near: f64) -> [f32; 2] {
+fn nearness_range(outline: &Outline, near: f64) -> [f32; 2] {
     let inverses = outline.corners().iter().map(|corner| (1.0 / corner.z).clamp(0.0, 1.0 / near) as f32);
-    inverses.fold([f32::MAX, 0.0], |[least, most], inverse| [least.min(inverse), most.max(inverse)])
+    inverses.fold([f32::MAX, 0.0], extended)
+}
+
+fn extended([least, most]: [f32; 2], value: f32) -> [f32; 2] {
+    [least.min(value), most.max(value)]
 }
 
 /// The part of a depth by which a draped triangle may lie behind the ground it was cut from. At least
 /// [`DRAPE_TOLERANCE`]. A corner rounded to f32 leaves the ground's plane by up to one step of its largest coordinate.
 /// Seen from an eye at distance `e` from that plane, this changes depths by that step over `e`: close above a road far
 /// from the origin this is the larger of the two.
-fn drape_tolerance(offsets: &[DVec3; 3], eye: DVec3) -> f64 {
+///
+/// Parallel rays meet the plane everywhere at the same angle: the step over the cosine of that angle, as a part of the
+/// least nearness, which is 1; at least [`PARALLEL_DRAPE_TOLERANCE`].
+fn drape_tolerance(offsets: &[DVec3; 3], screen: &Screen) -> f64 {
     let [a, b, c] = *offsets;
+    let eye = screen.eye;
     let normal = (b - a).cross(c - a);
     let eye_height = (normal.dot(a) / normal.length()).abs();
     let largest = offsets.iter().map(|offset| (*offset + eye).abs().max_element()).fold(0.0, f64::max);
-    let rounding = largest * f64::from(f32::EPSILON) / eye_height;
+    let rounding_m = largest * f64::from(f32::EPSILON);
+    if screen.is_parallel {
+        let cosine = (normal.dot(screen.forward) / normal.length()).abs();
+        let share = rounding_m / (cosine * screen.far);
+        return PARALLEL_DRAPE_TOLERANCE.max(share).min(MOST_DRAPE_TOLERANCE);
+    }
+    let rounding = rounding_m / eye_height;
     // `max` first: it turns the NaN of a degenerate triangle into the least tolerance.
     DRAPE_TOLERANCE.max(rounding).min(MOST_DRAPE_TOLERANCE)
 }

@@ -8,7 +8,7 @@ use crate::render::cpu::screen::Screen;
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {
     pub world: Vec3,
-    /// Meters from the eye.
+    /// Meters from the eye; with parallel rays, along them.
     pub distance_m: f32,
     /// The change of `world` over one pixel to the right.
     pub right: Vec3,
@@ -26,16 +26,24 @@ pub struct Barycentric {
 
 impl FacePoint {
     pub fn new(face: &ScreenFace, screen: &Screen, at: [f32; 2]) -> Self {
-        let plane = &face.planes.inverse_depth;
-        let depth_m = 1.0 / face.inverse_depth(at);
+        let plane = &face.planes.nearness;
+        let depth_m = screen.depth_m(face.nearness(at));
+        let world = screen.world_at(at, depth_m);
+        if screen.is_parallel {
+            // depth = far · (2 − plane).
+            let forward = screen.forward.as_vec3();
+            let change = |step: Vec3, slope: f64| step - forward * (slope * screen.far) as f32;
+            let (right, down) = (change(screen.right, plane.right), change(screen.down, plane.down));
+            return Self { world, distance_m: depth_m, right, down };
+        }
         let ray = screen.ray_at(at);
         // p = eye + ray · depth and depth = 1 / plane, hence dp = depth · (dray − ray · depth · dplane).
         let change = |step: Vec3, slope: f64| (step - ray * (slope as f32 * depth_m)) * depth_m;
         Self {
-            world: screen.eye.as_vec3() + ray * depth_m,
+            world,
             distance_m: ray.length() * depth_m,
-            right: change(screen.ray_right, plane.right),
-            down: change(screen.ray_down, plane.down),
+            right: change(screen.right, plane.right),
+            down: change(screen.down, plane.down),
         }
     }
 }
@@ -44,7 +52,8 @@ impl Barycentric {
     /// The weights at pixel position `at`, clamped to the triangle.
     pub fn new(face: &ScreenFace, at: [f32; 2]) -> Self {
         let planes = &face.planes;
-        let depth = 1.0 / planes.inverse_depth.at(at);
+        let divisor = planes.divisor();
+        let depth = 1.0 / divisor.at(at);
         let (second, third) = (planes.second.at(at) * depth, planes.third.at(at) * depth);
         let step = |[inverse, second_slope, third_slope]: [f64; 3]| {
             let change = |slope: f64, weight: f64| ((slope - weight * inverse) * depth) as f32;
@@ -53,8 +62,8 @@ impl Barycentric {
         let second_kept = (second as f32).clamp(0.0, 1.0);
         Self {
             at: Vec2::new(second_kept, (third as f32).max(0.0).min(1.0 - second_kept)),
-            right: step([planes.inverse_depth.right, planes.second.right, planes.third.right]),
-            down: step([planes.inverse_depth.down, planes.second.down, planes.third.down]),
+            right: step([divisor.right, planes.second.right, planes.third.right]),
+            down: step([divisor.down, planes.second.down, planes.third.down]),
         }
     }
 

@@ -32,7 +32,7 @@ impl Occlusion {
         Self { farthest: [[0.0; BLOCKS]; BLOCKS], drawn: [[STALE; BLOCKS]; BLOCKS] }
     }
 
-    /// Whether all of `window`, in pixels of the tile, is nearer than the inverse depth `nearest`. `depths` are those
+    /// Whether all of `window`, in pixels of the tile, is nearer than the nearness `nearest`. `depths` are those
     /// of the tile's samples, row by row, [`TILE`] pixels per row.
     pub fn hides<const N: usize>(&mut self, window: PixelWindow, nearest: f32, depths: &[[f32; N]]) -> bool {
         let [columns, rows] = blocks(window);

@@ -23,18 +23,20 @@ impl ScreenPlane {
 
 #[derive(Clone, Copy, Debug)]
 pub struct TrianglePlanes {
-    /// `1 / w`, `w` being meters along the viewing direction.
-    pub inverse_depth: ScreenPlane,
-    /// The barycentric weight of the second corner, divided by `w`.
+    /// The nearness; see `screen`.
+    pub nearness: ScreenPlane,
+    /// The barycentric weight of the second corner; in perspective divided by `w`.
     pub second: ScreenPlane,
-    /// The barycentric weight of the third corner, divided by `w`.
+    /// The barycentric weight of the third corner; in perspective divided by `w`.
     pub third: ScreenPlane,
     /// Whether the corners run counter-clockwise as seen.
     pub faces_eye: bool,
+    /// Whether rays are parallel.
+    is_parallel: bool,
 }
 
 impl TrianglePlanes {
-    /// The planes of a triangle with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not
+    /// The planes of a triangle in perspective with corners `(x·w, y·w, w)`; `None` where it is seen edge-on or a corner is not
     /// finite. A point of the triangle on the picture, `p = (x, y, 1)`, is `w · p = Σ λᵢ cornerᵢ`, so that `λᵢ / w = Bᵢ
     /// · p` with the rows `Bᵢ` of the inverse of the corners' matrix. Differences of corners are taken first, since a
     /// distant triangle is small beside its distance.
@@ -44,11 +46,33 @@ impl TrianglePlanes {
         let volume = a.dot(normal);
         Some(Self {
             // A volume of 0 divides to infinity or NaN.
-            inverse_depth: ScreenPlane::from_vector(normal / volume)?,
+            nearness: ScreenPlane::from_vector(normal / volume)?,
             second: ScreenPlane::from_vector(ac.cross(a) / volume)?,
             third: ScreenPlane::from_vector(a.cross(ab) / volume)?,
             faces_eye: volume < 0.0,
+            is_parallel: false,
         })
+    }
+
+    /// The planes of a triangle seen by parallel rays, with corners `(x, y, 1)` of the given nearness; `None` as above.
+    pub fn from_parallel(corners: [DVec3; 3], nearness: [f64; 3]) -> Option<Self> {
+        let planes = Self::from_corners(corners)?;
+        let [first, second, third] = nearness;
+        let (second, third) = (second - first, third - first);
+        let along =
+            |part: fn(&ScreenPlane) -> f64| second * part(&planes.second) + third * part(&planes.third);
+        let nearness = ScreenPlane {
+            right: along(|plane| plane.right),
+            down: along(|plane| plane.down),
+            start: first + along(|plane| plane.start),
+        };
+        Some(Self { nearness, is_parallel: true, ..planes })
+    }
+
+    /// What the planes of weights are divided by at a pixel position, with its change from pixel to pixel: the nearness
+    /// in perspective, else 1.
+    pub fn divisor(&self) -> ScreenPlane {
+        if self.is_parallel { ScreenPlane { right: 0.0, down: 0.0, start: 1.0 } } else { self.nearness }
     }
 }
 
@@ -64,7 +88,7 @@ mod tests {
         let planes = TrianglePlanes::from_corners(CORNERS).expect("a sound triangle");
         for (index, corner) in CORNERS.into_iter().enumerate() {
             let at = [(corner.x / corner.z) as f32, (corner.y / corner.z) as f32];
-            let depth = 1.0 / planes.inverse_depth.at(at);
+            let depth = 1.0 / planes.nearness.at(at);
             assert!((depth - corner.z).abs() < 1e-4);
             assert!((planes.second.at(at) * depth - f64::from(index == 1)).abs() < 1e-5);
             assert!((planes.third.at(at) * depth - f64::from(index == 2)).abs() < 1e-5);
@@ -76,7 +100,7 @@ mod tests {
         let planes = TrianglePlanes::from_corners(CORNERS).expect("a sound triangle");
         let middle = (CORNERS[1] + CORNERS[2]) / 2.0;
         let at = [(middle.x / middle.z) as f32, (middle.y / middle.z) as f32];
-        let depth = 1.0 / planes.inverse_depth.at(at);
+        let depth = 1.0 / planes.nearness.at(at);
         assert!((depth - 25.0).abs() < 1e-4);
         assert!((planes.second.at(at) * depth - 0.5).abs() < 1e-5);
     }
@@ -87,5 +111,17 @@ mod tests {
         assert!(TrianglePlanes::from_corners([a, b, b]).is_none());
         assert!(TrianglePlanes::from_corners([a, b, DVec3::splat(f64::INFINITY)]).is_none());
         assert!(TrianglePlanes::from_corners([a, b, DVec3::NAN]).is_none());
+    }
+
+    #[test]
+    fn with_parallel_rays_weights_and_nearness_are_even_over_the_picture() {
+        let corners = [(10.0, 5.0), (90.0, 20.0), (30.0, 80.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
+        let planes = TrianglePlanes::from_parallel(corners, [1.2, 1.6, 1.9]).expect("a sound triangle");
+        for (corner, expected) in corners.iter().zip([[1.2, 0.0, 0.0], [1.6, 1.0, 0.0], [1.9, 0.0, 1.0]]) {
+            let at = [corner.x as f32, corner.y as f32];
+            let found = [planes.nearness, planes.second, planes.third].map(|plane| plane.at(at));
+            assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9));
+            assert_eq!(planes.divisor().at(at), 1.0);
+        }
     }
 }

@@ -98,7 +98,9 @@ impl<'a> Shader<'a> {
             _ => f32::from(u8::from(material.is_water)),
         };
         if water > 0.0 {
-            color = lighting.mirror_sky(color, hit.world - self.screen.eye.as_vec3(), water);
+            let screen = self.screen;
+            let ray = if screen.is_parallel { screen.forward.as_vec3() } else { screen.ray_at(at) };
+            color = lighting.mirror_sky(color, ray, water);
         }
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);

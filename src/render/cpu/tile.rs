@@ -13,10 +13,6 @@ use crate::render::cpu::screen::Screen;
 use crate::render::cpu::shade::Shader;
 use crate::render::cpu::visibility::{Visibility, samples_of};
 
-/// Samples of ground whose depths differ by less than this share are taken to lie on one slope. Across a silhouette
-/// depths differ by more; along a slope they differ by less, except close to the horizon.
-const SAME_SLOPE: f32 = 0.01;
-
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {
     pub screen: &'a Screen,
@@ -52,7 +48,7 @@ pub fn draw_tile<const N: usize>(
     window: PixelWindow,
     scratch: &mut TileScratch<N>,
 ) -> Vec<ResolvedPixel> {
-    scratch.visibility.clear(window, frame.screen.far);
+    scratch.visibility.clear(window, frame.screen.nearness(frame.screen.far) as f32);
     scratch.blend.clear(window);
     let touches_tile = |piece: &&FacePiece| !piece.window.intersection(window).is_empty();
     let (transparent, others): (Vec<&FacePiece>, Vec<&FacePiece>) =
@@ -152,7 +148,7 @@ fn samples_alike<const N: usize>(
         return mask;
     }
     for (sample, &id) in faces.iter().enumerate() {
-        let is_near = (depths[sample] - depths[first]).abs() < SAME_SLOPE * depths[first];
+        let is_near = (depths[sample] - depths[first]).abs() < frame.screen.same_slope(depths[first]);
         let is_alike = is_near && id != FaceId::NONE && frame.geometry.face(id).item == face.item;
         mask |= SampleMask::from(is_alike) << sample;
     }
@@ -168,5 +164,5 @@ fn depth_and_feature<const N: usize>(
         return (f32::INFINITY, FeatureId::NONE);
     }
     let face = frame.geometry.face(id);
-    (1.0 / face.inverse_depth(center), frame.shader.item(face).feature)
+    (frame.screen.depth_m(face.nearness(center)), frame.shader.item(face).feature)
 }

@@ -1,6 +1,6 @@
 //! The face that each sample of a tile sees, among opaque and masked surfaces.
 //!
-//! A depth is kept as its inverse, which is linear over the picture; larger is nearer. Ground and drapes must come in
+//! A depth is kept as its nearness, which is linear over the picture; larger is nearer. Ground and drapes must come in
 //! the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: what a draped
 //! face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of two at
 //! the same depth the first of the list.
@@ -33,13 +33,13 @@ impl<const N: usize> Visibility<N> {
         }
     }
 
-    /// Empties the tile and moves it to `window`, of at most [`TILE`] pixels a side. Surfaces beyond `farthest_m` will
-    /// not be seen.
-    pub fn clear(&mut self, window: PixelWindow, farthest_m: f64) {
+    /// Empties the tile and moves it to `window`, of at most [`TILE`] pixels a side. Surfaces no nearer than
+    /// `farthest` will not be seen.
+    pub fn clear(&mut self, window: PixelWindow, farthest: f32) {
         self.window = window;
         self.occlusion = Occlusion::new();
         self.faces.fill([FaceId::NONE; N]);
-        self.depths.fill([(1.0 / farthest_m) as f32; N]);
+        self.depths.fill([farthest; N]);
     }
 
     pub fn faces(&self, x: u32, y: u32) -> &[FaceId; N] {
@@ -107,7 +107,7 @@ impl<const N: usize> Visibility<N> {
     }
 }
 
-/// The differences of a face's inverse depth between a pixel's center and its samples.
+/// The differences of a face's nearness between a pixel's center and its samples.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleDepths<const N: usize> {
     offsets: [f32; N],
@@ -115,14 +115,14 @@ pub struct SampleDepths<const N: usize> {
 
 impl<const N: usize> SampleDepths<N> {
     pub fn new(face: &ScreenFace, pattern: &SamplePattern<N>) -> Self {
-        let plane = &face.planes.inverse_depth;
+        let plane = &face.planes.nearness;
         let change = |[x, y]: [i32; 2]| (plane.right * f64::from(x) + plane.down * f64::from(y)) / 16.0;
         Self { offsets: pattern.sixteenths.map(|offset| change(offset) as f32) }
     }
 
-    /// The inverse depths at the samples of a pixel, clamped to the range of the face's corners.
+    /// The nearnesses at the samples of a pixel, clamped to the range of the face's corners.
     pub fn at(&self, face: &ScreenFace, x: u32, y: u32) -> [f32; N] {
-        let center = face.planes.inverse_depth.at([x as f32 + 0.5, y as f32 + 0.5]) as f32;
+        let center = face.planes.nearness.at([x as f32 + 0.5, y as f32 + 0.5]) as f32;
         let [least, most] = face.range;
         self.offsets.map(|offset| (center + offset).max(least).min(most))
     }

@@ -3,14 +3,14 @@
 // Two families of entry points share everything but their outputs: `color` writes the lit surface,
 // `feature` writes the feature's number and the depth in meters. Depth is reversed: with the clip planes
 // folded into A and B, the buffer holds A / d − B, which is 1 at the near plane and 0 at the far plane, so
-// that a float buffer resolves equal ratios of depth equally well everywhere.
+// that a float buffer resolves equal ratios of depth equally well everywhere. With parallel rays it holds A − B · d.
 
 struct Frame {
-    eye: vec4f,           // xyz
-    right: vec4f,         // xyz, 1 / tangent of half the horizontal field of view
-    up: vec4f,            // xyz, 1 / tangent of half the vertical field of view
+    eye: vec4f,           // xyz, 1 where rays are parallel
+    right: vec4f,         // xyz, 1 / tangent of half the horizontal field of view, or 1 / half the width in meters
+    up: vec4f,            // xyz, the same of the vertical field of view, or of the height
     forward: vec4f,       // xyz
-    depth: vec4f,         // A, B of the depth buffer's A / d − B; width and height of the picture
+    depth: vec4f,         // A, B of the depth buffer; width and height of the picture
     to_sun: vec4f,        // xyz
     sun: vec4f,           // rgb
     sky: vec4f,           // rgb
@@ -72,6 +72,9 @@ const MASK_LEVEL_BIAS = -1.0;
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
 
+// The part of `nearer − 1` that counts with parallel rays: that of the CPU renderer's tolerances.
+const PARALLEL_NEARER = 0.05;
+
 // By how much an item counts as nearer than it is: 1, or a little more for what is draped.
 override nearer: f32 = 1.0;
 // The same as a part of a pixel: what its depth changes by over that part is added. Covers the grid that
@@ -109,6 +112,15 @@ fn linear_from_srgb(value: vec3f) -> vec3f {
     return select(high, low, value <= vec3f(0.04045));
 }
 
+fn is_parallel() -> bool {
+    return frame.eye.w > 0.5;
+}
+
+// From the eye to a place, or along the parallel rays.
+fn from_eye(world: vec3f) -> vec3f {
+    return select(world - frame.eye.xyz, frame.forward.xyz, is_parallel());
+}
+
 @vertex
 fn vertex(corner: Corner, instance: Instance) -> Varying {
     let world_from_mesh = mat4x4f(instance.x_axis, instance.y_axis, instance.z_axis, instance.origin);
@@ -117,12 +129,13 @@ fn vertex(corner: Corner, instance: Instance) -> Varying {
     let offset = world - frame.eye.xyz;
     let depth = dot(offset, frame.forward.xyz);
     var out: Varying;
-    out.clip = vec4f(
-        dot(offset, frame.right.xyz) * frame.right.w,
-        dot(offset, frame.up.xyz) * frame.up.w,
-        frame.depth.x * nearer - frame.depth.y * depth,
-        depth,
-    );
+    let across = vec2f(dot(offset, frame.right.xyz) * frame.right.w, dot(offset, frame.up.xyz) * frame.up.w);
+    if is_parallel() {
+        let raised = (nearer - 1.0) * PARALLEL_NEARER;
+        out.clip = vec4f(across, frame.depth.x - frame.depth.y * depth + raised, 1.0);
+    } else {
+        out.clip = vec4f(across, frame.depth.x * nearer - frame.depth.y * depth, depth);
+    }
     out.world = world;
     out.normal = (world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
     out.uv = corner.uv;
@@ -454,7 +467,7 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
 // The normal on the side that is seen; the triangle's own where its corners have none.
 fn vertex_normal(in: Varying, front: bool) -> vec3f {
     let own = cross(dpdx(in.world), dpdy(in.world));
-    let toward_eye = own * select(1.0, -1.0, dot(own, in.world - frame.eye.xyz) > 0.0);
+    let toward_eye = own * select(1.0, -1.0, dot(own, from_eye(in.world)) > 0.0);
     let given = in.normal * select(-1.0, 1.0, front);
     let normal = select(toward_eye, given, dot(given, given) > 0.0);
     return normal * inverseSqrt(max(dot(normal, normal), 1e-30));
@@ -506,14 +519,19 @@ fn shade(in: Varying, front: bool) -> vec4f {
         }
         light = lit(color.rgb, normal, received);
     }
-    light = mirror_sky(light, in.world - frame.eye.xyz, water_share);
+    light = mirror_sky(light, from_eye(in.world), water_share);
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
 }
 
-// The depth buffer's value from what the rasterizer knows exactly at a pixel's center, 1 / d.
+// The depth buffer's value from what the rasterizer knows exactly at a pixel's center: 1 / d or, with parallel rays, the
+// value itself.
 fn reversed_depth(in: Varying) -> f32 {
     let change = max(abs(dpdx(in.clip.w)), abs(dpdy(in.clip.w)));
+    let change_parallel = max(abs(dpdx(in.clip.z)), abs(dpdy(in.clip.z)));
+    if is_parallel() {
+        return in.clip.z + nearer_px * change_parallel;
+    }
     return frame.depth.x * (nearer * in.clip.w + nearer_px * change) - frame.depth.y;
 }
 
@@ -580,5 +598,7 @@ fn feature(in: Varying) -> FeatureAndDepth {
     if !is_opaque() && alpha < material.cutoff.x {
         discard;
     }
-    return FeatureAndDepth(vec2u(in.feature, bitcast<u32>(1.0 / in.clip.w)), depth);
+    let along = dot(in.world - frame.eye.xyz, frame.forward.xyz);
+    let depth_m = select(1.0 / in.clip.w, along, is_parallel());
+    return FeatureAndDepth(vec2u(in.feature, bitcast<u32>(depth_m)), depth);
 }

@@ -13,7 +13,7 @@ use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
 use crate::render::shadow::Shadows;
-use crate::view::camera::Camera;
+use crate::view::camera::{Camera, ViewProjection};
 
 /// Ramp stops in one row of their texture; any number below the smallest texture limit works.
 pub const RAMP_COLUMNS: u32 = 1024;
@@ -75,18 +75,25 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
 
 impl FrameUniforms {
     pub fn new(list: &DrawList, camera: &Camera, shadows: &Shadows) -> Self {
-        let tan = camera.tan_half_fov();
         let (near, far) = camera.planes();
+        let (half, is_parallel, depth) = match camera.projection() {
+            // near · far may exceed f32; the ratio cannot.
+            ViewProjection::Perspective { .. } => {
+                (camera.tan_half_fov(), 0.0, [near / (1.0 - near / far), near / (far - near)])
+            }
+            ViewProjection::Parallel(frame) => {
+                (frame.half_m, 1.0, [1.0 / (1.0 - near / far), 1.0 / (far - near)])
+            }
+        };
         let (width, height) = camera.size();
         let light = &list.lighting;
         let relief = ReliefShading::new(light.to_sun);
         Self {
-            eye: with(camera.eye(), 0.0),
-            right: with(camera.right(), 1.0 / tan.x),
-            up: with(camera.up(), 1.0 / tan.y),
+            eye: with(camera.eye(), is_parallel),
+            right: with(camera.right(), 1.0 / half.x),
+            up: with(camera.up(), 1.0 / half.y),
             forward: with(camera.forward(), 0.0),
-            // near · far may exceed f32; the ratio cannot.
-            depth: [near / (1.0 - near / far), near / (far - near), width as f32, height as f32],
+            depth: [depth[0], depth[1], width as f32, height as f32],
             to_sun: with(light.to_sun, 0.0),
             sun: with(light.sun, 0.0),
             sky: with(light.sky, 0.0),

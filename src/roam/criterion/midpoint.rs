@@ -48,7 +48,7 @@ impl<'a> Midpoint<'a> {
 
     /// The form of Lin et al. as published, for an eye in world space; the greater `k`, 0 or more, the finer.
     pub fn with_k(ground: PatchedGround<'a>, errors: &'a ErrorMap, eye: Vec3, k: f32) -> Self {
-        Self { ground, errors, lens: Lens { eye, scale: k * land_width_m(ground) } }
+        Self { ground, errors, lens: Lens { eye, scale: k * land_width_m(ground), is_parallel: false } }
     }
 }
 

@@ -34,7 +34,7 @@ impl<'a> ScreenError<'a> {
         camera: &Camera,
         tolerance_px: f32,
     ) -> Self {
-        let lens = Lens { eye: camera.eye(), scale: reach(camera, tolerance_px) };
+        let lens = Lens::with_scale(camera, reach(camera, tolerance_px));
         Self { ground, errors, heights, frustum: Frustum::new(camera), lens }
     }
 }
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn an_error_is_refined_up_to_the_distance_where_it_spans_the_tolerance() {
         let camera = Camera::new(Vec3::ZERO, Vec3::Y, 0.8, (640, 480), (1.0, 9000.0)).expect("sound");
-        let lens = Lens { eye: camera.eye(), scale: reach(&camera, 2.0) };
+        let lens = Lens::with_scale(&camera, reach(&camera, 2.0));
         let at = |distance: f32| lens.excess(3.0, distance) > 1.0;
         let seen_px = |distance: f32| 3.0 * camera.pixels_per_meter(distance);
         assert!(at(500.0) && seen_px(500.0) > 2.0);

@@ -146,7 +146,8 @@ impl BoundingSphere {
         let offset = camera.eye() - world.center;
         let near = (-offset.dot(camera.forward()) - world.radius).max(camera.planes().0);
         let px_per_unit = camera.pixels_per_meter(near) * scale;
-        let along = |axis: glam::Vec4| axis.truncate().dot(offset);
+        let toward = camera.toward_eye(world.center);
+        let along = |axis: glam::Vec4| axis.truncate().dot(toward);
         let axes = &stand.world_from_model;
         let toward_eye = Vec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
         ApparentSize { px_per_unit, across_px: 2.0 * self.radius * px_per_unit, toward_eye }

@@ -8,6 +8,8 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::view::axes::ViewAxes;
+
 /// The part of a picture to be filled, as tangents of angles from the axis of view: to the right and up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FitFrame {
@@ -17,33 +19,9 @@ pub(super) struct FitFrame {
     pub max: Vec2,
 }
 
-/// A direction of view: an orthonormal frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FitAxes {
-    pub right: Vec3,
-    pub up: Vec3,
-    pub forward: Vec3,
-}
-
-impl FitAxes {
-    /// The axes of a camera that looks toward `azimuth_rad`, clockwise from north, and `pitch_rad` below the horizon,
-    /// less than a right angle.
-    pub fn new(azimuth_rad: f32, pitch_rad: f32) -> Self {
-        let (sin, cos) = (libm::sinf(azimuth_rad), libm::cosf(azimuth_rad));
-        let (down, level) = (libm::sinf(pitch_rad), libm::cosf(pitch_rad));
-        let forward = Vec3::new(sin * level, cos * level, -down);
-        let right = Vec3::new(cos, -sin, 0.0);
-        Self { right, up: right.cross(forward), forward }
-    }
-
-    fn coordinates(&self, point: Vec3) -> Vec3 {
-        Vec3::new(point.dot(self.right), point.dot(self.up), point.dot(self.forward))
-    }
-}
-
 /// The nearest eye whose `frame` holds all `points`, of which there is at least one; where the frame is wider or higher
 /// than they need, they are in its middle.
-pub(super) fn fitted_eye(points: &[Vec3], axes: &FitAxes, frame: &FitFrame) -> Vec3 {
+pub(super) fn fitted_eye(points: &[Vec3], axes: &ViewAxes, frame: &FitFrame) -> Vec3 {
     let mut low = Vec2::INFINITY;
     let mut high = Vec2::NEG_INFINITY;
     for point in points {
@@ -56,8 +34,28 @@ pub(super) fn fitted_eye(points: &[Vec3], axes: &FitAxes, frame: &FitFrame) -> V
     axes.right * aside.x + axes.up * aside.y + axes.forward * forward
 }
 
+/// What all points span as parallel rays along `axes` see them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ParallelSpan {
+    /// The least coordinates to the right, up and forward.
+    pub min: Vec3,
+    /// The greatest.
+    pub max: Vec3,
+}
+
+impl ParallelSpan {
+    /// The span of `points`, of which there is at least one.
+    pub fn new(points: impl IntoIterator<Item = Vec3>, axes: &ViewAxes) -> Self {
+        let empty = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+        points
+            .into_iter()
+            .map(|point| axes.coordinates(point))
+            .fold(empty, |span, local| Self { min: span.min.min(local), max: span.max.max(local) })
+    }
+}
+
 /// The points as `eye` sees them, as tangents to the right and up.
-pub(super) fn projected(points: &[Vec3], axes: &FitAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
+pub(super) fn projected(points: &[Vec3], axes: &ViewAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
     points.iter().map(move |point| {
         let local = axes.coordinates(*point - eye);
         local.truncate() / local.z
@@ -82,7 +80,7 @@ mod tests {
         for (azimuth, pitch) in [(0.0, 0.7), (1.0, 0.2), (3.0, 1.3), (-2.0, 0.9)] {
             for (min, max) in [((-0.5, -0.2), (0.5, 0.3)), ((-0.1, -0.4), (0.3, 0.4))] {
                 let frame = FitFrame { min: min.into(), max: max.into() };
-                let axes = FitAxes::new(azimuth, pitch);
+                let axes = ViewAxes::new(azimuth, pitch);
                 let eye = fitted_eye(&points, &axes, &frame);
                 let [mut low, mut high] = [Vec2::INFINITY, Vec2::NEG_INFINITY];
                 for at in projected(&points, &axes, eye) {
@@ -95,12 +93,5 @@ mod tests {
                 assert!(touches.min_element() < 1e-3, "{azimuth} {pitch}: {low} {high}");
             }
         }
-    }
-
-    #[test]
-    fn the_axes_look_where_they_are_told_with_the_picture_upright() {
-        let axes = FitAxes::new(0.5, 0.8);
-        assert!((axes.forward.z + libm::sinf(0.8)).abs() < 1e-6 && axes.up.z > 0.0 && axes.right.z == 0.0);
-        assert!(axes.right.cross(axes.forward).abs_diff_eq(axes.up, 1e-6));
     }
 }

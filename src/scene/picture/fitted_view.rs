@@ -7,15 +7,16 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::geom::convex::hull;
 use crate::geom::polygon::doubled_area;
 use crate::geom::rect::Rect;
-use crate::scene::picture::fit::{FitAxes, FitFrame, fitted_eye, projected};
+use crate::scene::picture::fit::{FitFrame, fitted_eye, projected};
 use crate::scene::plinth::base_z;
 use crate::scene::{FittedView, SceneModel};
 use crate::terrain::lattice::Post;
+use crate::view::axes::ViewAxes;
 
 /// The share of the picture left free on each side: for the title above and the scale bar below.
-const LEFT_RIGHT: f32 = 0.025;
-const BELOW: f32 = 0.045;
-const ABOVE: f32 = 0.075;
+pub(super) const LEFT_RIGHT: f32 = 0.025;
+pub(super) const BELOW: f32 = 0.045;
+pub(super) const ABOVE: f32 = 0.075;
 
 /// About as many posts as this along each side of what is shown stand for its silhouette.
 const POSTS: u32 = 128;
@@ -37,13 +38,13 @@ pub(super) fn fitted_aim(
         max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
     };
     let aimed = |pitch_rad: f32| {
-        let axes = FitAxes::new(view.azimuth_rad, pitch_rad);
+        let axes = ViewAxes::new(view.azimuth_rad, pitch_rad);
         (axes, fitted_eye(&points, &axes, &frame))
     };
     let (axes, eye) = match view.pitch_rad {
         Some(pitch_rad) => aimed(pitch_rad),
         None => {
-            let filled = |&(axes, eye): &(FitAxes, Vec3)| {
+            let filled = |&(axes, eye): &(ViewAxes, Vec3)| {
                 let corners: Vec<DVec2> =
                     projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
                 doubled_area(&hull(&corners))
@@ -59,7 +60,7 @@ pub(super) fn fitted_aim(
 
 /// Points of the drawn ground within `shown`, its border among them; of the whole ground also the foot of the block.
 /// Where all posts shown lack data, the corners of its box.
-fn silhouette(scene: &SceneModel, shown: Option<Rect>) -> Vec<Vec3> {
+pub(super) fn silhouette(scene: &SceneModel, shown: Option<Rect>) -> Vec<Vec3> {
     let lattice = &scene.lattice;
     let (cell, last) =
         (lattice.cell(), DVec2::new(f64::from(lattice.columns() - 1), f64::from(lattice.rows() - 1)));

@@ -10,7 +10,7 @@ use crate::mesh::sink::{MeshSink, VertexId};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
-use crate::scene::plinth::plinth;
+use crate::scene::plinth::{base_plate, plinth};
 use crate::view::camera::Camera;
 
 /// Makes draw vertices of bare positions.
@@ -37,7 +37,7 @@ pub(super) fn map_level(scene: &SceneModel, camera: &Camera) -> u32 {
     let (min, max) = scene.bounds;
     let (ground, forward) = (Aabb { min, max }, camera.forward());
     let depth_m = (ground.center() - camera.eye()).dot(forward) - 0.5 * ground.size().dot(forward.abs());
-    if depth_m <= 0.0 {
+    if depth_m <= 0.0 && camera.parallel_frame().is_none() {
         return 0;
     }
     let pixel_m = camera.pixels_per_meter(depth_m).recip();
@@ -61,8 +61,11 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &Displayed
     walls
 }
 
-/// Adds the walls.
-pub(super) fn add_plinth(list: &mut DrawList, walls: DrawMesh) {
+/// Adds the walls and, where they do not end straight, the plate that they stand on.
+pub(super) fn add_plinth(list: &mut DrawList, scene: &SceneModel, walls: DrawMesh) {
     let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
     add_mesh(list, walls, material, DepthLayer::Solid, FeatureId::GROUND);
+    if let Some(plate) = base_plate(scene.ground().lattice(), scene.bounds) {
+        add_mesh(list, plate, material, DepthLayer::Solid, FeatureId::GROUND);
+    }
 }

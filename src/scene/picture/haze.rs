@@ -1,7 +1,8 @@
 //! The haze of a view: how much of it depends on what the view is for.
 //!
 //! Haze counts from the near edge of the scene, so that a distant camera does not veil all of it. An overview shows the
-//! far edge nearly as clear as the near one; where the horizon is in view, haze gives depth; a plan has none.
+//! far edge nearly as clear as the near one; where the horizon is in view, haze gives depth; a plan has none, and neither
+//! has a picture by parallel rays, which come from no distance.
 
 use glam::Vec3;
 
@@ -23,6 +24,7 @@ pub(super) fn haze(color: Vec3, stated_m: Option<f32>, camera: &Camera, (min, ma
     let near_m = eye.distance(scene.nearest_to(eye));
     let depth_m = eye.distance(scene.farthest_from(eye)) - near_m;
     let distance_m = match stated_m {
+        _ if camera.parallel_frame().is_some() => f32::INFINITY,
         Some(0.0) => f32::INFINITY,
         Some(stated_m) => stated_m,
         None => match PictureSetting::new(camera, (min, max)) {

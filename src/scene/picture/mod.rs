@@ -7,6 +7,7 @@ mod fitted_view;
 mod ground;
 mod haze;
 mod models;
+mod parallel_view;
 pub mod recut;
 pub mod setting;
 mod solids;
@@ -26,6 +27,7 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
+use crate::scene::picture::parallel_view::parallel_camera;
 use crate::scene::picture::setting::PictureSetting;
 use crate::scene::{SceneModel, SceneView, ViewAim};
 use crate::view::camera::{Camera, CameraError, far_m};
@@ -49,6 +51,7 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
     let (eye, target) = match view.aim {
         ViewAim::At { eye, target } => (eye, target),
         ViewAim::Fitted(fitted) => fitted_aim(scene, &fitted, view.fov_y_rad, size),
+        ViewAim::Parallel(parallel) => return parallel_camera(scene, &parallel, size),
     };
     Camera::new(eye, target, view.fov_y_rad, size, (0.5, far_m(&Aabb { min, max }, eye)))
 }
@@ -100,7 +103,7 @@ fn listed(
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
     progress("setting models");
-    ground::add_plinth(&mut list, walls);
+    ground::add_plinth(&mut list, scene, walls);
     if let Viewer::Camera(camera) = viewer
         && shows_table(scene, camera)
     {

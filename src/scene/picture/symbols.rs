@@ -250,8 +250,11 @@ impl<'a> SymbolView<'a> {
         }
     }
 
-    /// How near a leg comes to the eye.
+    /// How near a leg comes to the eye; infinite for parallel rays, which show it as wide at any distance.
     fn nearest_m(&self, [from, to]: [LinePoint; 2]) -> f64 {
+        if self.camera.parallel_frame().is_some() {
+            return f64::INFINITY;
+        }
         let (eye, leg) = (self.camera.eye().as_dvec3(), to.at - from.at);
         let part = ((eye - from.at).dot(leg) / leg.length_squared()).clamp(0.0, 1.0);
         eye.distance(from.at + leg * part)
@@ -281,6 +284,9 @@ impl<'a> SymbolView<'a> {
         let depth_m = offset.dot(forward).max(f64::from(self.camera.planes().0));
         let on_picture = |way: DVec2| {
             let way = way.extend(0.0);
+            if self.camera.parallel_frame().is_some() {
+                return DVec2::new(way.dot(right), way.dot(up) * f64::from(self.camera.stretch()));
+            }
             let away = way.dot(forward) / depth_m;
             DVec2::new(way.dot(right) - offset.dot(right) * away, way.dot(up) - offset.dot(up) * away)
         };
