@@ -173,9 +173,10 @@ impl GroundMap {
     }
 
     /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
-    /// the ramp with contours on it, or water.
-    pub fn albedo(&self, post: &GroundPost, change_m: f32) -> Vec3 {
-        let land = self.ramp.linear_at(post.height_m);
+    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), with contours
+    /// on it, or water.
+    pub fn albedo(&self, post: &GroundPost, change_m: f32, grain: f32) -> Vec3 {
+        let land = self.ramp.linear_at(post.height_m) * grain;
         let water = WaterColor::cover(post.water);
         let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
         let Some(contours) = &self.contours else { return bare };

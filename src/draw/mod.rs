@@ -4,6 +4,7 @@
 pub mod backdrop;
 pub mod color;
 pub mod ground;
+pub mod ground_grain;
 pub mod ground_levels;
 pub mod lighting;
 pub mod list;

@@ -53,7 +53,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let half = step / 2.0;
     let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
     let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
-    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length()))
+    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), 1.0))
 }
 
 #[cfg(test)]

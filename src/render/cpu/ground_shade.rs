@@ -6,6 +6,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
@@ -68,7 +69,10 @@ impl<'a> GroundShader<'a> {
     /// The map's color at a point, in linear light: the ramp with contours on it, or water.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change = |step: Vec3| point.gradient.dot(step.truncate());
-        self.map.albedo(&point.post, Vec2::new(change(hit.right), change(hit.down)).length())
+        let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
+        let pixel_m = hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt();
+        let rise = Vec2::new(point.post.slope_east, point.post.slope_north).length();
+        self.map.albedo(&point.post, change_m, ground_grain(hit.world.truncate(), pixel_m, rise))
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.

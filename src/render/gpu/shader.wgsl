@@ -243,6 +243,39 @@ fn ramp_at(height: f32) -> vec3f {
     return mix(before.rgb, after.rgb, part);
 }
 
+// The functions of src/draw/ground_grain.rs.
+fn grain_hash(at: vec2u) -> f32 {
+    var x = at.x * 1664525u + 1013904223u;
+    var y = at.y * 1664525u + 1013904223u;
+    x += y * 1664525u;
+    y += x * 1664525u;
+    x ^= x >> 16u;
+    y ^= y >> 16u;
+    x += y * 1664525u;
+    x ^= x >> 16u;
+    return f32(x >> 8u) / 8388608.0 - 1.0;
+}
+
+fn grain_noise(at: vec2f) -> f32 {
+    let cell = floor(at);
+    let part = at - cell;
+    let smoothed = part * part * (3.0 - 2.0 * part);
+    let corner = vec2u(vec2i(cell));
+    let south = mix(grain_hash(corner), grain_hash(corner + vec2u(1u, 0u)), smoothed.x);
+    let north = mix(grain_hash(corner + vec2u(0u, 1u)), grain_hash(corner + vec2u(1u, 1u)), smoothed.x);
+    return mix(south, north, smoothed.y);
+}
+
+fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
+    let waves = vec3f(1.7, 6.1, 23.0);
+    let shown = vec3f(0.3, 0.35, 0.35) * clamp(2.0 * waves / (8.0 * pixel_m) - 1.0, vec3f(0.0), vec3f(1.0));
+    if shown.z <= 0.0 {
+        return 1.0;
+    }
+    let noise = vec3f(grain_noise(at / waves.x), grain_noise(at / waves.y), grain_noise(at / waves.z));
+    return 1.0 + mix(0.10, 0.20, clamp(rise, 0.0, 1.0)) * dot(shown, noise);
+}
+
 // Lines `spacing` meters apart vanish before they run together.
 fn contour_fade(spacing: f32, per_pixel: f32) -> f32 {
     return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
@@ -503,7 +536,9 @@ fn shade(in: Varying, front: bool) -> vec4f {
             let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
             let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
             let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
-            let bare = mix(ramp_at(post.height), mix(frame.water.rgb, frame.deep.rgb, depth), water) * shore;
+            let pixel = max(length(right), length(down));
+            let land = ramp_at(post.height) * ground_grain(in.world.xy, pixel, length(post.slope));
+            let bare = mix(land, mix(frame.water.rgb, frame.deep.rgb, depth), water) * shore;
             color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
             water_share = water;
         }
