@@ -9,6 +9,7 @@ use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light::TerrainLight;
+use crate::terrain::terraces::without_terraces;
 
 /// What a scene's ground map depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,10 +54,13 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
     let (light, water) =
         rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), || &scene.water().is_water);
     let columns = lattice.columns() as usize;
+    let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
+    let smooth = scene.height_step_m.map(|step_m| without_terraces(lattice, step_m, is_water));
+    let shaded = smooth.as_ref().unwrap_or(lattice);
     let row = |row: usize| {
         let first = row * columns;
-        let heights = filled_heights(&lattice.heights()[first..][..columns], scene.height_range_m.0);
-        let slopes = lattice.slopes_of_row(row as u32);
+        let heights = shaded.filled_row(row as u32, scene.height_range_m.0);
+        let slopes = shaded.slopes_of_row(row as u32);
         let light = light.sun(row).into_iter().zip(light.sky(row));
         let posts = heights.into_iter().zip(slopes).zip(light).map(
             |((height_m, slopes), (sun_visibility, sky_visibility))| GroundPost {
@@ -95,28 +99,4 @@ const FORM_SHARE: f64 = 1.0 / 100.0;
 fn form_level(lattice: &Lattice) -> u32 {
     let form_m = lattice.extent().size().max_element() * FORM_SHARE;
     libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
-}
-
-/// The heights of a row, where posts without data take the nearest height of the row, or the lowest: they only color
-/// pixels within half a cell of the edge of data.
-fn filled_heights(row: &[f32], lowest: f32) -> Vec<f32> {
-    let mut heights = row.to_vec();
-    if row.iter().any(|height| height.is_nan()) {
-        spread(heights.iter_mut());
-        spread(heights.iter_mut().rev());
-        heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = lowest);
-    }
-    heights
-}
-
-/// Sets heights that are NaN to the one before.
-fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
-    let mut last = f32::NAN;
-    for height in row {
-        if height.is_nan() {
-            *height = last;
-        } else {
-            last = *height;
-        }
-    }
 }

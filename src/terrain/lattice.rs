@@ -186,6 +186,24 @@ impl Lattice {
         Self { heights, pinned: self.pinned.clone(), pin_slack_m: self.pin_slack_m * factor, ..*self }
     }
 
+    /// The lattice with other heights, row by row from the south-west, one for each post.
+    pub(in crate::terrain) fn with_heights(&self, heights: Vec<f32>) -> Self {
+        assert_eq!(heights.len(), self.heights.len(), "a height for each post");
+        Self { heights, pinned: self.pinned.clone(), ..*self }
+    }
+
+    /// The heights of a row, where posts without data take the nearest height of the row, or `otherwise` if it has none.
+    pub fn filled_row(&self, row: u32, otherwise: f32) -> Vec<f32> {
+        let mut heights =
+            self.heights[row as usize * self.columns as usize..][..self.columns as usize].to_vec();
+        if heights.iter().any(|height| height.is_nan()) {
+            spread(heights.iter_mut());
+            spread(heights.iter_mut().rev());
+            heights.iter_mut().filter(|height| height.is_nan()).for_each(|height| *height = otherwise);
+        }
+        heights
+    }
+
     /// Map coordinates of the south-west post: the origin of world space.
     pub fn origin(&self) -> DVec2 {
         self.origin
@@ -420,6 +438,18 @@ impl Lattice {
     pub fn posts(&self) -> impl Iterator<Item = Post> + use<> {
         let (columns, rows) = (self.columns, self.rows);
         (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }))
+    }
+}
+
+/// Sets heights that are NaN to the one before.
+fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
+    let mut last = f32::NAN;
+    for height in row {
+        if height.is_nan() {
+            *height = last;
+        } else {
+            last = *height;
+        }
     }
 }
 

@@ -12,6 +12,7 @@ pub mod pyramid;
 pub mod query;
 pub mod sight;
 pub mod support_surface;
+pub mod terraces;
 pub mod triangle_surface;
 pub mod volumes;
 pub mod water_cover;
