@@ -50,6 +50,16 @@ const fn rule(
     TableRule { table, what, shape, condition, keys: &[], names: &[], label: None }
 }
 
+/// An expression of a rule as a scene file states it: of a tag and Geofabrik's `fclass` the one that the layer has.
+pub(super) fn of_layer(expression: &str, has_fclass: bool) -> String {
+    let tags = ["highway", "waterway", "natural", "landuse", "leisure", "place"];
+    let chosen = |text: String, tag: &str| {
+        text.replace(&format!("({tag} ?? fclass)"), if has_fclass { "fclass" } else { tag })
+    };
+    let chosen = tags.into_iter().fold(expression.to_owned(), chosen);
+    if has_fclass { chosen } else { chosen.replace(" ?? fclass", "").replace(" or fclass = 'building'", "") }
+}
+
 impl TableRule {
     const fn keys(self, keys: &'static [&'static str]) -> Self {
         Self { keys, ..self }
@@ -156,8 +166,7 @@ pub(super) static RULES: &[TableRule] = &[
         "lake",
         "Lakes",
         "polygons",
-        "natural = 'water' or landuse = 'reservoir' or waterway = 'riverbank' or \
-         fclass in ('water', 'reservoir', 'riverbank')",
+        "(natural ?? fclass) = 'water' or (landuse ?? fclass) = 'reservoir' or (waterway ?? fclass) = 'riverbank'",
     )
     .keys(&["level_rule = \"lowest\""])
     .named(&["lake", "water", "reservoir"]),
@@ -372,7 +381,23 @@ pub(super) static RULES: &[TableRule] = &[
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::expression::Expression;
     use crate::description::parse::parse;
+
+    #[test]
+    fn a_scene_file_states_the_property_that_its_layer_has() {
+        for rule in RULES {
+            let plain = of_layer(rule.condition, false);
+            assert!(!plain.contains("fclass"), "{plain}");
+            for text in [plain, of_layer(rule.condition, true)] {
+                assert!(Expression::parse(&text).is_ok(), "{text}");
+            }
+        }
+        let streets = "(highway ?? fclass) in ('road')";
+        assert_eq!(of_layer(streets, false), "highway in ('road')");
+        assert_eq!(of_layer(streets, true), "fclass in ('road')");
+        assert_eq!(of_layer("match(place ?? fclass, 'city', 1)", false), "match(place, 'city', 1)");
+    }
 
     #[test]
     fn every_rule_makes_a_table_that_is_understood() {

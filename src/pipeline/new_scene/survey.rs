@@ -38,6 +38,8 @@ pub(super) struct SurveyedLayer {
     pub places: Vec<NamedPlace>,
     /// Districts with administrative boundaries.
     pub districts: Vec<NamedDistrict>,
+    /// Whether its features have the property `fclass` of Geofabrik's shapefiles.
+    pub has_fclass: bool,
     /// Its coordinate system.
     pub crs: Crs,
     /// Corners and middles of the sides of the box of the features that tables draw, boundaries apart, in its system; of
@@ -190,7 +192,8 @@ fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> Surveye
     let bounds = if around.is_empty() { Rect::around(all) } else { around };
     let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
     let districts = districts(&layer);
-    SurveyedLayer { name, matches, rest, places, districts, crs: layer.crs.clone(), corners }
+    let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
+    SurveyedLayer { name, matches, rest, places, districts, has_fclass, crs: layer.crs.clone(), corners }
 }
 
 /// The table that the name of a layer suggests.

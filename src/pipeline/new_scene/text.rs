@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::dem::undeclared::UndeclaredNodata;
 use crate::geom::rect::Rect;
 use crate::pipeline::new_scene::cameras::CameraDraft;
-use crate::pipeline::new_scene::rules::RULES;
+use crate::pipeline::new_scene::rules::{self, RULES};
 use crate::pipeline::new_scene::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
 
 /// The properties of the scene; zero and empty before they are determined.
@@ -128,19 +128,20 @@ fn style(draft: &SceneDraft) -> String {
 
 fn table(out: &mut String, source: LayerSource<'_>, found: &TableMatch) {
     let (rule, count) = (found.rule, found.count);
+    let stated = |expression: &str| rules::of_layer(expression, source.layer.has_fclass);
     let _ = writeln!(out, "\n# {} ({count}).\n[[{}]]\nfile = {}", rule.what, rule.table, quoted(source.file));
     if let Some(name) = &source.layer.name {
         let _ = writeln!(out, "layer = {}", quoted(name));
     }
     if found.selection == FeatureSelection::ByCondition {
-        let _ = writeln!(out, "where = {}", quoted(rule.condition));
+        let _ = writeln!(out, "where = {}", quoted(&stated(rule.condition)));
     }
     if let Some(label) = &rule.label {
-        let _ = writeln!(out, "text = {}", quoted(label.text));
-        let _ = writeln!(out, "rank = {}\nmost = {}", quoted(label.rank), label.most);
+        let _ = writeln!(out, "text = {}", quoted(&stated(label.text)));
+        let _ = writeln!(out, "rank = {}\nmost = {}", quoted(&stated(label.rank)), label.most);
     }
     for key in rule.keys {
-        let _ = writeln!(out, "{key}");
+        let _ = writeln!(out, "{}", stated(key));
     }
 }
 
