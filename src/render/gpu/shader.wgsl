@@ -253,6 +253,7 @@ const PAGE_COLUMNS = 64u;
 const PAGE = 32;
 const NOTHING = -1e30;
 const MOST_RADIUS = 5.0;
+const MOST_WINDOW = 12; // more texels than any radius reads
 const LEAST_RADIUS = 1.5;
 const SPREAD = 0.013 * 1.25;
 const BIAS_TEXELS = 0.05;
@@ -323,7 +324,8 @@ fn shadow_height(heights: vec2f, on_solid: bool) -> f32 {
 fn shadow_cover(place: ShadowPlace, radius: f32, step: i32, rise: vec2f, bias: f32, on_solid: bool) -> vec3f {
     let first = vec2i(ceil(place.at - 0.5 - radius));
     let low = first + (first & vec2i(step - 1));
-    let high = vec2i(floor(place.at - 0.5 + radius));
+    // Bounded, since a place may be NaN.
+    let high = min(vec2i(floor(place.at - 0.5 + radius)), low + MOST_WINDOW);
     var sum = vec3f(0.0);
     for (var y = low.y; y <= high.y; y += step) {
         for (var x = low.x; x <= high.x; x += step) {
@@ -389,7 +391,8 @@ fn contact_share(world: vec3f, on_solid: bool) -> f32 {
     }
     let radius = select(CONTACT_RADIUS, WALL_RADIUS, on_solid);
     let low = vec2i(ceil(place.at - 0.5 - radius));
-    let high = vec2i(floor(place.at - 0.5 + radius));
+    // Bounded, since a place may be NaN.
+    let high = min(vec2i(floor(place.at - 0.5 + radius)), low + MOST_WINDOW);
     var sum = vec2f(0.0);
     for (var y = low.y; y <= high.y; y += 1) {
         for (var x = low.x; x <= high.x; x += 1) {
