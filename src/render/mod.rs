@@ -1,7 +1,8 @@
 //! Renders draw lists to pictures, by the processor or by a graphics adapter.
 //!
 //! `cpu/` is deterministic and needs nothing but the processor. `gpu/` needs an adapter and the Cargo feature `gpu`.
-//! Both draw the same list by the same formulas, and read far ground and far textures from the same coarser levels.
+//! Both draw the same list by the same formulas, read far ground and far textures from the same coarser levels, and
+//! shadows from the same maps.
 
 pub mod cpu;
 #[cfg(feature = "gpu")]

@@ -8,6 +8,8 @@
 //!                                                                 blend ◀─────────────┤
 //!                        Picture ◀──band── pixels ◀──tile::resolve── shade ◀──────────┘
 //!                                                  cutout, alpha     hit, ground_shade, texture
+//!                                                                         ▲
+//! DrawList ──────── shadow maps of the sun and of the sky (../shadow) ────┘
 //! ```
 //! Coverage is integer arithmetic on snapped corners. Depth and attributes come from the exact planes of the unsnapped
 //! triangles in f64, so that a road cut from the ground's triangles has exactly the ground's depth. Shading runs once
@@ -20,11 +22,12 @@
 //! surfaces are sorted per pixel, up to 32 deep, and blended over each sample in linear light.
 //!
 //! # Cost
-//! Shading takes two thirds of the time and more; the rest is triangles (three corners projected, three planes) and one
-//! depth test per covered sample. Eight samples per pixel take a third more time than one. Memory: 12 bytes per pixel
-//! for the picture; 150 bytes per visible triangle; for each band of 64 rows in work 12 bytes per pixel and 52 per
-//! triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent surfaces; a third of each texture
-//! and of the ground map for their coarser levels, and as much again of a texture with holes for its alpha.
+//! Shading takes two thirds of the time and more, shadows where solids are a tenth of that; the rest is triangles (three
+//! corners projected, three planes) and one depth test per covered sample. Eight samples per pixel take a third more time
+//! than one. Memory: 12 bytes per pixel for the picture; 150 bytes per visible triangle; for each band of 64 rows in work
+//! 12 bytes per pixel and 52 per triangle in it; for each thread 0.3 MiB, and up to 2 MiB more under transparent
+//! surfaces; a third of each texture and of the ground map for their coarser levels, and as much again of a texture with
+//! holes for its alpha; the shadow maps.
 
 pub(in crate::render) mod alpha;
 mod band;

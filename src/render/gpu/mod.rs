@@ -7,6 +7,8 @@
 //!            adapter ─► device, errors as values  ┘
 //! ```
 //!
+//! Shadow maps are made by the processor, for both renderers alike, and uploaded as textures.
+//!
 //! It draws the same list by the same formulas as the CPU renderer, but rounds as the driver does: pictures differ
 //! slightly from machine to machine. Where the exact bytes matter, use the CPU renderer.
 

@@ -302,12 +302,14 @@ const PAGE_COLUMNS = 64u;
 const PAGE = 32;
 const NOTHING = -1e30;
 const MOST_RADIUS = 5.0;
+const MOST_WINDOW = 12; // more texels than any radius reads
 const LEAST_RADIUS = 1.5;
 const SPREAD = 0.013 * 1.25;
 const BIAS_TEXELS = 0.05;
 const BIAS_PER_METER = 1e-6;
 const FULL_TEXELS = 1.0;
 const STEEPEST = 20.0;
+const SPARSE_RADIUS = 2.5;
 const CONTACT_RADIUS = 2.0;
 const WALL_RADIUS = 1.0;
 const GROUND_CONTACT = 0.9;
@@ -368,12 +370,14 @@ fn shadow_height(heights: vec2f, on_solid: bool) -> f32 {
 }
 
 // The weight of all texels within `radius`, of those that cast, and of these times their height.
-fn shadow_cover(place: ShadowPlace, radius: f32, rise: vec2f, bias: f32, on_solid: bool) -> vec3f {
-    let low = vec2i(ceil(place.at - 0.5 - radius));
-    let high = vec2i(floor(place.at - 0.5 + radius));
+fn shadow_cover(place: ShadowPlace, radius: f32, step: i32, rise: vec2f, bias: f32, on_solid: bool) -> vec3f {
+    let first = vec2i(ceil(place.at - 0.5 - radius));
+    let low = first + (first & vec2i(step - 1));
+    // Bounded, since a place may be NaN.
+    let high = min(vec2i(floor(place.at - 0.5 + radius)), low + MOST_WINDOW);
     var sum = vec3f(0.0);
-    for (var y = low.y; y <= high.y; y += 1) {
-        for (var x = low.x; x <= high.x; x += 1) {
+    for (var y = low.y; y <= high.y; y += step) {
+        for (var x = low.x; x <= high.x; x += step) {
             let aside = vec2f(vec2i(x, y)) + 0.5 - place.at;
             let tent = max(1.0 - abs(aside) / radius, vec2f(0.0));
             let top = shadow_height(shadow_texel(place.table, vec2i(x, y)), on_solid);
@@ -407,7 +411,8 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
     let error = BIAS_TEXELS * place.texel_m + BIAS_PER_METER * length(offset);
     let bias = error * (1.0 + length(rise) / place.texel_m);
     let search = clamp(SPREAD * highest / place.texel_m, LEAST_RADIUS, MOST_RADIUS);
-    let found = shadow_cover(place, search, rise, bias, on_solid);
+    let step = select(1, 2, search > SPARSE_RADIUS);
+    let found = shadow_cover(place, search, step, rise, bias, on_solid);
     if found.y == 0.0 {
         return 1.0;
     }
@@ -415,10 +420,10 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
         return 0.0;
     }
     let breadth = clamp(SPREAD * (found.z / found.y) / place.texel_m, LEAST_RADIUS, MOST_RADIUS);
-    if breadth >= search {
+    if breadth >= search && step == 1 {
         return 1.0 - found.y / found.x;
     }
-    let shade = shadow_cover(place, breadth, rise, bias, on_solid);
+    let shade = shadow_cover(place, breadth, 1, rise, bias, on_solid);
     return 1.0 - shade.y / shade.x;
 }
 
@@ -435,7 +440,8 @@ fn contact_share(world: vec3f, on_solid: bool) -> f32 {
     }
     let radius = select(CONTACT_RADIUS, WALL_RADIUS, on_solid);
     let low = vec2i(ceil(place.at - 0.5 - radius));
-    let high = vec2i(floor(place.at - 0.5 + radius));
+    // Bounded, since a place may be NaN.
+    let high = min(vec2i(floor(place.at - 0.5 + radius)), low + MOST_WINDOW);
     var sum = vec2f(0.0);
     for (var y = low.y; y <= high.y; y += 1) {
         for (var x = low.x; x <= high.x; x += 1) {

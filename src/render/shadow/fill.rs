@@ -147,7 +147,8 @@ impl Filling<'_> {
         }
         let origin = Vec2::from(self.level.origin).extend(0.0);
         let scale = Vec3::new(1.0 / self.level.texel_m, 1.0 / self.level.texel_m, 1.0);
-        let corners = on.triangle.corners.map(|corner| (corner - origin) * scale);
+        let [a, b, c] = on.triangle.corners;
+        let corners = [(a - origin) * scale, (b - origin) * scale, (c - origin) * scale];
         let Some(plane) = self.plane(on, corners) else { return };
         let size = [self.level.columns * PAGE, self.level.rows * PAGE];
         let outline = cut(corners.map(|corner| corner.xy()), size);
@@ -175,8 +176,8 @@ impl Filling<'_> {
                     let index = ((y - corner[1]) * PAGE + x - corner[0]) as usize;
                     let height = plane.height_at(at);
                     let texel = &mut texels[index];
-                    if let Some(undersides) = &mut undersides {
-                        undersides[index] = undersides[index].min(height);
+                    if let Some(least) = undersides.as_mut().and_then(|all| all.get_mut(index)) {
+                        *least = least.min(height);
                     }
                     match on.kind {
                         CasterKind::Solid => texel.solid = texel.solid.max(height),

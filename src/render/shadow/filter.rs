@@ -31,6 +31,12 @@ const FULL_TEXELS: f32 = 1.0;
 /// The steepest receiving face, meters toward the light per meter across: a face steeper than that is hardly lit.
 const STEEPEST: f32 = 20.0;
 
+/// A search in a wider radius reads every other texel in both directions: it only asks how far away what casts is.
+const SPARSE_RADIUS: f32 = 2.5;
+
+/// Texels outside a level that filters ask for at the most: a page.
+const OUTSIDE: i32 = PAGE as i32;
+
 /// The radius of contact shade, in texels of the sky's map.
 const CONTACT_RADIUS: f32 = 2.0;
 
@@ -101,12 +107,13 @@ impl ShadowMap {
         let plane = ReceivingPlane { receiver, rise, bias: error_m * (1.0 + rise.length() / texel_m) };
         let radius = |height: f32| (SPREAD * height / texel_m).clamp(LEAST_RADIUS, MOST_RADIUS);
         let search = radius(highest);
-        let found = place.cover(search, &plane);
+        let step = if search > SPARSE_RADIUS { 2 } else { 1 };
+        let found = place.cover(search, step, &plane);
         if found.y == 0.0 || found.y >= found.x {
             return if found.y == 0.0 { 1.0 } else { 0.0 };
         }
         let breadth = radius(found.z / found.y);
-        let shade = if breadth < search { place.cover(breadth, &plane) } else { found };
+        let shade = if breadth < search || step > 1 { place.cover(breadth, 1, &plane) } else { found };
         1.0 - shade.y / shade.x
     }
 
@@ -123,7 +130,7 @@ impl ShadowMap {
             return 1.0;
         }
         let (mut all, mut hidden) = (0.0, 0.0);
-        place.read(radius, |texel, _, weight| {
+        place.read(radius, 1, |texel, _, weight| {
             let share = match receiver {
                 ShadowReceiver::Ground => (texel.solid - place.height) / reach_m,
                 ShadowReceiver::Solid => 1.0 - (place.height - texel.ground) / reach_m,
@@ -161,10 +168,10 @@ impl ShadowPlace<'_> {
     }
 
     /// The weight of all texels within `radius`, of those that cast, and of these times their height.
-    fn cover(&self, radius: f32, plane: &ReceivingPlane) -> Vec3 {
+    fn cover(&self, radius: f32, step: i32, plane: &ReceivingPlane) -> Vec3 {
         let full = 1.0 / (FULL_TEXELS * self.level.texel_m);
         let (mut all, mut casting, mut heights) = (0.0, 0.0, 0.0);
-        self.read(radius, |texel, aside, weight| {
+        self.read(radius, step, |texel, aside, weight| {
             all += weight;
             let height =
                 plane.receiver.height(texel) - self.height - plane.rise.x * aside.x - plane.rise.y * aside.y;
@@ -177,12 +184,13 @@ impl ShadowPlace<'_> {
         Vec3::new(all, casting, heights)
     }
 
-    /// Calls `visit(texel, texels from the point, weight)` for the texels within `radius`, weighted by a tent in both
-    /// directions.
-    fn read(&self, radius: f32, mut visit: impl FnMut(ShadowTexel, Vec2, f32)) {
-        let [left, bottom] = [self.at.x, self.at.y].map(|at| (at - 0.5 - radius).ceil() as i32);
-        let [right, top] = [self.at.x, self.at.y].map(|at| (at - 0.5 + radius).floor() as i32);
-        let mut y = bottom;
+    /// Calls `visit(texel, texels from the point, weight)` for every `step`-th texel within `radius`, weighted by a tent
+    /// in both directions. `step` is 1 or 2.
+    fn read(&self, radius: f32, step: i32, mut visit: impl FnMut(ShadowTexel, Vec2, f32)) {
+        let left = first_texel(self.at.x - 0.5 - radius, step);
+        let right = rounded_down(self.at.x - 0.5 + radius);
+        let top = rounded_down(self.at.y - 0.5 + radius);
+        let mut y = first_texel(self.at.y - 0.5 - radius, step);
         while y <= top {
             let aside_y = y as f32 + 0.5 - self.at.y;
             let weight_y = (1.0 - aside_y.abs() / radius).max(0.0);
@@ -194,11 +202,12 @@ impl ShadowPlace<'_> {
                 }
                 let aside_x = x as f32 + 0.5 - self.at.x;
                 let weight = (1.0 - aside_x.abs() / radius).max(0.0) * weight_y;
-                let texel = line.get((x & PAGE_MASK) as usize).copied().unwrap_or(ShadowTexel::EMPTY);
+                let index = (x & PAGE_MASK) as usize;
+                let texel = if index < line.len() { line[index] } else { ShadowTexel::EMPTY };
                 visit(texel, Vec2::new(aside_x, aside_y), weight);
-                x += 1;
+                x += step;
             }
-            y += 1;
+            y += step;
         }
     }
 
@@ -209,6 +218,18 @@ impl ShadowPlace<'_> {
         let start = (page * PAGE + (y & PAGE_MASK) as u32) * PAGE;
         &self.map.texels[start as usize..][..PAGE as usize]
     }
+}
+
+/// A place rounded down to a whole texel; places lie at most [`OUTSIDE`] texels outside a level. Truncating is much
+/// cheaper than `floor`.
+fn rounded_down(texels: f32) -> i32 {
+    (texels + OUTSIDE as f32) as i32 - OUTSIDE
+}
+
+/// The first texel from a place on that is a multiple of `step`, 1 or 2.
+fn first_texel(texels: f32, step: i32) -> i32 {
+    let texel = rounded_down(texels) + 1;
+    texel + (texel & (step - 1))
 }
 
 /// How far a face with this normal, along the light's axes, rises toward the light per meter across.
