@@ -6,7 +6,7 @@ use glam::Vec3;
 
 /// A direction of view: an orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewAxes {
+pub struct DirectionAxes {
     /// The picture's right; level.
     pub right: Vec3,
     /// The picture's upper border.
@@ -15,7 +15,7 @@ pub struct ViewAxes {
     pub forward: Vec3,
 }
 
-impl ViewAxes {
+impl DirectionAxes {
     /// The axes of a camera that looks toward `azimuth_rad`, clockwise from north, and `pitch_rad` below the horizon, a
     /// right angle at most: straight down, the azimuth is at the top of the picture.
     pub fn new(azimuth_rad: f32, pitch_rad: f32) -> Self {
@@ -42,14 +42,14 @@ mod tests {
 
     #[test]
     fn the_axes_look_where_they_are_told_with_the_picture_upright() {
-        let axes = ViewAxes::new(0.5, 0.8);
+        let axes = DirectionAxes::new(0.5, 0.8);
         assert!((axes.forward.z + libm::sinf(0.8)).abs() < 1e-6 && axes.up.z > 0.0 && axes.right.z == 0.0);
         assert!(axes.right.cross(axes.forward).abs_diff_eq(axes.up, 1e-6));
     }
 
     #[test]
     fn straight_down_the_azimuth_is_up() {
-        let axes = ViewAxes::new(0.5, FRAC_PI_2);
+        let axes = DirectionAxes::new(0.5, FRAC_PI_2);
         assert_eq!((axes.forward, axes.up.z), (-Vec3::Z, 0.0));
         assert!(axes.up.abs_diff_eq(Vec3::new(libm::sinf(0.5), libm::cosf(0.5), 0.0), 1e-6));
     }

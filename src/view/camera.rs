@@ -9,7 +9,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::geom::aabb::Aabb;
-use crate::view::axes::ViewAxes;
+use crate::view::axes::DirectionAxes;
 
 /// How rays reach the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,7 +117,7 @@ impl Camera {
     /// See [`CameraError`].
     pub fn parallel(
         eye: Vec3,
-        axes: &ViewAxes,
+        axes: &DirectionAxes,
         frame: ParallelFrame,
         (width, height): (u32, u32),
         (near, far): (f32, f32),
@@ -130,7 +130,7 @@ impl Camera {
             return Err(CameraError::Span(2.0 * half_m.x, 2.0 * half_m.y));
         }
         check_frame((width, height), (near, far))?;
-        let ViewAxes { right, up, forward } = *axes;
+        let DirectionAxes { right, up, forward } = *axes;
         let projection = ViewProjection::Parallel(frame);
         Ok(Self { eye, right, up, forward, projection, width, height, near, far })
     }
@@ -304,7 +304,7 @@ mod tests {
     /// A camera with parallel rays, one pixel a meter across the view.
     fn parallel(azimuth: f32, pitch: f32, stretch: f32) -> Camera {
         let frame = ParallelFrame { half_m: Vec2::new(320.0, 240.0 / stretch), dpi: 96.0 };
-        let axes = ViewAxes::new(azimuth, pitch);
+        let axes = DirectionAxes::new(azimuth, pitch);
         let eye = Vec3::new(1000.0, 2000.0, 300.0) - axes.forward * 5000.0;
         Camera::parallel(eye, &axes, frame, (640, 480), (1.0, 20_000.0)).expect("sound")
     }

@@ -55,7 +55,7 @@ impl Frustum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::axes::ViewAxes;
+    use crate::view::axes::DirectionAxes;
     use crate::view::camera::ParallelFrame;
 
     #[test]
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn parallel_rays_see_a_slab() {
-        let axes = ViewAxes::new(0.0, 0.0);
+        let axes = DirectionAxes::new(0.0, 0.0);
         let frame = ParallelFrame { half_m: Vec2::new(20.0, 10.0), dpi: 96.0 };
         let camera = Camera::parallel(Vec3::ZERO, &axes, frame, (200, 100), (1.0, 1000.0)).expect("sound");
         let frustum = Frustum::new(&camera);

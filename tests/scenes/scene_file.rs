@@ -297,7 +297,10 @@ const BROKEN: &[(&str, &[&str])] = &[
             "did you mean `width`?",
         ],
     ),
-    ("[style]\nelephant = 1\n", &["hill.toml:4:1:", "[style] knows `ramp`, `contours`, `light` and `haze`"]),
+    (
+        "[style]\nelephant = 1\n",
+        &["hill.toml:4:1:", "[style] knows `ramp`, `contours`, `light`, `haze` and `table`"],
+    ),
     ("[style.light]\nalitude = 3\n", &["hill.toml:4:1:", "in [style.light]", "did you mean `altitude`?"]),
     ("exaggeration = 2\n", &["hill.toml:3:1:", "in [terrain]", "did you mean `vertical_exaggeration`?"]),
     ("title = \"x\"\n", &["hill.toml:3:1:", "write it at the top, before the first [table]"]),

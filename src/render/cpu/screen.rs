@@ -150,7 +150,7 @@ impl Projection<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::axes::ViewAxes;
+    use crate::view::axes::DirectionAxes;
     use crate::view::camera::ParallelFrame;
     use glam::Vec2;
 
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_screen_agrees_with_a_camera_of_parallel_rays() {
-        let axes = ViewAxes::new(0.7, 0.9);
+        let axes = DirectionAxes::new(0.7, 0.9);
         let frame = ParallelFrame { half_m: Vec2::new(900.0, 500.0), dpi: 96.0 };
         let eye = Vec3::new(100.0, -50.0, 30.0);
         let camera = Camera::parallel(eye, &axes, frame, (640, 480), (1.0, 5000.0)).expect("sound");

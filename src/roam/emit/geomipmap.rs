@@ -78,6 +78,8 @@ impl Pyramids {
         let aslant = 1.0 + camera.tan_half_fov().length_squared();
         let meters_at_one = tolerance_px / (camera.pixels_per_meter(1.0) * aslant);
         self.chosen(|corner| match heights.bounds(ground, corner) {
+            // Parallel rays show an error as large at any distance.
+            Some(_) if camera.parallel_frame().is_some() => meters_at_one,
             Some((min, max)) => nearest_m(camera.eye(), min, max) * meters_at_one,
             None => f32::INFINITY,
         })

@@ -8,7 +8,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::view::axes::ViewAxes;
+use crate::view::axes::DirectionAxes;
 
 /// The part of a picture to be filled, as tangents of angles from the axis of view: to the right and up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub(super) struct FitFrame {
 
 /// The nearest eye whose `frame` holds all `points`, of which there is at least one; where the frame is wider or higher
 /// than they need, they are in its middle.
-pub(super) fn fitted_eye(points: &[Vec3], axes: &ViewAxes, frame: &FitFrame) -> Vec3 {
+pub(super) fn fitted_eye(points: &[Vec3], axes: &DirectionAxes, frame: &FitFrame) -> Vec3 {
     let mut low = Vec2::INFINITY;
     let mut high = Vec2::NEG_INFINITY;
     for point in points {
@@ -45,7 +45,7 @@ pub(super) struct ParallelSpan {
 
 impl ParallelSpan {
     /// The span of `points`, of which there is at least one.
-    pub fn new(points: impl IntoIterator<Item = Vec3>, axes: &ViewAxes) -> Self {
+    pub fn new(points: impl IntoIterator<Item = Vec3>, axes: &DirectionAxes) -> Self {
         let empty = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
         points
             .into_iter()
@@ -55,7 +55,7 @@ impl ParallelSpan {
 }
 
 /// The points as `eye` sees them, as tangents to the right and up.
-pub(super) fn projected(points: &[Vec3], axes: &ViewAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
+pub(super) fn projected(points: &[Vec3], axes: &DirectionAxes, eye: Vec3) -> impl Iterator<Item = Vec2> {
     points.iter().map(move |point| {
         let local = axes.coordinates(*point - eye);
         local.truncate() / local.z
@@ -80,7 +80,7 @@ mod tests {
         for (azimuth, pitch) in [(0.0, 0.7), (1.0, 0.2), (3.0, 1.3), (-2.0, 0.9)] {
             for (min, max) in [((-0.5, -0.2), (0.5, 0.3)), ((-0.1, -0.4), (0.3, 0.4))] {
                 let frame = FitFrame { min: min.into(), max: max.into() };
-                let axes = ViewAxes::new(azimuth, pitch);
+                let axes = DirectionAxes::new(azimuth, pitch);
                 let eye = fitted_eye(&points, &axes, &frame);
                 let [mut low, mut high] = [Vec2::INFINITY, Vec2::NEG_INFINITY];
                 for at in projected(&points, &axes, eye) {

@@ -11,7 +11,7 @@ use crate::scene::picture::fit::{FitFrame, fitted_eye, projected};
 use crate::scene::plinth::base_z;
 use crate::scene::{FittedView, SceneModel};
 use crate::terrain::lattice::Post;
-use crate::view::axes::ViewAxes;
+use crate::view::axes::DirectionAxes;
 
 /// The share of the picture left free on each side: for the title above and the scale bar below.
 pub(super) const LEFT_RIGHT: f32 = 0.025;
@@ -38,13 +38,13 @@ pub(super) fn fitted_aim(
         max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
     };
     let aimed = |pitch_rad: f32| {
-        let axes = ViewAxes::new(view.azimuth_rad, pitch_rad);
+        let axes = DirectionAxes::new(view.azimuth_rad, pitch_rad);
         (axes, fitted_eye(&points, &axes, &frame))
     };
     let (axes, eye) = match view.pitch_rad {
         Some(pitch_rad) => aimed(pitch_rad),
         None => {
-            let filled = |&(axes, eye): &(ViewAxes, Vec3)| {
+            let filled = |&(axes, eye): &(DirectionAxes, Vec3)| {
                 let corners: Vec<DVec2> =
                     projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
                 doubled_area(&hull(&corners))

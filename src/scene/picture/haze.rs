@@ -29,7 +29,9 @@ pub(super) fn haze(color: Vec3, stated_m: Option<f32>, camera: &Camera, (min, ma
         Some(stated_m) => stated_m,
         None => match PictureSetting::new(camera, (min, max)) {
             PictureSetting::Plan => f32::INFINITY,
-            PictureSetting::Block | PictureSetting::Ground => -depth_m / libm::logf(OVERVIEW_CLEAR),
+            PictureSetting::Block | PictureSetting::Ground | PictureSetting::Skyline => {
+                -depth_m / libm::logf(OVERVIEW_CLEAR)
+            }
             PictureSetting::Landscape => -depth_m / libm::logf(HORIZON_CLEAR),
         },
     };

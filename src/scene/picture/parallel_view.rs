@@ -6,7 +6,7 @@ use crate::scene::picture::fit::ParallelSpan;
 use crate::scene::picture::fitted_view::{ABOVE, BELOW, LEFT_RIGHT, silhouette};
 use crate::scene::plinth::base_z;
 use crate::scene::{ParallelView, SceneModel};
-use crate::view::axes::ViewAxes;
+use crate::view::axes::DirectionAxes;
 use crate::view::camera::{Camera, CameraError, INCH_M, ParallelFrame};
 
 /// How far before and behind the block things may be drawn, as a share of its longer side: its table, and what stands
@@ -23,7 +23,7 @@ pub(super) fn parallel_camera(
     view: &ParallelView,
     size: (u32, u32),
 ) -> Result<Camera, CameraError> {
-    let axes = ViewAxes::new(view.azimuth_rad, view.pitch_rad);
+    let axes = DirectionAxes::new(view.azimuth_rad, view.pitch_rad);
     let shown = ParallelSpan::new(silhouette(scene, view.shown), &axes);
     let picture = DVec2::new(f64::from(size.0), f64::from(size.1));
     let stretch = DVec2::new(1.0, f64::from(view.stretch));
