@@ -126,7 +126,7 @@ mod tests {
     fn no_rectangle_is_larger_whatever_the_samples() {
         for seed in 0..60u32 {
             let (width, height) = (3 + seed % 6, 2 + seed / 9);
-            let blocked = |at: u32| (at * 2_654_435_761u32.wrapping_add(seed * 97)) >> 16 & 7 < 2;
+            let blocked = |at: u32| (at.wrapping_mul(2_654_435_761u32.wrapping_add(seed * 97)) >> 16) & 7 < 2;
             let outside: Vec<bool> = (0..width * height).map(|at| blocked(at + seed * 131)).collect();
             let is_free = |rect: SampleRect| {
                 let rows = rect.top..rect.top + rect.height;
