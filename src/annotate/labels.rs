@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lower_rank_goes_first_then_summits_before_places_and_the_near_before_the_far() {
+    fn lower_ranks_go_first_then_summits_before_places_and_near_before_far() {
         let far = PictureLabel { depth_m: 9000.0, ..label("far", 400.0, 500.0) };
         let near = PictureLabel { depth_m: 900.0, ..label("near", 402.0, 500.0) };
         let summit = PictureLabel { kind: LabelKind::Summit, depth_m: 99e3, ..label("summit", 404.0, 500.0) };

@@ -15,7 +15,8 @@ use crate::render::cpu::ground_shade::GroundShader;
 use crate::render::cpu::hit::{Barycentric, FacePoint};
 use crate::render::cpu::screen::Screen;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
-use crate::render::shadow::{ShadowReceiver, Shadows};
+use crate::render::shadow::Shadows;
+use crate::render::shadow::filter::ShadowReceiver;
 
 #[derive(Debug)]
 pub struct Shader<'a> {

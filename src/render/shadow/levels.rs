@@ -42,7 +42,8 @@ impl ShadowMap {
     pub fn new(source: &MapSource, texel_px: f32) -> Option<Self> {
         let (camera, axes) = (source.camera, &source.axes);
         let solids = LightTriangles::new(&source.triangles.solids, axes, None);
-        let pixel = 2.0 * camera.tan_half_fov().y / camera.size().1 as f32;
+        // By meter of depth; with parallel rays at any depth, and there is one level.
+        let pixel = 1.0 / camera.pixels_per_meter(1.0);
         let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
             let scale =
                 LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
@@ -80,14 +81,20 @@ fn plan(
     solids: &LightTriangles,
     mut scale: LevelScale,
 ) -> Option<(LevelScale, Vec<ShadowLevel>, Vec<ShadowPage>)> {
-    let [least, most] = source.triangles.depths_m.map(|depth| scale.exponent(depth));
+    let is_parallel = source.camera.parallel_frame().is_some();
+    let [least, most] =
+        source.triangles.depths_m.map(|depth| scale.exponent(if is_parallel { 1.0 } else { depth }));
     scale.least = least.max(most - (MOST_LEVELS as i32 - 1));
     let (mut levels, mut pages, mut stored) = (Vec::new(), Vec::new(), 0);
     for exponent in scale.least..=most {
         let texel_m = libm::exp2f(exponent as f32);
         let nearest = if exponent == scale.least { 0.0 } else { texel_m };
         // A level reaches a little beyond its depths, since renderers round differently.
-        let depths = [nearest * 0.98, texel_m * 2.04].map(|texel| texel / scale.texel_per_depth);
+        let depths = if is_parallel {
+            source.triangles.depths_m
+        } else {
+            [nearest * 0.98, texel_m * 2.04].map(|texel| texel / scale.texel_per_depth)
+        };
         let seen = slab(source.camera, &source.axes, depths).intersection(solids.bounds);
         let seen = if seen.is_empty() { LightBox { low: Vec2::ZERO, high: Vec2::ZERO } } else { seen };
         let bounds = seen.grown(PAGE_MARGIN * texel_m);
@@ -113,12 +120,13 @@ fn plan(
 
 /// What the camera sees between two depths, across the light.
 fn slab(camera: &Camera, axes: &LightAxes, depths: [f32; 2]) -> LightBox {
-    let tan = camera.tan_half_fov();
+    let (width, height) = camera.size();
+    let size = Vec2::new(width as f32, height as f32);
     let mut corners = [Vec3::ZERO; 8];
     for (index, corner) in corners.iter_mut().enumerate() {
-        let side = |bit: usize| if index & bit == 0 { -1.0 } else { 1.0 };
-        let ray = camera.forward() + camera.right() * (tan.x * side(1)) + camera.up() * (tan.y * side(2));
-        *corner = axes.turned(ray * depths[index >> 2]);
+        let pixel = size * Vec2::new((index & 1) as f32, (index >> 1 & 1) as f32);
+        let origin = camera.ray_origin(pixel) - camera.eye();
+        *corner = axes.turned(origin + camera.ray_through(pixel) * depths[index >> 2]);
     }
     LightBox::around(&corners)
 }
