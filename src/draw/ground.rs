@@ -28,6 +28,8 @@ pub struct GroundMap {
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
     /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
     pub form_level: u32,
+    /// Whether it is natural ground, with the grain of [`ground_grain`](crate::draw::ground_grain::ground_grain).
+    pub has_grain: bool,
 }
 
 /// The ground at one post.
@@ -233,6 +235,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
             form_level: 0,
+            has_grain: false,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();
         assert_eq!(map.check(), Ok(()));

@@ -89,6 +89,7 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
         ramp: scene.ramp.clone(),
         contours: scene.contours,
         form_level: form_level(lattice).saturating_sub(number),
+        has_grain: true,
     }
 }
 

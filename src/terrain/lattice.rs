@@ -61,7 +61,7 @@ pub enum LatticeError {
     Empty,
     /// A height that no ground has: mostly a no-data value that the file does not declare.
     #[error(
-        "the elevation model holds a height of {height:e} m, beyond ±{HIGHEST_M} m; if that stands for no data, the file must declare it, or the scene state it as `nodata` under [terrain]"
+        "the elevation model holds a height of {height:e} m, beyond ±{HIGHEST_M} m; if that is a no-data value, the file must declare it, or the scene state it as `nodata` under [terrain]"
     )]
     TooHigh {
         /// In meters; may be infinite.

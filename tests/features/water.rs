@@ -242,7 +242,9 @@ fn a_lake_is_level_for_every_camera() {
         let Ok(camera) = Camera::new(eye, target, 0.7, (480, 270), (0.5, 60_000.0)) else { continue };
         let shot = build_draw_list(&scene, &camera, &|_| {});
         let lakes = shot.list.items.iter().filter(|item| {
-            matches!(item.layer, DepthLayer::Draped(_)) && kind(item.feature) == FeatureKind::Lake
+            // Not the line along its shore.
+            let is_water = shot.list.materials[item.material.0 as usize].is_water;
+            is_water && matches!(item.layer, DepthLayer::Draped(_)) && kind(item.feature) == FeatureKind::Lake
         });
         let heights: Vec<f32> = lakes
             .flat_map(|item| &shot.list.meshes[item.mesh.0 as usize].vertices)

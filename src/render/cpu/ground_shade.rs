@@ -70,9 +70,8 @@ impl<'a> GroundShader<'a> {
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
-        let pixel_m = hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt();
-        let rise = Vec2::new(point.post.slope_east, point.post.slope_north).length();
-        self.map.albedo(&point.post, change_m, ground_grain(hit.world.truncate(), pixel_m, rise))
+        let grain = if self.map.has_grain { grain(&point.post, hit) } else { 1.0 };
+        self.map.albedo(&point.post, change_m, grain)
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
@@ -99,6 +98,11 @@ impl<'a> GroundShader<'a> {
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
         sum.gradient += rise * self.posts_per_meter * (scale * weight);
     }
+}
+
+fn grain(post: &GroundPost, hit: &FacePoint) -> f32 {
+    let pixel_m = hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt();
+    ground_grain(hit.world.truncate(), pixel_m, Vec2::new(post.slope_east, post.slope_north).length())
 }
 
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
@@ -128,6 +132,7 @@ mod tests {
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
             form_level: 0,
+            has_grain: false,
         }
     }
 

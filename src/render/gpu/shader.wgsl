@@ -25,7 +25,7 @@ struct Frame {
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     contour: vec4f,       // rgb, strength
-    contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier
+    contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
     shadows: array<ShadowView, 2>, // of the sun, of the sky
 }
@@ -543,7 +543,8 @@ fn shade(in: Varying, front: bool) -> vec4f {
             let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
             let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
             let pixel = max(length(right), length(down));
-            let land = ramp_at(post.height) * ground_grain(in.world.xy, pixel, length(post.slope));
+            let grain = ground_grain(in.world.xy, pixel, length(post.slope));
+            let land = ramp_at(post.height) * select(1.0, grain, frame.contour_shape.w > 0.5);
             let bare = mix(land, mix(frame.water.rgb, frame.deep.rgb, depth), water) * shore;
             color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
             water_share = water;

@@ -125,10 +125,11 @@ impl FrameUniforms {
         let coarsest = levels.len() as u32 - 1;
         frame.ground_size =
             [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, map.form_level.min(coarsest)];
+        frame.contour_shape[3] = f32::from(u8::from(map.has_grain));
         if let Some(contours) = map.contours {
             let every = contours.major_every.max(1) as f32;
             frame.contour = with(contours.color.linear(), contours.color.alpha());
-            frame.contour_shape = [contours.interval_m, contours.width_px, every, 0.0];
+            frame.contour_shape[..3].copy_from_slice(&[contours.interval_m, contours.width_px, every]);
         }
         frame
     }
