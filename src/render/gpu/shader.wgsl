@@ -266,14 +266,19 @@ fn grain_noise(at: vec2f) -> f32 {
     return mix(south, north, smoothed.y);
 }
 
-fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
-    let waves = vec3f(1.7, 6.1, 23.0);
-    let shown = vec3f(0.3, 0.35, 0.35) * clamp(2.0 * waves / (8.0 * pixel_m) - 1.0, vec3f(0.0), vec3f(1.0));
-    if shown.z <= 0.0 {
-        return 1.0;
+// A wave's part of the grain.
+fn grain_wave(at: vec2f, pixel_m: f32, wave_m: f32, share: f32) -> f32 {
+    let shown = clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+    if shown <= 0.0 {
+        return 0.0;
     }
-    let noise = vec3f(grain_noise(at / waves.x), grain_noise(at / waves.y), grain_noise(at / waves.z));
-    return 1.0 + mix(0.10, 0.20, clamp(rise, 0.0, 1.0)) * dot(shown, noise);
+    return share * shown * grain_noise(at / wave_m);
+}
+
+fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
+    let sum = grain_wave(at, pixel_m, 1.7, 0.3) + grain_wave(at, pixel_m, 6.1, 0.35)
+        + grain_wave(at, pixel_m, 23.0, 0.35);
+    return 1.0 + (0.10 + 0.10 * clamp(rise, 0.0, 1.0)) * sum;
 }
 
 // Lines `spacing` meters apart vanish before they run together.
@@ -473,7 +478,7 @@ fn sky_at(ray: vec3f) -> vec3f {
 fn mirror_sky(color: vec3f, toward: vec3f, water: f32) -> vec3f {
     let ray = normalize(toward);
     let grazing = 1.0 - clamp(-ray.z, 0.0, 1.0);
-    let share = mix(0.02, 0.5, grazing * grazing * grazing * grazing * grazing);
+    let share = 0.02 + 0.48 * (grazing * grazing * grazing * grazing * grazing);
     return mix(color, sky_at(vec3f(ray.xy, -ray.z)), share * water);
 }
 
