@@ -12,6 +12,8 @@ use crate::common::forest::{forest, overlook};
 use crate::common::synthetic::{HOUSE, camera, material_of, scene, scene_with_contours};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 use sandtable::draw::backdrop::Backdrop;
 use sandtable::draw::list::DrawList;
@@ -82,6 +84,15 @@ fn compare(list: &DrawList, camera: &Camera, what: &str) {
 #[test]
 fn the_whole_scene_is_the_same_on_both() {
     compare(&scene(), &camera(640, 480), "the scene");
+}
+
+#[test]
+fn the_grain_of_the_ground_and_the_sky_in_water_are_the_same_on_both() {
+    let mut list = scene();
+    let map = list.ground.as_mut().expect("there is ground");
+    Arc::make_mut(map).has_grain = true;
+    list.materials.iter_mut().for_each(|material| material.is_water = true);
+    compare(&list, &camera(640, 480), "grain and water");
 }
 
 #[test]
