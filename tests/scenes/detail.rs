@@ -34,8 +34,8 @@ fn asset(name: &str) -> Model {
 fn pictures(scene: &SceneModel, camera: &Camera) -> ([DrawList; 2], [Rendering; 2]) {
     let seen = build_draw_list(scene, camera, &|_| ()).list;
     let (mut full, _) = draw_list(scene, &display(scene, camera), &|_| ());
-    // Without a camera there is no haze.
-    full.lighting = seen.lighting;
+    // Without a camera there is no haze, and the light is that of a map.
+    (full.lighting, full.ground) = (seen.lighting, seen.ground.clone());
     let drawn = |list: &DrawList| render(list, camera, &RenderQuality::default()).expect("sound");
     let pictures = [drawn(&seen), drawn(&full)];
     ([seen, full], pictures)

@@ -13,8 +13,8 @@ fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {
         let camera = seen_from(&scene, eye, eye + toward * 100.0 - Vec3::Z * 15.0, (320, 200));
         let seen = build_draw_list(&scene, &camera, &|_| ()).list;
         let (mut all, _) = draw_list(&scene, &display(&scene, &camera), &|_| ());
-        // Without a camera there is no haze.
-        all.lighting = seen.lighting;
+        // Without a camera there is no haze, and the light is that of a map.
+        (all.lighting, all.ground) = (seen.lighting, seen.ground.clone());
         assert!(
             seen.items.len() * 2 < all.items.len(),
             "{turn}: {} of {}",

@@ -97,8 +97,11 @@ fn plan(
         };
         let seen = slab(source.camera, &source.axes, depths).intersection(solids.bounds);
         let seen = if seen.is_empty() { LightBox { low: Vec2::ZERO, high: Vec2::ZERO } } else { seen };
-        let bounds = seen.grown(PAGE_MARGIN * texel_m);
-        let sides = ((bounds.high - bounds.low) / (texel_m * PAGE as f32)).ceil();
+        let mut bounds = seen.grown(PAGE_MARGIN * texel_m);
+        // Pages of a level lie at the same places whatever solids there are: what is out of view moves no texel.
+        let page_m = texel_m * PAGE as f32;
+        bounds.low = (bounds.low / page_m).floor() * page_m;
+        let sides = ((bounds.high - bounds.low) / page_m).ceil();
         if !(sides.x <= MOST_SIDE && sides.y <= MOST_SIDE) {
             return None;
         }

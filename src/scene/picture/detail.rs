@@ -1,4 +1,5 @@
-//! Many models: those out of view are left out, small ones are drawn in a simpler form, and equal ones form runs.
+//! Many models: where neither a model nor its shadow is in view it is left out, small ones are drawn in a simpler form,
+//! and equal ones form runs.
 //!
 //! A picture whose models have no more than [`FULL_TRIANGLES`] draws all of them in full. Past that, [`ModelDetail::form`]
 //! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
@@ -20,6 +21,13 @@ use crate::view::frustum::Frustum;
 
 /// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
 const FULL_TRIANGLES: usize = 250_000;
+
+/// The sine of the sun's height below which shadows are taken to be no longer: they reach a hundred times as far as what
+/// casts them is high.
+const LOWEST_SUN: f32 = 0.01;
+
+/// The most boxes that a shadow is looked for in: more leave out more models beside the picture.
+const MOST_BOXES: f32 = 16.0;
 
 /// The viewer that models are drawn for.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +63,10 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
         Viewer::Camera(camera) => {
             let frustum = Frustum::new(camera);
+            let (to_sun, lowest_z) = (list.lighting.to_sun, scene.bounds.0.z);
             let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
-                .filter(|stand| balls[stand.model].in_world(stand).is_in(&frustum))
+                .filter(|stand| balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z))
                 .collect();
             let forms = forms(scene, camera, &balls, &in_view);
             grouped(in_view.into_iter().zip(forms))
@@ -135,8 +144,21 @@ impl BoundingSphere {
         Self { center: stand.world_from_model.transform_point3(self.center), radius: self.radius * scale }
     }
 
-    fn is_in(&self, frustum: &Frustum) -> bool {
-        frustum.may_see(self.center - self.radius, self.center + self.radius)
+    /// Whether it or its shadow on ground no lower than `lowest_z` may be in view.
+    fn may_show(&self, frustum: &Frustum, to_sun: Vec3, lowest_z: f32) -> bool {
+        let is_seen = |center: Vec3| frustum.may_see(center - self.radius, center + self.radius);
+        if is_seen(self.center) {
+            return true;
+        }
+        // Down to where the sun's ray through its top meets the lowest ground, box by box.
+        let fall = -to_sun * ((self.center.z + self.radius - lowest_z).max(0.0) / to_sun.z.max(LOWEST_SUN));
+        let boxes = (fall.length() / (2.0 * self.radius)).ceil().clamp(1.0, MOST_BOXES);
+        let half = fall * (0.5 / boxes);
+        let reach = half.abs() + self.radius;
+        (0..boxes as u32).any(|index| {
+            let middle = self.center + half * (2 * index + 1) as f32;
+            frustum.may_see(middle - reach, middle + reach)
+        })
     }
 
     /// The apparent size of the model in this sphere of model space.
