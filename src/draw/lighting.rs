@@ -134,7 +134,7 @@ impl ReliefShading {
     /// The shares of the side lights.
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
     /// The change of brightness with shade: larger is harsher.
-    pub const GAIN: f32 = 2.0;
+    pub const GAIN: f32 = 2.2;
     /// The least brightness: deep shade stays readable.
     pub const DARKEST: f32 = 0.22;
     /// The greatest brightness: above it pale tints lose their color.

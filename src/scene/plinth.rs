@@ -36,8 +36,8 @@ const MOST_MISSING: f64 = 0.1;
 /// The colors of the strata from below, each at its lower and at its upper edge: rock, clay, subsoil, topsoil. Light, so that
 /// they can be told apart on walls in the shade.
 const STRATA: [[Srgba; 2]; 4] = [
-    [Srgba::opaque(166, 156, 147), Srgba::opaque(178, 168, 158)],
-    [Srgba::opaque(205, 174, 145), Srgba::opaque(213, 183, 154)],
+    [Srgba::opaque(146, 137, 129), Srgba::opaque(157, 148, 139)],
+    [Srgba::opaque(186, 157, 130), Srgba::opaque(194, 166, 139)],
     [Srgba::opaque(234, 211, 178), Srgba::opaque(242, 221, 190)],
     [Srgba::opaque(141, 116, 92), Srgba::opaque(153, 128, 102)],
 ];

@@ -29,7 +29,7 @@ const STEP_DEG: f32 = 15.0;
 /// below right would turn hills into holes; and in a view from the side, where fronts of buildings would be dark.
 const LEFT_DEG: [f32; 2] = [45.0, 100.0];
 /// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
-const PITCH_DEG: [f32; 2] = [45.0, 25.0];
+const PITCH_DEG: [f32; 2] = [40.0, 22.0];
 
 impl Sunlight {
     /// The document's light. `middle` is the middle of the scene in map coordinates of `crs`.
