@@ -31,8 +31,7 @@ impl SampleRect {
 
 /// Whether each sample of `raster` has no data and is connected to the border by such samples.
 pub fn outside(raster: &Raster) -> Vec<bool> {
-    let (width, height) = (raster.width as usize, raster.height as usize);
-    let mut outside = vec![false; width * height];
+    let mut outside = vec![false; raster.samples.len()];
     let mut open: Vec<usize> = Vec::new();
     let visit = |at: usize, open: &mut Vec<usize>, outside: &mut Vec<bool>| {
         if !outside[at] && raster.samples.get(at).is_nan() {
@@ -40,19 +39,10 @@ pub fn outside(raster: &Raster) -> Vec<bool> {
             open.push(at);
         }
     };
-    let rows = (0..height).flat_map(|row| [row * width, row * width + width - 1]);
-    let border = (0..width).chain((height - 1) * width..height * width).chain(rows);
-    for start in border {
+    for start in raster.border() {
         visit(start, &mut open, &mut outside);
         while let Some(at) = open.pop() {
-            let (column, row) = (at % width, at / width);
-            let around = [
-                (column > 0).then(|| at - 1),
-                (column + 1 < width).then_some(at + 1),
-                (row > 0).then(|| at - width),
-                (row + 1 < height).then_some(at + width),
-            ];
-            around.into_iter().flatten().for_each(|next| visit(next, &mut open, &mut outside));
+            raster.beside(at).into_iter().flatten().for_each(|next| visit(next, &mut open, &mut outside));
         }
     }
     outside

@@ -141,6 +141,25 @@ pub(crate) fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
 }
 
 impl Raster {
+    /// The samples west, east, north and south of a sample, by index; `None` beyond the border.
+    pub(in crate::dem) fn beside(&self, at: usize) -> [Option<usize>; 4] {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let (column, row) = (at % width, at / width);
+        [
+            (column > 0).then(|| at - 1),
+            (column + 1 < width).then_some(at + 1),
+            (row > 0).then(|| at - width),
+            (row + 1 < height).then_some(at + width),
+        ]
+    }
+
+    /// The samples along the border, by index: rows first, then columns with the corners again.
+    pub(in crate::dem) fn border(&self) -> impl Iterator<Item = usize> + use<> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let columns = (0..height).flat_map(move |row| [row * width, row * width + width - 1]);
+        (0..width).chain((height - 1) * width..height * width).chain(columns)
+    }
+
     /// A raster in memory of rows of `width` samples, in meters, without a georeference.
     ///
     /// # Panics

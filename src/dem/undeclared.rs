@@ -107,23 +107,14 @@ impl Margin {
         let (width, height) = (raster.width as usize, raster.height as usize);
         let mut seen = vec![false; width * height];
         let mut margin = Self { count: 0, steps: Vec::new() };
-        let rows = (0..height).flat_map(|row| [row * width, row * width + width - 1]);
-        let mut open: Vec<usize> =
-            (0..width).chain((height - 1) * width..height * width).chain(rows).collect();
+        let mut open: Vec<usize> = raster.border().collect();
         open.sort_unstable();
         open.dedup();
         open.retain(|&at| raster.samples.get(at) == value);
         open.iter().for_each(|&at| seen[at] = true);
         while let Some(at) = open.pop() {
             margin.count += 1;
-            let (column, row) = (at % width, at / width);
-            let around = [
-                (column > 0).then(|| at - 1),
-                (column + 1 < width).then_some(at + 1),
-                (row > 0).then(|| at - width),
-                (row + 1 < height).then_some(at + width),
-            ];
-            for next in around.into_iter().flatten() {
+            for next in raster.beside(at).into_iter().flatten() {
                 let height = raster.samples.get(next);
                 if height == value && !seen[next] {
                     seen[next] = true;

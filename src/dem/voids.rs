@@ -92,7 +92,6 @@ struct Void {
 
 /// Calls `visit` with every void, in the order of their first samples.
 fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
-    let (width, height) = (raster.width as usize, raster.height as usize);
     let mut seen = vec![false; raster.samples.len()];
     let mut open = Vec::new();
     for start in 0..seen.len() {
@@ -108,13 +107,7 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
             if void.count <= MOST_CELLS {
                 void.cells.push(at);
             }
-            let (column, row) = (at % width, at / width);
-            let around = [
-                (column > 0).then(|| at - 1),
-                (column + 1 < width).then_some(at + 1),
-                (row > 0).then(|| at - width),
-                (row + 1 < height).then_some(at + width),
-            ];
+            let around = raster.beside(at);
             on_border |= around.contains(&None);
             for next in around.into_iter().flatten() {
                 if !seen[next] && raster.samples.get(next).is_nan() {

@@ -38,6 +38,14 @@ impl Aabb {
         Vec3::select((at - self.min).abs().cmpgt((at - self.max).abs()), self.min, self.max)
     }
 
+    /// The eight corners.
+    pub fn corners(&self) -> impl Iterator<Item = Vec3> + use<> {
+        let ends = [self.min, self.max];
+        (0..8).map(move |corner: usize| {
+            Vec3::new(ends[corner & 1].x, ends[corner >> 1 & 1].y, ends[corner >> 2].z)
+        })
+    }
+
     /// The radius of the sphere through the corners.
     pub fn radius(&self) -> f32 {
         self.size().length() * 0.5

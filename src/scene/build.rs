@@ -107,7 +107,6 @@ pub fn build(
         water: OnceLock::new(),
         lattice,
         height_range_m,
-        height_step_m: loaded.height_step_m,
         scale,
         bounds,
         tolerance_px: document.terrain.tolerance_px as f32,

@@ -10,7 +10,7 @@ use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::{RawLayout, RawLayoutError};
 use crate::dem::largest_rectangle::{largest_rectangle, outside};
 use crate::dem::mosaic::Tiles;
-use crate::dem::raster::{Raster, Samples};
+use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::undeclared::{UndeclaredNodata, undeclared_nodata};
 use crate::dem::voids;
@@ -29,8 +29,6 @@ pub struct LoadedGround {
     pub source: Arc<Raster>,
     /// The heights in the scene's system, before earthworks.
     pub lattice: Lattice,
-    /// What heights are whole multiples of in the source, meters; `None` where they are not.
-    pub height_step_m: Option<f32>,
     /// The scene's system.
     pub crs: Crs,
     /// Notes for the user.
@@ -63,16 +61,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let metric = metric(document, filled.as_ref().unwrap_or(&source), &mut notes)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
-    let height_step_m = holds_whole_meters(&source.samples).then_some(1.0);
-    Ok(LoadedGround { source: Arc::new(source), lattice, height_step_m, crs, notes })
-}
-
-/// Whether all samples that are numbers are whole.
-fn holds_whole_meters(samples: &Samples) -> bool {
-    match samples {
-        Samples::F32(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
-        Samples::F64(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
-    }
+    Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system.

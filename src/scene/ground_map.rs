@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Vec2, Vec3};
 
+use crate::dem::raster::Samples;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::scene::SceneModel;
@@ -55,7 +56,8 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
         rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), || &scene.water().is_water);
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
-    let smooth = scene.height_step_m.map(|step_m| without_terraces(lattice, step_m, is_water));
+    let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);
+    let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, is_water));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let row = |row: usize| {
         let first = row * columns;
@@ -100,4 +102,12 @@ const FORM_SHARE: f64 = 1.0 / 100.0;
 fn form_level(lattice: &Lattice) -> u32 {
     let form_m = lattice.extent().size().max_element() * FORM_SHARE;
     libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
+}
+
+/// Whether all samples that are numbers are whole.
+fn holds_whole_meters(samples: &Samples) -> bool {
+    match samples {
+        Samples::F32(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
+        Samples::F64(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
+    }
 }

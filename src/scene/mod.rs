@@ -77,8 +77,6 @@ pub struct SceneModel {
     pub lattice: Arc<Lattice>,
     /// The lowest and the highest of them, meters.
     pub height_range_m: (f32, f32),
-    /// What they were rounded to in the elevation file, meters; `None` where they were not.
-    pub height_step_m: Option<f32>,
     /// How they are drawn.
     pub scale: VerticalScale,
     /// The box of the drawn ground in world space: its least and its greatest corner.

@@ -16,18 +16,23 @@ const OVERVIEW_CLEAR: f32 = 0.94;
 /// Transmittance at the far edge of the scene where the horizon shows.
 const HORIZON_CLEAR: f32 = 0.62;
 
-/// The haze of `color` for a camera over the scene between the corners `min` and `max`. `stated_m` is the distance in
-/// meters from the near edge at which 63 % is haze, 0 for clear air; `None` fits it to the view.
-pub(super) fn haze(color: Vec3, stated_m: Option<f32>, camera: &Camera, (min, max): (Vec3, Vec3)) -> Haze {
+/// The haze of `color` for a camera over the box of the scene. `stated_m` is the distance in
+/// meters from the near edge at which 63 % is haze, 0 for clear air; `None` fits it to the picture's `setting`.
+pub(super) fn haze(
+    color: Vec3,
+    stated_m: Option<f32>,
+    camera: &Camera,
+    scene: Aabb,
+    setting: PictureSetting,
+) -> Haze {
     let eye = camera.eye();
-    let scene = Aabb { min, max };
     let near_m = eye.distance(scene.nearest_to(eye));
     let depth_m = eye.distance(scene.farthest_from(eye)) - near_m;
     let distance_m = match stated_m {
         _ if camera.parallel_frame().is_some() => f32::INFINITY,
         Some(0.0) => f32::INFINITY,
         Some(stated_m) => stated_m,
-        None => match PictureSetting::new(camera, (min, max)) {
+        None => match setting {
             PictureSetting::Plan => f32::INFINITY,
             PictureSetting::Block | PictureSetting::Ground | PictureSetting::Skyline => {
                 -depth_m / libm::logf(OVERVIEW_CLEAR)
@@ -48,7 +53,8 @@ mod tests {
     /// The share of the light from the farthest corner that a camera at `eye` receives.
     fn clear(eye: Vec3, target: Vec3, stated_m: Option<f32>) -> f32 {
         let camera = Camera::new(eye, target, 0.5, (160, 90), (1.0, 1e6)).expect("sound");
-        let haze = haze(Vec3::ONE, stated_m, &camera, (MIN, MAX));
+        let setting = PictureSetting::new(&camera, (MIN, MAX));
+        let haze = haze(Vec3::ONE, stated_m, &camera, Aabb { min: MIN, max: MAX }, setting);
         let corners = [0.0, 1.0].map(|x| [0.0, 1.0].map(|y| eye.distance(MAX * Vec3::new(x, y, 0.0))));
         let farthest = corners.into_iter().flatten().fold(0.0, f32::max);
         libm::expf(-(farthest - haze.near_m) / haze.distance_m)

@@ -76,7 +76,11 @@ pub fn draw_list(
 
 /// Whether `camera` shows the scene as a block on a table.
 pub fn shows_table(scene: &SceneModel, camera: &Camera) -> bool {
-    scene.table != TableTop::None && PictureSetting::new(camera, scene.bounds) == PictureSetting::Block
+    has_table(scene, PictureSetting::new(camera, scene.bounds))
+}
+
+fn has_table(scene: &SceneModel, setting: PictureSetting) -> bool {
+    scene.table != TableTop::None && setting == PictureSetting::Block
 }
 
 fn listed(
@@ -94,9 +98,12 @@ fn listed(
     let map = scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain"));
     let lighting = Lighting { to_sun, ..Lighting::default() };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
-    if let Some(camera) = camera {
-        list.lighting.haze = haze::haze(lighting.haze.color, scene.haze_m, camera, scene.bounds);
-        list.lighting.backdrop = PictureSetting::new(camera, scene.bounds).backdrop();
+    let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
+    if let Some((camera, setting)) = camera.zip(setting) {
+        let (min, max) = scene.bounds;
+        list.lighting.haze =
+            haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
+        list.lighting.backdrop = setting.backdrop();
     }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
@@ -104,9 +111,7 @@ fn listed(
     drapes::add(&mut list, scene, displayed, viewer);
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
-    if let Viewer::Camera(camera) = viewer
-        && shows_table(scene, camera)
-    {
+    if setting.is_some_and(|setting| has_table(scene, setting)) {
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);

@@ -1,7 +1,8 @@
 //! Cameras with parallel rays: a stated scale, or the largest round one at which what is shown fits the picture.
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, Vec2};
 
+use crate::geom::aabb::Aabb;
 use crate::scene::picture::fit::ParallelSpan;
 use crate::scene::picture::fitted_view::{ABOVE, BELOW, LEFT_RIGHT, silhouette};
 use crate::scene::plinth::base_z;
@@ -38,23 +39,13 @@ pub(super) fn parallel_camera(
     let lowered = if view.scale.is_none() { Vec2::Y * (ABOVE - BELOW) * half_m.y } else { Vec2::ZERO };
     let (min, max) = scene.bounds;
     let margin_m = (max - min).max_element() * MARGIN + 100.0;
-    let block = ParallelSpan::new(corners(min.with_z(base_z(scene.bounds)), max), &axes);
+    let block = Aabb { min: min.with_z(base_z(scene.bounds)), max };
+    let block = ParallelSpan::new(block.corners(), &axes);
     let [near, far] = [block.min.z - margin_m, block.max.z + margin_m];
     let at = (middle + lowered).extend(near).as_dvec3();
     let eye = axes.right.as_dvec3() * at.x + axes.up.as_dvec3() * at.y + axes.forward.as_dvec3() * at.z;
     let frame = ParallelFrame { half_m, dpi: view.dpi as f32 };
     Camera::parallel(eye.as_vec3(), &axes, frame, size, (0.5, far - near))
-}
-
-fn corners(min: Vec3, max: Vec3) -> impl Iterator<Item = Vec3> {
-    let pick = |bit: u32, low: f32, high: f32| if bit == 0 { low } else { high };
-    (0..8).map(move |corner: u32| {
-        Vec3::new(
-            pick(corner & 1, min.x, max.x),
-            pick(corner & 2, min.y, max.y),
-            pick(corner & 4, min.z, max.z),
-        )
-    })
 }
 
 /// The least number of two significant figures that is not below `scale`: at most a tenth of the size is lost.

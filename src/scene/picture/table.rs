@@ -3,16 +3,17 @@
 //! Paper and plain ground are one sheet with the shadow in its texture; it is full under and around the block and ends
 //! gradually in the backdrop. Boards have an edge, and the shadow lies over them as a sheet of its own.
 
-use glam::{DVec2, Mat4, Vec3};
+use glam::{DVec2, Vec3};
 
 use crate::description::words::TableTop;
 use crate::draw::color::Srgba;
-use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use crate::draw::material::{AlphaMode, Material};
 use crate::draw::pixels::Pixels;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::scene::SceneModel;
+use crate::scene::picture::add_mesh;
 use crate::scene::plinth::base_z;
 use crate::scene::table_shadow::{TableShadow, table_rect};
 use crate::scene::wood::wood;
@@ -113,14 +114,6 @@ fn add_sheet(list: &mut DrawList, rect: &Rect, z: f32, uv: impl Fn(DVec2) -> [f3
     mesh.triangle([a, b, c]);
     mesh.triangle([a, c, d]);
     let material = list.add_material(material);
-    let mesh = list.add_mesh(mesh);
-    list.items.push(DrawItem {
-        mesh,
-        triangles: 0..2,
-        material,
-        world_from_mesh: Mat4::IDENTITY,
-        layer: DepthLayer::Solid,
-        // The table is no part of the scene.
-        feature: FeatureId::NONE,
-    });
+    // The table is no part of the scene.
+    add_mesh(list, mesh, material, DepthLayer::Solid, FeatureId::NONE);
 }
