@@ -97,6 +97,25 @@ mod tests {
     }
 
     #[test]
+    fn inks_stand_out_of_their_halo_on_any_ground() {
+        let luminance = |color: Srgba| color.linear().dot(glam::Vec3::new(0.2126, 0.7152, 0.0722));
+        let over = |ground: u8| {
+            let share = HALO.alpha();
+            let [red, green, blue, _] = HALO.0.map(|halo| {
+                (f32::from(halo) * share + f32::from(ground) * (1.0 - share)).round() as u8
+            });
+            Srgba::opaque(red, green, blue)
+        };
+        for ink in [INK, SOFT_INK, WATER_INK] {
+            for ground in 0..=255 {
+                // WCAG 2.2, 1.4.3
+                let contrast = (luminance(over(ground)) + 0.05) / (luminance(ink) + 0.05);
+                assert!(contrast >= 4.5, "{ink:?} over {ground}: {contrast}");
+            }
+        }
+    }
+
+    #[test]
     fn a_tall_narrow_picture_is_scaled_by_its_width() {
         assert!(Sheet::new(1080, 1920).scale < 1.0);
     }

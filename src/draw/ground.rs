@@ -28,6 +28,9 @@ pub struct GroundMap {
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
     /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
     pub form_level: u32,
+    /// By what slopes are multiplied before they are shaded, at least 0: a z-factor, as if heights were exaggerated for
+    /// their shading alone.
+    pub z_factor: f32,
     /// Whether it is natural ground, with the grain of [`ground_grain`](crate::draw::ground_grain::ground_grain).
     pub has_grain: bool,
 }
@@ -186,6 +189,11 @@ impl GroundMap {
         bare.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 
+    /// The upward unit normal by which `post` is shaded.
+    pub fn shaded_normal(&self, post: &GroundPost) -> Vec3 {
+        Vec3::new(-post.slope_east * self.z_factor, -post.slope_north * self.z_factor, 1.0).normalize()
+    }
+
     /// The map at world position `at`, bilinear between posts; outside the map, the value at its border.
     pub fn sample(&self, at: Vec2) -> GroundPost {
         let last = Vec2::new((self.columns - 1) as f32, (self.rows - 1) as f32);
@@ -214,7 +222,7 @@ impl GroundPost {
         self.zip_with(other, |a, b| a + (b - a) * share)
     }
 
-    /// The upward unit normal.
+    /// The upward unit normal of the drawn ground.
     pub fn normal(&self) -> Vec3 {
         Vec3::new(-self.slope_east, -self.slope_north, 1.0).normalize()
     }
@@ -235,6 +243,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
             form_level: 0,
+            z_factor: 1.0,
             has_grain: false,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();

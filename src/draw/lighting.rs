@@ -100,10 +100,11 @@ impl Lighting {
 /// (Jenny and Patterson 2020), `r = c · (shade − flat)` and
 ///
 /// ```text
-/// lit = albedo · clamp(1 + GAIN · r, DARKEST, BRIGHTEST) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1))
-///              · mix(CLOSED, 1, sky visibility)
+/// lit = albedo · soft(1 + GAIN · r) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1)) · mix(CLOSED, 1, sky visibility)
 /// ```
 ///
+/// `soft` bends what lies beyond [`Self::TOE`] and [`Self::SHOULDER`] toward [`Self::DARKEST`] and [`Self::BRIGHTEST`]
+/// along hyperbolas that it reaches nowhere, so that forms still show in deep shade and on the brightest slopes.
 /// Level ground in the open keeps its albedo, so that the tints of a legend are those of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliefShading {
@@ -135,10 +136,14 @@ impl ReliefShading {
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
     /// The change of brightness with shade: larger is harsher.
     pub const GAIN: f32 = 2.2;
-    /// The least brightness: deep shade stays readable.
-    pub const DARKEST: f32 = 0.22;
-    /// The greatest brightness: above it pale tints lose their color.
-    pub const BRIGHTEST: f32 = 1.5;
+    /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.2.
+    pub const DARKEST: f32 = 0.08;
+    /// The brightness below which shade is softened.
+    pub const TOE: f32 = 0.5;
+    /// The brightness above which light is softened: pale tints would lose their color.
+    pub const SHOULDER: f32 = 1.25;
+    /// The brightness that the brightest slopes tend to.
+    pub const BRIGHTEST: f32 = 1.9;
     /// The color of the light on slopes toward the sun.
     pub const WARM: Vec3 = Vec3::new(1.06, 1.0, 0.90);
     /// The color of the light in shade.
@@ -178,11 +183,23 @@ impl ReliefShading {
         let contrast =
             Self::LOW_CONTRAST + (1.0 - Self::LOW_CONTRAST) * (point.elevation / 0.75).clamp(0.0, 1.0);
         let relief = contrast * (shade - self.flat());
-        let brightness = (1.0 + Self::GAIN * relief).clamp(Self::DARKEST, Self::BRIGHTEST);
+        let brightness = Self::soft(1.0 + Self::GAIN * relief);
         let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * relief).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
         albedo * tint / level * (brightness * sky)
+    }
+
+    /// A brightness bent toward the darkest and the brightest.
+    fn soft(brightness: f32) -> f32 {
+        let [toe, shoulder] = [Self::TOE - Self::DARKEST, Self::BRIGHTEST - Self::SHOULDER];
+        if brightness < Self::TOE {
+            Self::DARKEST + toe * toe / (toe + Self::TOE - brightness)
+        } else if brightness > Self::SHOULDER {
+            Self::BRIGHTEST - shoulder * shoulder / (shoulder + brightness - Self::SHOULDER)
+        } else {
+            brightness
+        }
     }
 }
 
@@ -232,6 +249,14 @@ mod tests {
         let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
         assert!(green(shadow) < green(ReliefPoint { elevation: 0.0, ..shadow }));
         assert!(green(ReliefPoint { sky_visibility: 0.5, ..LEVEL }) < 0.8);
+    }
+
+    #[test]
+    fn brightness_rises_without_a_step_and_never_stops() {
+        let shown: Vec<f32> = (-100..=200).map(|step| ReliefShading::soft(step as f32 * 0.01)).collect();
+        assert!(shown.windows(2).all(|pair| pair[1] - pair[0] > 2e-4 && pair[1] - pair[0] < 0.011));
+        assert!(shown[0] > ReliefShading::DARKEST && shown[300] < ReliefShading::BRIGHTEST);
+        assert_eq!(ReliefShading::soft(1.0), 1.0);
     }
 
     #[test]

@@ -36,10 +36,15 @@ impl FeatureId {
     pub const NONE: Self = Self(0);
     /// The bare ground.
     pub const GROUND: Self = Self(1);
+    /// The walls and the base of the block that the ground is the top of.
+    pub const PLINTH: Self = Self(u32::MAX);
 
-    /// Which feature it is, counted from 0; `None` for nothing and for the ground.
+    /// Which feature it is, counted from 0; `None` for nothing, for the ground and for the plinth.
     pub fn index(self) -> Option<usize> {
-        Some(self.0.checked_sub(Self::GROUND.0 + 1)? as usize)
+        match self {
+            Self::PLINTH => None,
+            feature => Some(feature.0.checked_sub(Self::GROUND.0 + 1)? as usize),
+        }
     }
 }
 

@@ -73,6 +73,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
             form_level: 0,
+            z_factor: 1.0,
             has_grain: false,
         }
     }

@@ -127,6 +127,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
             form_level: 0,
+            z_factor: 1.0,
             has_grain: false,
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };

@@ -77,8 +77,10 @@ pub fn export(
 }
 
 fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
-    if feature == FeatureId::GROUND {
-        return "ground".into();
+    match feature {
+        FeatureId::GROUND => return "ground".into(),
+        FeatureId::PLINTH => return "plinth".into(),
+        _ => {}
     }
     let feature = feature.index().and_then(|index| features.get(index));
     feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {

@@ -11,7 +11,7 @@ use crate::render::picture::Rendering;
 pub struct PictureStatistics {
     /// The share of pixels that show the ground, what lies on it or what stands on it, 0..=1.
     pub filled: f64,
-    /// The share of pixels that show bare ground, 0..=1.
+    /// The share of pixels that show bare ground, without the walls of its block, 0..=1.
     pub ground: f64,
     /// The lightness of bare ground; `None` where none is seen.
     pub ground_lightness: Option<Lightness>,

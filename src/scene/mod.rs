@@ -323,8 +323,9 @@ pub enum ViewAim {
 /// A view whose eye depends on the picture's shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedView {
-    /// Where it looks, clockwise from north, radians.
-    pub azimuth_rad: f32,
+    /// Where it looks, clockwise from north, radians; `None` for north, or for the east or the west where ground that is
+    /// long from south to north fills the picture better so.
+    pub azimuth_rad: Option<f32>,
     /// How far it looks down from the horizon, radians; `None` for what fills the picture best.
     pub pitch_rad: Option<f32>,
     /// The ground that it shows, world X and Y; `None` for all of it.

@@ -23,10 +23,10 @@ pub struct TableShadow<'a> {
 }
 
 /// Meters by which the half-shadow widens per meter from what throws it: a large lamp, not the sun (0.009).
-const SOFTNESS: f32 = 0.16;
+const SOFTNESS: f32 = 0.3;
 
 /// The shade where the sun is hidden, and where the block meets the table.
-const CAST: f32 = 0.5;
+const CAST: f32 = 0.32;
 const CONTACT: f32 = 0.5;
 
 /// The reach of the contact shade, as a share of the map's side.
@@ -152,7 +152,7 @@ mod tests {
         // One place each 10 m; the middle row, by its distance from the eastern and from the western wall.
         let row = &map[100 * side as usize..][..side as usize];
         let (east, west) = (|m: usize| row[150 + m / 10], |m: usize| row[50 - m / 10]);
-        assert!(east(50) > 0.4 && west(50) < 0.05, "{} {}", east(50), west(50));
+        assert!(east(50) > 0.8 * CAST && west(50) < 0.05, "{} {}", east(50), west(50));
         assert!(east(250) < 0.02 && west(250) == 0.0);
         assert!(east(80) > east(100) && east(100) > east(120), "{row:?}");
         assert!(west(10) > west(30), "the foot is darker");
@@ -166,6 +166,6 @@ mod tests {
         let shadow = TableShadow { ground: &ground, table_z: 0.0, to_sun: Vec3::new(-0.6, 0.0, 0.8) };
         let map = shadow.map(&table_rect(&ground, 500.0), 201);
         assert_eq!(map[100 * 201 + 150 + 5], 0.0);
-        assert!(map[100 * 201 + 50 + 45] > 0.4);
+        assert!(map[100 * 201 + 50 + 45] > 0.8 * CAST);
     }
 }

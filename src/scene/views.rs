@@ -120,7 +120,7 @@ fn aimed(
 fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<FittedView, Diagnostic> {
     let radians = |degrees: f64| degrees.to_radians() as f32;
     Ok(FittedView {
-        azimuth_rad: radians(table.azimuth.unwrap_or(0.0)),
+        azimuth_rad: table.azimuth.map(radians),
         pitch_rad: table.pitch.map(radians),
         shown: shown(table, frame, lattice)?,
     })
@@ -188,9 +188,9 @@ pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
         .collect()
 }
 
-/// A view from the south that is fitted to the whole ground.
+/// A view that is fitted to the whole ground.
 fn overview() -> SceneView {
-    let view = FittedView { azimuth_rad: 0.0, pitch_rad: None, shown: None };
+    let view = FittedView { azimuth_rad: None, pitch_rad: None, shown: None };
     let fov_y_rad = (FITTED_FOV_DEG as f32).to_radians();
     SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad }
 }

@@ -11,7 +11,7 @@ mod steps;
 
 use std::path::Path;
 
-use sandtable::draw::list::{DepthLayer, DrawItem, FeatureId};
+use sandtable::draw::list::{DepthLayer, DrawItem};
 use sandtable::export::encode_png;
 use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
 use sandtable::pipeline::scene_file::open_scene;
@@ -87,7 +87,7 @@ fn print_triangles(shot: &ViewDraw) {
     };
     let ground = shot.ground_triangles;
     let draped = count(|item| matches!(item.layer, DepthLayer::Draped(_)));
-    let models = count(|item| item.layer == DepthLayer::Solid && item.feature > FeatureId::GROUND);
+    let models = count(|item| item.layer == DepthLayer::Solid && item.feature.index().is_some());
     let all = shot.list.triangle_count();
     let rest = all - ground - draped - models;
     println!("\nTriangles: {ground} ground, {draped} draped, {models} models, {rest} others, {all} in all");

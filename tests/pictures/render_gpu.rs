@@ -72,8 +72,8 @@ fn ground_light(list: &DrawList, world: Vec3, albedo: Option<Vec3>) -> Vec3 {
     let albedo = albedo.unwrap_or_else(|| map.ramp.linear_at(post.height_m));
     let relief = ReliefShading::new(list.lighting.to_sun);
     let point = ReliefPoint {
-        normal: post.normal(),
-        form: post.normal(),
+        normal: map.shaded_normal(&post),
+        form: map.shaded_normal(&post),
         sun_visibility: post.sun_visibility,
         sky_visibility: post.sky_visibility,
         elevation: map.ramp.elevation(post.height_m),

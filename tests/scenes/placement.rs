@@ -5,7 +5,7 @@ use glam::{DVec2, Vec2, Vec3};
 use sandtable::description::diagnostic::Diagnostic;
 use sandtable::description::document::Document;
 use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::{DrawItem, FeatureId};
+use sandtable::draw::list::DrawItem;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::{build, build_ground};
 use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -146,7 +146,7 @@ fn gaps(item: &DrawItem, shot: &ViewDraw) -> Vec<f64> {
 /// The items of the features from 2 on that a scene's houses are.
 fn items(shot: &ViewDraw) -> impl Iterator<Item = &DrawItem> {
     let mut seen = Vec::new();
-    let items = shot.list.items.iter().filter(|item| item.feature > FeatureId::GROUND);
+    let items = shot.list.items.iter().filter(|item| item.feature.index().is_some());
     items.filter(move |item| {
         let is_first = !seen.contains(&item.feature);
         seen.push(item.feature);
@@ -210,7 +210,7 @@ fn free_to_lean_it_touches_more_of_the_ground() {
 fn a_plinth_reaches_from_the_house_into_the_ground() {
     let mut count = 0;
     shots(houses("anchor = \"highest\"\nfooting = \"plinth\""), |_, shot| {
-        for item in shot.list.items.iter().filter(|item| item.feature > FeatureId::GROUND) {
+        for item in shot.list.items.iter().filter(|item| item.feature.index().is_some()) {
             if shot.list.materials[item.material.0 as usize].name != "concrete" {
                 continue;
             }

@@ -40,8 +40,8 @@ impl<'a> GroundShader<'a> {
         let level = self.coarser.len().min(self.map.form_level as usize);
         self.add_bilinear(&mut form, hit.world.truncate(), level, 1.0);
         let point = ReliefPoint {
-            normal: point.post.normal(),
-            form: form.post.normal(),
+            normal: self.map.shaded_normal(&point.post),
+            form: self.map.shaded_normal(&form.post),
             sun_visibility: point.post.sun_visibility * received.sun,
             sky_visibility: point.post.sky_visibility * received.sky,
             elevation: self.map.ramp.elevation(point.post.height_m),
@@ -132,6 +132,7 @@ mod tests {
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
             form_level: 0,
+            z_factor: 1.0,
             has_grain: false,
         }
     }

@@ -486,11 +486,19 @@ fn facing_sun(normal: vec3f) -> f32 {
     return max(dot(normal, frame.to_sun.xyz), 0.0);
 }
 
+// ReliefShading::soft, with the same constants.
+fn soft_brightness(brightness: f32) -> f32 {
+    let toe = 0.08 + 0.42 * 0.42 / (0.42 + max(0.5 - brightness, 0.0));
+    let shoulder = 1.9 - 0.65 * 0.65 / (0.65 + max(brightness - 1.25, 0.0));
+    return select(select(brightness, shoulder, brightness > 1.25), toe, brightness < 0.5);
+}
+
 // ReliefShading::shade, with the same constants.
 fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let shares = vec3f(0.55, 0.20, 0.25);
-    let normal = normalize(vec3f(-post.slope, 1.0));
-    let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope, 1.0));
+    let z_factor = frame.to_sun.w;
+    let normal = normalize(vec3f(-post.slope * z_factor, 1.0));
+    let form = normalize(vec3f(-ground_on_level(at, frame.ground_size.w).slope * z_factor, 1.0));
     var sides = 0.0;
     for (var side = 0; side < 4; side += 1) {
         sides += max(dot(normal, frame.sides[side].xyz), 0.0) * frame.sides[side].w;
@@ -501,7 +509,7 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let high = stop_at(frame.ground_size.x - 1u).w;
     let elevation = select(0.0, (post.height - low) / (high - low), high > low);
     let relief = mix(0.6, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-    let brightness = clamp(1.0 + 2.2 * relief, 0.22, 1.5);
+    let brightness = soft_brightness(1.0 + 2.2 * relief);
     let cool = vec3f(0.80, 0.90, 1.12);
     let warm = vec3f(1.06, 1.0, 0.90);
     let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);

@@ -94,7 +94,7 @@ impl FrameUniforms {
             up: with(camera.up(), 1.0 / half.y),
             forward: with(camera.forward(), 0.0),
             depth: [depth[0], depth[1], width as f32, height as f32],
-            to_sun: with(light.to_sun, 0.0),
+            to_sun: with(light.to_sun, list.ground.as_ref().map_or(1.0, |map| map.z_factor)),
             sun: with(light.sun, 0.0),
             sky: with(light.sky, 0.0),
             bounce: with(light.bounce, 0.0),

@@ -1,8 +1,8 @@
 //! Views whose eye depends on the picture's shape: what they show fills it.
 
-use std::f32::consts::FRAC_PI_4;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::geom::convex::hull;
 use crate::geom::polygon::doubled_area;
@@ -24,6 +24,13 @@ const POSTS: u32 = 128;
 /// The pitches between which the one is chosen that fills the picture best: 40°, 45° and 50°.
 const PITCHES: [f32; 3] = [FRAC_PI_4 * 40.0 / 45.0, FRAC_PI_4, FRAC_PI_4 * 50.0 / 45.0];
 
+/// The share of the picture that a view toward the north fills at least; ground that is longer from south to north than
+/// the picture is high is seen from its long side instead. More of it turns more blocks out of their north.
+const LEAST_FILLED: f64 = 0.6;
+
+/// How many times as much a view from the long side fills at least, to be worth a north that is not up.
+const TURN_GAIN: f64 = 1.15;
+
 /// The eye and the target of a fitted view on a picture of `size` pixels.
 pub(super) fn fitted_aim(
     scene: &SceneModel,
@@ -37,25 +44,49 @@ pub(super) fn fitted_aim(
         min: -half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, BELOW)),
         max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
     };
-    let aimed = |pitch_rad: f32| {
-        let axes = DirectionAxes::new(view.azimuth_rad, pitch_rad);
-        (axes, fitted_eye(&points, &axes, &frame))
+    let aimed = |azimuth_rad: f32, pitch_rad: f32| {
+        let axes = DirectionAxes::new(azimuth_rad, pitch_rad);
+        let eye = fitted_eye(&points, &axes, &frame);
+        let corners: Vec<DVec2> = projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
+        let filled = doubled_area(&hull(&corners)) / 2.0 / f64::from(4.0 * half.x * half.y);
+        Aimed { axes, eye, filled }
     };
-    let (axes, eye) = match view.pitch_rad {
-        Some(pitch_rad) => aimed(pitch_rad),
+    let toward = |azimuth_rad: f32| match view.pitch_rad {
+        Some(pitch_rad) => aimed(azimuth_rad, pitch_rad),
         None => {
-            let filled = |&(axes, eye): &(DirectionAxes, Vec3)| {
-                let corners: Vec<DVec2> =
-                    projected(&points, &axes, eye).map(|corner| corner.as_dvec2()).collect();
-                doubled_area(&hull(&corners))
-            };
-            let [first, others @ ..] = PITCHES.map(aimed);
-            others
-                .into_iter()
-                .fold(first, |best, next| if filled(&next) > filled(&best) { next } else { best })
+            let [first, others @ ..] = PITCHES.map(|pitch_rad| aimed(azimuth_rad, pitch_rad));
+            others.into_iter().fold(first, |best, next| if next.filled > best.filled { next } else { best })
+        }
+    };
+    let Aimed { axes, eye, .. } = match view.azimuth_rad {
+        Some(azimuth_rad) => toward(azimuth_rad),
+        None => {
+            let north = toward(0.0);
+            let side = || toward(from_lower_side(&points));
+            if north.filled < LEAST_FILLED {
+                Some(side()).filter(|side| side.filled > north.filled * TURN_GAIN).unwrap_or(north)
+            } else {
+                north
+            }
         }
     };
     (eye, eye + axes.forward * scene.bounds.0.distance(scene.bounds.1).max(1.0))
+}
+
+/// A view of a direction that is fitted.
+struct Aimed {
+    axes: DirectionAxes,
+    eye: Vec3,
+    /// The share of the picture that it fills.
+    filled: f64,
+}
+
+/// The azimuth, to the east or to the west, of a view from the side where the ground is lower: less of it is hidden.
+fn from_lower_side(points: &[Vec3]) -> f32 {
+    let count = points.len() as f64;
+    let mean = points.iter().map(|point| point.as_dvec3()).sum::<DVec3>() / count;
+    let rise: f64 = points.iter().map(|point| (point.as_dvec3() - mean).x * f64::from(point.z)).sum();
+    if rise < 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 }
 }
 
 /// Points of the drawn ground within `shown`, its border among them; of the whole ground also the foot of the block.

@@ -64,8 +64,8 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &Displayed
 /// Adds the walls and, where they do not end straight, the plate that they stand on.
 pub(super) fn add_plinth(list: &mut DrawList, scene: &SceneModel, walls: DrawMesh) {
     let material = list.add_material(Material { name: "plinth".into(), ..Material::default() });
-    add_mesh(list, walls, material, DepthLayer::Solid, FeatureId::GROUND);
+    add_mesh(list, walls, material, DepthLayer::Solid, FeatureId::PLINTH);
     if let Some(plate) = base_plate(scene.ground().lattice(), scene.bounds) {
-        add_mesh(list, plate, material, DepthLayer::Solid, FeatureId::GROUND);
+        add_mesh(list, plate, material, DepthLayer::Solid, FeatureId::PLINTH);
     }
 }
