@@ -101,9 +101,9 @@ mod tests {
         let luminance = |color: Srgba| color.linear().dot(glam::Vec3::new(0.2126, 0.7152, 0.0722));
         let over = |ground: u8| {
             let share = HALO.alpha();
-            let [red, green, blue, _] = HALO.0.map(|halo| {
-                (f32::from(halo) * share + f32::from(ground) * (1.0 - share)).round() as u8
-            });
+            let [red, green, blue, _] = HALO
+                .0
+                .map(|halo| (f32::from(halo) * share + f32::from(ground) * (1.0 - share)).round() as u8);
             Srgba::opaque(red, green, blue)
         };
         for ink in [INK, SOFT_INK, WATER_INK] {

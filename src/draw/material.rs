@@ -54,6 +54,8 @@ pub struct Material {
     pub albedo: Albedo,
     /// Whether it is water, which mirrors the sky; on the ground map, posts say so.
     pub is_water: bool,
+    /// Whether the shadows of other things fall on it; a texture may hold them already.
+    pub receives_shadows: bool,
 }
 
 impl Material {
@@ -75,6 +77,7 @@ impl Default for Material {
             normals: NormalSource::Vertex,
             albedo: Albedo::Surface,
             is_water: false,
+            receives_shadows: true,
         }
     }
 }

@@ -26,7 +26,7 @@ pub struct TableShadow<'a> {
 const SOFTNESS: f32 = 0.3;
 
 /// The shade where the sun is hidden, and where the block meets the table.
-const CAST: f32 = 0.32;
+const CAST: f32 = 0.42;
 const CONTACT: f32 = 0.5;
 
 /// The reach of the contact shade, as a share of the map's side.

@@ -10,6 +10,7 @@
 //! data under the parent of DIR as it is; for other data the user must allow the folders of [`WrittenScene::allowed`].
 
 mod cameras;
+mod crop;
 mod folder;
 mod rules;
 mod survey;
@@ -20,8 +21,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use glam::DVec2;
-
 use crate::annotate::nice::NiceNumber;
 use crate::dem::undeclared::undeclared_nodata;
 use crate::description::parse::parse;
@@ -29,6 +28,7 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::pipeline::files::{self, SystemError, WriteFileError};
 use crate::pipeline::new_scene::cameras::cameras;
+use crate::pipeline::new_scene::crop::{around_vectors, with_straight_edges};
 use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
@@ -139,13 +139,17 @@ fn complete(
         Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
     };
     let mut scene = built(&draft)?;
+    draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
     let surveyed = vectors;
     let vectors = extent(surveyed, &scene.crs);
-    draft.extent = worth_cropping(vectors, scene.lattice.map_extent());
+    draft.extent = around_vectors(vectors, scene.lattice.map_extent());
+    if !draft.nodata.is_empty() {
+        scene = built(&draft)?;
+        draft.extent = draft.extent.or_else(|| with_straight_edges(&scene.lattice));
+    }
     if draft.extent.is_some() {
         scene = built(&draft)?;
     }
-    draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
     draft.title = title::of_vectors(surveyed, &scene).unwrap_or_default();
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
@@ -173,25 +177,4 @@ fn extent(vectors: &[VectorDraft], crs: &Crs) -> Rect {
     Rect::around(
         layers.flat_map(|layer| layer.corners.iter().filter_map(|at| layer.crs.transform(crs, *at).ok())),
     )
-}
-
-/// The extent of a scene whose vectors cover little of the `ground`: theirs and a margin; `None` where they cover more, or
-/// where there are none.
-fn worth_cropping(vectors: Rect, ground: Rect) -> Option<Rect> {
-    /// The share of the ground below which it is cropped.
-    const LITTLE: f64 = 0.3;
-    /// The margin on each side, as a share of the longer side.
-    const MARGIN: f64 = 0.15;
-    /// The shorter side as a share of the longer: a narrow block leaves most of a picture empty.
-    const NARROWEST: f64 = 0.8;
-    /// A smaller share of the ground along a side is a point on it, not a place to crop to.
-    const LEAST: f64 = 0.01;
-    let covered = vectors.intersection(&ground);
-    let share = covered.size() / ground.size();
-    let is_little = !covered.is_empty() && share.element_product() < LITTLE && share.min_element() > LEAST;
-    is_little.then(|| {
-        let longer = covered.size().max_element();
-        let half = covered.size().max(DVec2::splat(longer * NARROWEST)) / 2.0 + longer * MARGIN;
-        Rect { min: covered.center() - half, max: covered.center() + half }.intersection(&ground)
-    })
 }

@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::dem::undeclared::UndeclaredNodata;
 use crate::geom::rect::Rect;
 use crate::pipeline::new_scene::cameras::CameraDraft;
+use crate::pipeline::new_scene::crop::ExtentDraft;
 use crate::pipeline::new_scene::rules::{self, RULES};
 use crate::pipeline::new_scene::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
 
@@ -30,7 +31,7 @@ pub(super) struct SceneDraft {
     pub contours_m: Option<f64>,
     pub cameras: Vec<CameraDraft>,
     /// The part of the elevation that the scene is made of, in the scene's system; `None` for all of it.
-    pub extent: Option<Rect>,
+    pub extent: Option<ExtentDraft>,
 }
 
 /// A vector file and its layers.
@@ -94,15 +95,17 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     if let Some(crs) = &draft.crs {
         let _ = writeln!(out, "crs = {}", quoted(crs));
     }
-    for UndeclaredNodata { value, evidence } in &draft.nodata {
-        let _ = writeln!(out, "# In the file {evidence}. If that means no data:\n# nodata = {value}");
+    for (index, UndeclaredNodata { value, evidence }) in draft.nodata.iter().enumerate() {
+        let (advice, off) = if index == 0 {
+            ("That is taken for missing data; remove the next line if it is ground", "")
+        } else {
+            ("If that means no data:", "# ")
+        };
+        let _ = writeln!(out, "# In the file {evidence}. {advice}\n{off}nodata = {value}");
     }
-    if let Some(extent) = &draft.extent {
-        let corners = corners(extent);
-        let _ = writeln!(
-            out,
-            "# The features and a margin; remove it to see the whole elevation model.\nextent = {corners}"
-        );
+    if let Some(ExtentDraft { rect, holds }) = &draft.extent {
+        let corners = corners(rect);
+        let _ = writeln!(out, "# {holds}; remove it to see the whole elevation model.\nextent = {corners}");
     }
     if draft.exaggeration > 0.0 {
         let _ = writeln!(out, "# 1 is true to scale; flat country shows its forms at 2 or 3.");

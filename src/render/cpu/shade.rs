@@ -91,7 +91,12 @@ impl<'a> Shader<'a> {
             _ => {
                 let normal = vertices.normal(item, face);
                 let is_sunlit = normal.dot(lighting.to_sun) > 0.0;
-                lighting.shade_received(albedo, normal, self.received(&hit, ShadowReceiver::Solid, is_sunlit))
+                let received = if material.receives_shadows {
+                    self.received(&hit, ShadowReceiver::Solid, is_sunlit)
+                } else {
+                    ReceivedLight::ALL
+                };
+                lighting.shade_received(albedo, normal, received)
             }
         };
         let water = match (material.albedo, &ground) {

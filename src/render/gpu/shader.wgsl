@@ -49,6 +49,7 @@ const FROM_GROUND_ALBEDO = 2u;
 const MASK = 4u;
 const BLEND = 8u;
 const WATER = 16u;
+const IN_ALL_LIGHT = 32u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -568,9 +569,12 @@ fn shade(in: Varying, front: bool) -> vec4f {
         }
     }
     if (flags & FROM_GROUND_NORMAL) == 0u {
-        var received = vec2f(1.0, contact_share(in.world, true));
-        if dot(normal, frame.to_sun.xyz) > 0.0 {
-            received.x = sun_share(in.world, face, true);
+        var received = vec2f(1.0, 1.0);
+        if (flags & IN_ALL_LIGHT) == 0u {
+            received.y = contact_share(in.world, true);
+            if dot(normal, frame.to_sun.xyz) > 0.0 {
+                received.x = sun_share(in.world, face, true);
+            }
         }
         light = lit(color.rgb, normal, received);
     }

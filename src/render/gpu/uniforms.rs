@@ -23,6 +23,7 @@ const FROM_GROUND_ALBEDO: u32 = 2;
 const MASK: u32 = 4;
 const BLEND: u32 = 8;
 const WATER: u32 = 16;
+const IN_ALL_LIGHT: u32 = 32;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -146,6 +147,7 @@ impl SurfaceConstants {
         let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
         let albedo = if material.albedo == Albedo::GroundMap { FROM_GROUND_ALBEDO } else { 0 };
         let water = if material.is_water { WATER } else { 0 };
+        let light = if material.receives_shadows { 0 } else { IN_ALL_LIGHT };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -153,7 +155,7 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha | water, 0, 0, 0],
+            flags: [normal | albedo | alpha | water | light, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

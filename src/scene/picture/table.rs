@@ -60,7 +60,13 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {
             &rect,
             z,
             uv,
-            Material { name: "table".into(), base_color, texture, ..Material::default() },
+            Material {
+                name: "table".into(),
+                base_color,
+                texture,
+                receives_shadows: false,
+                ..Material::default()
+            },
         );
     }
     let color = top.map(|color| (color.linear() / light).min(Vec3::ONE));
@@ -73,7 +79,13 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {
         (inset + DVec2::new(part.x, 1.0 - part.y) * (1.0 - 2.0 * inset)).as_vec2().to_array()
     };
     let above = if top.is_none() { SHADOW_ABOVE * side_m as f32 } else { 0.0 };
-    let material = Material { name: "table".into(), texture, alpha: AlphaMode::Blend, ..Material::default() };
+    let material = Material {
+        name: "table".into(),
+        texture,
+        alpha: AlphaMode::Blend,
+        receives_shadows: false,
+        ..Material::default()
+    };
     add_sheet(list, &rect, z + above, uv, material);
 }
 

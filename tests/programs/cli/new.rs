@@ -115,7 +115,7 @@ fn swellendam_becomes_roads_rivers_lakes_and_buildings() {
         "# Buildings (4708).",
         "layer = \"roads\"",
         "title = \"Swellendam\"",
-        "# nodata = 0\n",
+        "\nnodata = 0\n",
         "# Places (5).\n[[label]]\nfile = ",
         "\nmost = 15\n",
     ] {
