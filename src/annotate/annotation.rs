@@ -5,6 +5,7 @@
 
 use glam::Vec2;
 
+use crate::annotate::cover::SceneCover;
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
@@ -24,12 +25,15 @@ pub struct Annotations {
     pub subtitle: Option<String>,
     /// The north arrow, upper right.
     pub north: Option<NorthArrow>,
-    /// The scale bar, lower left.
+    /// The scale bar, lower left or under the title.
     pub scale_bar: Option<ScaleBar>,
-    /// The elevation legend, lower right.
+    /// The elevation legend, lower right or under the north arrow.
     pub legend: Option<Legend>,
     /// The source of the data, small along the lower border.
     pub credit: Option<String>,
+    /// Where the picture shows the scene; scale bar and legend leave their lower corners for the upper ones where they
+    /// would cover it there and not here.
+    pub cover: Option<SceneCover>,
 }
 
 /// A name at a place on the picture.

@@ -18,6 +18,7 @@ pub mod chart_ground;
 pub mod chart_profile;
 pub mod chart_sight;
 mod composer;
+pub mod cover;
 mod credit;
 mod drawing;
 mod labels;

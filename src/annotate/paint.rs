@@ -5,6 +5,7 @@ use glam::Vec2;
 use crate::annotate::annotation::Annotations;
 use crate::annotate::canvas::paint;
 use crate::annotate::composer::Composer;
+use crate::annotate::cover::SceneCover;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
@@ -33,16 +34,25 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     report
 }
 
+/// The space between pieces of furniture that stand under each other, design pixels.
+const GAP: f32 = 14.0;
+
+/// A corner is free where a panel covers no more than this share of its own area of the scene.
+const FREE: f32 = 0.05;
+
 struct Furniture {
     sheet: Sheet,
     drawings: Vec<Drawing>,
+    /// What stands where.
+    corners: Vec<(FurnitureKind, PixelBox)>,
     left_out: Vec<FurnitureKind>,
 }
 
 impl Furniture {
     /// Each piece in its corner; pieces that do not fit are left out.
     fn lay_out(annotations: &Annotations, composer: &mut Composer) -> Self {
-        let mut furniture = Self { sheet: composer.sheet, drawings: Vec::new(), left_out: Vec::new() };
+        let mut furniture =
+            Self { sheet: composer.sheet, drawings: Vec::new(), corners: Vec::new(), left_out: Vec::new() };
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
@@ -52,7 +62,7 @@ impl Furniture {
             (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
             (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
         ] {
-            piece.into_iter().for_each(|drawing| furniture.place(kind, drawing));
+            piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));
         }
         if let Some(text) = &annotations.credit {
             // Flush right in the lower margin, between scale bar and legend.
@@ -67,27 +77,53 @@ impl Furniture {
         furniture
     }
 
-    /// Moves a piece into its corner and keeps it where it fits.
-    fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>) {
+    /// Moves a piece into its corner, or into the second one where that is free and the first is not, and keeps it where
+    /// it fits.
+    fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
         let moved = drawing.map(|drawing| {
-            let inner = self.sheet.inner();
-            let PixelBox { min, max } = match kind {
-                // The arrow's center stays in place however the needle turns.
-                FurnitureKind::NorthArrow => {
-                    PixelBox::around(Vec2::ZERO, Vec2::splat(north::reach(&self.sheet)))
-                }
-                _ => drawing.bounds(),
+            let first = self.in_corner(kind, drawing.clone());
+            let above = match kind {
+                FurnitureKind::ScaleBar => FurnitureKind::Title,
+                FurnitureKind::Legend => FurnitureKind::NorthArrow,
+                _ => return first,
             };
-            let (to_min, to_max) = (inner.min - min, inner.max - max);
-            let by = match kind {
-                FurnitureKind::Title => to_min,
-                FurnitureKind::NorthArrow => Vec2::new(to_max.x, to_min.y),
-                FurnitureKind::ScaleBar => Vec2::new(to_min.x, to_max.y),
-                FurnitureKind::Legend | FurnitureKind::Credit => to_max,
+            let covers = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
+            let second = || {
+                let mut inner = self.sheet.inner();
+                let under = self.corners.iter().find(|(of, _)| *of == above).map(|(_, bounds)| bounds.max.y);
+                inner.min.y = under.map_or(inner.min.y, |y| y + self.sheet.px(GAP));
+                let bounds = drawing.bounds();
+                let x = if kind == FurnitureKind::Legend {
+                    inner.max.x - bounds.max.x
+                } else {
+                    inner.min.x - bounds.min.x
+                };
+                drawing.clone().moved(Vec2::new(x, inner.min.y - bounds.min.y).round())
             };
-            drawing.moved(by.round())
+            if covers(&first) <= FREE {
+                return first;
+            }
+            Some(second()).filter(|second| covers(second) <= FREE).unwrap_or(first)
         });
         self.keep(kind, moved);
+    }
+
+    /// A piece moved into its corner.
+    fn in_corner(&self, kind: FurnitureKind, drawing: Drawing) -> Drawing {
+        let inner = self.sheet.inner();
+        let PixelBox { min, max } = match kind {
+            // The arrow's center stays in place however the needle turns.
+            FurnitureKind::NorthArrow => PixelBox::around(Vec2::ZERO, Vec2::splat(north::reach(&self.sheet))),
+            _ => drawing.bounds(),
+        };
+        let (to_min, to_max) = (inner.min - min, inner.max - max);
+        let by = match kind {
+            FurnitureKind::Title => to_min,
+            FurnitureKind::NorthArrow => Vec2::new(to_max.x, to_min.y),
+            FurnitureKind::ScaleBar => Vec2::new(to_min.x, to_max.y),
+            FurnitureKind::Legend | FurnitureKind::Credit => to_max,
+        };
+        drawing.moved(by.round())
     }
 
     /// Keeps a piece where it is, if it fits there.
@@ -102,7 +138,10 @@ impl Furniture {
                 && !self.drawings.iter().any(|other| other.bounds().overlaps(&spaced))
         };
         match drawing.filter(fits) {
-            Some(drawing) => self.drawings.push(drawing),
+            Some(drawing) => {
+                self.corners.push((kind, drawing.bounds()));
+                self.drawings.push(drawing);
+            }
             None => self.left_out.push(kind),
         }
     }

@@ -3,9 +3,11 @@
 use glam::Vec2;
 
 use crate::annotate::annotation::{Annotations, PictureLabel};
+use crate::annotate::cover::SceneCover;
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::draw::list::FeatureId;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::{SceneLabel, SceneModel};
@@ -22,8 +24,15 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
         north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),
         scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
         legend: furniture.legend.then(|| legend(scene)),
+        cover: Some(cover(picture)),
         ..Annotations::default()
     }
+}
+
+/// Where the picture shows the scene and not its background.
+fn cover(picture: &Rendering) -> SceneCover {
+    let (width, height) = (picture.pixels.width(), picture.pixels.height());
+    SceneCover::new(width, height, |x, y| picture.features[(y * width + x) as usize] != FeatureId::NONE)
 }
 
 fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<PictureLabel> {
