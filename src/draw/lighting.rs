@@ -135,7 +135,7 @@ impl ReliefShading {
     /// The shares of the side lights.
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
     /// The change of brightness with shade: larger is harsher.
-    pub const GAIN: f32 = 2.2;
+    pub const GAIN: f32 = 2.4;
     /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.2.
     pub const DARKEST: f32 = 0.08;
     /// The brightness below which shade is softened.
@@ -151,7 +151,7 @@ impl ReliefShading {
     /// Brightness where no sky is seen.
     pub const CLOSED: f32 = 0.5;
     /// The contrast of the lowest ground; that of the highest quarter is 1.
-    pub const LOW_CONTRAST: f32 = 0.6;
+    pub const LOW_CONTRAST: f32 = 0.75;
 
     /// The shading for a sun in direction `to_sun` (unit vector).
     pub fn new(to_sun: Vec3) -> Self {

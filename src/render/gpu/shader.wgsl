@@ -509,8 +509,8 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let low = stop_at(0u).w;
     let high = stop_at(frame.ground_size.x - 1u).w;
     let elevation = select(0.0, (post.height - low) / (high - low), high > low);
-    let relief = mix(0.6, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-    let brightness = soft_brightness(1.0 + 2.2 * relief);
+    let relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
+    let brightness = soft_brightness(1.0 + 2.4 * relief);
     let cool = vec3f(0.80, 0.90, 1.12);
     let warm = vec3f(1.06, 1.0, 0.90);
     let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);

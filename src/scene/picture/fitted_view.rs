@@ -16,7 +16,7 @@ use crate::view::axes::DirectionAxes;
 /// The share of the picture left free on each side: for the title above and the scale bar below.
 pub(super) const LEFT_RIGHT: f32 = 0.025;
 pub(super) const BELOW: f32 = 0.045;
-pub(super) const ABOVE: f32 = 0.075;
+pub(super) const ABOVE: f32 = 0.06;
 
 /// About as many posts as this along each side of what is shown stand for its silhouette.
 const POSTS: u32 = 128;
