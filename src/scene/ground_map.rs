@@ -88,8 +88,9 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
         columns: size.columns,
         rows: size.rows,
         posts,
-        ramp: scene.ramp.clone(),
+        ramp: scene.ramp(),
         contours: scene.contours,
+        imagery: scene.imagery.clone(),
         form_level: form_level(lattice).saturating_sub(number),
         has_grain: true,
     }
