@@ -1,16 +1,19 @@
 //! The elevation legend: the ramp with nice heights beside it, and notes on heights and contours, lower right.
 
+use std::f32::consts::SQRT_2;
+
 use glam::Vec2;
 
 use crate::annotate::composer::{Composer, widest};
 use crate::annotate::drawing::Drawing;
 use crate::annotate::nice::{Ticks, format_trimmed};
 use crate::annotate::paragraph::written_lines;
-use crate::annotate::pixel_box::PixelBox;
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{FRAME, INK, SOFT_INK, Sheet};
 use crate::annotate::text::{CAP_HEIGHT, TextStyle, TypesetLine};
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
+use crate::draw::hatching::{PITCH_PX, WIDTH_PX};
 
 /// Height of the ramp in design pixels.
 const RAMP_HEIGHT: f32 = 190.0;
@@ -32,6 +35,8 @@ pub struct Legend {
     pub vertical_exaggeration: f32,
     /// The greatest scale of a model that is drawn larger than it is, as a symbol.
     pub model_enlargement: Option<f32>,
+    /// Whether the picture shows places without data, which are hatched.
+    pub has_voids: bool,
     /// Height between contour lines in meters, where there are any.
     pub contour_interval: Option<f32>,
     /// A line that names the vertical datum, for instance `Heights: NAVD88`.
@@ -63,6 +68,20 @@ pub(in crate::annotate) fn compose(legend: &Legend, composer: &mut Composer) -> 
         notes_width = notes_width.max(note.advance);
         drawing.write(&note, Vec2::new(padding, bottom), SOFT_INK);
         drawing.record_text(&text, note.missing, note.shortened);
+    }
+    if legend.has_voids {
+        let style = composer.style(14.0, TextStyle::REGULAR);
+        let text = composer.line("No data", style);
+        bottom = (bottom + style.size_px * 1.7).round();
+        let swatch = PixelBox::at(
+            Vec2::new(padding, bottom - style.size_px.round()),
+            Vec2::new(ramp.size().x, (style.size_px * 1.2).round()),
+        );
+        hatch(&mut drawing, swatch, &sheet);
+        let at = swatch.max.x + sheet.whole_px(10.0);
+        notes_width = notes_width.max(at - padding + text.advance);
+        drawing.write(&text, Vec2::new(at, bottom), SOFT_INK);
+        bottom = swatch.max.y;
     }
     let right = (padding + notes_width).max(figures_right);
     let corner = Vec2::new((right + padding).ceil(), (bottom + padding).ceil());
@@ -98,6 +117,22 @@ fn notes(legend: &Legend, composer: &mut Composer) -> Vec<(String, TypesetLine)>
         Some((text, line))
     };
     texts.into_iter().filter_map(&mut fitted).collect()
+}
+
+/// Draws a swatch of the hatching of places without data, in a thin frame.
+fn hatch(drawing: &mut Drawing, swatch: PixelBox, sheet: &Sheet) {
+    let size = swatch.size();
+    let pitch = PITCH_PX * SQRT_2;
+    // Lines x + y = c through the swatch, cut to it.
+    let mut sum = pitch / 2.0;
+    while sum < size.x + size.y {
+        let from = Vec2::new(sum.min(size.x), (sum - size.x).max(0.0));
+        let to = Vec2::new((sum - size.y).max(0.0), sum.min(size.y));
+        let line = PixelSegment { from: swatch.min + from, to: swatch.min + to };
+        drawing.line(line, WIDTH_PX, SOFT_INK);
+        sum += pitch;
+    }
+    drawing.frame(swatch, sheet.hairline().round(), FRAME);
 }
 
 /// Draws the ramp row by row, highest on top, in a thin frame.
@@ -154,6 +189,7 @@ mod tests {
             high_m: 1062.0,
             vertical_exaggeration: 1.5,
             model_enlargement: None,
+            has_voids: false,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),
         }
@@ -185,6 +221,14 @@ mod tests {
         {
             assert!(draw(&Legend { low_m, high_m, ..legend() }).is_none(), "{low_m}..{high_m}");
         }
+    }
+
+    #[test]
+    fn places_without_data_have_a_swatch_and_a_taller_panel() {
+        let plain = draw(&legend()).expect("a range");
+        let hatched = draw(&Legend { has_voids: true, ..legend() }).expect("a range");
+        assert!(hatched.bounds().max.y > plain.bounds().max.y + 10.0);
+        assert!(hatched.marks.len() > plain.marks.len() + 3);
     }
 
     #[test]

@@ -223,6 +223,7 @@ mod tests {
                 high_m: 100.0,
                 vertical_exaggeration: 1.0,
                 model_enlargement: None,
+                has_voids: false,
                 contour_interval: None,
                 vertical_datum: None,
             },

@@ -30,7 +30,7 @@ pub(crate) fn placed(
 }
 
 /// Reads a world file: x and y per column, x and y per row, and the center of the first sample.
-fn world_file(text: &str) -> Result<DAffine2, DemErrorKind> {
+pub(crate) fn world_file(text: &str) -> Result<DAffine2, DemErrorKind> {
     let numbers: Vec<f64> =
         text.split_ascii_whitespace().map_while(|word| word.replace(',', ".").parse().ok()).collect();
     let [a, d, b, e, c, f] = numbers[..] else {

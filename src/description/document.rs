@@ -146,6 +146,8 @@ table! {
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
+        /// A picture of the ground over the colors by height, such as an aerial photograph.
+        imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
@@ -165,6 +167,17 @@ table! {
         major_every: u32 = key::integer(1, 1000), default 5;
         /// Color of the lines.
         color: Option<Color> = key::color(), otherwise "a translucent brown";
+    }
+
+    /// `[style.imagery]`.
+    struct ImageryTable {
+        /// GeoTIFF in 8-bit colors, or a PNG or JPEG with its world file (`.pgw`, `.jgw`, `.wld`) beside it. Beyond it, and
+        /// where it is transparent or without data, the colors by height show.
+        file: Stated<String> = key::file(), required;
+        /// Its coordinate system where the file and a `.prj` beside it name none or a wrong one.
+        crs: Option<Crs> = key::crs(), otherwise "what the file names";
+        /// Whether the relief is shaded over it, or its colors are shown as they are.
+        shade: bool = key::switch(), default true;
     }
 
     /// `[style.light]`.

@@ -66,11 +66,13 @@ words! {
         Point = "point": "anything else",
     }
 
-    /// A built-in color ramp, stretched from the lowest to the highest ground.
+    /// A built-in color ramp from the lowest to the highest ground, lighter with height all the way.
     enum RampName {
-        Atlas = "atlas": "green lowland over yellow and brown to white",
-        Desert = "desert": "sand over red rock",
+        Atlas = "atlas": "green lowland over yellow to pale brown, and white above the snow line of the latitude",
+        Desert = "desert": "red rock under sand",
         Gray = "gray": "dark to light",
+        Viridis = "viridis": "blue over green to yellow in steps that look equal",
+        Cividis = "cividis": "the same in blue and yellow, for eyes that tell no red from green",
     }
 
     /// How a camera draws the ground.

@@ -38,6 +38,16 @@ impl Srgba {
     }
 }
 
+/// The lightness L* of a color in linear light, 0..=100 (CIE 1976, for a white of luminance 1).
+pub fn lightness(linear: Vec3) -> f32 {
+    let luminance = linear.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    if luminance > 216.0 / 24_389.0 {
+        116.0 * libm::cbrtf(luminance) - 16.0
+    } else {
+        luminance * 24_389.0 / 27.0
+    }
+}
+
 /// One sRGB channel in linear light, 0..=1 (IEC 61966-2-1).
 pub fn linear_from_srgb(channel: u8) -> f32 {
     static TABLE: LazyLock<[f32; 256]> = LazyLock::new(|| {
@@ -80,6 +90,14 @@ mod tests {
     fn every_channel_value_survives_the_round_trip() {
         for channel in 0..=255 {
             assert_eq!(srgb_from_linear(linear_from_srgb(channel)), channel);
+        }
+    }
+
+    #[test]
+    fn lightness_is_that_of_the_standard() {
+        for (gray, wanted) in [(0, 0.0), (119, 50.03), (8, 2.19), (255, 100.0)] {
+            let found = lightness(Srgba::opaque(gray, gray, gray).linear());
+            assert!((found - wanted).abs() < 0.05, "{gray}: {found}");
         }
     }
 

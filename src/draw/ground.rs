@@ -3,9 +3,12 @@
 //! The drawn mesh may be coarse. Color, contours and shading are read from this map at every pixel, so that the
 //! picture shows the elevation model and not the triangles.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::water::WaterColor;
 
 /// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
@@ -25,6 +28,8 @@ pub struct GroundMap {
     pub ramp: ColorRamp,
     /// Contour lines; `None` draws none.
     pub contours: Option<Contours>,
+    /// A picture over ramp and water.
+    pub imagery: Option<Arc<GroundImagery>>,
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
     /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
     pub form_level: u32,
@@ -157,6 +162,9 @@ pub enum GroundMapError {
     /// The cell is not positive and finite, or the origin is not finite.
     #[error("the ground map has cells of {0} m from {1}")]
     Grid(Vec2, Vec2),
+    /// The draped picture is empty or has no place.
+    #[error("the picture over the ground map is empty or has no place")]
+    Imagery,
 }
 
 impl GroundMap {
@@ -174,16 +182,23 @@ impl GroundMap {
             && self.cell.recip().is_finite()
             && self.cell.is_finite()
             && self.origin.is_finite();
-        if is_grid { Ok(()) } else { Err(GroundMapError::Grid(self.cell, self.origin)) }
+        if !is_grid {
+            return Err(GroundMapError::Grid(self.cell, self.origin));
+        }
+        match &self.imagery {
+            Some(imagery) if !imagery.is_sound() => Err(GroundMapError::Imagery),
+            _ => Ok(()),
+        }
     }
 
     /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
-    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), with contours
-    /// on it, or water.
-    pub fn albedo(&self, post: &GroundPost, change_m: f32, grain: f32) -> Vec3 {
+    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), or water; what is
+    /// `draped` over them; and contours.
+    pub fn albedo(&self, post: &GroundPost, change_m: f32, grain: f32, draped: &DrapedColor) -> Vec3 {
         let land = self.ramp.linear_at(post.height_m) * grain;
         let water = WaterColor::cover(post.water);
         let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
+        let bare = draped.over(bare);
         let Some(contours) = &self.contours else { return bare };
         let strength = contours.strength(post.height_m, change_m) * (1.0 - water);
         bare.lerp(contours.color.linear(), strength * contours.color.alpha())
@@ -242,6 +257,7 @@ mod tests {
             posts: vec![GroundPost::default(); 6],
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
+            imagery: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

@@ -181,6 +181,7 @@ mod tests {
                 posts: posts(size, height),
                 ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
                 contours: None,
+                imagery: None,
                 form_level: 0,
                 z_factor: 1.0,
                 has_grain: false,

@@ -33,6 +33,9 @@ pub enum Albedo {
     Surface,
     /// The ground map's ramp and contours; base color and texture are not used.
     GroundMap,
+    /// Base color without light, in lines of [`hatching_cover`](crate::draw::hatching::hatching_cover); texture and vertex
+    /// colors are not used.
+    Hatching,
 }
 
 /// A surface's color and how it is shaded.

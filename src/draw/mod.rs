@@ -2,10 +2,13 @@
 //! drawing.
 
 pub mod backdrop;
+pub mod bathymetry;
 pub mod color;
 pub mod ground;
 pub mod ground_grain;
+pub mod ground_imagery;
 pub mod ground_levels;
+pub mod hatching;
 pub mod lighting;
 pub mod list;
 pub mod material;

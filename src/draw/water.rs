@@ -1,4 +1,4 @@
-//! The look of water: one blue, darker with depth and along the shore, and the sky in it.
+//! The look of water: one blue, darker with depth ([`bathymetry`]) and along the shore, and the sky in it.
 //!
 //! A calm surface mirrors what lies at the mirrored angle, by Fresnel's law in the approximation of Schlick (1994): two
 //! hundredths of it from above and nearly all at a grazing angle. Waves turn part of the surface toward the eye, so that
@@ -6,6 +6,7 @@
 
 use glam::Vec3;
 
+use crate::draw::bathymetry::bathymetry;
 use crate::draw::color::Srgba;
 use crate::draw::lighting::Lighting;
 
@@ -19,10 +20,6 @@ pub struct WaterColor;
 impl WaterColor {
     /// Water at the height of 0 and above.
     pub const SURFACE: Srgba = Srgba::opaque(92, 150, 190);
-    /// Deep water.
-    pub const DEEP: Srgba = Srgba::opaque(52, 100, 152);
-    /// The height in meters at which water is taken to be deep.
-    pub const DEEP_M: f32 = -1000.0;
     /// The line along a shore.
     pub const SHORE_LINE: Srgba = Srgba::opaque(46, 96, 138);
     /// By which share a pixel half land and half water is darker than both.
@@ -41,8 +38,7 @@ impl WaterColor {
 
     /// The color in linear light of a pixel of `land`, a share of which is water over a bed at `height_m`.
     pub fn over(land: Vec3, height_m: f32, share: f32) -> Vec3 {
-        let depth = (height_m / Self::DEEP_M).clamp(0.0, 1.0).sqrt();
-        let water = Self::SURFACE.linear().lerp(Self::DEEP.linear(), depth);
+        let water = bathymetry().linear_at(height_m);
         land.lerp(water, share) * (1.0 - Self::SHORE * 4.0 * share * (1.0 - share))
     }
 }

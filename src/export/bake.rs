@@ -1,4 +1,4 @@
-//! The ground map as a texture: tints, water and contours seen from straight above, without light and shadow.
+//! The ground map as a texture: tints, water, a draped picture and contours seen from straight above, without light and shadow.
 
 use glam::Vec2;
 use rayon::prelude::*;
@@ -34,8 +34,9 @@ pub fn bake(map: &GroundMap) -> BakedGround {
     let cells = Vec2::new((map.columns.max(2) - 1) as f32, (map.rows.max(2) - 1) as f32);
     let size = cells * map.cell;
     // Square pixels.
-    let meters_per_px =
-        (map.cell.min_element() / PIXELS_PER_CELL).max(size.max_element() / LONGEST_PX as f32);
+    let draped_px_m = map.imagery.as_deref().map(|imagery| imagery.pixels_per_m().recip().min_element());
+    let wanted_m = (map.cell.min_element() / PIXELS_PER_CELL).min(draped_px_m.unwrap_or(f32::INFINITY));
+    let meters_per_px = wanted_m.max(size.max_element() / LONGEST_PX as f32);
     let pixels = (size / meters_per_px).round().max(Vec2::ONE);
     let (width, height) = (pixels.x as u32, pixels.y as u32);
     let step = size / pixels;
@@ -53,7 +54,8 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let half = step / 2.0;
     let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
     let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
-    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), 1.0))
+    let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
+    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), 1.0, &draped))
 }
 
 #[cfg(test)]
@@ -72,6 +74,7 @@ mod tests {
             posts: (0..15).map(post).collect(),
             ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
+            imagery: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

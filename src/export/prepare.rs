@@ -126,6 +126,7 @@ mod tests {
             posts: (0..9).map(post).collect(),
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
+            imagery: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

@@ -7,6 +7,7 @@ use crate::annotate::cover::SceneCover;
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
@@ -80,11 +81,12 @@ fn legend(scene: &SceneModel) -> Legend {
     let (low_m, high_m) = scene.height_range_m;
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
     Legend {
-        ramp: scene.ramp.clone(),
+        ramp: if scene.has_sea() { with_bathymetry(&scene.ramp()) } else { scene.ramp() },
         low_m,
         high_m,
         vertical_exaggeration: scene.scale.0,
         model_enlargement: enlargement(scene),
+        has_voids: scene.has_voids(),
         contour_interval: scene.contours.map(|contours| contours.interval_m),
         vertical_datum: datum.map(|name| format!("Heights: {name}")),
     }

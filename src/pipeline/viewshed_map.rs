@@ -11,7 +11,7 @@ use crate::annotate::map::{MapFurniture, ObserverOverlay, compose, draw_observer
 use crate::draw::color::Srgba;
 use crate::draw::ground::ColorRamp;
 use crate::draw::pixels::Pixels;
-use crate::scene::style;
+use crate::scene::ramps::{self, TintedGround};
 use crate::terrain::hillshade::{HillshadeOptions, NO_DATA, hillshade};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions};
@@ -53,7 +53,7 @@ pub fn viewshed_map(
     text: SheetText,
 ) -> Pixels {
     let (low_m, high_m) = lattice.height_range();
-    let ramp = style::atlas((low_m, high_m));
+    let ramp = ramps::atlas(&TintedGround { range_m: (low_m, high_m), latitude_deg: None });
     let colors = colors(lattice, viewshed, &ramp);
     let frame = MapFrame::around(lattice);
     let mut map = frame.resampled(&colors);
@@ -69,6 +69,7 @@ pub fn viewshed_map(
             high_m,
             vertical_exaggeration: 1.0,
             model_enlargement: None,
+            has_voids: false,
             contour_interval: None,
             vertical_datum: text.vertical_datum,
         },

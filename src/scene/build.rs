@@ -9,6 +9,8 @@
 
 use std::sync::{Arc, OnceLock};
 
+use glam::DVec2;
+
 use crate::dem::raster::Raster;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -22,11 +24,12 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::ground;
+use crate::scene::imagery;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
 use crate::scene::sources::Sources;
-use crate::scene::style;
+use crate::scene::style::{self, RampSource};
 use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
@@ -97,14 +100,17 @@ pub fn build(
         title: document.title.clone(),
         subtitle: document.subtitle.clone(),
         heights,
-        ramp: style::ramp(document, height_range_m)?,
+        ramp: RampSource::new(document)?,
+        latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
+        imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
         contours: style::contours(document),
-        sunlight: Sunlight::new(document, &crs, lattice.extent().center())?,
+        sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,
         haze_m: document.style.haze.map(|distance_m| distance_m as f32),
         table: document.style.table,
         maps: Default::default(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),
+        has_voids: OnceLock::new(),
         lattice,
         height_range_m,
         scale,
@@ -167,6 +173,11 @@ fn height_service(
     let heights = HeightService::new(source, crs, lattice);
     let decks = Deck::new(decks).map_err(|error| document.error_at(0..0, error))?;
     Ok(if decks.facets().is_empty() { heights } else { heights.with_decks(Arc::new(decks)) })
+}
+
+/// The latitude of a place in map coordinates; `None` where the system has no place on Earth.
+fn latitude_deg(crs: &Crs, at: DVec2) -> Option<f64> {
+    crs.transform(&Crs::wgs84(), at).ok().map(|place| place.y).filter(|degrees| degrees.is_finite())
 }
 
 fn layout(document: &Document, lattice: &Lattice) -> Result<PatchLayout, Diagnostic> {

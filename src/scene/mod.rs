@@ -18,11 +18,14 @@ pub mod fences;
 pub mod footprint;
 pub mod ground;
 pub mod ground_map;
+pub mod imagery;
+pub mod land_cover;
 pub mod models;
 pub mod near;
 pub mod picture;
 pub mod placement;
 pub mod plinth;
+pub mod ramps;
 pub mod report;
 pub mod roads;
 pub mod scatter;
@@ -45,6 +48,7 @@ use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
+use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
@@ -55,8 +59,10 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
+use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::style::RampSource;
 use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
 use crate::scene::vertical_scale::VerticalScale;
@@ -87,8 +93,10 @@ pub struct SceneModel {
     ground: OnceLock<MeasuredGround>,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
-    /// The colors of the ground by height.
-    pub ramp: ColorRamp,
+    ramp: RampSource,
+    latitude_deg: Option<f64>,
+    /// The picture draped over the ground.
+    pub imagery: Option<Arc<GroundImagery>>,
     /// Lines of equal height on the ground.
     pub contours: Option<Contours>,
     /// Where the light comes from.
@@ -101,6 +109,7 @@ pub struct SceneModel {
     maps: GroundMapCache,
     infers_water: bool,
     water: OnceLock<WaterCover>,
+    has_voids: OnceLock<bool>,
     /// Areas, rivers, lakes and roads, in drawing order.
     pub ribbons: Vec<Ribbon>,
     /// Roads and rivers, as lines for pictures in which their ribbons are too narrow.
@@ -364,6 +373,30 @@ impl SceneModel {
     pub fn water(&self) -> &WaterCover {
         self.water.get_or_init(|| {
             if self.infers_water { water_cover(&self.lattice) } else { WaterCover::default() }
+        })
+    }
+
+    /// The colors of the ground by height. Where there is a sea they begin at 0 m: its bed has colors of its own,
+    /// [`bathymetry`](crate::draw::bathymetry::bathymetry).
+    pub fn ramp(&self) -> ColorRamp {
+        let (low, high) = self.height_range_m;
+        let low = if self.has_sea() && high > 0.0 { low.max(0.0) } else { low };
+        self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
+    }
+
+    /// Whether part of the ground is drawn as sea.
+    pub fn has_sea(&self) -> bool {
+        self.water().sea_posts > 0
+    }
+
+    /// Whether enough of the model's rectangle is without data to be hatched: more than the ragged border that is left
+    /// where a raster was warped.
+    pub fn has_voids(&self) -> bool {
+        /// Posts without data, as a share of all.
+        const RAGGED: f64 = 0.002;
+        *self.has_voids.get_or_init(|| {
+            let missing = self.lattice.heights().iter().filter(|height| height.is_nan()).count();
+            missing as f64 > RAGGED * self.lattice.heights().len() as f64
         })
     }
 

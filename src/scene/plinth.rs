@@ -47,6 +47,18 @@ pub fn base_z((min, max): (Vec3, Vec3)) -> f32 {
     min.z - (f64::from((max - min).truncate().max_element()) * DEPTH) as f32
 }
 
+/// World Z of what shows where there is no ground: the plate's top, or the foot of the walls.
+pub fn floor_z(lattice: &Lattice, bounds: (Vec3, Vec3)) -> f32 {
+    let foot = base_z(bounds);
+    if has_plate(lattice) { foot + (bounds.0.z - foot) * LEVELS[0] } else { foot }
+}
+
+/// Whether the block has a rectangular base though its ground is none.
+fn has_plate(lattice: &Lattice) -> bool {
+    let missing = lattice.heights().iter().filter(|height| height.is_nan()).count();
+    missing > 0 && missing as f64 <= MOST_MISSING * lattice.heights().len() as f64
+}
+
 /// The heights of the strata under a place.
 #[derive(Clone, Copy, Debug)]
 struct SoilSection {
@@ -87,13 +99,12 @@ pub fn plinth(ground: &DrawMesh, lattice: &Lattice, bounds: (Vec3, Vec3)) -> Dra
 /// borders almost everywhere: a model that was turned into another coordinate system ends in steps, and its base is to
 /// be straight. `None` where the ground fills the rectangle, so that the walls are straight, or leaves much of it free.
 pub fn base_plate(lattice: &Lattice, bounds: (Vec3, Vec3)) -> Option<DrawMesh> {
-    let missing = lattice.heights().iter().filter(|height| height.is_nan()).count();
-    if missing == 0 || missing as f64 > MOST_MISSING * lattice.heights().len() as f64 {
+    if !has_plate(lattice) {
         return None;
     }
     let (min, max) = (bounds.0.truncate(), bounds.1.truncate());
     let foot = base_z(bounds);
-    let top = foot + (bounds.0.z - foot) * LEVELS[0];
+    let top = floor_z(lattice, bounds);
     let mut plate = DrawMesh::default();
     let mut quad = |corners: [Vec3; 4], normal: Vec3, colors: [Srgba; 2]| {
         let normal = normal.to_array();

@@ -167,6 +167,7 @@ fn ground_map() -> GroundMap {
         posts: (0..POSTS * POSTS).map(post).collect(),
         ramp: ColorRamp::new(stops.into()).expect("rising stops"),
         contours: None,
+        imagery: None,
         form_level: 0,
         z_factor: 1.0,
         has_grain: false,

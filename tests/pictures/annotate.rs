@@ -117,10 +117,12 @@ fn sheet(width: u32, height: u32) -> Annotations {
             high_m: 1071.0,
             vertical_exaggeration: 1.5,
             model_enlargement: None,
+            has_voids: false,
             contour_interval: Some(20.0),
             vertical_datum: Some("NAVD88".to_owned()),
         }),
         credit: Some("Elevation: USGS 3D Elevation Program".to_owned()),
+        cover: None,
     }
 }
 
@@ -165,6 +167,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
             ..sheet(width, height).legend.expect("a legend")
         }),
         credit: Some("Elevation: nobody knows; ".repeat(20)),
+        cover: None,
     }
 }
 

@@ -16,7 +16,11 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use sandtable::draw::backdrop::Backdrop;
+use sandtable::draw::color::Srgba;
+use sandtable::draw::ground_imagery::GroundImagery;
 use sandtable::draw::list::DrawList;
+use sandtable::draw::material::{Albedo, AlphaMode};
+use sandtable::draw::pixels::Pixels;
 use sandtable::render::cpu::{RenderQuality, SampleCount, render};
 use sandtable::render::gpu::render_on;
 use sandtable::render::picture::Rendering;
@@ -93,6 +97,31 @@ fn the_grain_of_the_ground_and_the_sky_in_water_are_the_same_on_both() {
     Arc::make_mut(map).has_grain = true;
     list.materials.iter_mut().for_each(|material| material.is_water = true);
     compare(&list, &camera(640, 480), "grain and water");
+}
+
+#[test]
+fn a_draped_picture_is_the_same_on_both_lit_and_unlit() {
+    for is_shaded in [true, false] {
+        let mut list = scene_with_contours();
+        let map = Arc::make_mut(list.ground.as_mut().expect("there is ground"));
+        let color = |x: u32, y: u32| {
+            let wave = |at: u32, period: f32| libm::sinf(at as f32 / period) * 100.0 + 128.0;
+            Srgba([wave(x, 3.0) as u8, wave(y, 5.0) as u8, 90, if x * x + y * y < 900 { 0 } else { 255 }])
+        };
+        let (origin, size) = (Vec2::new(100.0, 150.0), Vec2::new(400.0, 300.0));
+        let pixels = Pixels::from_fn(128, 96, color);
+        map.imagery = Some(Arc::new(GroundImagery { origin, size, pixels, is_shaded }));
+        compare(&list, &camera(640, 480), "a draped picture");
+    }
+}
+
+#[test]
+fn hatching_is_the_same_on_both() {
+    let mut list = scene();
+    let house = material_of(&mut list, HOUSE);
+    (house.albedo, house.alpha) = (Albedo::Hatching, AlphaMode::Blend);
+    house.base_color = Srgba([96, 96, 104, 200]);
+    compare(&list, &camera(640, 480), "hatching");
 }
 
 #[test]

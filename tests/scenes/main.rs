@@ -6,6 +6,7 @@ mod common;
 mod assets;
 mod clearance;
 mod detail;
+mod imagery;
 mod instances;
 mod labels;
 mod models;

@@ -8,8 +8,8 @@ pub(crate) mod geotiff;
 mod mask;
 mod place;
 mod rows;
-mod storage;
-mod unpack;
+pub(in crate::dem) mod storage;
+pub(in crate::dem) mod unpack;
 pub mod windows;
 mod write;
 mod write_geokeys;
@@ -20,9 +20,9 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 /// The most images of a file that are read: overviews and masks.
-const MOST_IMAGES: usize = 64;
+pub(in crate::dem) const MOST_IMAGES: usize = 64;
 
 /// The bits of NewSubfileType of the decoder's current image; 0 where it has none.
-fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
+pub(in crate::dem) fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
     decoder.find_tag_unsigned(Tag::NewSubfileType).ok().flatten().unwrap_or(0)
 }

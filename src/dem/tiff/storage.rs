@@ -63,6 +63,8 @@ pub(crate) enum Packing {
     PackBits,
     /// A Zstandard frame (RFC 8878).
     Zstd,
+    /// A JPEG stream, which only pictures are read from.
+    Jpeg,
 }
 
 /// How rows were transformed before they were packed (TIFF 6.0, section 14; Adobe's Technical Note 3).
@@ -168,6 +170,9 @@ impl Storage {
 
     /// The type of samples that are read as elevation.
     pub fn elevation_type(&self) -> Result<SampleType, DemErrorKind> {
+        if self.packing == Packing::Jpeg {
+            return Err(FORMAT.unsupported("JPEG compression", TO_DEFLATE));
+        }
         let remedy = "convert it, for example with: gdal_translate -ot Float32 FILE out.tif";
         let sample =
             self.sample.ok_or_else(|| FORMAT.unsupported(format!("{}-bit samples", self.bits), remedy))?;
@@ -238,7 +243,8 @@ fn packing(compression: u16) -> Result<Packing, DemErrorKind> {
         32773 => return Ok(Packing::PackBits),
         50000 => return Ok(Packing::Zstd),
         2..=4 => "fax compression".into(),
-        6 | 7 => "JPEG compression".into(),
+        7 => return Ok(Packing::Jpeg),
+        6 => "old JPEG compression".into(),
         34712 => "JPEG 2000 compression".into(),
         34887 => "LERC compression".into(),
         34925 => "LZMA compression".into(),
@@ -259,6 +265,8 @@ fn expansion(packing: Packing) -> u64 {
         Packing::PackBits => 64,
         // A block of 128 KiB that repeats one byte takes four.
         Packing::Zstd => 32_768,
+        // A macroblock of 16 × 16 pixels takes six codes of two bits at least.
+        Packing::Jpeg => 512,
     }
 }
 

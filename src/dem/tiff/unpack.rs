@@ -52,6 +52,7 @@ enum Decompressor {
     Lzw(weezl::decode::Decoder),
     PackBits,
     Zstd(Box<FrameDecoder>),
+    Jpeg,
 }
 
 impl<'a> Unpacker<'a> {
@@ -62,6 +63,7 @@ impl<'a> Unpacker<'a> {
             Packing::Lzw => Decompressor::Lzw(LzwDecoder::with_tiff_size_switch(BitOrder::Msb, 8)),
             Packing::PackBits => Decompressor::PackBits,
             Packing::Zstd => Decompressor::Zstd(Box::default()),
+            Packing::Jpeg => Decompressor::Jpeg,
         };
         Self { storage, decompressor }
     }
@@ -77,8 +79,7 @@ impl<'a> Unpacker<'a> {
         rows: &mut Vec<u8>,
     ) -> Result<(), DemErrorKind> {
         let needed = self.storage.row_bytes() * block.window.height as usize;
-        let range = self.range(block, needed, file.length())?;
-        let packed = file.bytes(range).map_err(|error| FORMAT.undecodable(error))?;
+        let packed = self.packed(file, block)?;
         rows.resize(needed, 0);
         let unpacked = match &mut self.decompressor {
             Decompressor::Plain => copy(&packed, rows),
@@ -89,12 +90,27 @@ impl<'a> Unpacker<'a> {
             Decompressor::Lzw(decoder) => unpack_lzw(decoder, &packed, rows),
             Decompressor::PackBits => unpack_bits(&packed, rows),
             Decompressor::Zstd(decoder) => unpack_zstd(decoder, &packed, rows),
+            Decompressor::Jpeg => return Err(FORMAT.unsupported("JPEG compression", TO_DEFLATE)),
         };
         if unpacked == needed {
             return Ok(());
         }
         let index = block.index;
         Err(FORMAT.broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
+    }
+
+    /// The packed bytes of a block.
+    ///
+    /// # Errors
+    /// The tables do not list the block, or it cannot be read.
+    pub fn packed<'f, F: BlockBytes>(
+        &self,
+        file: &'f mut F,
+        block: TiffBlock,
+    ) -> Result<Cow<'f, [u8]>, DemErrorKind> {
+        let needed = self.storage.row_bytes() * block.window.height as usize;
+        let range = self.range(block, needed, file.length())?;
+        file.bytes(range).map_err(|error| FORMAT.undecodable(error))
     }
 
     /// Where the packed bytes of a block lie in a file; empty beyond its end.

@@ -4,7 +4,7 @@ mod crs_transform;
 mod data_extent;
 pub mod reproject;
 mod resample;
-mod row_positions;
+pub(crate) mod row_positions;
 
 use std::borrow::Cow;
 

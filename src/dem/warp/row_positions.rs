@@ -18,7 +18,7 @@ const LONGEST_PIECE: usize = 256;
 const SHORTEST_PIECE: usize = 8;
 
 /// The positions of `count` indices, NaN where `exact` has none.
-pub(super) fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
+pub(crate) fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
     let mut row = vec![DVec2::NAN; count];
     for (piece, row) in row.chunks_mut(LONGEST_PIECE).enumerate() {
         fill_piece(row, piece * LONGEST_PIECE, exact);

@@ -7,16 +7,18 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_grain::ground_grain;
+use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use crate::render::cpu::hit::FacePoint;
-use crate::render::cpu::texture::TexelFootprint;
+use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
 #[derive(Debug)]
 pub struct GroundShader<'a> {
     map: &'a GroundMap,
     posts_per_meter: Vec2,
     coarser: Vec<GroundLevel>,
+    draped: Option<(&'a GroundImagery, Texture<'a>)>,
     relief: ReliefShading,
 }
 
@@ -26,12 +28,15 @@ pub struct GroundPoint {
     pub post: GroundPost,
     /// The rise of `height_m` eastward and northward, meters per meter.
     gradient: Vec2,
+    /// The picture over the map.
+    pub draped: DrapedColor,
 }
 
 impl<'a> GroundShader<'a> {
     pub fn new(map: &'a GroundMap, to_sun: Vec3) -> Self {
         let coarser = coarser_levels(map).collect();
-        Self { map, posts_per_meter: map.cell.recip(), coarser, relief: ReliefShading::new(to_sun) }
+        let draped = map.imagery.as_deref().map(|imagery| (imagery, Texture::new(&imagery.pixels)));
+        Self { map, posts_per_meter: map.cell.recip(), coarser, draped, relief: ReliefShading::new(to_sun) }
     }
 
     /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
@@ -63,15 +68,27 @@ impl<'a> GroundShader<'a> {
                 self.add_bilinear(&mut point, at, finer + 1, share * part);
             }
         }
+        if let Some((imagery, texture)) = &self.draped {
+            point.draped = draped(imagery, texture, hit, most_taps);
+        }
         point
     }
 
-    /// The map's color at a point, in linear light: the ramp with contours on it, or water.
+    /// The share of a point whose color is shown as it is, without light.
+    pub fn unlit_share(&self, point: &GroundPoint) -> f32 {
+        if self.draped.as_ref().is_some_and(|(imagery, _)| !imagery.is_shaded) {
+            point.draped.share
+        } else {
+            0.0
+        }
+    }
+
+    /// The map's color at a point, in linear light: the ramp, water or the picture over them, with contours.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
         let grain = if self.map.has_grain { grain(&point.post, hit) } else { 1.0 };
-        self.map.albedo(&point.post, change_m, grain)
+        self.map.albedo(&point.post, change_m, grain, &point.draped)
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
@@ -98,6 +115,17 @@ impl<'a> GroundShader<'a> {
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
         sum.gradient += rise * self.posts_per_meter * (scale * weight);
     }
+}
+
+/// The draped picture over a pixel.
+fn draped(imagery: &GroundImagery, texture: &Texture<'_>, hit: &FacePoint, most_taps: u32) -> DrapedColor {
+    let Some(uv) = imagery.uv(hit.world.truncate()) else { return DrapedColor::default() };
+    // V runs southward.
+    let uv_per_m = Vec2::new(1.0, -1.0) / imagery.size;
+    let [right, down] = [hit.right, hit.down].map(|side| side.truncate() * uv_per_m);
+    let footprint = TexelFootprint::new(right, down, texture.size(), most_taps);
+    let Texel { color, alpha } = texture.sample(uv, &footprint, Weighting::ByAlpha);
+    DrapedColor { color, share: alpha }
 }
 
 fn grain(post: &GroundPost, hit: &FacePoint) -> f32 {
@@ -131,6 +159,7 @@ mod tests {
             posts: (0..columns * rows).map(post).collect(),
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
+            imagery: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

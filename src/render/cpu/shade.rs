@@ -5,6 +5,7 @@ use std::cell::LazyCell;
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 
+use crate::draw::hatching::hatching_cover;
 use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
@@ -81,13 +82,25 @@ impl<'a> Shader<'a> {
         });
         let (albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
+            (Albedo::Hatching, _) => {
+                let Material { base_color, .. } = material;
+                (base_color.linear(), base_color.alpha() * hatching_cover(at))
+            }
             _ => self.surface_color(material, &vertices),
         };
         let lighting = &self.list.lighting;
         let mut color = match (material.normals, &ground) {
             (NormalSource::Ground, Some((ground, point))) => {
-                ground.lit(albedo, point, &hit, self.received(&hit, ShadowReceiver::Ground, true))
+                let unlit =
+                    if material.albedo == Albedo::GroundMap { ground.unlit_share(point) } else { 0.0 };
+                if unlit < 1.0 {
+                    let received = self.received(&hit, ShadowReceiver::Ground, true);
+                    ground.lit(albedo, point, &hit, received).lerp(albedo, unlit)
+                } else {
+                    albedo
+                }
             }
+            _ if material.albedo == Albedo::Hatching => albedo,
             _ => {
                 let normal = vertices.normal(item, face);
                 let is_sunlit = normal.dot(lighting.to_sun) > 0.0;
@@ -100,7 +113,9 @@ impl<'a> Shader<'a> {
             }
         };
         let water = match (material.albedo, &ground) {
-            (Albedo::GroundMap, Some((_, point))) => WaterColor::cover(point.post.water),
+            (Albedo::GroundMap, Some((_, point))) => {
+                WaterColor::cover(point.post.water) * (1.0 - point.draped.share)
+            }
             _ => f32::from(u8::from(material.is_water)),
         };
         if water > 0.0 {

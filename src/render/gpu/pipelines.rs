@@ -42,7 +42,7 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
 
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0: constants, ground posts, ramp, shadows.
+    /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, at a dynamic offset.
     pub surface: wgpu::BindGroupLayout,
@@ -96,6 +96,8 @@ impl Layouts {
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
                 (fragment, texture(wgpu::TextureSampleType::Uint)),
                 (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+                (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
+                (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ]),
             surface: group(&[(both, uniform(size_of::<SurfaceConstants>(), true))]),
             texture: group(&[

@@ -20,10 +20,11 @@ struct Frame {
     studio_top: vec4f,    // rgb, 1 where the backdrop is the studio's
     studio_bottom: vec4f, // rgb, Backdrop::HORIZON
     sides: array<vec4f, 4>, // xyz toward a side light, its share
-    water: vec4f,         // rgb at the surface
-    deep: vec4f,          // rgb of deep water
+    bathymetry: array<vec4f, 9>, // rgb of water over a bed at a height, rising
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
+    imagery: vec4f,       // x and y of the south-west corner of the draped picture, 1 / its width and height
+    imagery_size: vec4f,  // its columns and rows; 1 where there is one; 1 where it is shaded
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
@@ -50,6 +51,7 @@ const MASK = 4u;
 const BLEND = 8u;
 const WATER = 16u;
 const IN_ALL_LIGHT = 32u;
+const HATCHING = 64u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -68,6 +70,9 @@ const MASK_LEVEL_BIAS = -1.0;
 @group(0) @binding(4) var shadow_pages: texture_2d<u32>;
 // The heights of solids and of the ground, page by page.
 @group(0) @binding(5) var shadow_texels: texture_2d<f32>;
+// The draped picture, colors multiplied by alpha.
+@group(0) @binding(6) var imagery_texture: texture_2d<f32>;
+@group(0) @binding(7) var imagery_sampler: sampler;
 @group(1) @binding(0) var<uniform> material: Surface;
 // Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
 @group(2) @binding(0) var base_texture: texture_2d<f32>;
@@ -242,6 +247,31 @@ fn ramp_at(height: f32) -> vec3f {
     let between = low > 0u && low < frame.ground_size.x;
     let part = select(0.0, (height - before.w) / (after.w - before.w), between);
     return mix(before.rgb, after.rgb, part);
+}
+
+// The ramp of src/draw/bathymetry.rs.
+fn water_at(height: f32) -> vec3f {
+    var above = 1u;
+    while above < 8u && frame.bathymetry[above].w <= height {
+        above += 1u;
+    }
+    let low = frame.bathymetry[above - 1u];
+    let high = frame.bathymetry[above];
+    return mix(low.rgb, high.rgb, clamp((height - low.w) / (high.w - low.w), 0.0, 1.0));
+}
+
+// The draped picture over a pixel: linear rgb, the share of the ground that it covers.
+fn draped_at(at: vec2f, right: vec2f, down: vec2f) -> vec4f {
+    let part = (at - frame.imagery.xy) * frame.imagery.zw;
+    let is_within = all(part >= vec2f(0.0)) && all(part <= vec2f(1.0));
+    if frame.imagery_size.z < 0.5 || !is_within {
+        return vec4f(0.0);
+    }
+    let texel = 0.5 / frame.imagery_size.xy;
+    let uv = clamp(vec2f(part.x, 1.0 - part.y), texel, 1.0 - texel);
+    let per_m = vec2f(1.0, -1.0) * frame.imagery.zw;
+    let color = textureSampleGrad(imagery_texture, imagery_sampler, uv, right * per_m, down * per_m);
+    return vec4f(color.rgb / max(color.a, 1e-4), color.a);
 }
 
 // The functions of src/draw/ground_grain.rs.
@@ -530,7 +560,16 @@ fn is_opaque() -> bool {
     return (material.flags.x & (MASK | BLEND)) == 0u;
 }
 
+// hatching_cover.
+fn hatching_cover(at: vec2f) -> f32 {
+    let across = (at.x + at.y) * 0.70710678 / 8.0;
+    return clamp(1.1 / 2.0 + 0.5 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0);
+}
+
 fn surface(in: Varying) -> vec4f {
+    if (material.flags.x & HATCHING) != 0u {
+        return vec4f(material.base_color.rgb, material.base_color.a * hatching_cover(in.clip.xy));
+    }
     var texel = textureSample(base_texture, base_sampler, in.uv);
     if !is_opaque() {
         texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
@@ -543,6 +582,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     var color = surface(in);
     let normal = vertex_normal(in, front);
     var light = vec3f(0.0);
+    var unlit = 0.0;
     var water_share = select(0.0, 1.0, (flags & WATER) != 0u);
     let right = dpdx(in.world.xy);
     let down = dpdy(in.world.xy);
@@ -554,18 +594,20 @@ fn shade(in: Varying, front: bool) -> vec4f {
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
             // WaterColor.
             let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
-            let depth = sqrt(clamp(post.height / -1000.0, 0.0, 1.0));
             let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
             let pixel = max(length(right), length(down));
             let grain = ground_grain(in.world.xy, pixel, length(post.slope));
             let land = ramp_at(post.height) * select(1.0, grain, frame.contour_shape.w > 0.5);
-            let bare = mix(land, mix(frame.water.rgb, frame.deep.rgb, depth), water) * shore;
-            color = vec4f(mix(bare, frame.contour.rgb, cover * (1.0 - water)), 1.0);
-            water_share = water;
+            let bare = mix(land, water_at(post.height), water) * shore;
+            let draped = draped_at(in.world.xy, right, down);
+            let covered = mix(bare, draped.rgb, draped.a);
+            color = vec4f(mix(covered, frame.contour.rgb, cover * (1.0 - water)), 1.0);
+            water_share = water * (1.0 - draped.a);
+            unlit = select(draped.a, 0.0, frame.imagery_size.w > 0.5);
         }
         if (flags & FROM_GROUND_NORMAL) != 0u {
             let received = vec2f(sun_share(in.world, face, false), contact_share(in.world, false));
-            light = relief_lit(color.rgb, post, in.world.xy, received);
+            light = mix(relief_lit(color.rgb, post, in.world.xy, received), color.rgb, unlit);
         }
     }
     if (flags & FROM_GROUND_NORMAL) == 0u {
@@ -577,6 +619,9 @@ fn shade(in: Varying, front: bool) -> vec4f {
             }
         }
         light = lit(color.rgb, normal, received);
+    }
+    if (flags & HATCHING) != 0u {
+        light = color.rgb;
     }
     light = mirror_sky(light, from_eye(in.world), water_share);
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);

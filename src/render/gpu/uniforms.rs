@@ -4,11 +4,11 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::backdrop::Backdrop;
+use crate::draw::bathymetry::{STOP_COUNT, bathymetry};
 use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::draw::water::WaterColor;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
@@ -24,6 +24,7 @@ const MASK: u32 = 4;
 const BLEND: u32 = 8;
 const WATER: u32 = 16;
 const IN_ALL_LIGHT: u32 = 32;
+const HATCHING: u32 = 64;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -43,10 +44,11 @@ pub struct FrameUniforms {
     studio_top: [f32; 4],
     studio_bottom: [f32; 4],
     sides: [[f32; 4]; 4],
-    water: [f32; 4],
-    deep: [f32; 4],
+    bathymetry: [[f32; 4]; STOP_COUNT],
     ground: [f32; 4],
     ground_size: [u32; 4],
+    imagery: [f32; 4],
+    imagery_size: [f32; 4],
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
@@ -107,8 +109,10 @@ impl FrameUniforms {
             ),
             studio_bottom: with(Backdrop::STUDIO_BOTTOM.linear(), Backdrop::HORIZON),
             sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
-            water: with(WaterColor::SURFACE.linear(), 1.0),
-            deep: with(WaterColor::DEEP.linear(), 1.0),
+            bathymetry: std::array::from_fn(|stop| {
+                let (height_m, color) = bathymetry().stops()[stop];
+                with(color, height_m)
+            }),
             shadows: ShadowView::both(shadows),
             ..Self::ground(list)
         }
@@ -127,6 +131,14 @@ impl FrameUniforms {
         frame.ground_size =
             [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, map.form_level.min(coarsest)];
         frame.contour_shape[3] = f32::from(u8::from(map.has_grain));
+        if let Some(imagery) = &map.imagery {
+            let (per_m, [width, height]) = (
+                imagery.size.recip(),
+                [imagery.pixels.width(), imagery.pixels.height()].map(|side| side as f32),
+            );
+            frame.imagery = [imagery.origin.x, imagery.origin.y, per_m.x, per_m.y];
+            frame.imagery_size = [width, height, 1.0, f32::from(u8::from(imagery.is_shaded))];
+        }
         if let Some(contours) = map.contours {
             let every = contours.major_every.max(1) as f32;
             frame.contour = with(contours.color.linear(), contours.color.alpha());
@@ -145,7 +157,11 @@ impl Instance {
 impl SurfaceConstants {
     pub fn new(material: &Material) -> Self {
         let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
-        let albedo = if material.albedo == Albedo::GroundMap { FROM_GROUND_ALBEDO } else { 0 };
+        let albedo = match material.albedo {
+            Albedo::Surface => 0,
+            Albedo::GroundMap => FROM_GROUND_ALBEDO,
+            Albedo::Hatching => HATCHING,
+        };
         let water = if material.is_water { WATER } else { 0 };
         let light = if material.receives_shadows { 0 } else { IN_ALL_LIGHT };
         let (alpha, cutoff) = match material.alpha {

@@ -67,7 +67,7 @@ impl Resources {
         let white = [Pixels::filled(1, 1, Srgba::WHITE)];
         Ok(Self {
             meshes: meshes.collect::<Result<_, _>>()?,
-            frame: frame(gpu, layouts, list, camera, shadows)?,
+            frame: frame(gpu, layouts, &sampler, list, camera, shadows)?,
             instances: instances(gpu, list)?,
             surfaces,
             surface_stride,
@@ -120,6 +120,7 @@ fn surfaces(gpu: &Gpu, layouts: &Layouts, list: &DrawList) -> Result<(wgpu::Bind
 fn frame(
     gpu: &Gpu,
     layouts: &Layouts,
+    sampler: &wgpu::Sampler,
     list: &DrawList,
     camera: &Camera,
     shadows: &Shadows,
@@ -130,9 +131,23 @@ fn frame(
     let ground = GroundTextures::upload(gpu, list.ground.as_deref())?;
     let ramp = ramp_stops(gpu, list.ground.as_deref());
     let shadows = ShadowTextures::upload(gpu, shadows)?;
-    let views = [&ground.posts, &ground.coarse, &ramp, &shadows.pages, &shadows.texels].map(view);
-    let [posts, coarse, ramp, pages, texels] = views.each_ref().map(wgpu::BindingResource::TextureView);
-    Ok(bind(gpu, &layouts.frame, [buffer.as_entire_binding(), posts, coarse, ramp, pages, texels]))
+    let imagery = imagery_texture(gpu, list.ground.as_deref());
+    let views = [&ground.posts, &ground.coarse, &ramp, &shadows.pages, &shadows.texels, &imagery].map(view);
+    let [posts, coarse, ramp, pages, texels, imagery] =
+        views.each_ref().map(wgpu::BindingResource::TextureView);
+    let sampler = wgpu::BindingResource::Sampler(sampler);
+    let constants = buffer.as_entire_binding();
+    Ok(bind(gpu, &layouts.frame, [constants, posts, coarse, ramp, pages, texels, imagery, sampler]))
+}
+
+/// The picture draped over the ground, colors multiplied by alpha; without one, a texel that nothing reads.
+fn imagery_texture(gpu: &Gpu, map: Option<&GroundMap>) -> wgpu::Texture {
+    let pixels = map.and_then(|map| map.imagery.as_deref()).map(|imagery| &imagery.pixels);
+    let largest = gpu.limits.max_texture_dimension_2d;
+    let levels: Vec<Pixels> = pixels
+        .map_or_else(Vec::new, |pixels| levels(pixels, largest).par_iter().map(premultiplied).collect());
+    let none = [Pixels::filled(1, 1, Srgba::WHITE)];
+    mipmapped(gpu, if levels.is_empty() { &none } else { &levels })
 }
 
 /// Every stop as linear red, green, blue and its height, in rows of [`RAMP_COLUMNS`].
@@ -186,6 +201,13 @@ fn textures(
 }
 
 fn bind_texture(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, levels: &[Pixels]) -> wgpu::BindGroup {
+    let texture = mipmapped(gpu, levels);
+    let resources =
+        [wgpu::BindingResource::TextureView(&view(&texture)), wgpu::BindingResource::Sampler(sampler)];
+    bind(gpu, &layouts.texture, resources)
+}
+
+fn mipmapped(gpu: &Gpu, levels: &[Pixels]) -> wgpu::Texture {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         mip_level_count: levels.len() as u32,
         ..texture(levels[0].width(), levels[0].height(), wgpu::TextureFormat::Rgba8UnormSrgb)
@@ -194,9 +216,7 @@ fn bind_texture(gpu: &Gpu, layouts: &Layouts, sampler: &wgpu::Sampler, levels: &
         let to = wgpu::TexelCopyTextureInfo { mip_level, ..texture.as_image_copy() };
         gpu.write(to, level.width(), level.height(), level.bytes());
     }
-    let resources =
-        [wgpu::BindingResource::TextureView(&view(&texture)), wgpu::BindingResource::Sampler(sampler)];
-    bind(gpu, &layouts.texture, resources)
+    texture
 }
 
 /// `resources` as a group, numbered from binding 0.

@@ -14,6 +14,7 @@ mod solids;
 mod symbols;
 mod table;
 mod uprights;
+pub mod voids;
 
 use std::sync::Arc;
 
@@ -115,6 +116,9 @@ fn listed(
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);
+    if camera.is_some() {
+        voids::add(&mut list, scene);
+    }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
     (list, ground_triangles)

@@ -104,6 +104,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             color: Srgba([90, 60, 30, 190]),
             width_px: 1.2,
         }),
+        imagery: None,
         form_level: 3,
         z_factor: 1.0,
         has_grain: false,
