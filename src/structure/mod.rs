@@ -11,6 +11,7 @@ pub mod deck;
 pub mod deck_check;
 pub mod deck_profile;
 pub mod draped_solid;
+pub mod eaves;
 pub mod faces;
 pub mod fence;
 pub mod fence_band;

@@ -8,6 +8,7 @@ use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::WaterColor;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
@@ -44,6 +45,7 @@ pub struct FrameUniforms {
     sides: [[f32; 4]; 4],
     water: [f32; 4],
     deep: [f32; 4],
+    undergrowth: [f32; 4],
     ground: [f32; 4],
     ground_size: [u32; 4],
     contour: [f32; 4],
@@ -108,6 +110,7 @@ impl FrameUniforms {
             sides: std::array::from_fn(|side| with(relief.sides[side], ReliefShading::SIDE_SHARES[side])),
             water: with(WaterColor::SURFACE.linear(), 1.0),
             deep: with(WaterColor::DEEP.linear(), 1.0),
+            undergrowth: with(Undergrowth::COLOR.linear(), Undergrowth::MOST),
             shadows: ShadowView::both(shadows),
             ..Self::ground(list)
         }
