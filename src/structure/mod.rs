@@ -23,4 +23,5 @@ pub mod power;
 pub mod power_beam;
 pub mod roof;
 pub mod roof_hipped;
+pub mod straight_skeleton;
 pub mod tunnel;
