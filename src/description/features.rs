@@ -43,7 +43,7 @@ const LINE: usize = 2;
 const RING: usize = 3;
 
 /// Models that need no file.
-const BUILT_IN: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
+const BUILT_IN: [&str; 8] = ["conifer", "broadleaf", "shrub", "rock", "walnut", "beech", "poplar", "pine"];
 
 table! {
     /// Where the coordinates of a feature come from: inline `points`, or a `file`. The keys stand in the feature's own table.
@@ -255,7 +255,7 @@ table! {
     struct ModelPlacement {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
-        /// The model file, or the bare name of a built-in model: `conifer`, `broadleaf`, `shrub` or `rock`.
+        /// The model file, or the bare name of a built-in model: `conifer`, `broadleaf`, `walnut`, `beech`, `poplar`, `pine`, `shrub` or `rock`.
         file: Stated<String> = key::file(), required;
         /// Place of its origin.
         at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `instances`", unless ["instances"];

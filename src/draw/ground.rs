@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
+use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::WaterColor;
 
 /// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
@@ -54,7 +55,8 @@ pub struct GroundPost {
     pub sun_visibility: f32,
     /// Share of the sky seen from the post, 0..=1.
     pub sky_visibility: f32,
-    /// 1 where the post is under water, else 0; between posts the shore lies at 0.5.
+    /// 1 where the post is under water, else 0; between posts the shore lies at 0.5. Negative under trees: −1 where crowns
+    /// cover all of the ground.
     pub water: f32,
 }
 
@@ -192,10 +194,11 @@ impl GroundMap {
     }
 
     /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
-    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), or water; what is
-    /// `draped` over them; and contours.
+    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), under trees
+    /// their [`Undergrowth`], or water; what is `draped` over them; and contours.
     pub fn albedo(&self, post: &GroundPost, change_m: f32, grain: f32, draped: &DrapedColor) -> Vec3 {
-        let land = self.ramp.linear_at(post.height_m) * grain;
+        let land = self.ramp.linear_at(post.height_m);
+        let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * grain;
         let water = WaterColor::cover(post.water);
         let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
         let bare = draped.over(bare);

@@ -13,4 +13,5 @@ pub mod lighting;
 pub mod list;
 pub mod material;
 pub mod pixels;
+pub mod undergrowth;
 pub mod water;

@@ -7,6 +7,8 @@
 //! large              the model itself
 //! ```
 
+use std::sync::OnceLock;
+
 use glam::Vec3;
 
 use crate::model::Model;
@@ -28,8 +30,9 @@ const IMPOSTOR_ERROR: f32 = 1.0 / 256.0;
 pub struct ModelDetail {
     /// Coarser meshes, finest first.
     pub levels: Vec<DetailLevel>,
-    /// Pictures from all sides; `None` where they would not pay.
-    pub impostor: Option<Impostor>,
+    /// Pictures from all sides, made where a picture first shows the model small: they take a hundred times as long as
+    /// the levels. `None` where they would not pay.
+    pub impostor: OnceLock<Option<Impostor>>,
 }
 
 /// How a placed model is seen.
@@ -54,19 +57,39 @@ pub enum DetailForm {
     Impostor(ImpostorDirection),
 }
 
+impl ApparentSize {
+    /// Whether it is small enough for a picture on a quad.
+    pub fn is_small(&self) -> bool {
+        self.across_px <= IMPOSTOR_PX
+    }
+}
+
 impl ModelDetail {
-    /// The simpler forms of `model`; takes some microseconds a triangle.
+    /// The coarser meshes of `model`; takes some microseconds a triangle.
     pub fn new(model: &Model) -> Self {
-        let levels = levels(model);
+        Self { levels: levels(model), impostor: OnceLock::new() }
+    }
+
+    /// Makes the pictures of `model`, whose detail this is, where they are not yet made.
+    pub fn make_impostor(&self, model: &Model) {
+        if self.impostor.get().is_some() {
+            return;
+        }
         let size = model.bounds().map_or(0.0, |bounds| bounds.size().length());
-        let simple = levels.iter().rfind(|level| level.error <= size * IMPOSTOR_ERROR);
+        let simple = self.levels.iter().rfind(|level| level.error <= size * IMPOSTOR_ERROR);
         let parts = simple.map_or(&model.parts, |level| &level.parts);
-        Self { impostor: Impostor::new(model, parts), levels }
+        // Another picture may have set the same value first.
+        let _ = self.impostor.set(Impostor::new(model, parts));
+    }
+
+    /// The pictures, where they were made and pay.
+    pub fn impostor(&self) -> Option<&Impostor> {
+        self.impostor.get()?.as_ref()
     }
 
     /// The simplest form within the tolerance.
     pub fn form(&self, size: &ApparentSize) -> DetailForm {
-        if self.impostor.is_some() && size.across_px <= IMPOSTOR_PX {
+        if size.is_small() && self.impostor().is_some() {
             return DetailForm::Impostor(ImpostorDirection::nearest(size.toward_eye));
         }
         let fits = |level: &DetailLevel| level.error * size.px_per_unit <= TOLERANCE_PX;
@@ -80,7 +103,7 @@ mod tests {
 
     fn detail() -> ModelDetail {
         let level = |error| DetailLevel { parts: Vec::new(), error };
-        ModelDetail { levels: vec![level(0.01), level(0.1)], impostor: None }
+        ModelDetail { levels: vec![level(0.01), level(0.1)], impostor: OnceLock::new() }
     }
 
     fn seen(px_per_unit: f32) -> ApparentSize {

@@ -33,6 +33,7 @@ mod triangulate;
 
 use glam::Vec3;
 
+use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, MaterialId};
 use crate::draw::material::Material;
 use crate::draw::pixels::Pixels;
@@ -52,6 +53,8 @@ pub struct Model {
     pub census: Census,
     /// Notes on parts of the file that are not drawn: missing textures, unsupported features.
     pub notes: Vec<String>,
+    /// What its colors are multiplied with, one by where it stands, so that plants are not all alike; none for files.
+    pub tints: Vec<Srgba>,
 }
 
 /// Triangles of one material.

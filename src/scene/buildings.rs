@@ -26,10 +26,11 @@ use crate::scene::report::BuildingPadRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
-use crate::structure::building::{BuildingLevels, Paint, raise as raised};
+use crate::structure::building::{BuildingLevels, Paint, STORY_M, raise as raised};
 use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::draped_solid::DrapedSolid;
+use crate::structure::eaves::eaves;
 use crate::structure::roof::{UnitRoof, roof};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
@@ -39,8 +40,6 @@ use crate::terrain::volumes::Volumes;
 
 /// The tallest that a property may say, meters; as `height` in a scene file.
 const TALLEST_M: f64 = 1000.0;
-/// The height of one of a building's `levels` in meters.
-const STORY_M: f64 = 3.0;
 /// The height of a building whose properties say neither height nor levels, in meters: one floor with its roof.
 const HOUSE_M: f64 = 6.0;
 /// Rise over run of a roof of 30 degrees.
@@ -220,16 +219,20 @@ fn raise_parts(
         replaced |= made.shape != wanted;
         let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
         let top_z = base_z + height_m;
-        let mut levels = BuildingLevels { foot_z, base_z, eaves_z: top_z - roof_m, top_z };
+        let floor_z = base_z + low_m;
+        let mut levels = BuildingLevels { foot_z, base_z, floor_z, eaves_z: top_z - roof_m, top_z };
         if low_m > 0.0 {
-            levels = BuildingLevels { foot_z: base_z + low_m, base_z: base_z + low_m, ..levels };
+            levels = BuildingLevels { foot_z: floor_z, base_z: floor_z, ..levels };
         } else if base_z - foot_z <= FOUNDATION_M + 1e-6 {
             // On its lowest ground no foundation shows, and the plaster goes on down.
             levels.base_z = foot_z;
         }
         let paint = paint(building, &plot.attributes, part, &made);
         let mesh = raised(part, &made, levels, paint);
-        collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
+        collected.solids.push(Solid { mesh, coat: Coat::Facade, feature: plot.feature });
+        if let Some(mesh) = eaves(&made, levels, paint) {
+            collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
+        }
         if low_m == 0.0 {
             let color = if levels.base_z > foot_z { paint.foundation } else { paint.wall };
             let footing = WallFooting { rings: part.rings().to_vec(), foot_z: foot_z as f32, color };

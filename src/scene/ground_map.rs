@@ -8,6 +8,7 @@ use crate::dem::raster::Samples;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::scene::SceneModel;
+use crate::scene::undergrowth::undergrowth;
 use crate::scene::vertical_scale::VerticalScale;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::light::TerrainLight;
@@ -53,8 +54,10 @@ impl GroundMapCache {
 /// before, smoothed.
 fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
     let lattice = &scene.lattice;
-    let (light, water) =
-        rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), || &scene.water().is_water);
+    let (light, (water, woods)) = rayon::join(
+        || TerrainLight::new(scene.ground().lattice(), to_sun),
+        || (&scene.water().is_water, undergrowth(scene)),
+    );
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
     let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);
@@ -78,6 +81,9 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
         let mut posts: Vec<GroundPost> = posts.collect();
         for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
             post.water = if is_water { 1.0 } else { 0.0 };
+        }
+        for (post, share) in posts.iter_mut().zip(woods.get(first..).unwrap_or_default()) {
+            post.water = if post.water > 0.0 { post.water } else { -share };
         }
         posts
     };

@@ -13,6 +13,7 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
+mod facade;
 pub mod feature_labels;
 pub mod fences;
 pub mod footprint;
@@ -34,6 +35,7 @@ pub mod style;
 pub mod sunlight;
 pub mod symbols;
 pub mod table_shadow;
+pub mod undergrowth;
 pub mod vertical_scale;
 pub mod views;
 pub mod water;
@@ -243,6 +245,8 @@ pub struct FeatureSolid {
 pub enum Coat {
     /// The colors of their vertices.
     Painted,
+    /// Walls with windows where they have texture coordinates, times the colors of their vertices.
+    Facade,
     /// A surface's texture, times the colors of their vertices.
     Surface(RibbonSurface),
 }

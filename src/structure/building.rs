@@ -8,8 +8,11 @@
 //!          │    │        foundation, in the ground
 //!          └────┘        foot_z
 //! ```
+//!
+//! Walls have texture coordinates in bays and stories, so that a texture of one window gives them their rhythm; all other
+//! faces have the texture's corner, which is white.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
@@ -28,6 +31,8 @@ pub struct BuildingLevels {
     pub foot_z: f64,
     /// Where the plaster begins.
     pub base_z: f64,
+    /// The lowest floor, from which stories are counted.
+    pub floor_z: f64,
     /// Where the roof begins.
     pub eaves_z: f64,
     /// The ridge.
@@ -44,6 +49,14 @@ pub struct Paint {
     /// The walls below the base.
     pub foundation: Srgba,
 }
+
+/// The height of a story, meters.
+pub const STORY_M: f64 = 3.0;
+/// The width of a bay, a window with the wall beside it, meters; narrower than [`LEAST_BAY_M`] a wall has no window.
+const BAY_M: f64 = 2.8;
+const LEAST_BAY_M: f64 = 2.0;
+/// The lowest walls with windows, meters: sheds have none.
+const LEAST_WALL_M: f64 = 2.2;
 
 const FOUNDATION: Srgba = Srgba::opaque(150, 144, 136);
 
@@ -136,7 +149,28 @@ fn walls(
         faces.polygon(&corners, paint.foundation);
         foot_z = levels.base_z;
     }
-    faces.polygon(&[at(from, foot_z), at(to, foot_z), on_roof(&to), on_roof(&from)], paint.wall);
+    // Up to the eaves, and the gable over them.
+    let uv = wall_uv((to - from).truncate().length(), levels);
+    let [low, high] = [foot_z, levels.eaves_z].map(|z| [uv(0.0, z), uv(1.0, z)]);
+    let [from_top, to_top] = [at(from, levels.eaves_z), at(to, levels.eaves_z)];
+    let wall = [(at(from, foot_z), low[0]), (at(to, foot_z), low[1]), (to_top, high[1]), (from_top, high[0])];
+    faces.textured(wall, paint.wall);
+    let risen = [(to.z, on_roof(&to)), (from.z, on_roof(&from))].into_iter();
+    let risen = risen.filter(|(rise, _)| *rise > 0.0).map(|(_, at)| at);
+    let gable: Vec<Vec3> = [from_top, to_top].into_iter().chain(risen).collect();
+    faces.polygon(&gable, paint.wall);
+}
+
+/// Texture coordinates on a wall of this length, by the share of it and the height: bays along it, stories down from the
+/// eaves. The texture's corner everywhere where it has no window.
+fn wall_uv(length_m: f64, levels: BuildingLevels) -> impl Fn(f64, f64) -> Vec2 {
+    let height_m = levels.eaves_z - levels.floor_z;
+    let has_windows = length_m >= LEAST_BAY_M && height_m >= LEAST_WALL_M;
+    let (bays, stories) = ((length_m / BAY_M).round().max(1.0), (height_m / STORY_M).round().max(1.0));
+    move |share, z| match has_windows {
+        true => DVec2::new(share * bays, (levels.eaves_z - z) / height_m * stories).as_vec2(),
+        false => Vec2::ZERO,
+    }
 }
 
 /// What closes it below, facing down: the footprint with the vertices that the roof's edge added.
@@ -222,7 +256,7 @@ mod tests {
     fn built(footprint: &BuildingFootprint, shape: words::RoofShape) -> (UnitRoof, DrawMesh) {
         let roof = roof(footprint, shape);
         let top_z = if roof.run_m > 0.0 { 9.0 } else { 6.0 };
-        let levels = BuildingLevels { foot_z: -1.0, base_z: 0.0, eaves_z: 6.0, top_z };
+        let levels = BuildingLevels { foot_z: -1.0, base_z: 0.0, floor_z: 0.0, eaves_z: 6.0, top_z };
         let paint = Paint::by_place(footprint, &roof);
         let mesh = raise(footprint, &roof, levels, paint);
         (roof, mesh)

@@ -1,4 +1,5 @@
-//! Roofs over footprints: flat, gabled, pyramidal; hipped ones are made in [`crate::structure::roof_hipped`].
+//! Roofs over footprints: flat, gabled, pyramidal; hipped ones are made in [`crate::structure::roof_hipped`], those over
+//! inward corners by [`crate::structure::straight_skeleton`].
 //!
 //! A roof is made with a rise of one from eaves to ridge; the building stretches it. Its faces cover the footprint in
 //! plan, no more and no less, and its edge is the footprint's, with a vertex more where a ridge meets a gable, so that
@@ -18,6 +19,7 @@ use crate::description::words;
 use crate::geom::polygon;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::roof_hipped::hipped;
+use crate::structure::straight_skeleton;
 
 /// How much of its best-fitting rectangle a footprint must fill to be roofed like one.
 const RECTANGULAR: f64 = 0.82;
@@ -39,13 +41,15 @@ pub struct UnitRoof {
 }
 
 /// The roof of the stated shape over a footprint, or the nearest that can be made: a gabled one needs nearly a
-/// rectangle, else it is hipped; a hipped one needs a footprint without courtyards, a pyramidal one a middle that sees
-/// every wall; else they are flat.
+/// rectangle, else it is hipped; a hipped one needs a footprint without courtyards and of no more than 64 sides, a
+/// pyramidal one a middle that sees every wall; else they are flat.
 pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof {
     let made = match wanted {
         words::RoofShape::Flat => None,
-        words::RoofShape::Gabled => gabled(footprint).or_else(|| hipped(footprint)),
-        words::RoofShape::Hipped => hipped(footprint),
+        words::RoofShape::Gabled => {
+            gabled(footprint).or_else(|| hipped(footprint)).or_else(|| bent(footprint))
+        }
+        words::RoofShape::Hipped => hipped(footprint).or_else(|| bent(footprint)),
         words::RoofShape::Pyramidal => pyramidal(footprint),
     };
     made.unwrap_or_else(|| flat(footprint))
@@ -110,6 +114,15 @@ fn crossed(ring: &[DVec2], aside: impl Fn(DVec2) -> f64) -> Option<(Vec<DVec2>, 
         }
     }
     <[usize; 2]>::try_from(crossings).ok().map(|crossings| (with, crossings))
+}
+
+/// A hipped roof over a footprint with inward corners.
+fn bent(footprint: &BuildingFootprint) -> Option<UnitRoof> {
+    let mut faces = straight_skeleton::faces(footprint.exterior()).filter(|_| !footprint.has_courtyards())?;
+    let run_m = faces.iter().flatten().map(|corner| corner.z).fold(0.0, f64::max);
+    faces.iter_mut().flatten().for_each(|corner| corner.z /= run_m);
+    let edge = level_edge(footprint);
+    (run_m > LEAST_VIEW_M).then_some(UnitRoof { shape: words::RoofShape::Hipped, edge, faces, run_m })
 }
 
 /// Planes from every wall up to one point over the middle.

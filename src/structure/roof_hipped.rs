@@ -11,9 +11,8 @@
 //!   ●───────────────●
 //! ```
 //!
-//! Over a footprint with inward corners that is no longer so: the straight skeleton (Aichholzer et al. 1995) would be
-//! needed, whose events must be told apart to the last bit on plans full of right angles. Such a footprint keeps a flat
-//! roof, and the scene says how many did.
+//! Over a footprint with inward corners that is no longer so: its roof is made by
+//! [`crate::structure::straight_skeleton`].
 
 use glam::{DVec2, DVec3};
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::draw::color::Srgba;
-use crate::draw::list::DrawMesh;
+use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::mesh::numbering::Numbering;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::built_in::colored_vertex;
@@ -59,13 +59,10 @@ impl UnitSphere {
         Self { directions, triangles: finer }
     }
 
-    /// Adds it with smooth normals: `shape` gives a direction's position and color.
-    pub(super) fn add_smooth(&self, mesh: &mut DrawMesh, shape: impl Fn(Vec3) -> (Vec3, Srgba)) {
-        let mut vertex = |&direction: &Vec3| {
-            let (position, color) = shape(direction);
-            mesh.vertex(colored_vertex(position, direction, color))
-        };
-        let ids: Vec<VertexId> = self.directions.iter().map(&mut vertex).collect();
+    /// Adds it with smooth normals: `shape` gives a direction's vertex.
+    pub(super) fn add_smooth(&self, mesh: &mut DrawMesh, shape: impl Fn(Vec3) -> DrawVertex) {
+        let ids: Vec<VertexId> =
+            self.directions.iter().map(|&direction| mesh.vertex(shape(direction))).collect();
         self.triangles.iter().for_each(|corners| mesh.triangle(corners.map(|corner| ids[corner])));
     }
 

@@ -5,12 +5,15 @@
 //! the ground under the center; a little of each model is below, so that nothing floats on a slope.
 //!
 //! ```text
-//!   conifer          broadleaf        shrub        rock
-//!      ▲               ▟██▙
+//!   conifer          broadleaf        shrub        rock         and walnut 13 m, beech 18 m,
+//!      ▲               ▟██▙                                     poplar 20 m, pine 16 m
 //!     ▟█▙             ▟████▙
 //!    ▟███▙            ▀█▜▛█▀         ▄▟█▙▄        ▄▄▖
 //!      ┃ 18 m           ┃ 14 m       ▀▀▀▀▀ 2 m   ▐██▙ 1.5 m
 //! ```
+//!
+//! No two trees of a wood are alike: where many are scattered, a broadleaved one and a conifer take one of several
+//! [`forms`] each, and every plant one of several tints.
 //!
 //! The numbers are the same on every machine: all arithmetic is that of f32 and `libm`.
 
@@ -27,7 +30,17 @@ use crate::draw::material::Material;
 use crate::model::{Census, Model, ModelPart};
 
 /// The names of all built-in models.
-pub const NAMES: [&str; 4] = ["conifer", "broadleaf", "shrub", "rock"];
+pub const NAMES: [&str; 8] = ["conifer", "broadleaf", "shrub", "rock", "walnut", "beech", "poplar", "pine"];
+
+/// What the colors of a plant are multiplied with, by where it stands: fresh, yellowish, bluish, dull and dark leaves.
+const TINTS: [Srgba; 6] = [
+    Srgba::WHITE,
+    Srgba::opaque(252, 246, 214),
+    Srgba::opaque(228, 240, 224),
+    Srgba::opaque(216, 232, 232),
+    Srgba::opaque(242, 236, 212),
+    Srgba::opaque(214, 226, 204),
+];
 
 /// The built-in model of this name; `None` where there is none.
 pub fn by_name(name: &str) -> Option<Model> {
@@ -36,9 +49,25 @@ pub fn by_name(name: &str) -> Option<Model> {
         "broadleaf" => lumpy::broadleaf(),
         "shrub" => lumpy::shrub(),
         "rock" => lumpy::rock(),
+        "walnut" => lumpy::walnut(),
+        "beech" => lumpy::beech(),
+        "poplar" => lumpy::poplar(),
+        "pine" => lumpy::pine(),
         _ => return None,
     };
-    Some(model(name, mesh))
+    let tints = if name == "rock" { Vec::new() } else { TINTS.to_vec() };
+    Some(Model { tints, ..model(name, mesh) })
+}
+
+/// The models that scattered ones of this name are, one as often as the other: crowns of several forms where the name
+/// says no more than broadleaved tree or conifer, else the one model.
+pub fn forms<'a>(name: &'a str) -> Vec<&'a str> {
+    match name {
+        "broadleaf" => vec![name, "walnut", "beech"],
+        // Spruces are the rule; here and there stands a pine.
+        "conifer" => vec![name, name, name, "pine"],
+        _ => vec![name],
+    }
 }
 
 /// A vertex without texture coordinates.
@@ -68,7 +97,7 @@ mod tests {
 
     #[test]
     fn every_name_has_a_model_of_its_height_and_no_other_name_has() {
-        for ((name, model), height) in models().zip([18.0, 14.0, 2.0, 1.5]) {
+        for ((name, model), height) in models().zip([18.0, 14.0, 2.0, 1.5, 13.0, 18.0, 20.0, 16.0]) {
             let Aabb { min, max } = model.bounds().expect("not empty");
             assert!((max.z - height).abs() < height * 0.1, "{name} is {} m high", max.z);
             assert!(min.z < 0.0 && min.z > -height * 0.2, "{name} reaches {} m into the ground", -min.z);

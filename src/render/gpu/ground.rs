@@ -95,7 +95,7 @@ fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[Groun
     }
 }
 
-/// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10.
+/// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10, from −1 (woods) to 1.
 fn packed(post: &GroundPost) -> [u32; 4] {
     let share = |share: f32, most: f32| (share.clamp(0.0, 1.0) * most + 0.5) as u32;
     [
@@ -104,7 +104,7 @@ fn packed(post: &GroundPost) -> [u32; 4] {
         post.slope_north.to_bits(),
         share(post.sun_visibility, 4095.0)
             | share(post.sky_visibility, 1023.0) << 12
-            | share(post.water, 1023.0) << 22,
+            | share(post.water * 0.5 + 0.5, 1022.0) << 22,
     ]
 }
 
@@ -135,8 +135,8 @@ mod tests {
         };
         let [height, east, north, shares] = packed(&post);
         assert_eq!([height, east, north].map(f32::from_bits), [-1234.567, 0.1, -3.5]);
-        let shares = [(shares & 4095, 4095.0), (shares >> 12 & 1023, 1023.0), (shares >> 22, 1023.0)];
-        for ((share, most), wanted) in shares.into_iter().zip([1.0, 0.25, 0.75]) {
+        let shares = [(shares & 4095, 4095.0), (shares >> 12 & 1023, 1023.0), (shares >> 22, 1022.0)];
+        for ((share, most), wanted) in shares.into_iter().zip([1.0, 0.25, 0.875]) {
             assert!((f64::from(share) / most - wanted).abs() < 1e-3, "{share} of {most}");
         }
     }

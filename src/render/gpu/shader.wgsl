@@ -21,6 +21,7 @@ struct Frame {
     studio_bottom: vec4f, // rgb, Backdrop::HORIZON
     sides: array<vec4f, 4>, // xyz toward a side light, its share
     bathymetry: array<vec4f, 9>, // rgb of water over a bed at a height, rising
+    undergrowth: vec4f,   // rgb of ground under trees, and the most of it
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     imagery: vec4f,       // x and y of the south-west corner of the draped picture, 1 / its width and height
@@ -60,7 +61,7 @@ const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 // One texel a post: height, slope east and slope north as bits of f32; the visibilities of the sun in 12 bits and of the
-// sky in 10, and water in 10.
+// sky in 10, and water in 10, from -1 (woods) to 1.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
 // The same for all smaller levels, side by side.
 @group(0) @binding(2) var ground_coarse: texture_2d<u32>;
@@ -165,7 +166,7 @@ fn post_at(at: vec2u, level: u32) -> Post {
         texel = textureLoad(ground_coarse, at + vec2u(frame.ground_levels[level].z, 0u), 0);
     }
     let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
-    let visibility = shares / vec3f(4095.0, 1023.0, 1023.0);
+    let visibility = shares / vec3f(4095.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
     return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0));
 }
 
@@ -597,7 +598,9 @@ fn shade(in: Varying, front: bool) -> vec4f {
             let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
             let pixel = max(length(right), length(down));
             let grain = ground_grain(in.world.xy, pixel, length(post.slope));
-            let land = ramp_at(post.height) * select(1.0, grain, frame.contour_shape.w > 0.5);
+            let wood = clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w;
+            let bare_land = mix(ramp_at(post.height), frame.undergrowth.rgb, wood);
+            let land = bare_land * select(1.0, grain, frame.contour_shape.w > 0.5);
             let bare = mix(land, water_at(post.height), water) * shore;
             let draped = draped_at(in.world.xy, right, down);
             let covered = mix(bare, draped.rgb, draped.a);

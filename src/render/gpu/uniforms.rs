@@ -9,6 +9,7 @@ use crate::draw::ground_levels::PostCount;
 use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::draw::undergrowth::Undergrowth;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
@@ -45,6 +46,7 @@ pub struct FrameUniforms {
     studio_bottom: [f32; 4],
     sides: [[f32; 4]; 4],
     bathymetry: [[f32; 4]; STOP_COUNT],
+    undergrowth: [f32; 4],
     ground: [f32; 4],
     ground_size: [u32; 4],
     imagery: [f32; 4],
@@ -113,6 +115,7 @@ impl FrameUniforms {
                 let (height_m, color) = bathymetry().stops()[stop];
                 with(color, height_m)
             }),
+            undergrowth: with(Undergrowth::COLOR.linear(), Undergrowth::MOST),
             shadows: ShadowView::both(shadows),
             ..Self::ground(list)
         }

@@ -17,6 +17,9 @@ use crate::render::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpos
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
 const GUARD_TEXELS: f32 = 8192.0;
 
+/// More than snapping to the rasterizer's grid moves a corner, in texels.
+const SNAPPED_TEXELS: f32 = 1e-3;
+
 /// How far above the ground an underside lies at the least of what does not touch it, in texels: as far as contact
 /// shade reaches.
 const FLOATING_TEXELS: f32 = 2.0;
@@ -149,42 +152,55 @@ impl Filling<'_> {
         let scale = Vec3::new(1.0 / self.level.texel_m, 1.0 / self.level.texel_m, 1.0);
         let [a, b, c] = on.triangle.corners;
         let corners = [(a - origin) * scale, (b - origin) * scale, (c - origin) * scale];
-        let Some(plane) = self.plane(on, corners) else { return };
         let size = [self.level.columns * PAGE, self.level.rows * PAGE];
-        let outline = cut(corners.map(|corner| corner.xy()), size);
-        let snap = |corner: Vec2| [snapped(f64::from(corner.x)), snapped(f64::from(corner.y))];
+        let plan = corners.map(|corner| corner.xy());
+        if is_between_centers(&plan) {
+            return;
+        }
+        let Some(plane) = self.plane(on, corners) else { return };
+        if is_within_guard(&plan, size) {
+            self.draw_piece(on, &plane, plan, work);
+            return;
+        }
+        let outline = cut(plan, size);
         for pair in outline.get(1..).unwrap_or_default().windows(2) {
-            let [a, b, c] = [outline[0], pair[0], pair[1]].map(snap);
-            let turned = if doubled_area(&[a, b, c]) < 0 { [a, c, b] } else { [a, b, c] };
-            if doubled_area(&turned) == 0 {
-                continue;
-            }
-            let touched = PixelWindow::around(&turned, size);
-            for column in columns.clone() {
-                let Some(place) = work.places[column] else { continue };
-                let corner = [column as u32 * PAGE, work.row * PAGE];
-                let page = PixelWindow { from: corner, to: corner.map(|side| side + PAGE) };
-                let first = place * (PAGE * PAGE) as usize;
-                let texels = &mut work.texels[first..][..(PAGE * PAGE) as usize];
-                let mut undersides =
-                    work.undersides.get_mut(first..).filter(|all| plane.looks_down && !all.is_empty());
-                cover_centers(&turned, page.intersection(touched), |x, y| {
-                    let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - plane.start;
-                    if plane.is_hole(at) {
-                        return;
-                    }
-                    let index = ((y - corner[1]) * PAGE + x - corner[0]) as usize;
-                    let height = plane.height_at(at);
-                    let texel = &mut texels[index];
-                    if let Some(least) = undersides.as_mut().and_then(|all| all.get_mut(index)) {
-                        *least = least.min(height);
-                    }
-                    match on.kind {
-                        CasterKind::Solid => texel.solid = texel.solid.max(height),
-                        CasterKind::Ground => texel.ground = texel.ground.max(height),
-                    }
-                });
-            }
+            self.draw_piece(on, &plane, [outline[0], pair[0], pair[1]], work);
+        }
+    }
+
+    /// Draws a part of a triangle, its corners in texels.
+    fn draw_piece(&self, on: &LevelTriangle, plane: &TexelPlane, corners: [Vec2; 3], work: &mut PageRow) {
+        let snap = |corner: Vec2| [snapped(f64::from(corner.x)), snapped(f64::from(corner.y))];
+        let [a, b, c] = corners.map(snap);
+        let turned = if doubled_area(&[a, b, c]) < 0 { [a, c, b] } else { [a, b, c] };
+        if doubled_area(&turned) == 0 {
+            return;
+        }
+        let touched = PixelWindow::around(&turned, [self.level.columns * PAGE, self.level.rows * PAGE]);
+        for column in on.range.from[0] as usize..on.range.to[0] as usize {
+            let Some(place) = work.places[column] else { continue };
+            let corner = [column as u32 * PAGE, work.row * PAGE];
+            let page = PixelWindow { from: corner, to: corner.map(|side| side + PAGE) };
+            let first = place * (PAGE * PAGE) as usize;
+            let texels = &mut work.texels[first..][..(PAGE * PAGE) as usize];
+            let mut undersides =
+                work.undersides.get_mut(first..).filter(|all| plane.looks_down && !all.is_empty());
+            cover_centers(&turned, page.intersection(touched), |x, y| {
+                let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - plane.start;
+                if plane.is_hole(at) {
+                    return;
+                }
+                let index = ((y - corner[1]) * PAGE + x - corner[0]) as usize;
+                let height = plane.height_at(at);
+                let texel = &mut texels[index];
+                if let Some(least) = undersides.as_mut().and_then(|all| all.get_mut(index)) {
+                    *least = least.min(height);
+                }
+                match on.kind {
+                    CasterKind::Solid => texel.solid = texel.solid.max(height),
+                    CasterKind::Ground => texel.ground = texel.ground.max(height),
+                }
+            });
         }
     }
 
@@ -255,14 +271,26 @@ impl TexelPlane<'_> {
     }
 }
 
+/// Whether no texel's center lies in the box around the corners: so it is with most triangles of a distant tree.
+fn is_between_centers(corners: &[Vec2; 3]) -> bool {
+    let [a, b, c] = *corners;
+    // Snapping moves a corner by less than this.
+    let (low, high) = (a.min(b).min(c) - SNAPPED_TEXELS, a.max(b).max(c) + SNAPPED_TEXELS);
+    let (first, last) = ((low - 0.5).ceil(), (high - 0.5).floor());
+    first.x > last.x || first.y > last.y
+}
+
+fn is_within_guard(corners: &[Vec2; 3], size: [u32; 2]) -> bool {
+    let low = Vec2::splat(-GUARD_TEXELS);
+    let high = Vec2::new(size[0] as f32, size[1] as f32) + GUARD_TEXELS;
+    corners.iter().all(|corner| corner.cmpge(low).all() && corner.cmple(high).all())
+}
+
 /// The part of a triangle that the rasterizer's coordinates can hold (Sutherland and Hodgman 1974).
 fn cut(corners: [Vec2; 3], size: [u32; 2]) -> Vec<Vec2> {
     let low = Vec2::splat(-GUARD_TEXELS);
     let high = Vec2::new(size[0] as f32, size[1] as f32) + GUARD_TEXELS;
     let mut outline = corners.to_vec();
-    if corners.iter().all(|corner| corner.cmpge(low).all() && corner.cmple(high).all()) {
-        return outline;
-    }
     for (axis, limit, sign) in [(0, low.x, 1.0), (1, low.y, 1.0), (0, high.x, -1.0), (1, high.y, -1.0)] {
         let inside = |corner: Vec2| (corner[axis] - limit) * sign;
         let mut kept = Vec::with_capacity(outline.len() + 1);

@@ -37,6 +37,9 @@ const SPARSE_RADIUS: f32 = 2.5;
 /// Texels outside a level that filters ask for at the most: a page.
 const OUTSIDE: i32 = PAGE as i32;
 
+/// More texels in a row than any radius reads.
+const MOST_WINDOW: usize = 12;
+
 /// The radius of contact shade, in texels of the sky's map.
 const CONTACT_RADIUS: f32 = 2.0;
 
@@ -86,8 +89,15 @@ impl ShadowReceiver {
     fn height(self, texel: ShadowTexel) -> f32 {
         match self {
             Self::Ground => texel.solid,
-            Self::Solid => texel.solid.max(texel.ground),
+            Self::Solid => texel.top(),
         }
+    }
+}
+
+impl ShadowTexel {
+    /// The height of the solid or of the ground, whichever is higher; neither is NaN.
+    fn top(self) -> f32 {
+        if self.solid > self.ground { self.solid } else { self.ground }
     }
 }
 
@@ -169,12 +179,24 @@ impl ShadowPlace<'_> {
 
     /// The weight of all texels within `radius`, of those that cast, and of these times their height.
     fn cover(&self, radius: f32, step: i32, plane: &ReceivingPlane) -> Vec3 {
+        match plane.receiver {
+            ShadowReceiver::Ground => self.cover_of(radius, step, plane, |texel| texel.solid),
+            ShadowReceiver::Solid => self.cover_of(radius, step, plane, ShadowTexel::top),
+        }
+    }
+
+    fn cover_of(
+        &self,
+        radius: f32,
+        step: i32,
+        plane: &ReceivingPlane,
+        top: impl Fn(ShadowTexel) -> f32,
+    ) -> Vec3 {
         let full = 1.0 / (FULL_TEXELS * self.level.texel_m);
         let (mut all, mut casting, mut heights) = (0.0, 0.0, 0.0);
         self.read(radius, step, |texel, aside, weight| {
             all += weight;
-            let height =
-                plane.receiver.height(texel) - self.height - plane.rise.x * aside.x - plane.rise.y * aside.y;
+            let height = top(texel) - self.height - plane.rise.x * aside.x - plane.rise.y * aside.y;
             if height > plane.bias {
                 let share = ((height - plane.bias) * full).min(1.0) * weight;
                 casting += share;
@@ -186,37 +208,66 @@ impl ShadowPlace<'_> {
 
     /// Calls `visit(texel, texels from the point, weight)` for every `step`-th texel within `radius`, weighted by a tent
     /// in both directions. `step` is 1 or 2.
+    ///
+    /// Most windows lie within a page: its texels are found once and not row by row.
     fn read(&self, radius: f32, step: i32, mut visit: impl FnMut(ShadowTexel, Vec2, f32)) {
-        let left = first_texel(self.at.x - 0.5 - radius, step);
-        let right = rounded_down(self.at.x - 0.5 + radius);
-        let top = rounded_down(self.at.y - 0.5 + radius);
-        let mut y = first_texel(self.at.y - 0.5 - radius, step);
+        let (low, high) = (self.at - (0.5 + radius), self.at - (0.5 - radius));
+        let [left, bottom] = [first_texel(low.x, step), first_texel(low.y, step)];
+        let [right, top] = [rounded_down(high.x), rounded_down(high.y)];
+        let tent = |texel: i32, at: f32| {
+            let aside = texel as f32 + 0.5 - at;
+            (aside, (1.0 - aside.abs() / radius).max(0.0))
+        };
+        let mut tents = [(0.0, 0.0); MOST_WINDOW];
+        let mut count = 0;
+        let mut x = left;
+        while x <= right && count < MOST_WINDOW {
+            tents[count] = tent(x, self.at.x);
+            count += 1;
+            x += step;
+        }
+        let tents = &tents[..count];
+        // None where the place is NaN.
+        let Some(last) = count.checked_sub(1) else { return };
+        let within_page = ((left ^ right) | (bottom ^ top)) >> PAGE_BITS == 0;
+        let page = if within_page { self.texels(left >> PAGE_BITS, bottom >> PAGE_BITS) } else { &[] };
+        let mut y = bottom;
         while y <= top {
-            let aside_y = y as f32 + 0.5 - self.at.y;
-            let weight_y = (1.0 - aside_y.abs() / radius).max(0.0);
-            let mut line: &[ShadowTexel] = &[];
-            let mut x = left;
-            while x <= right {
-                if x == left || x & PAGE_MASK == 0 {
-                    line = self.line(x, y);
+            let (aside_y, weight_y) = tent(y, self.at.y);
+            let first = ((y & PAGE_MASK) * PAGE as i32 + (left & PAGE_MASK)) as usize;
+            if let Some(line) = page.get(first..=first + last * step as usize) {
+                for (texel, &(aside_x, weight_x)) in line.iter().step_by(step as usize).zip(tents) {
+                    visit(*texel, Vec2::new(aside_x, aside_y), weight_x * weight_y);
                 }
-                let aside_x = x as f32 + 0.5 - self.at.x;
-                let weight = (1.0 - aside_x.abs() / radius).max(0.0) * weight_y;
-                let index = (x & PAGE_MASK) as usize;
-                let texel = if index < line.len() { line[index] } else { ShadowTexel::EMPTY };
-                visit(texel, Vec2::new(aside_x, aside_y), weight);
-                x += step;
+            } else {
+                let mut line: &[ShadowTexel] = &[];
+                let mut x = left;
+                for (index, &(aside_x, weight_x)) in tents.iter().enumerate() {
+                    if index == 0 || x & PAGE_MASK == 0 {
+                        line = self.line(x, y);
+                    }
+                    let texel = line.get((x & PAGE_MASK) as usize).copied().unwrap_or(ShadowTexel::EMPTY);
+                    visit(texel, Vec2::new(aside_x, aside_y), weight_x * weight_y);
+                    x += step;
+                }
             }
             y += step;
         }
     }
 
+    /// The texels of a page; none where it is not stored.
+    fn texels(&self, column: i32, row: i32) -> &[ShadowTexel] {
+        let number = self.page(column, row).map_or(0, |page| page.number);
+        let Some(page) = number.checked_sub(1) else { return &[] };
+        let first = (page * PAGE * PAGE) as usize;
+        &self.map.texels[first..][..(PAGE * PAGE) as usize]
+    }
+
     /// The row of texels of the page with texel `(x, y)`; empty where it is not stored.
     fn line(&self, x: i32, y: i32) -> &[ShadowTexel] {
-        let number = self.page(x >> PAGE_BITS, y >> PAGE_BITS).map_or(0, |page| page.number);
-        let Some(page) = number.checked_sub(1) else { return &[] };
-        let start = (page * PAGE + (y & PAGE_MASK) as u32) * PAGE;
-        &self.map.texels[start as usize..][..PAGE as usize]
+        let page = self.texels(x >> PAGE_BITS, y >> PAGE_BITS);
+        let first = ((y & PAGE_MASK) as u32 * PAGE) as usize;
+        page.get(first..first + PAGE as usize).unwrap_or_default()
     }
 }
 

@@ -162,8 +162,9 @@ impl Shadows {
             let axes = LightAxes::new(toward, camera);
             ShadowMap::new(&MapSource { list, camera, triangles: &triangles, axes, purpose }, texel_px)
         };
-        let sun = if to_sun.z > 0.0 { map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun) } else { None };
-        Self { sun, sky: map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact) }
+        let sun = || (to_sun.z > 0.0).then(|| map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun)).flatten();
+        let (sun, sky) = rayon::join(sun, || map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact));
+        Self { sun, sky }
     }
 }
 

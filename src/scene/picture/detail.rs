@@ -1,5 +1,5 @@
 //! Many models: where neither a model nor its shadow is in view it is left out, small ones are drawn in a simpler form,
-//! and equal ones form runs.
+//! plants smaller than a pixel or two leave it to the ground to show a wood, and equal ones form runs.
 //!
 //! A picture whose models have no more than [`FULL_TRIANGLES`] draws all of them in full. Past that, [`ModelDetail::form`]
 //! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
+use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
 use crate::draw::material::{Material, TextureId};
 use crate::model::detail::{ApparentSize, DetailForm, ModelDetail};
@@ -21,6 +22,14 @@ use crate::view::frustum::Frustum;
 
 /// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
 const FULL_TRIANGLES: usize = 250_000;
+
+/// As many small models of one kind are drawn as pictures on quads; the pictures of fewer would take longer to make than
+/// their coarse meshes to draw.
+const PICTURED: usize = 2500;
+
+/// Plants smaller than this in the picture, in pixels, are not drawn: the ground under them has their tone, and thousands
+/// of specks would say less and cost more.
+const CANOPY_PX: f32 = 1.5;
 
 /// The sine of the sun's height below which shadows are taken to be no longer: they reach a hundred times as far as what
 /// casts them is high.
@@ -45,6 +54,8 @@ pub(super) struct PlacedModel {
     pub model: usize,
     /// Its pose: a rotation, a uniform scale and a translation.
     pub world_from_model: Mat4,
+    /// Which of its model's tints.
+    pub tint: u8,
     /// The feature it is.
     pub feature: FeatureId,
 }
@@ -68,68 +79,79 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
                 .par_iter()
                 .filter(|stand| balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z))
                 .collect();
-            let forms = forms(scene, camera, &balls, &in_view);
+            let size = |stand: &PlacedModel| balls[stand.model].seen(stand, camera);
+            let is_canopy = |stand: &PlacedModel, size: &ApparentSize| {
+                size.across_px < CANOPY_PX && !scene.models[stand.model].tints.is_empty()
+            };
+            let (in_view, sizes): (Vec<&PlacedModel>, Vec<ApparentSize>) = in_view
+                .into_par_iter()
+                .map(|stand| (stand, size(stand)))
+                .filter(|(stand, size)| !is_canopy(stand, size))
+                .unzip();
+            let forms = forms(scene, &in_view, &sizes);
             grouped(in_view.into_iter().zip(forms))
         }
     };
-    let mut listed = ModelItems { list, models: BTreeMap::new(), impostors: BTreeMap::new() };
-    for (&(model, form), stands) in &groups {
+    let mut listed = ModelItems::new(list);
+    for (&(model, form, tint), stands) in &groups {
         let details = || scene.details[model].get();
-        let source = &scene.models[model];
+        let source = TintedModel { index: model, model: &scene.models[model], tint };
         match form {
-            DetailForm::Full => listed.add_parts((model, source), &source.parts, stands),
+            DetailForm::Full => listed.add_parts(&source, form, &source.model.parts, stands),
             DetailForm::Level(level) => {
                 let parts = details().and_then(|detail| Some(&detail.levels.get(usize::from(level))?.parts));
-                listed.add_parts((model, source), parts.unwrap_or(&source.parts), stands);
+                listed.add_parts(&source, form, parts.unwrap_or(&source.model.parts), stands);
             }
-            DetailForm::Impostor(view) => match details().and_then(|detail| detail.impostor.as_ref()) {
-                Some(impostor) => listed.add_views((model, impostor), view.triangles(), stands),
-                None => listed.add_parts((model, source), &source.parts, stands),
+            DetailForm::Impostor(view) => match details().and_then(ModelDetail::impostor) {
+                Some(impostor) => listed.add_views(&source, impostor, view.triangles(), stands),
+                None => listed.add_parts(&source, DetailForm::Full, &source.model.parts, stands),
             },
         }
     }
 }
 
-type Groups<'a> = BTreeMap<(usize, DetailForm), Vec<&'a PlacedModel>>;
+/// Placed models by model, form and tint.
+type Groups<'a> = BTreeMap<(usize, DetailForm, u8), Vec<&'a PlacedModel>>;
 
 fn grouped<'a>(stands: impl Iterator<Item = (&'a PlacedModel, DetailForm)>) -> Groups<'a> {
     let mut groups = Groups::new();
     for (stand, form) in stands {
-        groups.entry((stand.model, form)).or_default().push(stand);
+        groups.entry((stand.model, form, stand.tint)).or_default().push(stand);
     }
     groups
 }
 
-fn forms(
-    scene: &SceneModel,
-    camera: &Camera,
-    balls: &[BoundingSphere],
-    in_view: &[&PlacedModel],
-) -> Vec<DetailForm> {
+fn forms(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) -> Vec<DetailForm> {
     let triangles: Vec<usize> = scene.models.iter().map(Model::triangle_count).collect();
     let total = in_view.iter().fold(0usize, |sum, stand| sum.saturating_add(triangles[stand.model]));
     if total <= FULL_TRIANGLES {
         return vec![DetailForm::Full; in_view.len()];
     }
-    prepare(scene, in_view);
-    let form = |stand: &&PlacedModel| {
-        let detail = scene.details[stand.model].get()?;
-        Some(detail.form(&balls[stand.model].seen(stand, camera)))
+    prepare(scene, in_view, sizes);
+    let form = |(stand, size): (&&PlacedModel, &ApparentSize)| {
+        scene.details[stand.model].get().map_or(DetailForm::Full, |detail| detail.form(size))
     };
-    in_view.par_iter().map(|stand| form(stand).unwrap_or(DetailForm::Full)).collect()
+    in_view.par_iter().zip(sizes).map(form).collect()
 }
 
-/// Makes the simpler forms of the models in view, where they are not yet made.
+/// Makes the simpler forms of the models in view that this picture needs, where they are not yet made.
 ///
 /// Not by `get_or_init`: making them runs on several threads, and one that helps another picture meanwhile could wait for
 /// itself.
-fn prepare(scene: &SceneModel, in_view: &[&PlacedModel]) {
-    let mut wanted: Vec<usize> = in_view.iter().map(|stand| stand.model).collect();
-    wanted.sort_unstable();
-    wanted.dedup();
-    wanted.par_iter().filter(|&&model| scene.details[model].get().is_none()).for_each(|&model| {
-        // Another picture may have set the same value first.
-        let _ = scene.details[model].set(ModelDetail::new(&scene.models[model]));
+fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) {
+    let mut wanted: BTreeMap<usize, usize> = BTreeMap::new();
+    for (stand, size) in in_view.iter().zip(sizes) {
+        *wanted.entry(stand.model).or_default() += usize::from(size.is_small());
+    }
+    wanted.into_par_iter().for_each(|(model, small)| {
+        let (detail, model) = (&scene.details[model], &scene.models[model]);
+        if detail.get().is_none() {
+            // Another picture may have set the same value first.
+            let _ = detail.set(ModelDetail::new(model));
+        }
+        if let Some(detail) = detail.get().filter(|_| small >= PICTURED) {
+            detail.make_impostor(model);
+        }
     });
 }
 
@@ -176,38 +198,98 @@ impl BoundingSphere {
     }
 }
 
-/// A draw list with the meshes and materials of each model so far.
-struct ModelItems<'a> {
-    list: &'a mut DrawList,
-    /// The first material of each model.
-    models: BTreeMap<usize, MaterialId>,
-    impostors: BTreeMap<usize, (MeshId, MaterialId)>,
+/// A model in one of its tints.
+struct TintedModel<'a> {
+    index: usize,
+    model: &'a Model,
+    tint: u8,
 }
 
-impl ModelItems<'_> {
-    fn add_parts(&mut self, (index, model): (usize, &Model), parts: &[ModelPart], stands: &[&PlacedModel]) {
+/// A draw list with the meshes, textures and materials of each model so far.
+struct ModelItems<'a> {
+    list: &'a mut DrawList,
+    /// The meshes of the parts of a model in a form.
+    meshes: BTreeMap<(usize, DetailForm), Vec<MeshId>>,
+    /// The first texture of each model.
+    textures: BTreeMap<usize, TextureId>,
+    /// The first material of each model in a tint.
+    materials: BTreeMap<(usize, u8), MaterialId>,
+    impostors: BTreeMap<usize, (MeshId, TextureId)>,
+    impostor_materials: BTreeMap<(usize, u8), MaterialId>,
+}
+
+impl TintedModel<'_> {
+    /// A material in the tint.
+    fn tinted(&self, material: &Material) -> Material {
+        let tint = self.model.tints.get(usize::from(self.tint)).copied();
+        let base_color = tint.map_or(material.base_color, |tint| multiplied(material.base_color, tint));
+        Material { base_color, ..material.clone() }
+    }
+}
+
+impl<'a> ModelItems<'a> {
+    fn new(list: &'a mut DrawList) -> Self {
+        Self {
+            list,
+            meshes: BTreeMap::new(),
+            textures: BTreeMap::new(),
+            materials: BTreeMap::new(),
+            impostors: BTreeMap::new(),
+            impostor_materials: BTreeMap::new(),
+        }
+    }
+
+    fn add_parts(
+        &mut self,
+        source: &TintedModel<'_>,
+        form: DetailForm,
+        parts: &[ModelPart],
+        stands: &[&PlacedModel],
+    ) {
+        let MaterialId(first) = self.materials_of(source);
         let list = &mut *self.list;
-        let MaterialId(first) = *self.models.entry(index).or_insert_with(|| list_materials(list, model));
-        for part in parts {
+        let listed = || parts.iter().map(|part| list.add_mesh(part.mesh.clone())).collect();
+        let meshes = self.meshes.entry((source.index, form)).or_insert_with(listed).clone();
+        for (part, mesh) in parts.iter().zip(meshes) {
             let triangles = 0..part.mesh.triangles.len() as u32;
-            let mesh = self.list.add_mesh(part.mesh.clone());
             self.add_items(mesh, triangles, MaterialId(part.material.0 + first), stands);
         }
     }
 
     fn add_views(
         &mut self,
-        (index, impostor): (usize, &Impostor),
+        source: &TintedModel<'_>,
+        impostor: &Impostor,
         triangles: std::ops::Range<u32>,
         stands: &[&PlacedModel],
     ) {
         let list = &mut *self.list;
-        let (mesh, material) = *self.impostors.entry(index).or_insert_with(|| {
-            let texture = Some(list.add_texture(impostor.texture.clone()));
-            let material = list.add_material(Material { texture, ..impostor.material.clone() });
-            (list.add_mesh(impostor.mesh.clone()), material)
+        let (mesh, texture) = *self.impostors.entry(source.index).or_insert_with(|| {
+            (list.add_mesh(impostor.mesh.clone()), list.add_texture(impostor.texture.clone()))
+        });
+        let material = *self.impostor_materials.entry((source.index, source.tint)).or_insert_with(|| {
+            let material = source.tinted(&impostor.material);
+            list.add_material(Material { texture: Some(texture), ..material })
         });
         self.add_items(mesh, triangles, material, stands);
+    }
+
+    /// The first material of a model in a tint.
+    fn materials_of(&mut self, source: &TintedModel<'_>) -> MaterialId {
+        let (list, model) = (&mut *self.list, source.model);
+        let TextureId(texture) = *self.textures.entry(source.index).or_insert_with(|| {
+            let first = TextureId(list.textures.len() as u32);
+            list.textures.extend(model.textures.iter().cloned());
+            first
+        });
+        *self.materials.entry((source.index, source.tint)).or_insert_with(|| {
+            let first = MaterialId(list.materials.len() as u32);
+            list.materials.extend(model.materials.iter().map(|material| Material {
+                texture: material.texture.map(|TextureId(id)| TextureId(id + texture)),
+                ..source.tinted(material)
+            }));
+            first
+        })
     }
 
     fn add_items(
@@ -228,13 +310,7 @@ impl ModelItems<'_> {
     }
 }
 
-fn list_materials(list: &mut DrawList, model: &Model) -> MaterialId {
-    let first_texture = list.textures.len() as u32;
-    list.textures.extend(model.textures.iter().cloned());
-    let first = MaterialId(list.materials.len() as u32);
-    list.materials.extend(model.materials.iter().map(|material| Material {
-        texture: material.texture.map(|TextureId(id)| TextureId(id + first_texture)),
-        ..material.clone()
-    }));
-    first
+fn multiplied(color: Srgba, tint: Srgba) -> Srgba {
+    let Srgba([red, green, blue, _]) = Srgba::from_linear(color.linear() * tint.linear());
+    Srgba([red, green, blue, color.0[3]])
 }

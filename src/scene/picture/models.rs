@@ -1,5 +1,6 @@
 //! Models, each in its pose.
 
+use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
@@ -8,9 +9,13 @@ use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, PlacedModel, Viewer};
 use crate::scene::placement::stand;
+use crate::scene::scatter::chance::Chance;
 use crate::scene::{Placement, SceneModel};
 use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
+
+/// The seed of tints: any other gives others.
+const TINT_SEED: u64 = 0x7ea5;
 
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(
@@ -27,7 +32,8 @@ pub(super) fn add(
         let stand = stand(placement, footprint, ground)?;
         let Placement { model, feature, .. } = *placement;
         let plinth = stand.plinth(placement, footprint, ground);
-        Some((PlacedModel { model, world_from_model: stand.world_from_model, feature }, plinth))
+        let tint = tint(placement.at, scene.models[model].tints.len());
+        Some((PlacedModel { model, world_from_model: stand.world_from_model, tint, feature }, plinth))
     };
     let (placed, plinths): (Vec<PlacedModel>, Vec<Option<DrawMesh>>) =
         scene.placements.par_iter().filter_map(set).unzip();
@@ -41,4 +47,10 @@ pub(super) fn add(
         add_mesh(list, block, material, DepthLayer::Solid, placed.feature);
     }
     detail::add(list, scene, &placed, viewer);
+}
+
+/// Which of so many tints the model at a place has: the same in every picture.
+fn tint(at: Vec2, count: usize) -> u8 {
+    let place = (i64::from(at.x.to_bits()), i64::from(at.y.to_bits()));
+    if count > 1 { Chance::of(TINT_SEED, place).below(count) as u8 } else { 0 }
 }

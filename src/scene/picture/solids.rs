@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::draw::list::{DepthLayer, DrawList};
 use crate::draw::material::Material;
 use crate::ribbon::texture::texture;
+use crate::scene::facade::facade;
 use crate::scene::picture::add_mesh;
 use crate::scene::{Coat, SceneModel};
 
@@ -15,6 +16,11 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel) {
         let material = *materials.entry(solid.coat).or_insert_with(|| {
             let material = match solid.coat {
                 Coat::Painted => Material { name: "painted".into(), ..Material::default() },
+                Coat::Facade => Material {
+                    name: "facade".into(),
+                    texture: Some(list.add_texture(facade())),
+                    ..Material::default()
+                },
                 Coat::Surface(surface) => Material {
                     name: format!("{surface:?} of a solid").to_lowercase(),
                     texture: Some(list.add_texture(texture(surface))),

@@ -21,6 +21,7 @@ use crate::description::words::Clamp;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::VertexId;
+use crate::model::built_in;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::models::library::Library;
@@ -97,7 +98,8 @@ pub fn strew(
 }
 
 struct Species {
-    models: Vec<usize>,
+    /// The forms of each model that the table names; never empty.
+    models: Vec<Vec<usize>>,
     seed: u64,
 }
 
@@ -109,7 +111,9 @@ impl Species {
     ) -> Result<Self, Diagnostic> {
         let mut models = Vec::new();
         for name in table.models.iter() {
-            models.push(library.get(name, table.models.span(), collected)?);
+            let forms = built_in::forms(name).into_iter();
+            let form = |name| library.get(name, table.models.span(), collected);
+            models.push(forms.map(form).collect::<Result<Vec<usize>, Diagnostic>>()?);
         }
         // Tables of different models get different patterns, so that theirs do not coincide.
         let seed = seed_of(table.seed, table.models.iter().map(String::as_str));
@@ -227,14 +231,15 @@ impl ScatterGround<'_> {
         Some((height_m, ground_gradient(self.lattice, GradientSurface::Planar, at).ok()?))
     }
 
-    /// A model at a point, its kind, size and heading drawn from the point's random number. It sinks into a slope by its
+    /// A model at a point, its kind, size, heading and form drawn from the point's random number. It sinks into a slope by its
     /// foot's width, so that its downhill side does not float.
     fn placement(&self, place: &PatternPoint, gradient: Gradient) -> Placement {
         let mut chance = Chance::from_number(place.fate);
-        let model = self.species.models[chance.below(self.species.models.len())];
+        let forms = &self.species.models[chance.below(self.species.models.len())];
         let [from, to] = self.table.scale;
         let scale = (from + (to - from) * chance.part()) as f32;
         let heading_rad = (chance.part() * TAU) as f32;
+        let model = forms[chance.below(forms.len())];
         let rise = self.frame.scale.world_z(gradient.0.length() as f32);
         let standing = GroundFit {
             sink_m: rise * self.library.footprint(model).radius() * scale,

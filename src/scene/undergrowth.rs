@@ -1,0 +1,106 @@
+//! Where trees cover the ground: the share of it around each post that lies under crowns.
+//!
+//! A crown is spread over the posts around it by a cone, at least as wide as the posts lie apart, so that a wood of any
+//! density covers as much of the ground as its crowns do, and a lone tree darkens the ground about its foot.
+
+use glam::Vec2;
+
+use crate::scene::SceneModel;
+
+/// The radius of a cone in radii of its crown: litter lies beyond the boughs.
+const REACH: f32 = 1.4;
+
+/// What crowns leave open is raised to this power: a wood whose crowns cover half of the ground has little open ground.
+const BETWEEN: i32 = 3;
+
+/// A crown's radius in parts of how far its model reaches from its foot at the most.
+const CROWN_PART: f32 = 0.85;
+
+/// The most posts along the side of the square around one crown: a crown of kilometers is a mistake, and costs no more
+/// than a second's thousandth.
+const MOST_POSTS: f32 = 64.0;
+
+/// The share of the ground that crowns cover by post, row by row from the south-west, 0..=1; empty where nothing grows.
+pub fn undergrowth(scene: &SceneModel) -> Vec<f32> {
+    let grows = |model: usize| !scene.models[model].tints.is_empty();
+    if !scene.placements.iter().any(|placement| grows(placement.model)) {
+        return Vec::new();
+    }
+    let reach = |model: usize| {
+        let bounds = scene.models[model].bounds().unwrap_or_default();
+        bounds.min.abs().max(bounds.max.abs()).truncate().max_element() * CROWN_PART
+    };
+    let reaches: Vec<f32> = (0..scene.models.len()).map(reach).collect();
+    let (columns, rows) = (scene.lattice.columns(), scene.lattice.rows());
+    let mut ground = CrownGround { cell: scene.lattice.cell().as_vec2(), columns, rows, shares: Vec::new() };
+    ground.shares.resize(columns as usize * rows as usize, 0.0);
+    for placement in scene.placements.iter().filter(|placement| grows(placement.model)) {
+        ground.add(placement.at, reaches[placement.model] * placement.scale);
+    }
+    // Litter and scrub reach from crown to crown.
+    ground.shares.iter_mut().for_each(|share| *share = 1.0 - (1.0 - *share).powi(BETWEEN));
+    ground.shares
+}
+
+struct CrownGround {
+    cell: Vec2,
+    columns: u32,
+    rows: u32,
+    shares: Vec<f32>,
+}
+
+impl CrownGround {
+    /// Adds a crown around a place, in meters from the south-west post.
+    fn add(&mut self, at: Vec2, radius_m: f32) {
+        let reach_m = (radius_m * REACH).max(self.cell.max_element());
+        let (at, reach) = (at / self.cell, Vec2::splat(reach_m) / self.cell);
+        if !(at.is_finite() && radius_m > 0.0 && reach.max_element() * 2.0 < MOST_POSTS) {
+            return;
+        }
+        // The cone's volume is the crown's area.
+        let height = 3.0 * (radius_m / reach_m) * (radius_m / reach_m);
+        let within = |low: f32, high: f32, count: u32| {
+            let first = low.ceil().clamp(0.0, count as f32) as u32;
+            first..(high.floor() + 1.0).clamp(0.0, count as f32) as u32
+        };
+        for row in within(at.y - reach.y, at.y + reach.y, self.rows) {
+            for column in within(at.x - reach.x, at.x + reach.x, self.columns) {
+                let away_m = ((Vec2::new(column as f32, row as f32) - at) * self.cell).length();
+                let share = &mut self.shares[(row * self.columns + column) as usize];
+                *share = (*share + height * (1.0 - away_m / reach_m).max(0.0)).min(1.0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ground(cell: f32) -> CrownGround {
+        CrownGround { cell: Vec2::splat(cell), columns: 41, rows: 31, shares: vec![0.0; 41 * 31] }
+    }
+
+    #[test]
+    fn crowns_cover_as_much_ground_as_they_are_large_however_far_posts_lie_apart() {
+        for (cell, radius_m) in [(30.0, 4.0), (30.0, 12.0), (2.0, 6.0), (90.0, 40.0)] {
+            let mut ground = ground(cell);
+            ground.add(Vec2::new(20.3, 15.6) * cell, radius_m);
+            let covered: f32 = ground.shares.iter().sum::<f32>() * cell * cell;
+            let area = std::f32::consts::PI * radius_m * radius_m;
+            // A wide cone is clamped where it is higher than 1.
+            assert!((0.5..1.4).contains(&(covered / area)), "{covered} m² of {area} in cells of {cell} m");
+        }
+    }
+
+    #[test]
+    fn crowns_beside_the_ground_and_hostile_ones_do_nothing_or_little() {
+        for (at, radius_m) in
+            [(-900.0, 5.0), (1e30, 5.0), (f32::NAN, 5.0), (20.0, 1e30), (20.0, f32::NAN), (20.0, -4.0)]
+        {
+            let mut ground = ground(2.0);
+            ground.add(Vec2::splat(at), radius_m);
+            assert!(ground.shares.iter().all(|&share| share == 0.0), "{at} {radius_m}");
+        }
+    }
+}
