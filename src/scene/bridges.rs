@@ -51,6 +51,9 @@ const BURIED: f64 = 0.4;
 /// How high the soffit is over the ground where an abutment ends, in meters: high enough to see through below.
 const ABUTMENT_M: f64 = 1.5;
 
+/// How far from the middle of its mouth a road may run, in meters.
+const OFF_CENTER_M: f64 = 0.5;
+
 /// Stations of a profile nearer to each other than this are one, in meters.
 const MERGE_M: f64 = 1e-6;
 
@@ -317,7 +320,14 @@ impl<'a> BuiltChain<'a> {
             outward: (at - inner).normalize_or_zero(),
             width_m: span.street.width_m,
         };
-        portal.covered_after_m(BURIED, &|at| self.site.ground_z(at)).map(|_| portal)
+        let ground = |at| self.site.ground_z(at);
+        let beyond = if end == 0 { span.beyond.before } else { span.beyond.after };
+        // As far as the road goes on straight, it runs through the middle of the mouth.
+        let straight_m = beyond.map_or(0.0, |next| {
+            let off = portal.outward.perp_dot((next - at).normalize_or_zero()).abs();
+            (OFF_CENTER_M * magnified(portal.width_m) / off.max(1e-6)).min((next - at).length())
+        });
+        portal.covered_after_m(BURIED, &ground).map(|_| portal.out_of_the_hill(straight_m, &ground))
     }
 
     /// Adds a span's row to the report.

@@ -31,6 +31,11 @@ const ARCH_PARTS: u32 = 16;
 /// How many times its own height the roof may reach back into the hill: on a gentler slope it ends in the open.
 const LONGEST_ROOF: f64 = 2.5;
 
+/// How far a mouth may be moved out of the hill, as a part of its wall's height.
+const FARTHEST_OUT: f64 = 1.5;
+/// How high ground may stand in a mouth, as a part of its height: rounding, and what a road's edge hides.
+const GROUND_IN_MOUTH: f64 = 0.02;
+
 const STONE: Srgba = Srgba::opaque(206, 196, 178);
 const DRESSED: Srgba = Srgba::opaque(234, 227, 212);
 const ROOF: Srgba = Srgba::opaque(158, 154, 132);
@@ -64,6 +69,28 @@ impl Portal {
     fn halves_m(&self) -> (f64, f64) {
         let mouth = self.width_m / 2.0 + 0.6;
         (mouth, mouth + 1.4 * magnified(self.width_m))
+    }
+
+    /// The portal moved outward, at most `farthest_m`, to where no ground stands in its mouth nor before it: on a slope that
+    /// falls across the road the hill does not end in one line. Where some stands everywhere, where it is lowest.
+    pub fn out_of_the_hill(self, farthest_m: f64, ground: &GroundHeight<'_>) -> Self {
+        let (half, _) = self.halves_m();
+        let (reveal, allowed_m) = (0.8 * magnified(self.width_m), GROUND_IN_MOUTH * self.mouth_m());
+        let standing_m = |out: f64| {
+            let places = [-1.0, -0.5, 0.0, 0.5, 1.0].into_iter().flat_map(|part| {
+                [-reveal, 0.0, 2.0 * reveal, 4.0 * reveal].map(|from| (part * half, out + from))
+            });
+            let above = places.filter_map(|(right, out)| {
+                let at = self.at + self.outward.perp() * right + self.outward * out;
+                ground(at).map(|height_m| height_m - self.level_m)
+            });
+            above.fold(0.0, f64::max).max(allowed_m)
+        };
+        let farthest_m = farthest_m.min(FARTHEST_OUT * self.height_m());
+        let outs = (0..=30).map(|step| farthest_m * f64::from(step) / 30.0);
+        let best = outs.map(|out| (standing_m(out), out)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let out = best.map_or(0.0, |(_, out)| out);
+        Self { at: self.at + self.outward * out, ..self }
     }
 
     /// How far behind the mouth the hill has risen to the part `share` of the wall's height; `None` where it has not
@@ -249,5 +276,39 @@ impl Portal {
         faces.polygon(&ring.map(|(x, y)| self.point(x, y, high)), color);
         let bottom = [ring[3], ring[2], ring[1], ring[0]];
         faces.polygon(&bottom.map(|(x, y)| self.point(x, y, low)), color);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mouth_on_a_slope_across_the_road_stands_where_no_ground_does() {
+        for quarter in 0..4 {
+            let turned = |at: DVec2| (0..quarter).fold(at, |at, _| at.perp());
+            let outward = turned(DVec2::Y);
+            let portal = Portal { at: DVec2::ZERO, level_m: 100.0, outward, width_m: 8.0 };
+            // A hill that falls by half along the road, and by a quarter across it.
+            let ground = |at: DVec2| Some(100.0 - 0.5 * at.dot(outward) + 0.25 * at.dot(outward.perp()));
+            let (half, _) = portal.halves_m();
+            let highest = |portal: &Portal| {
+                let corners = [-half, half].map(|right| portal.at + outward.perp() * right);
+                corners.into_iter().filter_map(ground).fold(f64::MIN, f64::max)
+            };
+            assert!(highest(&portal) > 101.0);
+            let moved = portal.out_of_the_hill(30.0, &ground);
+            assert!(highest(&moved) <= 100.0 + GROUND_IN_MOUTH * moved.mouth_m(), "{}", highest(&moved));
+            assert!((moved.at - portal.at).length() < 4.0, "no farther than it must: {}", moved.at);
+            // On a road that turns away at once it stays.
+            assert_eq!(portal.out_of_the_hill(0.0, &ground), portal);
+        }
+    }
+
+    #[test]
+    fn a_mouth_before_a_cliff_stays() {
+        let portal = Portal { at: DVec2::ZERO, level_m: 5.0, outward: DVec2::X, width_m: 8.0 };
+        let ground = |at: DVec2| Some(if at.x < -1.0 { 40.0 } else { 5.0 });
+        assert_eq!(portal.out_of_the_hill(30.0, &ground), portal);
     }
 }

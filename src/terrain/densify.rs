@@ -35,11 +35,25 @@ const MOST_IN_A_ROW: u64 = 8192;
 /// The most halvings: a thirty-second of the measured spacing says nothing new about the ground.
 const MOST_DOUBLINGS: u32 = 5;
 
+/// Puts in posts until they are at most `spacing_m` apart, as far as a lattice may have posts. Returns how often they
+/// were doubled; the ground stays as it was.
+pub fn bring_to(lattice: &mut Lattice, spacing_m: f64) -> u32 {
+    let times = affordable_doublings(lattice, doublings_for(lattice, spacing_m));
+    if times > 0
+        && let Ok(dense) = densify(lattice, times)
+    {
+        *lattice = dense;
+        return times;
+    }
+    0
+}
+
 /// How often the lattice must be doubled for its posts to be at most `spacing_m` apart; no more than
-/// `MOST_DOUBLINGS`.
+/// `MOST_DOUBLINGS` of the measured posts.
 pub fn doublings_for(lattice: &Lattice, spacing_m: f64) -> u32 {
     let spacing = |times: u32| lattice.cell().max_element() / f64::from(1u32 << times);
-    (0..MOST_DOUBLINGS).find(|&times| spacing(times) <= spacing_m).unwrap_or(MOST_DOUBLINGS)
+    let most = MOST_DOUBLINGS.saturating_sub(lattice.doublings());
+    (0..most).find(|&times| spacing(times) <= spacing_m).unwrap_or(most)
 }
 
 /// The largest number of doublings, up to `wanted`, that leaves the lattice within `MOST_POSTS`.

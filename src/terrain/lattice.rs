@@ -47,6 +47,10 @@ pub const HIGHEST_M: f32 = 1e7;
 /// Ground may be drawn this many meters off a pinned post: rounding of f32 heights, invisible in a picture.
 const PIN_SLACK_M: f32 = 1e-3;
 
+/// How many posts away the neighbors are from which slopes of earthworks on a densified lattice come. One shows a narrow
+/// batter's edges as teeth; more would round the edge of a road that is four posts wide.
+const WORKS_STEP: i64 = 2;
+
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LatticeError {
@@ -214,6 +218,12 @@ impl Lattice {
         self.cell
     }
 
+    /// Meters between measured posts, eastward and northward: between them lie those put in by
+    /// [`crate::terrain::densify`].
+    pub fn measured_cell(&self) -> DVec2 {
+        self.cell * f64::from(1u32 << self.doublings)
+    }
+
     /// The area of a cell in square meters.
     pub fn cell_m2(&self) -> f64 {
         self.cell.x * self.cell.y
@@ -373,16 +383,22 @@ impl Lattice {
     /// neighbors, as `gdaldem` and most hillshades have them. Missing neighbors take the post's own height. Zero where the
     /// post has no data.
     ///
-    /// On a densified lattice the neighbors of an unpinned post are as far away as measured posts are: nearer ones lie on
+    /// On a densified lattice the neighbors of a post of the land are as far away as measured posts are: nearer ones lie on
     /// the planes between these, and would show the planes rather than the land. Pinned neighbors do not count there; the
-    /// land is taken to continue straight from the opposite side.
+    /// land is taken to continue straight from the opposite side. The neighbors of a pinned post and of those next to it
+    /// are `WORKS_STEP` posts away: a batter's edges run aslant between posts, and slopes from post to post would show
+    /// how each post lies to them, as teeth.
     pub fn slopes(&self, post: Post) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
             return Vec2::ZERO;
         }
-        let is_land = self.doublings > 0 && !self.is_pinned(post);
-        let step = if is_land { 1 << self.doublings } else { 1 };
+        let is_land = self.doublings > 0 && !self.is_beside_works(post);
+        let step = match self.doublings {
+            0 => 1,
+            doublings if is_land => 1 << doublings,
+            _ => WORKS_STEP,
+        };
         let at = |east: i64, north: i64| -> f32 {
             let (there, opposite) = (
                 self.beside(post, east * step, north * step),
@@ -403,6 +419,18 @@ impl Lattice {
             east / (span(low.column, high.column) * self.cell.x as f32),
             north / (span(low.row, high.row) * self.cell.y as f32),
         )
+    }
+
+    /// Whether the post or one at most `WORKS_STEP` posts away is pinned.
+    fn is_beside_works(&self, post: Post) -> bool {
+        let columns = post.column.saturating_sub(WORKS_STEP as u32)
+            ..=post.column.saturating_add(WORKS_STEP as u32).min(self.columns - 1);
+        let first = post.row.saturating_sub(WORKS_STEP as u32);
+        let last = post.row.saturating_add(WORKS_STEP as u32).min(self.rows - 1);
+        (first..=last).any(|row| {
+            let line = row as usize * self.columns as usize;
+            self.pinned[line + *columns.start() as usize..=line + *columns.end() as usize].contains(&true)
+        })
     }
 
     /// [`Lattice::slopes`] of the posts of a row, many times faster where the lattice is not densified.

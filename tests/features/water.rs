@@ -10,7 +10,7 @@ use sandtable::earthworks::channel;
 use sandtable::earthworks::channel::flow;
 use sandtable::earthworks::channel::flow::Flow;
 use sandtable::earthworks::channel::{Channel, check_rise};
-use sandtable::earthworks::shore;
+use sandtable::earthworks::shore::{self, LakeBasin};
 use sandtable::geom::polyline::Polyline;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::scene::assets::Assets;
@@ -18,6 +18,7 @@ use sandtable::scene::build::build;
 use sandtable::scene::picture::{build_draw_list, camera};
 use sandtable::scene::{FeatureKind, SceneModel};
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::query::{Interpolation, ground_height};
 use sandtable::vector::feature::Geometry;
 use sandtable::vector::read as vector;
 use sandtable::view::camera::Camera;
@@ -91,7 +92,7 @@ proptest! {
     ) {
         let mut lattice = hills(steep);
         let shore = [(150.0, 160.0), (330.0, 140.0), (350.0, 300.0), (240.0, 260.0), (140.0, 330.0)];
-        shore::flood(&mut lattice, &shore.map(DVec2::from), &[], lake_m);
+        flood(&mut lattice, &shore.map(DVec2::from), lake_m);
         let mut channels = channels(&lattice, &network);
         channels.iter_mut().for_each(|channel| channel.max_cut_m = max_cut_m);
         let before = lattice.heights().to_vec();
@@ -112,7 +113,7 @@ proptest! {
     ) {
         let mut lattice = hills(steep);
         let shore = [(150.0, 160.0), (330.0, 140.0), (350.0, 300.0), (240.0, 260.0), (140.0, 330.0)];
-        shore::flood(&mut lattice, &shore.map(DVec2::from), &[], level_m);
+        flood(&mut lattice, &shore.map(DVec2::from), level_m);
         let lake: Vec<Post> = lattice.posts().filter(|&post| lattice.is_pinned(post)).collect();
         prop_assert!(lake.len() > 200);
         let channels = channels(&lattice, &network);
@@ -124,6 +125,12 @@ proptest! {
             prop_assert!(rise_m < ROUNDING_M, "{rise_m}");
         }
     }
+}
+
+/// Levels the ground within a shore.
+fn flood(lattice: &mut Lattice, shore: &[DVec2], level_m: f32) {
+    let reach_m = shore::reach_m(0.0);
+    shore::flood(lattice, &[LakeBasin { exterior: shore, holes: &[], level_m, reach_m }]);
 }
 
 #[test]
@@ -306,6 +313,83 @@ fn ramp(text: &str) -> Result<SceneModel, String> {
     let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
     let assets = Assets::new(&path, &[]).map_err(|error| error.to_string())?;
     build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+}
+
+/// A scene of lakes on a hillside of 90 m posts that rises 7 m in 10 m eastward and rolls northward.
+fn coarse_hillside(lakes: &str) -> SceneModel {
+    let folder = Scratch::new();
+    let height = |index: u32| {
+        let (column, row) = (f64::from(index % 31), f64::from(index / 31));
+        (300.0 + 63.0 * column + 40.0 * libm::sin(row * 0.7)).to_string()
+    };
+    let heights: Vec<String> = (0..31 * 31).map(height).collect();
+    let grid = "ncols 31\nnrows 31\nxllcorner -45\nyllcorner -45\ncellsize 90\n";
+    folder.write("hillside.asc", format!("{grid}{}", heights.join(" ")));
+    let text = format!("[terrain]\ndem = \"hillside.asc\"\ncrs = \"EPSG:32633\"\n{lakes}");
+    let path = folder.write("scene.toml", &text);
+    let document = parse_bytes("scene.toml", text.as_bytes()).expect("sound");
+    build(&document, &Assets::new(&path, &[]).expect("there"), &|_| ()).expect("sound")
+}
+
+#[test]
+fn a_small_lake_on_a_coarse_model_moves_land_only_beside_its_shore() {
+    // 1.57 ha, and a model of which one cell is half as large.
+    let (low, high) = (DVec2::new(1217.0, 1240.0), DVec2::new(1342.0, 1365.6));
+    let shore = format!(
+        "[[{}, {}], [{}, {}], [{}, {}], [{}, {}]]",
+        low.x, low.y, high.x, low.y, high.x, high.y, low.x, high.y
+    );
+    let (plain, lake) = (coarse_hillside(""), coarse_hillside(&format!("[[lake]]\npoints = {shore}\n")));
+    let height = |scene: &SceneModel, at: DVec2| {
+        ground_height(&scene.lattice, Interpolation::Planar, at).height_m().expect("on the model")
+    };
+    let (mut changed_m2, mut farthest_m) = (0.0, 0.0f64);
+    for step in 0..400 * 400 {
+        let at = DVec2::new(880.0, 900.0) + DVec2::new(f64::from(step % 400), f64::from(step / 400)) * 2.0;
+        if (height(&plain, at) - height(&lake, at)).abs() > 0.01 {
+            changed_m2 += 4.0;
+            farthest_m = farthest_m.max((at - at.clamp(low, high)).length());
+        }
+    }
+    println!(
+        "{changed_m2} m² changed, up to {farthest_m} m from the shore, on posts {} m apart",
+        lake.lattice.cell()
+    );
+    let area_m2 = (high - low).element_product();
+    // A moved post moves the ground up to the next one.
+    assert!(farthest_m < shore::reach_m(area_m2) + lake.lattice.cell().length(), "{farthest_m} m");
+    assert!(changed_m2 > area_m2 && changed_m2 < area_m2 * 2.5, "{changed_m2} m² for a lake of {area_m2} m²");
+    let level = lake.report.lakes[0].level;
+    assert!((height(&lake, (low + high) / 2.0) - level).abs() < 1e-3);
+}
+
+#[test]
+fn lakes_that_touch_have_the_same_levels_in_any_order() {
+    let lake = |name: &str, from: f64| {
+        let to = from + 150.0;
+        format!(
+            "[[lake]]\nname = \"{name}\"\npoints = [[{from}, 900], [{to}, 900], [{to}, 1100], [{from}, 1100]]\n"
+        )
+    };
+    let lakes = [lake("west", 900.0), lake("middle", 1050.0), lake("east", 1200.0)];
+    let scene = |order: [usize; 3]| coarse_hillside(&order.map(|index| lakes[index].as_str()).concat());
+    let first = scene([0, 1, 2]);
+    let levels: Vec<f64> = first.report.lakes.iter().map(|lake| lake.level).collect();
+    // Each is measured on the hillside as it is: 150 m east is 105 m up.
+    assert!(levels.windows(2).all(|pair| (pair[1] - pair[0] - 105.0).abs() < 0.1), "{levels:?}");
+    for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let other = scene(order);
+        assert!(other.lattice.heights() == first.lattice.heights(), "{order:?}");
+        for row in &other.report.lakes {
+            let same = first.report.lakes.iter().find(|same| same.name == row.name).expect("by name");
+            assert_eq!((row.level, row.cut, row.fill), (same.level, same.cut, same.fill));
+        }
+    }
+}
+
+#[test]
+fn large_lakes_put_no_posts_into_the_demonstration() {
+    assert_eq!(gallery("jacksboro.toml").lattice.doublings(), 0);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use sandtable::geom::crs::Crs;
 use sandtable::scene::FeatureKind;
+use sandtable::terrain::lattice::Post;
 use sandtable::terrain::query::Surface;
 
 use crate::common::data::data;
@@ -157,6 +158,38 @@ fn heights_under_every_sampled_vertex_are_what_gdal_finds() {
     );
     assert!(ground.sorted.len() == samples.len());
     assert!(ground.quantile(0.95) < 4.0 && ground.rms() < 2.0 && ground.max() < 20.0);
+}
+
+#[test]
+fn reservoirs_move_land_only_beside_their_shores() {
+    let Some(place) = data(FOLDER) else { return };
+    let folder = Scratch::new();
+    if layers(&folder).is_none() {
+        return;
+    }
+    let dem = place.join("dem_srtm_wgs84_f32.tif").to_string_lossy().into_owned();
+    let text = |lakes: &str| format!("points_crs = \"EPSG:4326\"\n[terrain]\ndem = '{dem}'\n{lakes}");
+    let build = |lakes: &str| {
+        let allowed = [place.clone()];
+        scene(&folder, &text(lakes), &allowed).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let (plain, flooded) = (build(""), build(LAKES));
+    let spacing_m = flooded.lattice.cell().max_element();
+    // The smallest may move ground 30 m from their shores, and a moved post moves the ground up to the next.
+    let every = 1 << (flooded.lattice.doublings() - plain.lattice.doublings());
+    let water_m2: f64 = flooded.report.lakes.iter().map(|lake| lake.area).sum();
+    let posts = flooded.lattice.posts().filter(|post| post.row % every == 0 && post.column % every == 0);
+    let moved = posts.filter(|post| {
+        let before = plain.lattice.height(Post { column: post.column / every, row: post.row / every });
+        flooded.lattice.height(*post) != before && !before.is_nan()
+    });
+    let moved_m2 = moved.count() as f64 * plain.lattice.cell_m2();
+    println!(
+        "{} lakes of {water_m2} m² moved {moved_m2} m² on posts {spacing_m} m apart",
+        flooded.report.lakes.len()
+    );
+    assert!(spacing_m < 25.0, "{spacing_m}");
+    assert!(moved_m2 < 1.6 * water_m2, "{moved_m2} m² of land for {water_m2} m² of water");
 }
 
 /// Meters of height: a tenth of a millimeter. Bringing a position to UTM and back moves it by less than a

@@ -49,7 +49,7 @@ pub(in crate::earthworks::grading) fn batter(
         }
         let (strip, at) = (formation.legs.place(leg), world(works.lattice, post));
         let beside = strips[strip.0].beside(strip.1, at);
-        if strips[strip.0].is_behind_wall(strip.1, &beside) {
+        if strips[strip.0].is_behind_wall(&beside) {
             continue;
         }
         let (lowest, highest) = strips[strip.0].batters(&beside);

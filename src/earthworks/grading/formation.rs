@@ -76,13 +76,13 @@ impl Formation {
         let (index, leg) = self.legs.place(id);
         let strip = &strips[index];
         let margin = lattice.cell().length();
-        let reach = strip.reach_m() + margin;
+        let reach = strip.reach_m() + strip.mouth_reach_m() + margin;
         let points = strip.alignment.line.points();
         let ends = [points[leg], points[leg + 1]];
         for post in posts_near(lattice, ends, reach) {
             let at = world(lattice, post);
             let beside = strip.beside(leg, at);
-            if beside.out_m > margin {
+            if strip.out_of_level_m(&beside) > margin {
                 continue;
             }
             let owner = &mut self.owners[lattice.index(post)];

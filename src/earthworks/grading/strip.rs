@@ -36,12 +36,29 @@ pub struct CrossSection {
     pub cut_slope: f64,
 }
 
+/// How steeply ground falls below a bridge from its abutment, meters out for each meter down: steeper than beside the
+/// road, so that it fills little of what the bridge spans.
+const ABUTMENT_SLOPE: f64 = 1.0;
+
+/// How fast ground falls away from a bridge's carriageway where it goes on below it, meters per meter: so that it does
+/// not show through, and no step shows where the road begins.
+const BELOW_DECK: f64 = 0.1;
+
+/// How far a portal's mouth reaches beyond the carriageway's edge, and its reveal into the hill, in meters: no ground may
+/// stand in it.
+const MOUTH_M: DVec2 = DVec2::new(0.7, 0.9);
+
 /// What ends a strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StripEnd {
     /// Nothing, or more road: batters go round it.
     Open,
-    /// The wall of an abutment or of a portal: no batter goes round it.
+    /// An abutment, from which a bridge goes on: the ground goes on below its carriageway and falls away from it.
+    Abutment {
+        /// How the bridge rises away from the strip, meters per meter.
+        grade: f64,
+    },
+    /// The wall of a portal: no batter goes round it.
     Wall,
 }
 
@@ -137,8 +154,32 @@ impl GradingStrip {
 
     /// The level of the formation at a place beside the strip.
     pub fn formation(&self, beside: &StripOffset) -> f64 {
-        self.alignment.level_m(beside.station_m)
+        let beyond_m = match self.end(beside) {
+            StripEnd::Abutment { grade } => (grade - BELOW_DECK) * beside.beyond_m,
+            StripEnd::Open | StripEnd::Wall => 0.0,
+        };
+        self.alignment.level_m(beside.station_m) + beyond_m
             - self.section.crown * beside.aside_m.min(self.half_width_m())
+    }
+
+    /// What ends the strip nearer to a place.
+    fn end(&self, beside: &StripOffset) -> StripEnd {
+        self.ends[usize::from(beside.station_m > self.alignment.line.length() / 2.0)]
+    }
+
+    /// How far a place is from what has to lie level: the formation, and a portal's mouth.
+    pub fn out_of_level_m(&self, beside: &StripOffset) -> f64 {
+        let from_end_m = beside.station_m.min(self.alignment.line.length() - beside.station_m);
+        if self.end(beside) != StripEnd::Wall || from_end_m > MOUTH_M.y {
+            return beside.out_m;
+        }
+        let away = DVec2::new(beside.aside_m - self.reach_m(), beside.beyond_m) - MOUTH_M;
+        beside.out_m.min(away.max(DVec2::ZERO).length())
+    }
+
+    /// How far beyond the formation's edge a place may be for [`GradingStrip::out_of_level_m`] to be less, in meters.
+    pub fn mouth_reach_m(&self) -> f64 {
+        if self.ends.contains(&StripEnd::Wall) { MOUTH_M.max_element() } else { 0.0 }
     }
 
     /// Where the batters at a place would lie: the fill's, below which there may be no ground, and the cut's, above
@@ -147,14 +188,21 @@ impl GradingStrip {
         let edge = self.formation(beside);
         let CrossSection { fill_slope, cut_slope, .. } = self.section;
         let out = beside.out_m.max(0.0);
-        let steps = |slope: f64| if slope > 0.0 { out / slope } else { f64::INFINITY };
-        (edge - steps(fill_slope), edge + steps(cut_slope))
+        let steps = |out: f64, slope: f64| if slope > 0.0 { out / slope } else { f64::INFINITY };
+        let fill = match self.end(beside) {
+            StripEnd::Abutment { .. } if beside.beyond_m > 0.0 => {
+                let aside = (beside.aside_m - self.reach_m()).max(0.0);
+                let aside = if aside > 0.0 { steps(aside, fill_slope) } else { 0.0 };
+                libm::hypot(aside, steps(beside.beyond_m, ABUTMENT_SLOPE))
+            }
+            _ => steps(out, fill_slope),
+        };
+        (edge - fill, edge + steps(out, cut_slope))
     }
 
     /// Whether a place lies behind a wall, where no batter goes.
-    pub fn is_behind_wall(&self, leg: usize, beside: &StripOffset) -> bool {
-        let end = if leg == 0 && beside.station_m <= 0.0 { self.ends[0] } else { self.ends[1] };
-        beside.beyond_m > 0.0 && end == StripEnd::Wall
+    pub fn is_behind_wall(&self, beside: &StripOffset) -> bool {
+        beside.beyond_m > 0.0 && self.end(beside) == StripEnd::Wall
     }
 }
 
@@ -213,6 +261,32 @@ pub(in crate::earthworks::grading) mod tests {
             let beside = strip.beside(0, DVec2::new(80.0, left));
             assert!((beside.station_m - 80.0).abs() < 1e-9, "{beside:?}");
         }
+    }
+
+    #[test]
+    fn ground_goes_on_below_a_bridge_and_falls_away_from_its_abutment() {
+        let ends = [StripEnd::Open, StripEnd::Abutment { grade: -0.05 }];
+        let plain = strip(&[DVec2::ZERO, DVec2::new(100.0, 0.0)], [10.0, 10.0], FLAT);
+        let strip = GradingStrip { ends, ..plain };
+        let at = |x: f64, y: f64| strip.beside(0, DVec2::new(x, y));
+        assert_eq!(strip.formation(&at(99.0, 0.0)), 10.0);
+        // Below a carriageway that falls by 5 %.
+        let below = strip.formation(&at(102.0, 0.0)) - (10.0 - 0.05 * 2.0);
+        assert!(below < -0.1 && below > -0.3, "{below}");
+        let lowest = |x: f64, y: f64| strip.batters(&at(x, y)).0;
+        assert!(lowest(106.0, 0.0) < lowest(106.0, 20.0) + 20.0 && lowest(106.0, 0.0) < 4.0);
+        assert_eq!(lowest(-6.0, 0.0), 10.0 - 6.0 / 1.5);
+    }
+
+    #[test]
+    fn a_portal_s_mouth_lies_level_with_its_road() {
+        let plain = strip(&[DVec2::ZERO, DVec2::new(100.0, 0.0)], [10.0, 10.0], FLAT);
+        let out =
+            |strip: &GradingStrip, x: f64, y: f64| strip.out_of_level_m(&strip.beside(0, DVec2::new(x, y)));
+        let portal = GradingStrip { ends: [StripEnd::Open, StripEnd::Wall], ..plain.clone() };
+        assert!(out(&plain, 100.8, 6.5) > 0.9 && out(&portal, 100.8, 6.5) <= 0.0);
+        assert_eq!(out(&plain, 50.0, 6.5), out(&portal, 50.0, 6.5));
+        assert!(out(&portal, -0.8, 6.5) > 0.9);
     }
 
     #[test]

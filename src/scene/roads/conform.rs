@@ -5,7 +5,7 @@
 //!                                                         └─► route::cut: ground, bridges, tunnels
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -30,6 +30,9 @@ const CURVE_M: f64 = 50.0;
 
 /// A vertical curve is at least so many cells long: the kinks of the ground's own planes are no kinks of the land.
 const CURVE_CELLS: f64 = 2.0;
+
+/// Over how many meters the grade of a bridge is taken beside its end.
+const GRADE_OVER_M: f64 = 2.0;
 
 /// Posts across the narrowest carriageway that the ground follows; the lattice grows with the square.
 const POSTS_ACROSS: f64 = 4.0;
@@ -58,11 +61,11 @@ pub fn conform(
         collected.notes.push(note.into());
     }
     let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
-    let curve_m = CURVE_M.max(CURVE_CELLS * lattice.cell().max_element());
+    let curve_m = CURVE_M.max(CURVE_CELLS * lattice.measured_cell().max_element());
     let design = design(&survey.network, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
-    let works =
-        Earthworks { roads, rules: &rules, walls: walls(roads, &routes, &meetings), meetings: &meetings };
+    let spans = span_ends(roads, &routes, &meetings);
+    let works = Earthworks { roads, rules: &rules, spans, meetings: &meetings };
     let volumes = works.build(lattice, &routes, collected);
     for (route, volumes) in routes.iter().zip(&volumes) {
         report_road(&roads[route.road], route, volumes, collected);
@@ -76,7 +79,7 @@ struct Earthworks<'a> {
     roads: &'a [Centerline],
     rules: &'a [Option<Rules>],
     /// The nodes where bridges and tunnels begin.
-    walls: BTreeSet<NodeId>,
+    spans: BTreeMap<NodeId, Support>,
     meetings: &'a RoadMeetings,
 }
 
@@ -109,36 +112,63 @@ impl Earthworks<'_> {
             let level = Some(route.design.slice(span.from_m, span.to_m, 0.0));
             let alignment = Alignment { level, ..Alignment::on_ground(line, street.width_m) };
             let beside = [index.checked_sub(1).and_then(|before| all.get(before)), all.get(index + 1)];
-            let ends = [self.end(route, beside[0], 0), self.end(route, beside[1], usize::MAX)];
+            let ends = [
+                self.end(route, beside[0], 0, [span.from_m, -1.0]),
+                self.end(route, beside[1], usize::MAX, [span.to_m, 1.0]),
+            ];
             Some(GradingStrip { alignment, section: rules.section, ends })
         };
         on_ground.filter_map(strip).collect()
     }
 
-    /// What stands at an end of a span: by the span beyond, or by what meets the road at its own end.
-    fn end(&self, route: &Route, beyond: Option<&SupportSpan>, stop: usize) -> StripEnd {
+    /// What stands at an end of a span: by the span beyond, or by what meets the road at its own end. `station_m` is that
+    /// of the end, `way` −1 at a start and 1 at an end.
+    fn end(
+        &self,
+        route: &Route,
+        beyond: Option<&SupportSpan>,
+        stop: usize,
+        [station_m, way]: [f64; 2],
+    ) -> StripEnd {
         let stops = &self.meetings.stops[route.road];
-        let is_wall = match beyond {
-            Some(span) => span.support != Support::Ground,
-            None => self.walls.contains(&stops[stop.min(stops.len() - 1)].node),
+        let support = match beyond {
+            Some(span) => span.support,
+            None => *self.spans.get(&stops[stop.min(stops.len() - 1)].node).unwrap_or(&Support::Ground),
         };
-        if is_wall { StripEnd::Wall } else { StripEnd::Open }
+        match support {
+            Support::Ground => StripEnd::Open,
+            Support::Tunnel => StripEnd::Wall,
+            Support::Bridge => {
+                let level_m = |out_m: f64| route.design.at(station_m + way * out_m);
+                let rise_m = match beyond {
+                    Some(_) => level_m(GRADE_OVER_M) - level_m(0.0),
+                    None => level_m(0.0) - level_m(-GRADE_OVER_M),
+                };
+                StripEnd::Abutment { grade: rise_m / GRADE_OVER_M }
+            }
+        }
     }
 }
 
-/// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground.
-fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeSet<NodeId> {
-    let mut nodes = BTreeSet::new();
+/// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground, with which of the two;
+/// a tunnel where both end.
+fn span_ends(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeMap<NodeId, Support> {
+    let mut nodes = BTreeMap::new();
+    let mut add = |node: NodeId, support: Support| {
+        if support == Support::Tunnel || (support == Support::Bridge && !nodes.contains_key(&node)) {
+            nodes.insert(node, support);
+        }
+    };
     for (road, stops) in roads.iter().zip(&meetings.stops) {
-        if !road.street.alignment.is_on_ground() {
-            nodes.extend([stops[0].node, stops[stops.len() - 1].node]);
+        for stop in [stops[0], stops[stops.len() - 1]] {
+            add(stop.node, road.street.alignment.support);
         }
     }
     for route in routes {
         let (all, stops) = (route.all_spans(), &meetings.stops[route.road]);
-        let ends = [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])];
-        nodes
-            .extend(ends.iter().filter(|(end, _)| end.support != Support::Ground).map(|(_, stop)| stop.node));
+        for (end, stop) in [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])] {
+            add(stop.node, end.support);
+        }
     }
     nodes
 }
@@ -147,13 +177,7 @@ fn walls(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTr
 fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut SceneBuilder) {
     let widths = strips.iter().map(|strip| strip.alignment.width.widest_m());
     let narrowest_m = widths.fold(f64::INFINITY, f64::min);
-    let wanted = densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS);
-    let times = densify::affordable_doublings(lattice, wanted);
-    if times > 0
-        && let Ok(dense) = densify::densify(lattice, times)
-    {
-        *lattice = dense;
-    }
+    let times = densify::bring_to(lattice, narrowest_m / POSTS_ACROSS);
     let spacing_m = lattice.cell().max_element();
     let mut note = match times {
         0 => String::new(),

@@ -7,7 +7,7 @@ use crate::description::document::Document;
 use crate::description::features::LakeTable;
 use crate::description::words::LevelRule;
 use crate::draw::list::FeatureId;
-use crate::earthworks::shore;
+use crate::earthworks::shore::{self, Flooded, LakeBasin};
 use crate::geom::polygon;
 use crate::message::choice::Choice;
 use crate::ribbon::area;
@@ -20,6 +20,7 @@ use crate::scene::near::Clipped;
 use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::symbols::LineSymbol;
+use crate::terrain::densify;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::vector::feature::Polygon;
@@ -28,7 +29,9 @@ use crate::vector::feature::Polygon;
 const LAKE_TEXTURE_M: f64 = 400.0;
 
 /// Adds the document's lakes to `collected` and levels the ground under them. Lakes off the ground and those
-/// without an area are left out, with a note.
+/// without an area are left out, with a note. Every level is measured before any ground is moved.
+///
+/// The lattice may get more posts; its origin, its extent and all heights beside the shores stay as they are.
 ///
 /// # Errors
 /// A source cannot be had, or a level cannot be found.
@@ -38,11 +41,31 @@ pub fn lay(
     lattice: &mut Lattice,
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
-    for lake in &document.lakes {
-        for Sourced { attributes, shape } in sources.polygons(&lake.source)? {
-            let name = attributes.name(lake.name.as_deref());
+    let lakes = measure(document, sources, lattice, collected)?;
+    make_denser(lattice, &lakes, collected);
+    let basins: Vec<LakeBasin<'_>> = lakes.iter().map(Lake::basin).collect();
+    let flooded = shore::flood(lattice, &basins);
+    for (lake, flooded) in lakes.into_iter().zip(flooded) {
+        let feature = lake.report(&flooded, lattice, collected);
+        let outlines = std::iter::once(&lake.shape.exterior).chain(&lake.shape.holes);
+        collected.symbols.extend(outlines.filter_map(|outline| LineSymbol::of_shore(outline, feature)));
+        collected.lay(lake.plan, RibbonSurface::Lake, feature);
+    }
+    Ok(())
+}
+
+/// The document's lakes with their levels, in the order of its tables.
+fn measure(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &Lattice,
+    collected: &mut SceneBuilder,
+) -> Result<Vec<Lake>, Diagnostic> {
+    let (mut lakes, extent) = (Vec::new(), lattice.extent());
+    for table in &document.lakes {
+        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+            let name = attributes.name(table.name.as_deref());
             let bounds = polygon::bounds(&shape.exterior);
-            let extent = lattice.extent();
             if !bounds.meets(&extent) {
                 collected.notes.push(format!("{} lies off the elevation model", described("lake", &name)));
                 continue;
@@ -54,14 +77,20 @@ pub fn lay(
                 continue;
             }
             let shore = Shore::of(lattice, &shape);
-            let level = level_of(document, lake, &attributes, &shore, collected)?;
-            let feature = flood(lattice, name, &shape, &shore, level, collected);
-            collected.lay(plan.plan, RibbonSurface::Lake, feature);
-            let outlines = std::iter::once(&shape.exterior).chain(&shape.holes);
-            collected.symbols.extend(outlines.filter_map(|outline| LineSymbol::of_shore(outline, feature)));
+            let level = level_of(document, table, &attributes, &shore, collected)?;
+            lakes.push(Lake { name, plan: plan.plan, shape, shore, level });
         }
     }
-    Ok(())
+    Ok(lakes)
+}
+
+/// A lake that no ground is moved for yet.
+struct Lake {
+    name: String,
+    shape: Polygon,
+    plan: PlanMesh,
+    shore: Shore,
+    level: LakeLevel,
 }
 
 /// A lake's level with the rule it was found by.
@@ -70,40 +99,67 @@ struct LakeLevel {
     rule: &'static str,
 }
 
-/// Levels the ground under a lake, reports it and returns its feature.
-fn flood(
-    lattice: &mut Lattice,
-    name: String,
-    shape: &Polygon,
-    shore: &Shore,
-    level: LakeLevel,
-    collected: &mut SceneBuilder,
-) -> FeatureId {
-    let flooded = shore::flood(lattice, &shape.exterior, &shape.holes, level.level_m as f32);
-    let (level_m, volumes) = (level.level_m, flooded.volumes);
-    collected.notes.push(format!(
-        "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
-        described("lake", &name),
-        volumes.cut_m3,
-        volumes.fill_m3
-    ));
-    if let Some(other_m) = flooded.other_level_m {
-        collected.notes.push(format!(
-            "{} shares cells with a lake at {other_m:.1} m, and the level of the later one holds there",
-            described("lake", &name)
-        ));
+impl Lake {
+    fn reach_m(&self) -> f64 {
+        shore::reach_m(area_m2(&self.shape))
     }
-    collected.report.lakes.push(LakeRow {
-        name: name.clone(),
-        level: level_m,
-        rule: level.rule,
-        lowest_shore: shore.lowest_m(),
-        highest_shore: shore.highest_m(),
-        area: area_m2(shape),
-        cut: volumes.cut_m3,
-        fill: volumes.fill_m3,
-    });
-    collected.add(FeatureKind::Lake, name)
+
+    fn basin(&self) -> LakeBasin<'_> {
+        LakeBasin {
+            exterior: &self.shape.exterior,
+            holes: &self.shape.holes,
+            level_m: self.level.level_m as f32,
+            reach_m: self.reach_m(),
+        }
+    }
+
+    /// Reports what the lake took and returns its feature.
+    fn report(&self, flooded: &Flooded, lattice: &Lattice, collected: &mut SceneBuilder) -> FeatureId {
+        let (level_m, volumes) = (self.level.level_m, flooded.volumes);
+        collected.notes.push(format!(
+            "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
+            described("lake", &self.name),
+            volumes.cut_m3,
+            volumes.fill_m3
+        ));
+        if let Some(lower_m) = flooded.lower_level_m {
+            collected.notes.push(format!(
+                "{} shares cells with a lake at {lower_m:.1} m, and the lower level holds there",
+                described("lake", &self.name)
+            ));
+        }
+        if shore::bed_reach_m(lattice) > self.reach_m() {
+            collected.notes.push(format!(
+                "{} lies on posts {:.3} m apart, and the ground is level up to {:.0} m from its shore; a model of a \
+                 smaller area could have more posts",
+                described("lake", &self.name),
+                lattice.cell().max_element(),
+                shore::bed_reach_m(lattice)
+            ));
+        }
+        collected.report.lakes.push(LakeRow {
+            name: self.name.clone(),
+            level: level_m,
+            rule: self.level.rule,
+            lowest_shore: self.shore.lowest_m(),
+            highest_shore: self.shore.highest_m(),
+            area: area_m2(&self.shape),
+            cut: volumes.cut_m3,
+            fill: volumes.fill_m3,
+        });
+        collected.add(FeatureKind::Lake, self.name.clone())
+    }
+}
+
+/// Puts more posts between those there are, where a lake is small for the cells.
+fn make_denser(lattice: &mut Lattice, lakes: &[Lake], collected: &mut SceneBuilder) {
+    let reach_m = lakes.iter().map(Lake::reach_m).fold(f64::INFINITY, f64::min);
+    if densify::bring_to(lattice, shore::spacing_m(reach_m)) > 0 {
+        let spacing_m = lattice.cell().max_element();
+        collected
+            .notes
+            .push(format!("posts every {spacing_m:.3} m were put in for lakes; the ground stays as it was"));
+    }
 }
 
 /// The stated level, or that of the rule.
