@@ -23,7 +23,7 @@ const ATLAS: [(f32, [u8; 3]); 7] = [
 ];
 /// Where the atlas' tints are those of open ground above trees, and where those of snow begin.
 const OPEN: f32 = 0.38;
-const SNOW: f32 = 0.82;
+const SNOW: f32 = 0.9;
 /// The least share of the range of heights below the snow line: a model of an ice cap alone still shows its height.
 const LEAST_BELOW_SNOW: f64 = 0.4;
 
