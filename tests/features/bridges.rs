@@ -5,12 +5,16 @@ use std::path::{Path, PathBuf};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
-use glam::DVec2;
+use glam::{DVec2, Vec3};
+use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DrawMesh, FeatureId};
 use sandtable::pipeline::scene_file::open_scene;
-use sandtable::scene::{FeatureKind, SceneModel};
+use sandtable::render::cpu;
+use sandtable::scene::picture::build_draw_list;
+use sandtable::scene::{Coat, FeatureKind, SceneModel};
 use sandtable::structure::deck_check::closed;
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable::terrain::query::{Interpolation, Surface, ground_height};
+use sandtable::view::camera::Camera;
 
 fn scene(path: &Path, allow: Vec<PathBuf>) -> SceneModel {
     open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
@@ -44,6 +48,87 @@ fn on_a_bridge_the_scene_is_its_deck_and_the_ground_is_the_ground() {
     let aside = at + DVec2::new(60.0, -60.0);
     let asked = |surface| scene.heights.height(surface, Interpolation::Planar, aside);
     assert_eq!(asked(Surface::Scene), asked(Surface::Ground), "beside the bridge there is only the ground");
+}
+
+/// A color that only the dark of a tunnel's mouth has.
+fn is_dark(color: Srgba) -> bool {
+    color == Srgba::opaque(22, 21, 22)
+}
+
+/// The corners of the dark of each tunnel's mouth, with its normal: out of the tunnel.
+fn mouths(scene: &SceneModel) -> Vec<(Vec<Vec3>, Vec3)> {
+    let is_tunnel = |feature: FeatureId| scene.features[feature.0 as usize - 2].kind == FeatureKind::Tunnel;
+    let portals = scene.solids.iter().filter(|solid| is_tunnel(solid.feature));
+    let mouth = |mesh: &DrawMesh| {
+        let dark: Vec<_> = mesh.vertices.iter().filter(|vertex| is_dark(vertex.color)).collect();
+        (dark.iter().map(|vertex| Vec3::from(vertex.position)).collect(), Vec3::from(dark[0].normal))
+    };
+    portals.map(|solid| mouth(&solid.mesh)).collect()
+}
+
+#[test]
+fn no_ground_is_seen_in_the_mouth_of_a_tunnel() {
+    for name in ["bridge.toml", "earthworks.toml"] {
+        let scene = scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), Vec::new());
+        let mouths = mouths(&scene);
+        assert!(mouths.len() > 1, "{name}");
+        for (corners, outward) in mouths {
+            let top = corners.iter().map(|at| at.z).fold(f32::MIN, f32::max);
+            let middle = corners.iter().sum::<Vec3>() / corners.len() as f32;
+            let half = corners.iter().map(|at| (*at - middle).truncate().length()).fold(0.0, f32::max);
+            let height = 6.0 + 0.25 * (2.0 * half - 7.2f32).max(0.0);
+            let foot = middle.with_z(top - height);
+            let (eye, target) = (foot + outward * 14.0 + Vec3::Z * 2.5, foot + Vec3::Z * 0.5 * height);
+            let camera = Camera::new(eye, target, 1.2, (480, 360), (0.2, 20_000.0)).expect("sound");
+            let shot = build_draw_list(&scene, &camera, &|_| ());
+            let picture = cpu::render(&shot.list, &camera, &cpu::RenderQuality::default()).expect("sound");
+            let aside = outward.cross(Vec3::Z).normalize();
+            let mut seen = 0;
+            for step in 0..21 * 12 {
+                let part = ((step % 21) as f32 / 10.0 - 1.0) * 0.88;
+                // As high as the upright part reaches, and from above the road's crown.
+                let above = height * (0.04 + 0.42 * (step / 21) as f32 / 11.0);
+                let at = foot + aside * half * part + Vec3::Z * above;
+                let pixel = camera.project(at).expect("in view").pixel;
+                let index = pixel.y as usize * 480 + pixel.x as usize;
+                assert!(
+                    picture.features[index] != FeatureId::GROUND,
+                    "{name}: ground in the mouth at {at}, {part} aside and {above} m up"
+                );
+                seen += 1;
+            }
+            assert_eq!(seen, 252);
+        }
+    }
+}
+
+#[test]
+fn no_ground_stands_over_a_deck() {
+    for (name, scale) in [("bridge.toml", 1.5), ("earthworks.toml", 1.0)] {
+        let scene = scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), Vec::new());
+        let is_bridge =
+            |feature: FeatureId| scene.features[feature.0 as usize - 2].kind == FeatureKind::Bridge;
+        let decks = scene
+            .solids
+            .iter()
+            .filter(|solid| is_bridge(solid.feature) && matches!(solid.coat, Coat::Surface(_)));
+        let mut looked_at = 0;
+        for mesh in decks.map(|solid| &solid.mesh) {
+            for triangle in &mesh.triangles {
+                let corners = triangle.map(|id| Vec3::from(mesh.vertices[id.index()].position));
+                // Off the line where the deck lies on the ground.
+                let middle = corners.iter().sum::<Vec3>() / 3.0;
+                for at in corners.map(|corner| corner.lerp(middle, 0.05)) {
+                    let map = scene.lattice.origin() + at.truncate().as_dvec2();
+                    let ground = ground_height(&scene.lattice, Interpolation::Planar, map).height_m();
+                    let over = ground.expect("on the model") * scale - f64::from(at.z);
+                    assert!(over < 0.05, "{name}: ground {over} m over a deck at {at}");
+                    looked_at += 1;
+                }
+            }
+        }
+        assert!(looked_at > 100, "{name}");
+    }
 }
 
 #[test]

@@ -76,6 +76,7 @@ mod tests {
     use crate::earthworks::grading::strip::StripEnd;
     use crate::earthworks::grading::strip::tests::{FLAT, strip};
     use crate::geom::profile::Profile;
+    use crate::terrain::densify::densify;
     use crate::terrain::profile::profile;
     use crate::terrain::query::{Interpolation, ground_height};
     use glam::DVec2;
@@ -169,6 +170,39 @@ mod tests {
         let behind = points[1] + way * 6.0;
         assert!(planar(&open, behind) < 120.0);
         assert_eq!(planar(&portal, behind), 130.0);
+    }
+
+    #[test]
+    fn slopes_beside_a_straight_cutting_are_the_same_all_along_it() {
+        for turn in [0.2, 0.45, 0.75, 1.3] {
+            // Posts every 1.25 m, between measured ones on a slope across the road.
+            let (way, middle) = (DVec2::from_angle(turn), DVec2::splat(150.0));
+            let measured = |index: u32| {
+                let at = DVec2::new(f64::from(index % 31), f64::from(index / 31)) * 10.0;
+                (106.0 + 0.3 * way.perp_dot(at - middle)) as f32
+            };
+            let heights = (0..31 * 31).map(measured).collect();
+            let coarse = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 31, heights).expect("sound");
+            let mut ground = densify(&coarse, 3).expect("sound");
+            let points = [middle - way * 110.0, middle + way * 110.0];
+            grade(&mut ground, &[strip(&points, [100.0; 2], FLAT)]);
+            // As light has it, between posts.
+            let across = |at: DVec2| {
+                let (cell, part) = ground.cell_at(at).expect("on the model");
+                let slope = |east, north| ground.slopes(cell.offset(east, north)).as_dvec2();
+                let row = |north| slope(0, north).lerp(slope(1, north), part.x);
+                way.perp_dot(row(0).lerp(row(1), part.y))
+            };
+            for aside in 12..40 {
+                let aside = f64::from(aside) / 2.0;
+                let place = |index: u32| middle + way * (f64::from(index) / 4.0 - 60.0) + way.perp() * aside;
+                let all: Vec<f64> = (0..480).map(|index| across(place(index))).collect();
+                let mean = all.iter().sum::<f64>() / 480.0;
+                let variance = all.iter().map(|slope| (slope - mean).powi(2)).sum::<f64>() / 480.0;
+                // Slopes from post to post vary by 0.07 to 0.12: teeth.
+                assert!(variance.sqrt() < 0.06, "{} at {aside} m, turned by {turn}", variance.sqrt());
+            }
+        }
     }
 
     #[test]

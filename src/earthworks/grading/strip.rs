@@ -37,7 +37,7 @@ pub struct CrossSection {
 }
 
 /// How steeply ground falls below a bridge from its abutment, meters out for each meter down: steeper than beside the
-/// road, so that it fills little of what the bridge spans.
+/// road, and the steeper the farther out, so that it fills little of what the bridge spans.
 const ABUTMENT_SLOPE: f64 = 1.0;
 
 /// How fast ground falls away from a bridge's carriageway where it goes on below it, meters per meter: so that it does
@@ -57,6 +57,8 @@ pub enum StripEnd {
     Abutment {
         /// How the bridge rises away from the strip, meters per meter.
         grade: f64,
+        /// How far below the bridge ground may be moved, in meters, above 0: what it spans stays as it is.
+        reach_m: f64,
     },
     /// The wall of a portal: no batter goes round it.
     Wall,
@@ -155,7 +157,7 @@ impl GradingStrip {
     /// The level of the formation at a place beside the strip.
     pub fn formation(&self, beside: &StripOffset) -> f64 {
         let beyond_m = match self.end(beside) {
-            StripEnd::Abutment { grade } => (grade - BELOW_DECK) * beside.beyond_m,
+            StripEnd::Abutment { grade, .. } => (grade - BELOW_DECK) * beside.beyond_m,
             StripEnd::Open | StripEnd::Wall => 0.0,
         };
         self.alignment.level_m(beside.station_m) + beyond_m
@@ -190,10 +192,11 @@ impl GradingStrip {
         let out = beside.out_m.max(0.0);
         let steps = |out: f64, slope: f64| if slope > 0.0 { out / slope } else { f64::INFINITY };
         let fill = match self.end(beside) {
-            StripEnd::Abutment { .. } if beside.beyond_m > 0.0 => {
+            StripEnd::Abutment { reach_m, .. } if beside.beyond_m > 0.0 => {
                 let aside = (beside.aside_m - self.reach_m()).max(0.0);
                 let aside = if aside > 0.0 { steps(aside, fill_slope) } else { 0.0 };
-                libm::hypot(aside, steps(beside.beyond_m, ABUTMENT_SLOPE))
+                let slope = ABUTMENT_SLOPE * (1.0 - beside.beyond_m / reach_m);
+                libm::hypot(aside, steps(beside.beyond_m, slope))
             }
             _ => steps(out, fill_slope),
         };
@@ -265,7 +268,7 @@ pub(in crate::earthworks::grading) mod tests {
 
     #[test]
     fn ground_goes_on_below_a_bridge_and_falls_away_from_its_abutment() {
-        let ends = [StripEnd::Open, StripEnd::Abutment { grade: -0.05 }];
+        let ends = [StripEnd::Open, StripEnd::Abutment { grade: -0.05, reach_m: 12.0 }];
         let plain = strip(&[DVec2::ZERO, DVec2::new(100.0, 0.0)], [10.0, 10.0], FLAT);
         let strip = GradingStrip { ends, ..plain };
         let at = |x: f64, y: f64| strip.beside(0, DVec2::new(x, y));
@@ -274,7 +277,8 @@ pub(in crate::earthworks::grading) mod tests {
         let below = strip.formation(&at(102.0, 0.0)) - (10.0 - 0.05 * 2.0);
         assert!(below < -0.1 && below > -0.3, "{below}");
         let lowest = |x: f64, y: f64| strip.batters(&at(x, y)).0;
-        assert!(lowest(106.0, 0.0) < lowest(106.0, 20.0) + 20.0 && lowest(106.0, 0.0) < 4.0);
+        assert!(lowest(106.0, 0.0) < 0.0 && lowest(106.0, 0.0) > lowest(106.0, 20.0));
+        assert_eq!(lowest(112.0, 0.0), f64::NEG_INFINITY, "what the bridge spans stays");
         assert_eq!(lowest(-6.0, 0.0), 10.0 - 6.0 / 1.5);
     }
 

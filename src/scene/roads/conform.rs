@@ -34,6 +34,9 @@ const CURVE_CELLS: f64 = 2.0;
 /// Over how many meters the grade of a bridge is taken beside its end.
 const GRADE_OVER_M: f64 = 2.0;
 
+/// The part of a bridge's length below which ground may be moved at either end: as far as its abutments reach.
+const ABUTMENT_SHARE: f64 = 0.25;
+
 /// Posts across the narrowest carriageway that the ground follows; the lattice grows with the square.
 const POSTS_ACROSS: f64 = 4.0;
 
@@ -64,8 +67,8 @@ pub fn conform(
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.measured_cell().max_element());
     let design = design(&survey.network, &survey.pins, curve_m);
     let routes: Vec<Route> = survey.routes(&design).into_iter().map(Route::with_ends).collect();
-    let spans = span_ends(roads, &routes, &meetings);
-    let works = Earthworks { roads, rules: &rules, spans, meetings: &meetings };
+    let beyond = span_ends(roads, &routes, &meetings);
+    let works = Earthworks { roads, rules: &rules, beyond, meetings: &meetings };
     let volumes = works.build(lattice, &routes, collected);
     for (route, volumes) in routes.iter().zip(&volumes) {
         report_road(&roads[route.road], route, volumes, collected);
@@ -79,7 +82,7 @@ struct Earthworks<'a> {
     roads: &'a [Centerline],
     rules: &'a [Option<Rules>],
     /// The nodes where bridges and tunnels begin.
-    spans: BTreeMap<NodeId, Support>,
+    beyond: BTreeMap<NodeId, BeyondEnd>,
     meetings: &'a RoadMeetings,
 }
 
@@ -131,43 +134,51 @@ impl Earthworks<'_> {
         [station_m, way]: [f64; 2],
     ) -> StripEnd {
         let stops = &self.meetings.stops[route.road];
-        let support = match beyond {
-            Some(span) => span.support,
-            None => *self.spans.get(&stops[stop.min(stops.len() - 1)].node).unwrap_or(&Support::Ground),
-        };
-        match support {
-            Support::Ground => StripEnd::Open,
-            Support::Tunnel => StripEnd::Wall,
-            Support::Bridge => {
+        let own = beyond.map(|span| BeyondEnd { support: span.support, length_m: span.to_m - span.from_m });
+        let other = || self.beyond.get(&stops[stop.min(stops.len() - 1)].node).copied();
+        match own.or_else(other) {
+            None | Some(BeyondEnd { support: Support::Ground, .. }) => StripEnd::Open,
+            Some(BeyondEnd { support: Support::Tunnel, .. }) => StripEnd::Wall,
+            Some(BeyondEnd { support: Support::Bridge, length_m }) => {
                 let level_m = |out_m: f64| route.design.at(station_m + way * out_m);
                 let rise_m = match beyond {
                     Some(_) => level_m(GRADE_OVER_M) - level_m(0.0),
                     None => level_m(0.0) - level_m(-GRADE_OVER_M),
                 };
-                StripEnd::Abutment { grade: rise_m / GRADE_OVER_M }
+                StripEnd::Abutment { grade: rise_m / GRADE_OVER_M, reach_m: ABUTMENT_SHARE * length_m }
             }
         }
     }
 }
 
-/// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground, with which of the two;
-/// a tunnel where both end.
-fn span_ends(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeMap<NodeId, Support> {
-    let mut nodes = BTreeMap::new();
-    let mut add = |node: NodeId, support: Support| {
-        if support == Support::Tunnel || (support == Support::Bridge && !nodes.contains_key(&node)) {
-            nodes.insert(node, support);
+/// A bridge or a tunnel that goes on where a road on the ground ends.
+#[derive(Clone, Copy)]
+struct BeyondEnd {
+    support: Support,
+    length_m: f64,
+}
+
+/// The nodes where a bridge or a tunnel of one road ends that may go on as another on the ground; of several a tunnel,
+/// else the shortest.
+fn span_ends(roads: &[Centerline], routes: &[Route], meetings: &RoadMeetings) -> BTreeMap<NodeId, BeyondEnd> {
+    let mut nodes: BTreeMap<NodeId, BeyondEnd> = BTreeMap::new();
+    let mut add = |node: NodeId, end: BeyondEnd| {
+        let rank = |end: &BeyondEnd| (end.support != Support::Tunnel, end.length_m);
+        let is_kept = |kept: &BeyondEnd| rank(kept) <= rank(&end);
+        if end.support != Support::Ground && !nodes.get(&node).is_some_and(is_kept) {
+            nodes.insert(node, end);
         }
     };
     for (road, stops) in roads.iter().zip(&meetings.stops) {
+        let Alignment { support, line, .. } = &road.street.alignment;
         for stop in [stops[0], stops[stops.len() - 1]] {
-            add(stop.node, road.street.alignment.support);
+            add(stop.node, BeyondEnd { support: *support, length_m: line.length() });
         }
     }
     for route in routes {
         let (all, stops) = (route.all_spans(), &meetings.stops[route.road]);
         for (end, stop) in [(&all[0], stops[0]), (&all[all.len() - 1], stops[stops.len() - 1])] {
-            add(stop.node, end.support);
+            add(stop.node, BeyondEnd { support: end.support, length_m: end.to_m - end.from_m });
         }
     }
     nodes
