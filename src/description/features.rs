@@ -310,7 +310,8 @@ table! {
         name: Option<String> = key::text(), otherwise "none";
         /// The areas.
         source: FeatureSource = key::source::<RING>(), inline;
-        /// Models, named as in `file` of `[[model]]`; one or up to 256, equally often.
+        /// Models, named as in `file` of `[[model]]`; one or up to 256, equally often. `broadleaf` and `conifer` are trees of
+        /// several forms.
         models as "of": Stated<Vec<String>> = key::files(&BUILT_IN), required;
         /// How many stand on a hectare; 100 is an open wood.
         density: DefaultedValue<f64> = key::feature_number(Above(0.0, 1e5), "per ha"), default 100;

@@ -23,9 +23,9 @@ use crate::view::frustum::Frustum;
 /// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
 const FULL_TRIANGLES: usize = 250_000;
 
-/// As many small models of one kind are drawn as pictures on quads; the pictures of fewer would take longer to make than
-/// their coarse meshes to draw.
-const PICTURED: usize = 2500;
+/// Small models of one kind are drawn as pictures on quads where they have this many triangles together; the pictures of
+/// fewer would take longer to make than their meshes to draw.
+const PICTURED_TRIANGLES: usize = 120_000;
 
 /// Plants smaller than this in the picture, in pixels, are not drawn: the ground under them has their tone, and thousands
 /// of specks would say less and cost more.
@@ -141,7 +141,8 @@ fn forms(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) -
 fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) {
     let mut wanted: BTreeMap<usize, usize> = BTreeMap::new();
     for (stand, size) in in_view.iter().zip(sizes) {
-        *wanted.entry(stand.model).or_default() += usize::from(size.is_small());
+        *wanted.entry(stand.model).or_default() +=
+            usize::from(size.is_small()) * scene.models[stand.model].triangle_count();
     }
     wanted.into_par_iter().for_each(|(model, small)| {
         let (detail, model) = (&scene.details[model], &scene.models[model]);
@@ -149,7 +150,7 @@ fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize])
             // Another picture may have set the same value first.
             let _ = detail.set(ModelDetail::new(model));
         }
-        if let Some(detail) = detail.get().filter(|_| small >= PICTURED) {
+        if let Some(detail) = detail.get().filter(|_| small >= PICTURED_TRIANGLES) {
             detail.make_impostor(model);
         }
     });
