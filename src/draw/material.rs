@@ -57,6 +57,8 @@ pub struct Material {
     pub albedo: Albedo,
     /// Whether it is water, which mirrors the sky; on the ground map, posts say so.
     pub is_water: bool,
+    /// Whether it is natural cover of the ground, whose grain goes through it.
+    pub is_natural: bool,
 }
 
 impl Material {
@@ -78,6 +80,7 @@ impl Default for Material {
             normals: NormalSource::Vertex,
             albedo: Albedo::Surface,
             is_water: false,
+            is_natural: false,
         }
     }
 }

@@ -24,6 +24,7 @@ const MASK: u32 = 4;
 const BLEND: u32 = 8;
 const WATER: u32 = 16;
 const HATCHING: u32 = 32;
+const NATURAL: u32 = 64;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -48,6 +49,7 @@ pub struct FrameUniforms {
     ground_size: [u32; 4],
     imagery: [f32; 4],
     imagery_size: [f32; 4],
+    cover: [f32; 4],
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
@@ -130,6 +132,9 @@ impl FrameUniforms {
         frame.ground_size =
             [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, map.form_level.min(coarsest)];
         frame.contour_shape[3] = f32::from(u8::from(map.has_grain));
+        if let Some(cover) = map.cover {
+            frame.cover = [cover.tree_m, cover.snow_m, cover.true_rise, cover.shady_north];
+        }
         if let Some(imagery) = &map.imagery {
             let (per_m, [width, height]) = (
                 imagery.size.recip(),
@@ -162,6 +167,7 @@ impl SurfaceConstants {
             Albedo::Hatching => HATCHING,
         };
         let water = if material.is_water { WATER } else { 0 };
+        let natural = if material.is_natural { NATURAL } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -169,7 +175,7 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha | water, 0, 0, 0],
+            flags: [normal | albedo | alpha | water | natural, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }
