@@ -64,7 +64,7 @@ fn picture(scene: &SceneModel, view: &str, name: &str, size: (u32, u32)) -> Pict
     let showing =
         |wanted: &dyn Fn(u32) -> bool| picture.features.iter().filter(|feature| wanted(feature.0)).count();
     let of_kind = |kind| {
-        let is = |id: u32| id.checked_sub(2).is_some_and(|index| scene.features[index as usize].kind == kind);
+        let is = |id: u32| FeatureId(id).index().is_some_and(|index| scene.features[index].kind == kind);
         (kind, showing(&is))
     };
     let pixels = scene.census().into_iter().map(|(kind, _)| of_kind(kind)).collect();

@@ -148,6 +148,9 @@ table! {
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
         /// A picture of the ground over the colors by height, such as an aerial photograph.
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
+        /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
+        /// the tree line and the snow line are those of the latitude.
+        land_cover: bool = key::switch(), default false;
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::WaterColor;
@@ -31,6 +32,8 @@ pub struct GroundMap {
     pub contours: Option<Contours>,
     /// A picture over ramp and water.
     pub imagery: Option<Arc<GroundImagery>>,
+    /// What grows and lies on it; `None` shows the ramp alone.
+    pub cover: Option<GroundCover>,
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
     /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
     pub form_level: u32,
@@ -155,6 +158,17 @@ impl Contours {
     }
 }
 
+/// What a pixel of the ground shows besides the map's own values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundDetail {
+    /// The factor of [`ground_grain`](crate::draw::ground_grain::ground_grain).
+    pub grain: f32,
+    /// [`cover_noise`](crate::draw::ground_cover::cover_noise); read where the map has a cover.
+    pub uneven: f32,
+    /// The picture over the map.
+    pub draped: DrapedColor,
+}
+
 /// Why a ground map cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GroundMapError {
@@ -194,14 +208,14 @@ impl GroundMap {
     }
 
     /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
-    /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), under trees
-    /// their [`Undergrowth`], or water; what is `draped` over them; and contours.
-    pub fn albedo(&self, post: &GroundPost, change_m: f32, grain: f32, draped: &DrapedColor) -> Vec3 {
-        let land = self.ramp.linear_at(post.height_m);
-        let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * grain;
+    /// the ramp under what covers it and under trees their [`Undergrowth`], or water; what is draped over them; and contours.
+    pub fn albedo(&self, post: &GroundPost, change_m: f32, detail: &GroundDetail) -> Vec3 {
+        let tint = self.ramp.linear_at(post.height_m);
+        let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));
+        let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * detail.grain;
         let water = WaterColor::cover(post.water);
         let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
-        let bare = draped.over(bare);
+        let bare = detail.draped.over(bare);
         let Some(contours) = &self.contours else { return bare };
         let strength = contours.strength(post.height_m, change_m) * (1.0 - water);
         bare.lerp(contours.color.linear(), strength * contours.color.alpha())
@@ -261,6 +275,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
             contours: None,
             imagery: None,
+            cover: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

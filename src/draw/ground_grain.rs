@@ -23,14 +23,19 @@ const STEEP: f32 = 0.20;
 /// The factor on the color of natural ground at world X and Y, over a pixel `pixel_m` meters wide; `rise` is the slope in
 /// meters per meter. Its mean is 1.
 pub fn ground_grain(at: Vec2, pixel_m: f32, rise: f32) -> f32 {
+    1.0 + (LEVEL + (STEEP - LEVEL) * rise.clamp(0.0, 1.0)) * noise_of(&WAVES, at, pixel_m)
+}
+
+/// A sum of noise of wavelengths in meters with their shares, each as far as a pixel `pixel_m` meters wide shows it.
+pub(in crate::draw) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) -> f32 {
     let mut sum = 0.0;
-    for (wave_m, share) in WAVES {
+    for &(wave_m, share) in waves {
         let shown = (2.0 * wave_m / (WIDE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
         if shown > 0.0 {
             sum += share * shown * noise(at / wave_m);
         }
     }
-    1.0 + (LEVEL + (STEEP - LEVEL) * rise.clamp(0.0, 1.0)) * sum
+    sum
 }
 
 /// Value noise, -1..=1.

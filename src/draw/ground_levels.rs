@@ -182,6 +182,7 @@ mod tests {
                 ramp: ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop"),
                 contours: None,
                 imagery: None,
+                cover: None,
                 form_level: 0,
                 z_factor: 1.0,
                 has_grain: false,

@@ -191,7 +191,7 @@ impl ReliefShading {
     }
 
     /// A brightness bent toward the darkest and the brightest.
-    fn soft(brightness: f32) -> f32 {
+    pub fn soft(brightness: f32) -> f32 {
         let [toe, shoulder] = [Self::TOE - Self::DARKEST, Self::BRIGHTEST - Self::SHOULDER];
         if brightness < Self::TOE {
             Self::DARKEST + toe * toe / (toe + Self::TOE - brightness)

@@ -59,6 +59,8 @@ pub struct Material {
     pub is_water: bool,
     /// Whether the shadows of other things fall on it; a texture may hold them already.
     pub receives_shadows: bool,
+    /// Whether it is natural cover of the ground, whose grain goes through it.
+    pub is_natural: bool,
 }
 
 impl Material {
@@ -81,6 +83,7 @@ impl Default for Material {
             albedo: Albedo::Surface,
             is_water: false,
             receives_shadows: true,
+            is_natural: false,
         }
     }
 }

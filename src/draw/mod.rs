@@ -5,6 +5,7 @@ pub mod backdrop;
 pub mod bathymetry;
 pub mod color;
 pub mod ground;
+pub mod ground_cover;
 pub mod ground_grain;
 pub mod ground_imagery;
 pub mod ground_levels;

@@ -4,7 +4,8 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
+use crate::draw::ground::{GroundDetail, GroundMap};
+use crate::draw::ground_cover::cover_noise;
 use crate::draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -55,7 +56,9 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
     let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
     let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
-    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), 1.0, &draped))
+    let uneven = if map.cover.is_some() { cover_noise(at, step.max_element()) } else { 0.0 };
+    let detail = GroundDetail { grain: 1.0, uneven, draped };
+    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), &detail))
 }
 
 #[cfg(test)]
@@ -75,6 +78,7 @@ mod tests {
             ramp: ColorRamp::new(vec![(0.0, Srgba::opaque(0, 0, 0)), (40.0, Srgba::WHITE)]).expect("rising"),
             contours,
             imagery: None,
+            cover: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

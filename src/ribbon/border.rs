@@ -38,11 +38,28 @@ pub enum Dashes {
 
 /// The line of `width_m` along the outer ring and the holes of an area, in that area's triangles `area`.
 pub fn border(rings: &[&[DVec2]], area: &PlanMesh, width_m: f64, dashes: Dashes) -> PlanMesh {
+    strip(rings, area, width_m, dashes, &StrokeOptions::default())
+}
+
+/// The strip of `width_m` along the outline within which a cover fades; its texture repeats every `texture_m` meters along
+/// the outline, and U runs from 0.5 on the outline to 0 or 1 inside.
+pub fn edge(rings: &[&[DVec2]], area: &PlanMesh, width_m: f64, texture_m: f64) -> PlanMesh {
+    let options = StrokeOptions { texture_length_m: texture_m, ..StrokeOptions::default() };
+    strip(rings, area, width_m, Dashes::Unbroken, &options)
+}
+
+fn strip(
+    rings: &[&[DVec2]],
+    area: &PlanMesh,
+    width_m: f64,
+    dashes: Dashes,
+    options: &StrokeOptions,
+) -> PlanMesh {
     let mut strips = PlanMesh::default();
     let mut add = |line: Polyline, beyond: Continuations| {
         let alignment = Alignment::on_ground(line, 2.0 * width_m);
         let path = StrokePath { beyond, ..StrokePath::alone(&alignment) };
-        stroke(&path, &StrokeOptions::default(), &mut strips);
+        stroke(&path, options, &mut strips);
     };
     for line in rings.iter().filter_map(|ring| closed(ring)) {
         match dashes {

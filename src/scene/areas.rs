@@ -1,7 +1,8 @@
 //! Areas: what covers the ground, with the lines along their outlines.
 //!
 //! Areas lie below everything else on the ground, and a later one over an earlier. Textures are laid out in world meters,
-//! aligned with north, so that areas side by side make one pattern.
+//! aligned with north, so that areas side by side make one pattern. Natural covers fade along their outlines, as they grow;
+//! what has a border, or is built, ends there.
 
 use glam::DVec2;
 
@@ -13,10 +14,10 @@ use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
 use crate::ribbon::area;
-use crate::ribbon::border::{Dashes, border};
+use crate::ribbon::border::{Dashes, border, edge};
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
-use crate::ribbon::texture::cover::{border_color, cover_length_m};
+use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
@@ -60,6 +61,8 @@ pub fn lay(
 struct AreaPatch {
     fill: PlanMesh,
     line: PlanMesh,
+    /// Where the cover fades.
+    edge: PlanMesh,
     cover: Cover,
     tint: Srgba,
 }
@@ -73,20 +76,24 @@ impl AreaPatch {
         let width_m = table.border_width;
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
         area::fill(&shape.exterior, &shape.holes, texture_m(cover, width_m), &mut fill);
+        let rings: Vec<&[DVec2]> = shape.rings().map(Vec::as_slice).collect();
+        let edge = edge_of(table, cover, &rings, &fill.plan);
         let dashes = match border_of(table, cover) {
             Border::None => None,
             Border::Solid => Some(Dashes::Unbroken),
             Border::Dashed => Some(Dashes::Dashed),
         };
-        let rings: Vec<&[DVec2]> = shape.rings().map(Vec::as_slice).collect();
         let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
         let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
-        (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, cover, tint })
+        (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, edge, cover, tint })
     }
 
     /// Lays the area, and its border over it.
     fn lay(self, feature: FeatureId, collected: &mut SceneBuilder) {
         collected.lay_tinted(self.fill, (RibbonSurface::Cover(self.cover), self.tint), feature);
+        if !self.edge.triangles.is_empty() {
+            collected.lay_tinted(self.edge, (RibbonSurface::CoverEdge(self.cover), self.tint), feature);
+        }
         if !self.line.triangles.is_empty() {
             let color = multiplied(border_color(self.cover), self.tint);
             collected.lay_tinted(self.line, (RibbonSurface::Border, color), feature);
@@ -103,6 +110,21 @@ fn texture_m(cover: Cover, border_width_m: f64) -> f64 {
         Cover::Restricted => cover_length_m(cover) * border_width_m / HATCHED_BORDER_M,
         _ => cover_length_m(cover),
     }
+}
+
+/// The corners of an outline above which it is not faded: a cover of a whole country is not seen from near.
+const MOST_FADED: usize = 4000;
+
+/// Of small areas the part of the side of the square of their size that fades: more would leave nothing of them.
+const FADED: f64 = 1.0 / 8.0;
+
+/// The strip in which natural cover fades, where no line is to be drawn along its outline.
+fn edge_of(table: &AreaTable, cover: Cover, rings: &[&[DVec2]], fill: &PlanMesh) -> PlanMesh {
+    let corners: usize = rings.iter().map(|ring| ring.len()).sum();
+    if !is_natural(cover) || border_of(table, cover) != Border::None || corners > MOST_FADED {
+        return PlanMesh::default();
+    }
+    edge(rings, fill, EDGE_M.min(fill.area_m2().sqrt() * FADED), cover_length_m(cover))
 }
 
 /// The stated border, or the cover's own.

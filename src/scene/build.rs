@@ -102,6 +102,7 @@ pub fn build(
         heights,
         ramp: RampSource::new(document)?,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
+        land_cover: document.style.land_cover,
         imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
         contours: style::contours(document),
         sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,

@@ -99,7 +99,7 @@ pub fn described(kind: &str, name: &str) -> String {
 /// The class of a surface; a higher class covers a lower.
 fn layer_of(surface: RibbonSurface) -> u8 {
     match surface {
-        RibbonSurface::Cover(_) | RibbonSurface::Border => 0,
+        RibbonSurface::Cover(_) | RibbonSurface::CoverEdge(_) | RibbonSurface::Border => 0,
         RibbonSurface::Bank | RibbonSurface::ShoreLine => 1,
         RibbonSurface::River | RibbonSurface::Confluence => 2,
         RibbonSurface::Lake => 3,

@@ -98,6 +98,7 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
         ramp: scene.ramp(),
         contours: scene.contours,
         imagery: scene.imagery.clone(),
+        cover: scene.cover(),
         form_level: form_level(lattice).saturating_sub(number),
         z_factor: z_factor(lattice, scene.scale, is_water),
         has_grain: true,

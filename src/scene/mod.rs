@@ -50,6 +50,7 @@ use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
+use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
@@ -61,6 +62,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
+use crate::scene::land_cover::CoverLines;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
@@ -97,6 +99,7 @@ pub struct SceneModel {
     pub heights: HeightService,
     ramp: RampSource,
     latitude_deg: Option<f64>,
+    land_cover: bool,
     /// The picture draped over the ground.
     pub imagery: Option<Arc<GroundImagery>>,
     /// Lines of equal height on the ground.
@@ -386,6 +389,17 @@ impl SceneModel {
         let (low, high) = self.height_range_m;
         let low = if self.has_sea() && high > 0.0 { low.max(0.0) } else { low };
         self.ramp.over(&TintedGround { range_m: (low, high), latitude_deg: self.latitude_deg })
+    }
+
+    /// Where the covers of natural ground change; `None` where the picture shows none.
+    pub fn cover(&self) -> Option<GroundCover> {
+        let lines = CoverLines::at(self.latitude_deg);
+        self.land_cover.then(|| GroundCover {
+            tree_m: lines.tree_m as f32,
+            snow_m: lines.snow_m as f32,
+            true_rise: self.scale.0.recip(),
+            shady_north: if self.latitude_deg.is_some_and(|degrees| degrees < 0.0) { -1.0 } else { 1.0 },
+        })
     }
 
     /// Whether part of the ground is drawn as sea.

@@ -168,6 +168,7 @@ fn ground_map() -> GroundMap {
         ramp: ColorRamp::new(stops.into()).expect("rising stops"),
         contours: None,
         imagery: None,
+        cover: None,
         form_level: 0,
         z_factor: 1.0,
         has_grain: false,

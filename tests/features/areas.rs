@@ -40,7 +40,12 @@ fn scene(text: &str) -> SceneModel {
 }
 
 fn area_m2(scene: &SceneModel, wanted: RibbonSurface) -> f64 {
-    scene.ribbons.iter().filter(|ribbon| ribbon.surface == wanted).map(|ribbon| ribbon.plan.area_m2()).sum()
+    // What fades along the outline is the same cover.
+    let is_wanted = |surface: RibbonSurface| match surface {
+        RibbonSurface::CoverEdge(cover) => wanted == surface || wanted == RibbonSurface::Cover(cover),
+        other => wanted == other,
+    };
+    scene.ribbons.iter().filter(|ribbon| is_wanted(ribbon.surface)).map(|ribbon| ribbon.plan.area_m2()).sum()
 }
 
 const TWO: &str = "[[area]]\ncover = \"forest\"\npoints = [[50, 50], [150, 50], [150, 150], [50, 150]]\n\
@@ -108,6 +113,25 @@ fn a_restricted_area_has_a_border_unless_it_says_otherwise() {
     assert!((area_m2(&bordered, RibbonSurface::Border) - (10_000.0 - 92.0 * 92.0)).abs() < 0.1);
     let bare = scene(&format!("[[area]]\ncover = \"restricted\"\nborder = \"none\"\n{ring}"));
     assert_eq!(area_m2(&bare, RibbonSurface::Border), 0.0);
+}
+
+#[test]
+fn natural_cover_fades_along_its_outline_and_what_is_built_or_bordered_does_not() {
+    let faded = |keys: &str, points: &str| {
+        let scene = scene(&format!("[[area]]\n{keys}\npoints = {points}\n"));
+        let edges = [Cover::Forest, Cover::BuiltUp].map(RibbonSurface::CoverEdge);
+        edges.map(|edge| area_m2(&scene, edge)).iter().sum::<f64>()
+    };
+    let square = "[[50, 50], [150, 50], [150, 150], [50, 150]]";
+    let clockwise = "[[50, 50], [50, 150], [150, 150], [150, 50]]";
+    for points in [square, clockwise] {
+        let found = faded("cover = \"forest\"", points);
+        assert!((found - (10_000.0 - 76.0 * 76.0)).abs() < 0.1, "{found}");
+    }
+    let copse = faded("cover = \"forest\"", "[[50, 50], [74, 50], [74, 74], [50, 74]]");
+    assert!((copse - (24.0 * 24.0 - 18.0 * 18.0)).abs() < 0.1, "{copse}");
+    assert_eq!(faded("cover = \"forest\"\nborder = \"solid\"", square), 0.0);
+    assert_eq!(faded("cover = \"built-up\"", square), 0.0);
 }
 
 #[test]

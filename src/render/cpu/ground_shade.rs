@@ -5,7 +5,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground::{GroundDetail, GroundMap, GroundPost};
+use crate::draw::ground_cover::cover_noise;
 use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
@@ -87,8 +88,19 @@ impl<'a> GroundShader<'a> {
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change = |step: Vec3| point.gradient.dot(step.truncate());
         let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
-        let grain = if self.map.has_grain { grain(&point.post, hit) } else { 1.0 };
-        self.map.albedo(&point.post, change_m, grain, &point.draped)
+        let uneven =
+            if self.map.cover.is_some() { cover_noise(hit.world.truncate(), pixel_m(hit)) } else { 0.0 };
+        let detail = GroundDetail { grain: self.grain(point, hit), uneven, draped: point.draped };
+        self.map.albedo(&point.post, change_m, &detail)
+    }
+
+    /// The factor of the ground's grain on its color, and on that of natural cover on it.
+    pub fn grain(&self, point: &GroundPoint, hit: &FacePoint) -> f32 {
+        if !self.map.has_grain {
+            return 1.0;
+        }
+        let rise = Vec2::new(point.post.slope_east, point.post.slope_north).length();
+        ground_grain(hit.world.truncate(), pixel_m(hit), rise)
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
@@ -128,9 +140,9 @@ fn draped(imagery: &GroundImagery, texture: &Texture<'_>, hit: &FacePoint, most_
     DrapedColor { color, share: alpha }
 }
 
-fn grain(post: &GroundPost, hit: &FacePoint) -> f32 {
-    let pixel_m = hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt();
-    ground_grain(hit.world.truncate(), pixel_m, Vec2::new(post.slope_east, post.slope_north).length())
+/// The longer side of a pixel in plan.
+fn pixel_m(hit: &FacePoint) -> f32 {
+    hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt()
 }
 
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
@@ -160,6 +172,7 @@ mod tests {
             ramp: ColorRamp::new(stops.to_vec()).expect("rising"),
             contours: None,
             imagery: None,
+            cover: None,
             form_level: 0,
             z_factor: 1.0,
             has_grain: false,

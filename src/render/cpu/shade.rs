@@ -80,7 +80,7 @@ impl<'a> Shader<'a> {
             corners: self.corners(item, face),
             weights: Barycentric::new(face, at),
         });
-        let (albedo, alpha) = match (material.albedo, &ground) {
+        let (mut albedo, alpha) = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
             (Albedo::Hatching, _) => {
                 let Material { base_color, .. } = material;
@@ -88,6 +88,9 @@ impl<'a> Shader<'a> {
             }
             _ => self.surface_color(material, &vertices),
         };
+        if let (true, Some((ground, point))) = (material.is_natural, &ground) {
+            albedo *= ground.grain(point, &hit);
+        }
         let lighting = &self.list.lighting;
         let mut color = match (material.normals, &ground) {
             (NormalSource::Ground, Some((ground, point))) => {

@@ -26,6 +26,7 @@ struct Frame {
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     imagery: vec4f,       // x and y of the south-west corner of the draped picture, 1 / its width and height
     imagery_size: vec4f,  // its columns and rows; 1 where there is one; 1 where it is shaded
+    cover: vec4f,         // tree line and snow line in meters, true rise over drawn (0: no cover), 1 where the north is shady
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
@@ -53,6 +54,7 @@ const BLEND = 8u;
 const WATER = 16u;
 const IN_ALL_LIGHT = 32u;
 const HATCHING = 64u;
+const NATURAL = 128u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -311,6 +313,33 @@ fn ground_grain(at: vec2f, pixel_m: f32, rise: f32) -> f32 {
     let sum = grain_wave(at, pixel_m, 1.7, 0.3) + grain_wave(at, pixel_m, 6.1, 0.35)
         + grain_wave(at, pixel_m, 23.0, 0.35);
     return 1.0 + (0.10 + 0.10 * clamp(rise, 0.0, 1.0)) * sum;
+}
+
+// The functions of src/draw/ground_cover.rs.
+fn cover_noise(at: vec2f, pixel_m: f32) -> f32 {
+    return grain_wave(at, pixel_m, 60.0, 0.25) + grain_wave(at, pixel_m, 170.0, 0.35)
+        + grain_wave(at, pixel_m, 480.0, 0.4);
+}
+
+fn covered_by(color: vec3f, tint: vec3f, hue: vec3f, light: f32, share: f32) -> vec3f {
+    let luminance = vec3f(0.2126, 0.7152, 0.0722);
+    return mix(color, hue * (dot(tint, luminance) * light / dot(hue, luminance)), 0.8 * share);
+}
+
+fn with_cover(tint: vec3f, post: Post, uneven: f32) -> vec3f {
+    let slope = post.slope * frame.cover.z;
+    let shade = clamp(-slope.y * frame.cover.w, -1.0, 1.0);
+    let height = post.height + 160.0 * uneven + 150.0 * shade;
+    let rise = length(slope) + 0.2 * uneven;
+    let above_trees = smoothstep(frame.cover.x - 300.0, frame.cover.x, height);
+    let meadow = above_trees * (1.0 - smoothstep(frame.cover.y - 500.0, frame.cover.y, height));
+    let scree = above_trees * smoothstep(0.50, 0.66, rise);
+    let rock = smoothstep(0.78, 1.05, rise);
+    let snow = smoothstep(frame.cover.y - 200.0, frame.cover.y + 200.0, height) * (1.0 - rock);
+    var color = covered_by(tint, tint, vec3f(0.42, 0.55, 0.25), 0.92, meadow);
+    color = covered_by(color, tint, vec3f(0.56, 0.53, 0.48), 0.97, scree);
+    color = covered_by(color, tint, vec3f(0.45, 0.43, 0.42), 0.80, rock);
+    return covered_by(color, tint, vec3f(0.86, 0.90, 0.97), 1.2, snow);
 }
 
 // Lines `spacing` meters apart vanish before they run together.
@@ -590,17 +619,26 @@ fn shade(in: Varying, front: bool) -> vec4f {
     let face = cross(dpdx(in.world), dpdy(in.world));
     if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
         let post = ground_at(in.world.xy, right, down);
+        let pixel = max(length(right), length(down));
+        var grain = 1.0;
+        if (flags & (FROM_GROUND_ALBEDO | NATURAL)) != 0u && frame.contour_shape.w > 0.5 {
+            grain = ground_grain(in.world.xy, pixel, length(post.slope));
+        }
+        if (flags & NATURAL) != 0u {
+            color = vec4f(color.rgb * grain, color.a);
+        }
         if (flags & FROM_GROUND_ALBEDO) != 0u {
             let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
             // WaterColor.
             let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
             let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
-            let pixel = max(length(right), length(down));
-            let grain = ground_grain(in.world.xy, pixel, length(post.slope));
-            let wood = clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w;
-            let bare_land = mix(ramp_at(post.height), frame.undergrowth.rgb, wood);
-            let land = bare_land * select(1.0, grain, frame.contour_shape.w > 0.5);
+            var land = ramp_at(post.height);
+            if frame.cover.z > 0.0 {
+                land = with_cover(land, post, cover_noise(in.world.xy, pixel));
+            }
+            land = mix(land, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
+            land *= grain;
             let bare = mix(land, water_at(post.height), water) * shore;
             let draped = draped_at(in.world.xy, right, down);
             let covered = mix(bare, draped.rgb, draped.a);

@@ -26,6 +26,7 @@ const BLEND: u32 = 8;
 const WATER: u32 = 16;
 const IN_ALL_LIGHT: u32 = 32;
 const HATCHING: u32 = 64;
+const NATURAL: u32 = 128;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -51,6 +52,7 @@ pub struct FrameUniforms {
     ground_size: [u32; 4],
     imagery: [f32; 4],
     imagery_size: [f32; 4],
+    cover: [f32; 4],
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
@@ -134,6 +136,9 @@ impl FrameUniforms {
         frame.ground_size =
             [map.ramp.stops().len() as u32, RAMP_COLUMNS, levels.len() as u32, map.form_level.min(coarsest)];
         frame.contour_shape[3] = f32::from(u8::from(map.has_grain));
+        if let Some(cover) = map.cover {
+            frame.cover = [cover.tree_m, cover.snow_m, cover.true_rise, cover.shady_north];
+        }
         if let Some(imagery) = &map.imagery {
             let (per_m, [width, height]) = (
                 imagery.size.recip(),
@@ -167,6 +172,7 @@ impl SurfaceConstants {
         };
         let water = if material.is_water { WATER } else { 0 };
         let light = if material.receives_shadows { 0 } else { IN_ALL_LIGHT };
+        let natural = if material.is_natural { NATURAL } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -174,7 +180,7 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha | water | light, 0, 0, 0],
+            flags: [normal | albedo | alpha | water | light | natural, 0, 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

@@ -38,6 +38,24 @@ pub fn border_color(cover: Cover) -> Srgba {
     Srgba([red, green, blue, 235])
 }
 
+/// The greatest width of the strip along an outline in which a cover fades, meters: about what lies between the first
+/// trees and a closed wood.
+pub const EDGE_M: f64 = 12.0;
+
+/// Whether a cover grows or lies by nature; what is built or forbidden ends at a line.
+pub fn is_natural(cover: Cover) -> bool {
+    !matches!(cover, Cover::BuiltUp | Cover::Industry | Cover::Restricted)
+}
+
+/// A texel of the strip in which a cover fades: nothing at `u` 0.5, where the outline is, all of the cover at 0 and 1.
+pub(super) fn edge_texel(cover: Cover, u: f32, v: f32, grain: f32) -> Srgba {
+    let inward = (2.0 * u - 1.0).abs();
+    let across = (u * (2.0 * EDGE_M / cover_length_m(cover)) as f32).fract();
+    let Srgba([red, green, blue, alpha]) = texel(cover, across, v, grain);
+    let share = inward * inward * (3.0 - 2.0 * inward);
+    Srgba([red, green, blue, (f32::from(alpha) * share + 0.5) as u8])
+}
+
 /// A cover's texel at (`u`, `v`), each in 0..1.
 pub(super) fn texel(cover: Cover, u: f32, v: f32, grain: f32) -> Srgba {
     match cover {

@@ -50,6 +50,8 @@ pub enum RibbonSurface {
     Boundary,
     /// What covers an area.
     Cover(Cover),
+    /// The strip along an area's outline in which its cover fades.
+    CoverEdge(Cover),
     /// The line along an area's outline: white, to be tinted.
     Border,
 }
@@ -82,9 +84,14 @@ impl RibbonSurface {
         matches!(self, Self::River | Self::Confluence | Self::Lake)
     }
 
+    /// Whether it grows or lies by nature, so that the ground's grain goes through it.
+    pub fn is_natural(self) -> bool {
+        matches!(self, Self::Cover(cover) | Self::CoverEdge(cover) if cover::is_natural(cover))
+    }
+
     /// Whether the ground shows through it.
     pub fn lets_through(self) -> bool {
-        matches!(self, Self::Cover(_) | Self::Border | Self::Bank)
+        matches!(self, Self::Cover(_) | Self::CoverEdge(_) | Self::Border | Self::Bank)
     }
 }
 
@@ -116,6 +123,7 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
             RibbonSurface::Confluence => water::stream(grain),
             RibbonSurface::Bank => water::bank(u, grain),
             RibbonSurface::Cover(cover) => cover::texel(cover, u, v, grain),
+            RibbonSurface::CoverEdge(cover) => cover::edge_texel(cover, u, v, grain),
             RibbonSurface::Border => Srgba::WHITE,
             RibbonSurface::Lake => water::lake(grain),
             RibbonSurface::ShoreLine => WaterColor::SHORE_LINE,

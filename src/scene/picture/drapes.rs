@@ -142,6 +142,7 @@ fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> 
         alpha: if surface.lets_through() { AlphaMode::Blend } else { AlphaMode::Opaque },
         normals: NormalSource::Ground,
         is_water: surface.is_water(),
+        is_natural: surface.is_natural(),
         ..Material::default()
     }
 }

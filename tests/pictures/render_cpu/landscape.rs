@@ -105,6 +105,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
             width_px: 1.2,
         }),
         imagery: None,
+        cover: None,
         form_level: 3,
         z_factor: 1.0,
         has_grain: false,

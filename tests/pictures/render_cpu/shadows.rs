@@ -80,8 +80,8 @@ fn a_shadow_begins_at_the_foot_and_the_side_toward_the_sun_is_lit() {
         let mut list = plain(to_sun, |_, _| 0.0);
         add_box(&mut list, Vec2::ZERO);
         // Ground at the lower end of the ramp without the sun, by the formula of the shading.
-        let shaded =
-            1.0 - ReliefShading::GAIN * ReliefShading::LOW_CONTRAST * ReliefShading::SHARES[0] * to_sun.z;
+        let lost = ReliefShading::LOW_CONTRAST * ReliefShading::SHARES[0] * to_sun.z;
+        let shaded = ReliefShading::soft(1.0 - ReliefShading::GAIN * lost);
         let (mut behind, mut before) = (0, 0);
         for side in 0..4 {
             let camera = above(outward(side));
