@@ -141,7 +141,7 @@ impl ReliefShading {
     /// The brightness below which shade is softened.
     pub const TOE: f32 = 0.5;
     /// The brightness above which light is softened: pale tints would lose their color.
-    pub const SHOULDER: f32 = 1.25;
+    pub const SHOULDER: f32 = 1.35;
     /// The brightness that the brightest slopes tend to.
     pub const BRIGHTEST: f32 = 1.9;
     /// The color of the light on slopes toward the sun.

@@ -550,8 +550,8 @@ fn facing_sun(normal: vec3f) -> f32 {
 // ReliefShading::soft, with the same constants.
 fn soft_brightness(brightness: f32) -> f32 {
     let toe = 0.08 + 0.42 * 0.42 / (0.42 + max(0.5 - brightness, 0.0));
-    let shoulder = 1.9 - 0.65 * 0.65 / (0.65 + max(brightness - 1.25, 0.0));
-    return select(select(brightness, shoulder, brightness > 1.25), toe, brightness < 0.5);
+    let shoulder = 1.9 - 0.55 * 0.55 / (0.55 + max(brightness - 1.35, 0.0));
+    return select(select(brightness, shoulder, brightness > 1.35), toe, brightness < 0.5);
 }
 
 // ReliefShading::shade, with the same constants.
