@@ -26,7 +26,7 @@ use crate::scene::report::BuildingPadRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
-use crate::structure::building::{BuildingLevels, Paint, STORY_M, raise as raised};
+use crate::structure::building::{BuildingLevels, Paint, STORY_M, check, raise as raised};
 use crate::structure::building_footing::WallFooting;
 use crate::structure::building_footprint::BuildingFootprint;
 use crate::structure::draped_solid::DrapedSolid;
@@ -215,22 +215,30 @@ fn raise_parts(
     let wanted = wanted_roof(building, &plot.attributes);
     let mut replaced = false;
     for part in &plot.parts {
-        let made = roof(part, wanted);
+        let body = |wanted: RoofWord| {
+            let made = roof(part, wanted);
+            let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
+            let top_z = base_z + height_m;
+            let floor_z = base_z + low_m;
+            let mut levels = BuildingLevels { foot_z, base_z, floor_z, eaves_z: top_z - roof_m, top_z };
+            if low_m > 0.0 {
+                levels = BuildingLevels { foot_z: floor_z, base_z: floor_z, ..levels };
+            } else if base_z - foot_z <= FOUNDATION_M + 1e-6 {
+                // On its lowest ground no foundation shows, and the plaster goes on down.
+                levels.base_z = foot_z;
+            }
+            let paint = paint(building, &plot.attributes, part, &made);
+            let mesh = raised(part, &made, levels, paint);
+            // Faces over inward corners may be thinner than coordinates are exact: such a building is flat.
+            let is_sound = made.shape != RoofWord::Hipped || part.is_convex() || check(&mesh).is_ok();
+            is_sound.then_some((made, levels, paint, mesh))
+        };
+        let Some((made, levels, paint, mesh)) = body(wanted).or_else(|| body(RoofWord::Flat)) else {
+            continue;
+        };
         replaced |= made.shape != wanted;
-        let roof_m = roof_height(building, &plot.attributes, &made, height_m - low_m);
-        let top_z = base_z + height_m;
-        let floor_z = base_z + low_m;
-        let mut levels = BuildingLevels { foot_z, base_z, floor_z, eaves_z: top_z - roof_m, top_z };
-        if low_m > 0.0 {
-            levels = BuildingLevels { foot_z: floor_z, base_z: floor_z, ..levels };
-        } else if base_z - foot_z <= FOUNDATION_M + 1e-6 {
-            // On its lowest ground no foundation shows, and the plaster goes on down.
-            levels.base_z = foot_z;
-        }
-        let paint = paint(building, &plot.attributes, part, &made);
-        let mesh = raised(part, &made, levels, paint);
         collected.solids.push(Solid { mesh, coat: Coat::Facade, feature: plot.feature });
-        if let Some(mesh) = eaves(&made, levels, paint) {
+        if let Some(mesh) = eaves(&made, levels, paint).filter(|mesh| check(mesh).is_ok()) {
             collected.solids.push(Solid { mesh, coat: Coat::Painted, feature: plot.feature });
         }
         if low_m == 0.0 {
