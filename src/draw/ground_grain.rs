@@ -34,7 +34,7 @@ pub fn ground_grain(at: Vec2, pixel_m: f32, rise: f32) -> f32 {
 }
 
 /// Value noise, -1..=1.
-fn noise(at: Vec2) -> f32 {
+pub(in crate::draw) fn noise(at: Vec2) -> f32 {
     let cell = at.floor();
     let part = at - cell;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);

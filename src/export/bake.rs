@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
+use crate::draw::ground::{GroundChange, GroundMap, GroundPost};
 use crate::draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -49,11 +49,13 @@ pub fn bake(map: &GroundMap) -> BakedGround {
 }
 
 fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
-    let height_m = |offset: Vec2| map.sample(at + offset).height_m;
     let half = step / 2.0;
-    let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
-    let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
-    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), 1.0))
+    let [west, east, south, north] = [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]
+        .map(|(x, y)| map.sample(at + Vec2::new(x, y) * half));
+    let change =
+        |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
+    let change = GroundChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
+    Srgba::from_linear(map.albedo(&map.sample(at), change, 1.0))
 }
 
 #[cfg(test)]

@@ -5,10 +5,11 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundMap, GroundPost};
+use crate::draw::ground::{GroundChange, GroundMap, GroundPost};
 use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
+use crate::draw::water::ShorePixel;
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::TexelFootprint;
 
@@ -26,6 +27,8 @@ pub struct GroundPoint {
     pub post: GroundPost,
     /// The rise of `height_m` eastward and northward, meters per meter.
     gradient: Vec2,
+    /// The same of `water`, per meter.
+    water_gradient: Vec2,
 }
 
 impl<'a> GroundShader<'a> {
@@ -68,10 +71,15 @@ impl<'a> GroundShader<'a> {
 
     /// The map's color at a point, in linear light: the ramp with contours on it, or water.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
-        let change = |step: Vec3| point.gradient.dot(step.truncate());
-        let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
+        let change =
+            GroundChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
         let grain = if self.map.has_grain { grain(&point.post, hit) } else { 1.0 };
-        self.map.albedo(&point.post, change_m, grain)
+        self.map.albedo(&point.post, change, grain)
+    }
+
+    /// The share of a pixel that is under water.
+    pub fn water_cover(&self, point: &GroundPoint, hit: &FacePoint) -> f32 {
+        ShorePixel::new(point.post.water, change(point.water_gradient, hit)).cover
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
@@ -97,12 +105,19 @@ impl<'a> GroundShader<'a> {
         let [sw, se, nw, ne] = corners.map(|post| post.height_m);
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
         sum.gradient += rise * self.posts_per_meter * (scale * weight);
+        let [sw, se, nw, ne] = corners.map(|post| post.water);
+        let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
+        sum.water_gradient += rise * self.posts_per_meter * (scale * weight);
     }
 }
 
+/// What changes by `gradient` per meter changes by this across a pixel.
+fn change(gradient: Vec2, hit: &FacePoint) -> f32 {
+    Vec2::new(gradient.dot(hit.right.truncate()), gradient.dot(hit.down.truncate())).length()
+}
+
 fn grain(post: &GroundPost, hit: &FacePoint) -> f32 {
-    let pixel_m = hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt();
-    ground_grain(hit.world.truncate(), pixel_m, Vec2::new(post.slope_east, post.slope_north).length())
+    ground_grain(hit.world.truncate(), hit.pixel_m(), Vec2::new(post.slope_east, post.slope_north).length())
 }
 
 fn split(coordinate: f32, count: usize) -> (usize, f32) {
