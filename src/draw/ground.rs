@@ -11,7 +11,7 @@ use crate::draw::color::Srgba;
 use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::undergrowth::Undergrowth;
-use crate::draw::water::WaterColor;
+use crate::draw::water::{ShorePixel, WaterColor};
 
 /// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,8 +58,8 @@ pub struct GroundPost {
     pub sun_visibility: f32,
     /// Share of the sky seen from the post, 0..=1.
     pub sky_visibility: f32,
-    /// 1 where the post is under water, else 0; between posts the shore lies at 0.5. Negative under trees: −1 where crowns
-    /// cover all of the ground.
+    /// Below 0.5 on land and above it under water, so that the shore lies at 0.5 between posts. It rises evenly across the
+    /// shore; from 0.75 to 1 it says how far open water is. Negative under trees: −1 where crowns cover all of the ground.
     pub water: f32,
 }
 
@@ -169,6 +169,15 @@ pub struct GroundDetail {
     pub draped: DrapedColor,
 }
 
+/// What changes across a pixel of the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GroundChange {
+    /// Of the elevation, in meters.
+    pub height_m: f32,
+    /// Of [`GroundPost::water`].
+    pub water: f32,
+}
+
 /// Why a ground map cannot be rendered.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GroundMapError {
@@ -207,17 +216,18 @@ impl GroundMap {
         }
     }
 
-    /// The color in linear light of ground that reads as `post` over a pixel across which its height changes by `change_m`:
-    /// the ramp under what covers it and under trees their [`Undergrowth`], or water; what is draped over them; and contours.
-    pub fn albedo(&self, post: &GroundPost, change_m: f32, detail: &GroundDetail) -> Vec3 {
+    /// The color in linear light of ground that reads as `post` over a pixel across which it changes by `change`: the ramp
+    /// under what covers it and under trees their [`Undergrowth`], or water; what is draped over them; and contours.
+    pub fn albedo(&self, post: &GroundPost, change: GroundChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
         let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));
         let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * detail.grain;
-        let water = WaterColor::cover(post.water);
-        let bare = if water > 0.0 { WaterColor::over(land, post.height_m, water) } else { land };
+        let shore = ShorePixel::new(post.water, change.water);
+        let is_dry = shore.cover <= 0.0 && shore.line <= 0.0;
+        let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };
         let bare = detail.draped.over(bare);
         let Some(contours) = &self.contours else { return bare };
-        let strength = contours.strength(post.height_m, change_m) * (1.0 - water);
+        let strength = contours.strength(post.height_m, change.height_m) * (1.0 - shore.cover);
         bare.lerp(contours.color.linear(), strength * contours.color.alpha())
     }
 

@@ -39,7 +39,7 @@ pub(in crate::draw) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) ->
 }
 
 /// Value noise, -1..=1.
-fn noise(at: Vec2) -> f32 {
+pub(in crate::draw) fn noise(at: Vec2) -> f32 {
     let cell = at.floor();
     let part = at - cell;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);

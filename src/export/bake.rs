@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundDetail, GroundMap};
+use crate::draw::ground::{GroundChange, GroundDetail, GroundMap, GroundPost};
 use crate::draw::ground_cover::cover_noise;
 use crate::draw::pixels::Pixels;
 
@@ -51,14 +51,16 @@ pub fn bake(map: &GroundMap) -> BakedGround {
 }
 
 fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
-    let height_m = |offset: Vec2| map.sample(at + offset).height_m;
     let half = step / 2.0;
-    let east = height_m(Vec2::new(half.x, 0.0)) - height_m(Vec2::new(-half.x, 0.0));
-    let north = height_m(Vec2::new(0.0, half.y)) - height_m(Vec2::new(0.0, -half.y));
+    let [west, east, south, north] = [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)]
+        .map(|(x, y)| map.sample(at + Vec2::new(x, y) * half));
+    let change =
+        |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
+    let change = GroundChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
     let uneven = if map.cover.is_some() { cover_noise(at, step.max_element()) } else { 0.0 };
     let detail = GroundDetail { grain: 1.0, uneven, draped };
-    Srgba::from_linear(map.albedo(&map.sample(at), Vec2::new(east, north).length(), &detail))
+    Srgba::from_linear(map.albedo(&map.sample(at), change, &detail))
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::scene::vertical_scale::VerticalScale;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::light::TerrainLight;
 use crate::terrain::terraces::without_terraces;
+use crate::terrain::water_shore::WaterShore;
 
 /// What a scene's ground map depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,17 +55,16 @@ impl GroundMapCache {
 /// before, smoothed.
 fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
     let lattice = &scene.lattice;
-    let (light, (water, woods)) = rayon::join(
-        || TerrainLight::new(scene.ground().lattice(), to_sun),
-        || (&scene.water().is_water, undergrowth(scene)),
-    );
+    let beside_light =
+        || (&scene.water().is_water, WaterShore::new(lattice, scene.water()), undergrowth(scene));
+    let (light, (water, shore, woods)) =
+        rayon::join(|| TerrainLight::new(scene.ground().lattice(), to_sun), beside_light);
     let columns = lattice.columns() as usize;
     let is_water = |index: usize| water.get(index).copied().unwrap_or_default();
     let is_rounded = holds_whole_meters(&scene.heights.snapshot().source().samples);
     let smooth = is_rounded.then(|| without_terraces(lattice, 1.0, is_water));
     let shaded = smooth.as_ref().unwrap_or(lattice);
     let row = |row: usize| {
-        let first = row * columns;
         let heights = shaded.filled_row(row as u32, scene.height_range_m.0);
         let slopes = shaded.slopes_of_row(row as u32);
         let light = light.sun(row).into_iter().zip(light.sky(row));
@@ -79,10 +79,10 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
             },
         );
         let mut posts: Vec<GroundPost> = posts.collect();
-        for (post, &is_water) in posts.iter_mut().zip(water.get(first..).unwrap_or_default()) {
-            post.water = if is_water { 1.0 } else { 0.0 };
+        if let Some(shore) = &shore {
+            posts.iter_mut().zip(shore.row(row)).for_each(|(post, water)| post.water = water);
         }
-        for (post, share) in posts.iter_mut().zip(woods.get(first..).unwrap_or_default()) {
+        for (post, share) in posts.iter_mut().zip(woods.get(row * columns..).unwrap_or_default()) {
             post.water = if post.water > 0.0 { post.water } else { -share };
         }
         posts

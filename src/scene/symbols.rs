@@ -3,12 +3,15 @@
 //! A map draws a road as wide as its class needs to be told from the others, whatever its width on the ground. So does a
 //! picture: a line is drawn as wide as it is, or as its class's least width on the picture, whichever is more. Only
 //! pictures are; the ground, its heights, exports and reports have the true width.
+//!
+//! The least width of a river grows with its order, from nothing at its source.
 
 use glam::DVec2;
 
 use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::{Alignment, Support};
+use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::polyline::Polyline;
+use crate::geom::profile::Profile;
 use crate::ribbon::junction::Street;
 use crate::ribbon::texture::RibbonSurface;
 
@@ -17,6 +20,24 @@ const PAVED: [(f64, f64); 4] = [(9.0, 5.0), (6.5, 3.5), (4.0, 2.5), (0.0, 1.5)];
 
 /// Of rivers: a river that a map of a county shows as two banks, one that has a name, and a stream.
 const WATER: [(f64, f64); 3] = [(40.0, 3.0), (8.0, 2.0), (0.0, 1.2)];
+
+/// By how much its least width grows where a river's order rises by one, as a share of that of order 1.
+const ORDER_GROWTH: f64 = 0.35;
+
+/// The most that it grows: rivers of many tributaries would crowd the picture.
+const MOST_GROWTH: f64 = 2.0;
+
+/// How many widths of a river its source is long, on which it is drawn narrower than it is.
+const SOURCE_WIDTHS: f64 = 12.0;
+
+/// The power of the way from a source to the next confluence that a river's width grows with: half of it after an eighth.
+const SOURCE_POWER: f64 = 1.0 / 3.0;
+
+/// The width of the point of a source in meters: a ribbon needs one.
+const LEAST_SHOWN_M: f64 = 0.01;
+
+/// Vertices nearer than this to one another are one, in meters.
+const MERGE_M: f64 = 0.01;
 
 /// Of gravel roads.
 const GRAVEL_PX: f64 = 1.5;
@@ -41,6 +62,10 @@ pub struct LineSymbol {
     pub surface: RibbonSurface,
     /// The least width it is drawn with, in pixels of a picture 1080 lines high; a higher class has a greater one.
     pub least_px: f64,
+    /// Its order along its centerline, where it is a river; see [`orders`](crate::scene::water::order::orders).
+    pub order: Option<Profile>,
+    /// The width of the bank on either side in meters, where it is a river.
+    pub bank_m: f64,
     /// The feature it belongs to.
     pub feature: FeatureId,
 }
@@ -50,8 +75,70 @@ impl LineSymbol {
     pub fn of(street: &Street, feature: FeatureId) -> Option<Self> {
         let Street { alignment, width_m, surface, .. } = street;
         let least_px = least_px(*surface, *width_m);
-        let symbol = || Self { alignment: alignment.clone(), surface: *surface, least_px, feature };
+        let symbol = || Self {
+            alignment: alignment.clone(),
+            surface: *surface,
+            least_px,
+            order: None,
+            bank_m: 0.0,
+            feature,
+        };
         (alignment.support != Support::Tunnel).then(symbol)
+    }
+
+    /// The symbol of a river with banks of this width in meters and these orders along its centerline.
+    pub fn of_river(street: &Street, bank_m: f64, order: &Profile, feature: FeatureId) -> Self {
+        let Street { alignment, width_m, surface, .. } = street;
+        Self {
+            alignment: alignment.clone(),
+            surface: *surface,
+            least_px: least_px(*surface, *width_m),
+            order: Some(order.clone()),
+            bank_m,
+            feature,
+        }
+    }
+
+    /// By what its least width is multiplied at a station.
+    pub fn growth_at(&self, station_m: f64) -> f64 {
+        self.order.as_ref().map_or(1.0, |order| growth(order.at(station_m)))
+    }
+
+    /// The greatest least width along it, in pixels of a picture 1080 lines high.
+    pub fn widest_px(&self) -> f64 {
+        let orders = self.order.iter().flat_map(|order| order.values());
+        let most = orders.map(|&order| growth(order)).reduce(f64::max).unwrap_or(1.0);
+        self.least_px * most
+    }
+
+    /// The share of its true width that it shows at a station: less than 1 on the first stretch below a source.
+    pub fn shown_share(&self, station_m: f64) -> f64 {
+        if !self.has_source() {
+            return 1.0;
+        }
+        (station_m / self.source_m()).min(1.0)
+    }
+
+    fn source_m(&self) -> f64 {
+        SOURCE_WIDTHS * self.alignment.width.at(0.0)
+    }
+
+    /// Its centerline, `more_m` wider on either side than the width that it shows at its source and has elsewhere.
+    pub fn shown_alignment(&self, more_m: f64) -> Alignment {
+        let (line, source_m) = (&self.alignment.line, self.source_m());
+        let points = line.between(0.0, source_m).into_iter().chain(line.between(source_m, line.length()));
+        let line = Polyline::new(points, MERGE_M).unwrap_or_else(|| line.clone());
+        let shown_m = |&station: &f64| {
+            self.shown_share(station) * (self.alignment.width.at(station) + 2.0 * more_m) + LEAST_SHOWN_M
+        };
+        let widths = Profile::new(line.stations().to_vec(), line.stations().iter().map(shown_m).collect());
+        let width = widths.map_or_else(|| self.alignment.width.clone(), Width::Varying);
+        Alignment { line, width, ..self.alignment.clone() }
+    }
+
+    /// Whether it begins at a source, where it is drawn as a point.
+    pub fn has_source(&self) -> bool {
+        self.order.as_ref().is_some_and(|order| order.values()[0] <= 0.0)
     }
 
     /// The symbol of the shore along a closed outline, as wide on the ground as a strip of wet sand; `None` for an outline
@@ -59,8 +146,22 @@ impl LineSymbol {
     pub fn of_shore(outline: &[DVec2], feature: FeatureId) -> Option<Self> {
         let line = Polyline::new(outline.iter().chain(outline.first()).copied(), 0.0)?;
         let alignment = Alignment::on_ground(line, SHORE_M);
-        Some(Self { alignment, surface: RibbonSurface::ShoreLine, least_px: SHORE_PX, feature })
+        Some(Self {
+            alignment,
+            surface: RibbonSurface::ShoreLine,
+            least_px: SHORE_PX,
+            order: None,
+            bank_m: 0.0,
+            feature,
+        })
     }
+}
+
+/// What a river of an order, which is 0 at a source, is wider than one of order 1 in full. Below a source it soon has the
+/// better part of its width: a river that grew evenly over a hundred kilometers would be lost on half of them.
+fn growth(order: f64) -> f64 {
+    let above = (order - 1.0).max(0.0);
+    libm::pow(order.clamp(0.0, 1.0), SOURCE_POWER) * (1.0 + ORDER_GROWTH * above).min(MOST_GROWTH)
 }
 
 /// Pixels of a picture `height_px` high in one pixel of those that least widths are for.
@@ -107,6 +208,14 @@ mod tests {
         assert_eq!(least_px(RibbonSurface::Track, 12.0), 1.0);
         let rivers = [60.0, 12.0, 3.0].map(|width_m| least_px(RibbonSurface::River, width_m));
         assert_eq!(rivers, [3.0, 2.0, 1.2]);
+    }
+
+    #[test]
+    fn a_river_grows_from_a_point_with_its_order_and_not_without_bound() {
+        let widths: Vec<f64> = [0.0, 0.125, 1.0, 2.0, 3.0, 9.0].map(growth).to_vec();
+        assert_eq!((widths[0], widths[1], widths[2]), (0.0, 0.5, 1.0), "half of it after an eighth");
+        assert!(widths.windows(2).all(|pair| pair[0] < pair[1]), "{widths:?}");
+        assert_eq!(widths[5], MOST_GROWTH);
     }
 
     #[test]

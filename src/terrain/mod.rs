@@ -16,3 +16,4 @@ pub mod terraces;
 pub mod triangle_surface;
 pub mod volumes;
 pub mod water_cover;
+pub mod water_shore;

@@ -10,6 +10,8 @@
 //!
 //! Both are inferred from heights alone: a polder open to the border is taken for sea.
 
+use glam::DVec2;
+
 use crate::terrain::lattice::Lattice;
 
 /// The fewest posts of a lake or a sea: fewer happen to be level.
@@ -33,6 +35,25 @@ pub struct WaterCover {
     pub sea_posts: usize,
     /// Posts of each lake, in the order of their south-western posts.
     pub lakes: Vec<usize>,
+}
+
+impl WaterCover {
+    /// Whether the point at `world` of `lattice`, whose cover this is, lies under water: the shore runs where half of what
+    /// the posts around a point say is water.
+    pub fn is_under(&self, lattice: &Lattice, world: DVec2) -> bool {
+        let Some((cell, part)) = lattice.cell_at(world).filter(|_| !self.is_water.is_empty()) else {
+            return false;
+        };
+        let share = |column: u32, row: u32| {
+            let post = cell.offset(
+                column.min(lattice.columns() - 1 - cell.column),
+                row.min(lattice.rows() - 1 - cell.row),
+            );
+            f64::from(u8::from(self.is_water[lattice.index(post)]))
+        };
+        let [south, north] = [0, 1].map(|row| share(0, row) + (share(1, row) - share(0, row)) * part.x);
+        south + (north - south) * part.y > 0.5
+    }
 }
 
 /// The water of a lattice of elevations in meters, by the rules of this module. Time and memory are linear in the number of posts.
@@ -161,7 +182,6 @@ impl WaterSearch<'_> {
 mod tests {
     use super::*;
     use crate::terrain::lattice::Post;
-    use glam::DVec2;
 
     fn lattice(height: impl Fn(f32, f32) -> f32) -> Lattice {
         let heights = (0..60 * 50).map(|index| height((index % 60) as f32, (index / 60) as f32)).collect();
@@ -179,6 +199,11 @@ mod tests {
         assert!((290..330).contains(&cover.lakes[0]), "a disk of radius 10: {:?}", cover.lakes);
         assert_eq!(cover.is_water.iter().filter(|&&is_water| is_water).count(), cover.lakes[0]);
         assert!(cover.is_water[25 * 60 + 30] && !cover.is_water[25 * 60 + 45]);
+        let ground = lattice(bowl);
+        let shore = (0..600).find(|&x| !cover.is_under(&ground, DVec2::new(300.0 + f64::from(x), 250.0)));
+        assert_eq!(shore, Some(105), "between the tenth post, which is water, and the next");
+        assert!(!cover.is_under(&ground, DVec2::new(-9.0, 250.0)));
+        assert!(!WaterCover::default().is_under(&ground, DVec2::new(300.0, 250.0)));
     }
 
     #[test]

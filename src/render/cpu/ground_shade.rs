@@ -5,12 +5,13 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundDetail, GroundMap, GroundPost};
+use crate::draw::ground::{GroundChange, GroundDetail, GroundMap, GroundPost};
 use crate::draw::ground_cover::cover_noise;
 use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
+use crate::draw::water::ShorePixel;
 use crate::render::cpu::hit::FacePoint;
 use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
@@ -29,6 +30,8 @@ pub struct GroundPoint {
     pub post: GroundPost,
     /// The rise of `height_m` eastward and northward, meters per meter.
     gradient: Vec2,
+    /// The same of `water`, per meter.
+    water_gradient: Vec2,
     /// The picture over the map.
     pub draped: DrapedColor,
 }
@@ -86,12 +89,12 @@ impl<'a> GroundShader<'a> {
 
     /// The map's color at a point, in linear light: the ramp, water or the picture over them, with contours.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
-        let change = |step: Vec3| point.gradient.dot(step.truncate());
-        let change_m = Vec2::new(change(hit.right), change(hit.down)).length();
+        let change =
+            GroundChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
         let uneven =
-            if self.map.cover.is_some() { cover_noise(hit.world.truncate(), pixel_m(hit)) } else { 0.0 };
+            if self.map.cover.is_some() { cover_noise(hit.world.truncate(), hit.pixel_m()) } else { 0.0 };
         let detail = GroundDetail { grain: self.grain(point, hit), uneven, draped: point.draped };
-        self.map.albedo(&point.post, change_m, &detail)
+        self.map.albedo(&point.post, change, &detail)
     }
 
     /// The factor of the ground's grain on its color, and on that of natural cover on it.
@@ -100,7 +103,12 @@ impl<'a> GroundShader<'a> {
             return 1.0;
         }
         let rise = Vec2::new(point.post.slope_east, point.post.slope_north).length();
-        ground_grain(hit.world.truncate(), pixel_m(hit), rise)
+        ground_grain(hit.world.truncate(), hit.pixel_m(), rise)
+    }
+
+    /// The share of a pixel that is under water.
+    pub fn water_cover(&self, point: &GroundPoint, hit: &FacePoint) -> f32 {
+        ShorePixel::new(point.post.water, change(point.water_gradient, hit)).cover
     }
 
     /// Adds `weight` times the bilinear reading of a level at world position `at`.
@@ -126,6 +134,9 @@ impl<'a> GroundShader<'a> {
         let [sw, se, nw, ne] = corners.map(|post| post.height_m);
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
         sum.gradient += rise * self.posts_per_meter * (scale * weight);
+        let [sw, se, nw, ne] = corners.map(|post| post.water);
+        let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
+        sum.water_gradient += rise * self.posts_per_meter * (scale * weight);
     }
 }
 
@@ -140,9 +151,9 @@ fn draped(imagery: &GroundImagery, texture: &Texture<'_>, hit: &FacePoint, most_
     DrapedColor { color, share: alpha }
 }
 
-/// The longer side of a pixel in plan.
-fn pixel_m(hit: &FacePoint) -> f32 {
-    hit.right.truncate().length_squared().max(hit.down.truncate().length_squared()).sqrt()
+/// What changes by `gradient` per meter changes by this across a pixel.
+fn change(gradient: Vec2, hit: &FacePoint) -> f32 {
+    Vec2::new(gradient.dot(hit.right.truncate()), gradient.dot(hit.down.truncate())).length()
 }
 
 fn split(coordinate: f32, count: usize) -> (usize, f32) {

@@ -48,6 +48,13 @@ impl FacePoint {
     }
 }
 
+impl FacePoint {
+    /// How wide the pixel is in plan at the most, in meters.
+    pub fn pixel_m(&self) -> f32 {
+        self.right.truncate().length_squared().max(self.down.truncate().length_squared()).sqrt()
+    }
+}
+
 impl Barycentric {
     /// The weights at pixel position `at`, clamped to the triangle.
     pub fn new(face: &ScreenFace, at: [f32; 2]) -> Self {

@@ -9,7 +9,7 @@ use crate::draw::hatching::hatching_cover;
 use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::draw::water::WaterColor;
+use crate::draw::water::{WaterMirror, ripples};
 use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::ground_shade::GroundShader;
@@ -116,15 +116,17 @@ impl<'a> Shader<'a> {
             }
         };
         let water = match (material.albedo, &ground) {
-            (Albedo::GroundMap, Some((_, point))) => {
-                WaterColor::cover(point.post.water) * (1.0 - point.draped.share)
+            (Albedo::GroundMap, Some((ground, point))) => {
+                ground.water_cover(point, &hit) * (1.0 - point.draped.share)
             }
             _ => f32::from(u8::from(material.is_water)),
         };
         if water > 0.0 {
             let screen = self.screen;
             let ray = if screen.is_parallel { screen.forward.as_vec3() } else { screen.ray_at(at) };
-            color = lighting.mirror_sky(color, ray, water);
+            let ray = ray.normalize_or_zero();
+            let slope = ripples(hit.world.truncate(), hit.pixel_m(), ray);
+            color = lighting.mirror_sky(color, ray, WaterMirror { share: water, slope });
         }
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);

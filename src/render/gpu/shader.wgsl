@@ -22,6 +22,8 @@ struct Frame {
     sides: array<vec4f, 4>, // xyz toward a side light, its share
     bathymetry: array<vec4f, 9>, // rgb of water over a bed at a height, rising
     undergrowth: vec4f,   // rgb of ground under trees, and the most of it
+    shallow: vec4f,       // rgb of water along the shore, WaterColor::OFF_SHORE
+    open: vec4f,          // rgb of open water
     ground: vec4f,        // x and y of the south-west post, cell's width and height
     ground_size: vec4u,   // ramp stops, stops in a row of the ramp's texture, levels of the ground, level of the forms
     imagery: vec4f,       // x and y of the south-west corner of the draped picture, 1 / its width and height
@@ -158,6 +160,7 @@ struct Post {
     slope: vec2f,
     visibility: vec3f, // of the sun, of the sky; under water
     gradient: vec2f,   // rise of the height itself, meters per meter
+    water: vec2f,      // rise of the water, per meter
 }
 
 fn post_at(at: vec2u, level: u32) -> Post {
@@ -169,7 +172,7 @@ fn post_at(at: vec2u, level: u32) -> Post {
     }
     let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
     let visibility = shares / vec3f(4095.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
-    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0));
+    return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0), vec2f(0.0));
 }
 
 fn mix_post(a: Post, b: Post, t: f32) -> Post {
@@ -178,6 +181,7 @@ fn mix_post(a: Post, b: Post, t: f32) -> Post {
         a.slope + (b.slope - a.slope) * t,
         a.visibility + (b.visibility - a.visibility) * t,
         a.gradient + (b.gradient - a.gradient) * t,
+        a.water + (b.water - a.water) * t,
     );
 }
 
@@ -198,6 +202,9 @@ fn ground_on_level(at: vec2f, level: u32) -> Post {
     let east = mix(se.height - sw.height, ne.height - nw.height, part.y);
     let north = mix(nw.height - sw.height, ne.height - se.height, part.x);
     post.gradient = vec2f(east, north) / frame.ground.zw * scale;
+    let wet = vec4f(sw.visibility.z, se.visibility.z, nw.visibility.z, ne.visibility.z);
+    post.water = vec2f(mix(wet.y - wet.x, wet.w - wet.z, part.y), mix(wet.z - wet.x, wet.w - wet.y, part.x))
+        / frame.ground.zw * scale;
     return post;
 }
 
@@ -213,7 +220,7 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     let level = clamp(log2(max(longer / taps, 1e-6)), 0.0, most);
     let lower = u32(level);
     let part = level - f32(lower);
-    var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0));
+    var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0), vec2f(0.0));
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let here = at + axis * ((tap + 0.5) / taps - 0.5);
         var post = ground_on_level(here, lower);
@@ -224,6 +231,7 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
         sum.slope += post.slope / taps;
         sum.visibility += post.visibility / taps;
         sum.gradient += post.gradient / taps;
+        sum.water += post.water / taps;
     }
     return sum;
 }
@@ -535,12 +543,41 @@ fn sky_at(ray: vec3f) -> vec3f {
     return mix(frame.haze.rgb, frame.zenith.rgb, up * (2.0 - up) * (up * (1.0 + horizon) / (up + horizon)));
 }
 
+// WaterColor::tint.
+fn water_tint(height: f32, off_shore: f32) -> vec3f {
+    let own = water_at(height);
+    let near = clamp(off_shore / frame.shallow.w, 0.0, 1.0);
+    let far = clamp((off_shore - frame.shallow.w) / (1.0 - frame.shallow.w), 0.0, 1.0);
+    return mix(mix(frame.shallow.rgb, own, near), min(own, frame.open.rgb), far);
+}
+
+// The functions of src/draw/water.rs.
+fn ripple(at: vec2f, pixel_m: f32, low: f32, wave_m: f32, steepness: f32) -> vec2f {
+    let shown = low * clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+    if shown <= 0.0 {
+        return vec2f(0.0);
+    }
+    let place = at / wave_m;
+    return vec2f(grain_noise(place), grain_noise(place + vec2f(37.5, 17.25))) * (shown * steepness);
+}
+
+fn ripples(at: vec2f, pixel_m: f32, ray: vec3f) -> vec2f {
+    let low = clamp((1.0 + ray.z - 0.3) / 0.4, 0.0, 1.0);
+    return ripple(at, pixel_m, low, 1.9, 0.030) + ripple(at, pixel_m, low, 7.3, 0.035)
+        + ripple(at, pixel_m, low, 29.0, 0.030);
+}
+
 // Lighting::mirror_sky.
-fn mirror_sky(color: vec3f, toward: vec3f, water: f32) -> vec3f {
+fn mirror_sky(color: vec3f, toward: vec3f, water: f32, at: vec2f, pixel_m: f32) -> vec3f {
+    if water <= 0.0 {
+        return color;
+    }
     let ray = normalize(toward);
-    let grazing = 1.0 - clamp(-ray.z, 0.0, 1.0);
+    let normal = normalize(vec3f(-ripples(at, pixel_m, ray), 1.0));
+    let facing = -dot(ray, normal);
+    let grazing = 1.0 - clamp(facing, 0.0, 1.0);
     let share = 0.02 + 0.48 * (grazing * grazing * grazing * grazing * grazing);
-    return mix(color, sky_at(vec3f(ray.xy, -ray.z)), share * water);
+    return mix(color, sky_at(ray + normal * (2.0 * facing)), share * water);
 }
 
 fn facing_sun(normal: vec3f) -> f32 {
@@ -630,16 +667,19 @@ fn shade(in: Varying, front: bool) -> vec4f {
         if (flags & FROM_GROUND_ALBEDO) != 0u {
             let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
             let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
-            // WaterColor.
-            let water = clamp((post.visibility.z - 0.5) * 4.0 + 0.5, 0.0, 1.0);
-            let shore = 1.0 - 0.4 * 4.0 * water * (1.0 - water);
+            // ShorePixel and WaterColor.
+            let change = length(vec2f(dot(post.water, right), dot(post.water, down)));
+            let away = (post.visibility.z - 0.5) / max(change, 1e-4);
+            let water = clamp(away + 0.5, 0.0, 1.0);
+            let shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
+            let tint = water_tint(post.height, clamp((post.visibility.z - 0.75) * 4.0, 0.0, 1.0));
             var land = ramp_at(post.height);
             if frame.cover.z > 0.0 {
                 land = with_cover(land, post, cover_noise(in.world.xy, pixel));
             }
             land = mix(land, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
             land *= grain;
-            let bare = mix(land, water_at(post.height), water) * shore;
+            let bare = mix(land, tint, water) * shore;
             let draped = draped_at(in.world.xy, right, down);
             let covered = mix(bare, draped.rgb, draped.a);
             color = vec4f(mix(covered, frame.contour.rgb, cover * (1.0 - water)), 1.0);
@@ -664,7 +704,7 @@ fn shade(in: Varying, front: bool) -> vec4f {
     if (flags & HATCHING) != 0u {
         light = color.rgb;
     }
-    light = mirror_sky(light, from_eye(in.world), water_share);
+    light = mirror_sky(light, from_eye(in.world), water_share, in.world.xy, max(length(right), length(down)));
     let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
     return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
 }

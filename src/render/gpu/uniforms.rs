@@ -10,6 +10,7 @@ use crate::draw::lighting::ReliefShading;
 use crate::draw::list::{DrawItem, DrawList};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::undergrowth::Undergrowth;
+use crate::draw::water::WaterColor;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
@@ -48,6 +49,8 @@ pub struct FrameUniforms {
     sides: [[f32; 4]; 4],
     bathymetry: [[f32; 4]; STOP_COUNT],
     undergrowth: [f32; 4],
+    shallow: [f32; 4],
+    open: [f32; 4],
     ground: [f32; 4],
     ground_size: [u32; 4],
     imagery: [f32; 4],
@@ -118,6 +121,8 @@ impl FrameUniforms {
                 with(color, height_m)
             }),
             undergrowth: with(Undergrowth::COLOR.linear(), Undergrowth::MOST),
+            shallow: with(WaterColor::SHALLOW.linear(), WaterColor::OFF_SHORE),
+            open: with(WaterColor::OPEN.linear(), 1.0),
             shadows: ShadowView::both(shadows),
             ..Self::ground(list)
         }

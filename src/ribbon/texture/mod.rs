@@ -131,6 +131,17 @@ pub fn texture(surface: RibbonSurface) -> Pixels {
     })
 }
 
+/// What is painted on `surface`, on nothing: over the texture of [`RibbonSurface::unmarked`] it makes that of the surface.
+/// `None` where nothing is.
+pub fn markings(surface: RibbonSurface) -> Option<Pixels> {
+    let plain = (surface != surface.unmarked()).then(|| texture(surface.unmarked()))?;
+    let marked = texture(surface);
+    Some(Pixels::from_fn(SIZE, SIZE, |x, y| {
+        let texel = marked.at(x, y);
+        if texel == plain.at(x, y) { Srgba([texel.0[0], texel.0[1], texel.0[2], 0]) } else { texel }
+    }))
+}
+
 /// Meters along a ribbon of `width_m` in one repeat of its texture.
 ///
 /// A line of a road is a twentieth of the road's width, and a dash with its gap two and a half widths: what is painted
@@ -178,6 +189,20 @@ mod tests {
                 [(edge, in_gap), (center, in_dash), (center, in_gap)].map(|(x, y)| light(surface, x, y));
             assert_eq!(found, expected, "{surface:?}");
         }
+    }
+
+    #[test]
+    fn markings_over_a_plain_road_make_the_marked_one() {
+        for surface in [RibbonSurface::Asphalt, RibbonSurface::AsphaltSolid, RibbonSurface::AsphaltEdges] {
+            let (whole, plain) = (texture(surface), texture(surface.unmarked()));
+            let painted = markings(surface).expect("a marked road");
+            for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
+                let over = painted.at(x, y);
+                let shown = if over.0[3] == 255 { over } else { plain.at(x, y) };
+                assert_eq!(shown, whole.at(x, y), "{surface:?} {x} {y}");
+            }
+        }
+        assert!(markings(RibbonSurface::Gravel).is_none());
     }
 
     #[test]

@@ -11,11 +11,19 @@ use rayon::prelude::*;
 use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::material::{AlphaMode, Material, NormalSource};
+use crate::draw::pixels::Pixels;
 use crate::ribbon::drape::drape;
-use crate::ribbon::texture::{RibbonSurface, texture};
+use crate::ribbon::partition;
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use crate::ribbon::texture::{RibbonSurface, markings, texture};
 use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::Viewer;
+use crate::scene::picture::lake_tint::large_lakes;
+use crate::scene::picture::line_scale::LineScale;
+use crate::scene::picture::markings::faded;
 use crate::scene::picture::symbols::{DrapedSymbol, RibbonShow, Symbols, symbols};
+use crate::scene::symbols::LineSymbol;
 use crate::scene::{Ribbon, SceneModel};
 use crate::terrain::triangle_surface::TriangleSurface;
 
@@ -41,16 +49,36 @@ pub(super) fn add(
         Viewer::Anyone => Symbols::default(),
         Viewer::Camera(camera) => symbols(scene, camera, displayed),
     };
-    let show = |ribbon: &Ribbon| shows.get(&ribbon.feature).copied().unwrap_or(RibbonShow::Full);
-    let meshes: Vec<DrawMesh> = scene
+    let scale = match viewer {
+        Viewer::Anyone => None,
+        Viewer::Camera(camera) => Some(LineScale::new(camera)),
+    };
+    let sources: BTreeMap<FeatureId, &LineSymbol> = scene
+        .symbols
+        .iter()
+        .filter(|symbol| symbol.has_source())
+        .map(|symbol| (symbol.feature, symbol))
+        .collect();
+    let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
+    let meshes: Vec<DrapedRibbon> = scene
         .ribbons
         .par_iter()
         .map(|ribbon| {
-            let mut mesh = DrawMesh::default();
-            if show(ribbon) != RibbonShow::Replaced {
-                drape(&ribbon.plan, displayed, &mut mesh);
+            let mut draped = DrapedRibbon::default();
+            if shows.get(&ribbon.feature) != Some(&RibbonShow::Replaced) {
+                let source = sources.get(&ribbon.feature).filter(|_| scale.is_some());
+                let tapered = source.and_then(|symbol| tapered(ribbon, symbol));
+                drape(tapered.as_ref().unwrap_or(&ribbon.plan), displayed, &mut draped.ribbon);
+                let scale = scale.as_ref().filter(|_| ribbon.surface != ribbon.surface.unmarked());
+                draped.markings = scale.map(|scale| faded(&draped.ribbon, scale));
+                let lake = lakes.get(&ribbon.feature).filter(|_| ribbon.surface == RibbonSurface::Lake);
+                draped.tint = lake.map(|lake| {
+                    let tint = lake.tint();
+                    tint.lay_over(&mut draped.ribbon);
+                    tint.pixels
+                });
             }
-            mesh
+            draped
         })
         .collect();
     let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
@@ -63,15 +91,22 @@ pub(super) fn add(
     }
     let mut ribbons = Ribbons { list, materials: BTreeMap::new() };
     let mut order: Vec<_> =
-        scene.ribbons.iter().zip(meshes).filter(|(_, mesh)| !mesh.triangles.is_empty()).collect();
+        scene.ribbons.iter().zip(meshes).filter(|(_, draped)| !draped.ribbon.triangles.is_empty()).collect();
     order.sort_by_key(|(ribbon, _)| ribbon.layer);
     let mut order = order.into_iter().peekable();
     let mut add_up_to = |ribbons: &mut Ribbons<'_>, layer: u8| {
-        while let Some((ribbon, mesh)) = order.next_if(|(ribbon, _)| ribbon.layer <= layer) {
-            let surface =
-                if show(ribbon) == RibbonShow::Plain { ribbon.surface.unmarked() } else { ribbon.surface };
-            let material = ribbons.material(RibbonLook::Textured(surface, ribbon.tint.0));
-            add_mesh(ribbons.list, mesh, material, DepthLayer::Draped(ribbon.layer), ribbon.feature);
+        while let Some((ribbon, draped)) = order.next_if(|(ribbon, _)| ribbon.layer <= layer) {
+            let layer = DepthLayer::Draped(ribbon.layer);
+            if let Some(pixels) = draped.tint {
+                let material = lake_material(ribbons.list, pixels);
+                let material = ribbons.list.add_material(material);
+                add_mesh(ribbons.list, draped.ribbon, material, layer, ribbon.feature);
+                continue;
+            }
+            let surface = if draped.markings.is_some() { ribbon.surface.unmarked() } else { ribbon.surface };
+            ribbons.add(draped.ribbon, RibbonLook::Textured(surface, ribbon.tint.0), layer, ribbon.feature);
+            let markings = draped.markings.unwrap_or_default();
+            ribbons.add(markings, RibbonLook::Markings(ribbon.surface), layer, ribbon.feature);
         }
     };
     // Mouths of rivers lie over shores.
@@ -80,6 +115,28 @@ pub(super) fn add(
         ribbons.add_symbols(symbols, DepthLayer::Draped(layer));
     }
     add_up_to(&mut ribbons, u8::MAX);
+}
+
+/// A ribbon on the displayed ground.
+#[derive(Default)]
+struct DrapedRibbon {
+    ribbon: DrawMesh,
+    /// What is painted on it, where that is a surface of its own.
+    markings: Option<DrawMesh>,
+    /// The texture that spans it, where that is its own.
+    tint: Option<Pixels>,
+}
+
+/// A river's ribbon or banks without what its source is drawn narrower; `None` where that is nothing of it.
+fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
+    let more_m = match ribbon.surface {
+        RibbonSurface::River => 0.0,
+        RibbonSurface::Bank => symbol.bank_m,
+        _ => return None,
+    };
+    let mut shown = PlanMesh::default();
+    stroke(&StrokePath::alone(&symbol.shown_alignment(more_m)), &StrokeOptions::default(), &mut shown);
+    Some(partition::within(&ribbon.plan, &shown))
 }
 
 /// The share of a surface's light that the fill of its symbol has.
@@ -91,6 +148,7 @@ fn fill_light(surface: RibbonSurface) -> f32 {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum RibbonLook {
     Textured(RibbonSurface, [u8; 4]),
+    Markings(RibbonSurface),
     Fill(RibbonSurface),
     Casing(RibbonSurface),
 }
@@ -125,6 +183,7 @@ impl Ribbons<'_> {
         *self.materials.entry(look).or_insert_with(|| {
             let material = match look {
                 RibbonLook::Textured(surface, tint) => draped_material(list, surface, Srgba(tint)),
+                RibbonLook::Markings(surface) => marking_material(list, surface),
                 RibbonLook::Fill(surface) => flat_material("line", surface, fill_light(surface)),
                 RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
             };
@@ -143,6 +202,26 @@ fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> 
         normals: NormalSource::Ground,
         is_water: surface.is_water(),
         is_natural: surface.is_natural(),
+        ..Material::default()
+    }
+}
+
+fn lake_material(list: &mut DrawList, pixels: Pixels) -> Material {
+    Material {
+        name: "lake".to_owned(),
+        texture: Some(list.add_texture(pixels)),
+        normals: NormalSource::Ground,
+        is_water: true,
+        ..Material::default()
+    }
+}
+
+fn marking_material(list: &mut DrawList, surface: RibbonSurface) -> Material {
+    Material {
+        name: format!("markings of {surface:?}").to_lowercase(),
+        texture: markings(surface).map(|pixels| list.add_texture(pixels)),
+        alpha: AlphaMode::Blend,
+        normals: NormalSource::Ground,
         ..Material::default()
     }
 }

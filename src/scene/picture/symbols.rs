@@ -21,15 +21,18 @@ use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
 use crate::geom::segment;
 use crate::geom::simplify::simplified;
+use crate::geom::spline;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::drape;
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::SceneModel;
-use crate::scene::symbols::{LineSymbol, drawn_width_m, px_scale};
+use crate::scene::picture::line_scale::LineScale;
+use crate::scene::symbols::{LineSymbol, drawn_width_m};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::water_cover::WaterCover;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -48,13 +51,6 @@ const MARGIN_PX: f64 = 12.0;
 /// The longest leg, as a share of its distance from the eye: perspective changes widths along it by as much.
 const LONGEST_LEG: f64 = 0.1;
 
-/// The most that a width grows because ground is seen at a low angle. Ground is seldom level where it is seen lower than
-/// at twenty degrees.
-const MOST_FORESHORTENING: f64 = 3.0;
-
-/// Markings narrower than this road, in pixels of a picture 1080 lines high, are lost, and gray its pavement.
-const MARKED_PX: f64 = 6.0;
-
 /// A dash of a track and the gap after it, in pixels of a picture 1080 lines high.
 const DASH_PX: [f64; 2] = [7.0, 4.0];
 
@@ -66,6 +62,25 @@ const SHORTEST_LEG: f64 = 8.0;
 
 /// How much wider a casing is than its fill at most, in what the fill is wider than the line.
 const CASING_RISE: f64 = 2.0;
+
+/// Legs of a river longer than this are smoothed, in pixels: shorter ones are as fine as the picture.
+const COARSE_PX: f64 = 8.0;
+
+/// The length of the pieces that a smoothed leg is drawn in, in pixels: they turn by a few degrees each.
+const SMOOTH_PX: f64 = 4.0;
+
+/// The most of them: a leg that crosses half of the picture is as coarse as its neighbors.
+const MOST_PIECES: f64 = 12.0;
+
+/// The narrowest that a line is, in pixels: about a tenth of a pixel's light.
+const NARROWEST_PX: f64 = 0.15;
+
+/// The casing of a river is nothing where that is narrower than the first of these, in pixels of a picture 1080 lines high,
+/// and whole where it is as wide as the second.
+const CASED_RIVER_PX: [f64; 2] = [1.4, 2.2];
+
+/// How often the leg on which a river reaches the sea is halved: to a thousandth of it.
+const SHORE_STEPS: u32 = 10;
 
 /// A symbol, draped.
 pub(super) struct DrapedSymbol<'a> {
@@ -82,10 +97,8 @@ pub(super) struct DrapedSymbol<'a> {
 pub(super) enum RibbonShow {
     /// Symbols take the place of all that is in view.
     Replaced,
-    /// Too narrow for markings.
-    Plain,
-    /// As it is.
-    Full,
+    /// In its true width.
+    Shown,
 }
 
 /// The symbols of a picture.
@@ -104,7 +117,15 @@ pub(super) fn symbols<'a>(
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
     let view = SymbolView::new(scene, camera);
-    let seen: Vec<_> = scene.symbols.par_iter().map(|symbol| (symbol, view.seen(symbol))).collect();
+    let seen = |symbol: &'a LineSymbol| {
+        let seen = view.seen(symbol, Smoothing::None);
+        // Beside a ribbon in its true width a line keeps to the centerline that both have.
+        if symbol.surface == RibbonSurface::River && seen.show == Some(RibbonShow::Replaced) {
+            return view.seen(symbol, Smoothing::Curves);
+        }
+        seen
+    };
+    let seen: Vec<_> = scene.symbols.par_iter().map(|symbol| (symbol, seen(symbol))).collect();
     let mut shows = BTreeMap::new();
     // A shore lies beside its lake and does not take its place.
     let in_place = seen.iter().filter(|(symbol, _)| symbol.surface != RibbonSurface::ShoreLine);
@@ -123,14 +144,17 @@ pub(super) fn symbols<'a>(
         } else {
             seen.runs
         };
-        let strokes = |width: fn(&SymbolVertex) -> f64| {
+        let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
-            runs.iter().for_each(|run| stroke_run(run, width, &mut plan));
+            runs.iter().for_each(|run| stroke_run(run, part, &mut plan));
             mesh(&plan)
         };
-        let is_cased = symbol.least_px >= LEAST_CASED_PX;
-        let casing = if is_cased { strokes(|vertex| vertex.casing_m) } else { DrawMesh::default() };
-        DrapedSymbol { symbol, casing, fill: strokes(|vertex| vertex.drawn_m) }
+        let casing = if symbol.widest_px() >= LEAST_CASED_PX {
+            strokes(SymbolPart::Casing)
+        } else {
+            DrawMesh::default()
+        };
+        DrapedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) }
     };
     let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
     Symbols { draped: narrow.map(draped).collect(), shows }
@@ -144,6 +168,8 @@ struct SymbolVertex {
     drawn_m: f64,
     casing_m: f64,
     show: RibbonShow,
+    /// Whether it is where a river reaches the sea or a lake of the elevation model.
+    is_mouth: bool,
 }
 
 impl SymbolVertex {
@@ -156,8 +182,23 @@ impl SymbolVertex {
             drawn_m: blend(self.drawn_m, to.drawn_m),
             casing_m: blend(self.casing_m, to.casing_m),
             show: self.show,
+            is_mouth: false,
         }
     }
+}
+
+/// A part of a symbol.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SymbolPart {
+    Casing,
+    Fill,
+}
+
+/// Whether a line that is coarser than the picture is made a curve.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Smoothing {
+    None,
+    Curves,
 }
 
 /// What a camera sees of a line.
@@ -191,7 +232,9 @@ struct SymbolView<'a> {
     extent: Rect,
     /// The lowest and the highest ground.
     z: [f32; 2],
-    px: f64,
+    scale: LineScale<'a>,
+    /// The water that the elevations show, on the lattice.
+    water: &'a WaterCover,
 }
 
 impl<'a> SymbolView<'a> {
@@ -204,18 +247,21 @@ impl<'a> SymbolView<'a> {
             ground: FullResolution { lattice },
             extent: lattice.extent(),
             z: [min.z, max.z],
-            px: px_scale(camera.size().1),
+            scale: LineScale::new(camera),
+            water: scene.water(),
         }
     }
 
-    fn seen(&self, symbol: &LineSymbol) -> SeenLine {
+    fn seen(&self, symbol: &LineSymbol, smoothing: Smoothing) -> SeenLine {
         let mut seen = SeenLine::default();
         let mut end = None;
-        for leg in self.points(&symbol.alignment.line).windows(2) {
+        for leg in self.points(&symbol.alignment.line, smoothing).windows(2) {
             self.divide([leg[0], leg[1]], symbol, &mut |part| {
-                let part = part.map(|point| self.vertex(symbol, &point));
+                let Some((part, mouths)) = self.ashore(part, symbol) else { return };
+                let mut part = part.map(|point| self.vertex(symbol, &point));
+                part.iter_mut().zip(mouths).for_each(|(vertex, is_mouth)| vertex.is_mouth = is_mouth);
                 seen.show = seen.show.max(part.iter().map(|vertex| vertex.show).max());
-                if part.iter().any(|vertex| vertex.drawn_m > vertex.true_m) {
+                if part.iter().any(|vertex| vertex.show == RibbonShow::Replaced) {
                     match seen.runs.last_mut().filter(|_| end == Some(part[0].at)) {
                         Some(run) => run.push(part[1]),
                         None => seen.runs.push(part.to_vec()),
@@ -231,7 +277,7 @@ impl<'a> SymbolView<'a> {
     fn divide(&self, leg: [LinePoint; 2], symbol: &LineSymbol, visit: &mut impl FnMut([LinePoint; 2])) {
         let [from, to] = leg;
         let nearest_m = self.nearest_m(leg);
-        let margin_m = MARGIN_PX * self.px * self.meters_per_px_at(nearest_m);
+        let margin_m = MARGIN_PX * self.scale.px * self.scale.meters_per_px_at(nearest_m);
         let reach = Rect::around([from.at.truncate(), to.at.truncate()]).grown(margin_m);
         let [low, high] = self.z;
         let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
@@ -250,6 +296,25 @@ impl<'a> SymbolView<'a> {
         }
     }
 
+    /// The part of a river's leg that is not under water of the elevation model, and which of its ends are mouths; `None`
+    /// where all of it is under water, which shows it as what it is.
+    fn ashore(&self, leg: [LinePoint; 2], symbol: &LineSymbol) -> Option<([LinePoint; 2], [bool; 2])> {
+        if symbol.surface != RibbonSurface::River || self.water.is_water.is_empty() {
+            return Some((leg, [false; 2]));
+        }
+        let is_under = |point: &LinePoint| self.water.is_under(self.ground.lattice, point.at.truncate());
+        let are_under = [is_under(&leg[0]), is_under(&leg[1])];
+        if are_under[0] == are_under[1] {
+            return (!are_under[0]).then_some((leg, [false; 2]));
+        }
+        let (mut dry, mut wet) = if are_under[0] { (leg[1], leg[0]) } else { (leg[0], leg[1]) };
+        for _ in 0..SHORE_STEPS {
+            let middle = dry.middle(&wet, dry.along);
+            *if is_under(&middle) { &mut wet } else { &mut dry } = middle;
+        }
+        Some(if are_under[0] { ([dry, leg[1]], [true, false]) } else { ([leg[0], dry], [false, true]) })
+    }
+
     /// How near a leg comes to the eye; infinite for parallel rays, which show it as wide at any distance.
     fn nearest_m(&self, [from, to]: [LinePoint; 2]) -> f64 {
         if self.camera.parallel_frame().is_some() {
@@ -261,42 +326,17 @@ impl<'a> SymbolView<'a> {
     }
 
     fn vertex(&self, symbol: &LineSymbol, point: &LinePoint) -> SymbolVertex {
-        let meters_per_px = self.px * self.meters_per_px(point);
+        let meters_per_px = self.scale.px * self.scale.meters_per_px(point.at, point.along);
         let true_m = symbol.alignment.width.at(point.station_m);
-        let drawn_m = drawn_width_m(true_m, symbol.least_px, meters_per_px);
+        let growth = symbol.growth_at(point.station_m);
+        let whole_m = drawn_width_m(true_m, symbol.least_px * growth.max(1.0), meters_per_px);
+        let show = if whole_m > true_m { RibbonShow::Replaced } else { RibbonShow::Shown };
+        let shown_m = true_m * symbol.shown_share(point.station_m);
+        let drawn_m = (whole_m * growth.min(1.0)).max(shown_m).max(NARROWEST_PX * meters_per_px);
         // Where a symbol begins beside the ribbon that is wide enough, its casing begins with nothing.
-        let casing_m = (2.0 * CASING_PX * meters_per_px).min(CASING_RISE * (drawn_m - true_m));
-        let show = if drawn_m > true_m {
-            RibbonShow::Replaced
-        } else if true_m < MARKED_PX * meters_per_px {
-            RibbonShow::Plain
-        } else {
-            RibbonShow::Full
-        };
-        SymbolVertex { at: point.at.truncate(), true_m, drawn_m, casing_m: drawn_m + casing_m, show }
-    }
-
-    /// Meters of level ground, across a line, in a pixel across the line on the picture.
-    fn meters_per_px(&self, point: &LinePoint) -> f64 {
-        let [right, up, forward] =
-            [self.camera.right(), self.camera.up(), self.camera.forward()].map(|axis| axis.as_dvec3());
-        let offset = point.at - self.camera.eye().as_dvec3();
-        let depth_m = offset.dot(forward).max(f64::from(self.camera.planes().0));
-        let on_picture = |way: DVec2| {
-            let way = way.extend(0.0);
-            if self.camera.parallel_frame().is_some() {
-                return DVec2::new(way.dot(right), way.dot(up) * f64::from(self.camera.stretch()));
-            }
-            let away = way.dot(forward) / depth_m;
-            DVec2::new(way.dot(right) - offset.dot(right) * away, way.dot(up) - offset.dot(up) * away)
-        };
-        let [along, across] = [point.along, point.along.perp()].map(on_picture);
-        let foreshortened = across.perp_dot(along.normalize_or_zero()).abs();
-        self.meters_per_px_at(depth_m) / foreshortened.max(1.0 / MOST_FORESHORTENING)
-    }
-
-    fn meters_per_px_at(&self, depth_m: f64) -> f64 {
-        1.0 / f64::from(self.camera.pixels_per_meter((depth_m as f32).max(self.camera.planes().0)))
+        let casing_m = (2.0 * CASING_PX * meters_per_px).min(CASING_RISE * (whole_m - true_m));
+        let casing_m = drawn_m + casing_m * cased_share(symbol, growth);
+        SymbolVertex { at: point.at.truncate(), true_m, drawn_m, casing_m, show, is_mouth: false }
     }
 
     fn z_at(&self, at: DVec3) -> f64 {
@@ -304,20 +344,23 @@ impl<'a> SymbolView<'a> {
     }
 
     /// The vertices of a line without those that cannot be told from a straight line.
-    fn points(&self, line: &Polyline) -> Vec<LinePoint> {
+    fn points(&self, line: &Polyline, smoothing: Smoothing) -> Vec<LinePoint> {
         let z = f64::from(self.z[0]);
         let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
-        let points: Vec<DVec3> = line.points().iter().map(on_ground).collect();
+        let (flat, stations) = match smoothing {
+            Smoothing::None => (line.points().to_vec(), line.stations().to_vec()),
+            Smoothing::Curves => self.curve(line),
+        };
+        let points: Vec<DVec3> = flat.iter().map(on_ground).collect();
         let eye = self.camera.eye().as_dvec3();
-        let slack_m = |at: &DVec3| SLACK_PX * self.meters_per_px_at(at.distance(eye));
+        let slack_m = |at: &DVec3| SLACK_PX * self.scale.meters_per_px_at(at.distance(eye));
         let slacks_m: Vec<f64> = points.iter().map(slack_m).collect();
-        let flat = line.points();
         let off = |from: usize, to: usize, index: usize| {
             segment::distance_squared((flat[from], flat[to]), flat[index]).sqrt() / slacks_m[index]
         };
         let kept = simplified(flat.len(), 1.0, off);
         let direction = |from: usize, to: usize| {
-            let way = |place: usize| line.points()[kept[place]];
+            let way = |place: usize| flat[kept[place]];
             (way(to) - way(from)).normalize_or_zero()
         };
         let last = kept.len() - 1;
@@ -328,10 +371,42 @@ impl<'a> SymbolView<'a> {
         };
         let point = |(place, &index): (usize, &usize)| LinePoint {
             at: points[index],
-            station_m: line.stations()[index],
+            station_m: stations[index],
             along: along(place),
         };
         kept.iter().enumerate().map(point).collect()
+    }
+
+    /// A line with curves for the legs that are coarse on the picture, and the stations of its vertices on the line itself.
+    fn curve(&self, line: &Polyline) -> (Vec<DVec2>, Vec<f64>) {
+        let (points, stations) = (line.points(), line.stations());
+        let eye = self.camera.eye().as_dvec3();
+        let (mut flat, mut along) = (vec![points[0]], vec![stations[0]]);
+        for leg in 0..points.len() - 1 {
+            let (from_m, length_m) = (stations[leg], stations[leg + 1] - stations[leg]);
+            // No place of the leg is nearer than its middle less half of it.
+            let middle = points[leg].midpoint(points[leg + 1]);
+            let middle = middle.extend(self.z_at(middle.extend(f64::from(self.z[0]))));
+            let depth_m = (middle.distance(eye) - length_m / 2.0).max(length_m);
+            let length_px = length_m / self.scale.meters_per_px_at(depth_m);
+            if length_px > COARSE_PX {
+                let count = (length_px / SMOOTH_PX).ceil().min(MOST_PIECES);
+                flat.extend(spline::along_leg(points, leg, count as u32));
+                along.extend((1..count as u32).map(|step| from_m + length_m * f64::from(step) / count));
+            }
+            flat.push(points[leg + 1]);
+            along.push(stations[leg + 1]);
+        }
+        (flat, along)
+    }
+}
+
+/// The share of its casing that a line has whose least width has grown so.
+fn cased_share(symbol: &LineSymbol, growth: f64) -> f64 {
+    let [none, all] = CASED_RIVER_PX;
+    match symbol.order {
+        Some(_) => ((symbol.least_px * growth - none) / (all - none)).clamp(0.0, 1.0),
+        None => 1.0,
     }
 }
 
@@ -368,15 +443,22 @@ fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
     dashes
 }
 
-/// Strokes a run of vertices, its ends round.
-fn stroke_run(run: &[SymbolVertex], width: fn(&SymbolVertex) -> f64, plan: &mut PlanMesh) {
+/// Strokes a part of a run of vertices, its ends round; the casing of a mouth is open toward the water.
+fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
+    let width = |vertex: &SymbolVertex| match part {
+        SymbolPart::Casing => vertex.casing_m,
+        SymbolPart::Fill => vertex.drawn_m,
+    };
     let Some(widths) = Profile::new(line.stations().to_vec(), run.iter().map(width).collect()) else {
         return;
     };
     let points = line.points();
     let last = points.len() - 1;
     for [end, inner] in [[0, 1], [last, last - 1]] {
+        if part == SymbolPart::Casing && run[end].is_mouth {
+            continue;
+        }
         let outward = (points[end] - points[inner]).normalize_or_zero();
         cap(points[end], outward * widths.values()[end] / 2.0, plan);
     }
@@ -407,7 +489,14 @@ mod tests {
             let x = f64::from(step) * 10.0;
             let drawn_m = 1.0 + x / 500.0;
             let at = DVec2::new(x, 0.0);
-            SymbolVertex { at, true_m: 0.5, drawn_m, casing_m: drawn_m, show: RibbonShow::Replaced }
+            SymbolVertex {
+                at,
+                true_m: 0.5,
+                drawn_m,
+                casing_m: drawn_m,
+                show: RibbonShow::Replaced,
+                is_mouth: false,
+            }
         };
         let run: Vec<SymbolVertex> = (0..=100).map(vertex).collect();
         let dashes = dashes(&run, 1.0);

@@ -4,4 +4,5 @@
 
 pub mod lakes;
 pub mod network;
+pub mod order;
 pub mod rivers;

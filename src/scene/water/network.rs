@@ -1,4 +1,6 @@
-//! The document's rivers as one network: which way each flows, how wide it is, what it meets.
+//! The document's rivers as one network: which way each flows, how wide it is, of what order, what it meets.
+
+use glam::DVec2;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -7,8 +9,11 @@ use crate::description::words::Water;
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::earthworks::channel::flow::{self, Flow};
+use crate::geom::convex;
 use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
+use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::ribbon::junction::Street;
 use crate::ribbon::stroke::StrokeOptions;
 use crate::ribbon::texture::RibbonSurface;
@@ -17,6 +22,7 @@ use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
 use crate::scene::sources::Sources;
+use crate::scene::water::order::{self, RiverSurroundings};
 use crate::terrain::lattice::Lattice;
 
 /// How far from the ground a centerline may run whose water still reaches it, in meters.
@@ -36,6 +42,8 @@ pub struct Stream {
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
+    /// Its order along its centerline; see [`order`].
+    pub order: Profile,
 }
 
 /// The document's rivers that come near the ground, in the order of its tables.
@@ -66,15 +74,48 @@ pub fn collect(
         Flow::AsDrawn => (river, attributes, line, widths),
         Flow::Against => (river, attributes, line.reversed(), widths.map(|widths| widths.reversed())),
     });
-    let stream = |(river, attributes, line, widths)| stream(river, &attributes, line, widths, collected);
-    Ok(directed.map(stream).collect())
+    let directed: Vec<_> = directed.collect();
+    let lines: Vec<&Polyline> = directed.iter().map(|(_, _, line, _)| line).collect();
+    let orders = orders(&lines, lattice, collected);
+    let stream = |((river, attributes, line, widths), order)| {
+        stream(river, &attributes, DirectedLine { line, widths, order }, collected)
+    };
+    Ok(directed.into_iter().zip(orders).map(stream).collect())
+}
+
+/// How far from the border of the ground a source lies at least, in cells: nearer to it, a line is cut off rather than
+/// begins.
+const SOURCE_CELLS: f64 = 3.0;
+
+/// The orders of lines drawn downstream among the lakes laid so far.
+fn orders(lines: &[&Polyline], lattice: &Lattice, collected: &SceneBuilder) -> Vec<Profile> {
+    let lakes = collected.ribbons.iter().enumerate();
+    let lakes = lakes.filter(|(_, ribbon)| ribbon.surface == RibbonSurface::Lake);
+    let of_lakes = lakes.flat_map(|(lake, ribbon)| ribbon.plan.corners().map(move |corners| (lake, corners)));
+    let triangles: Vec<(usize, [DVec2; 3])> =
+        of_lakes.map(|(lake, corners)| (lake, corners.map(|corner| corner.at))).collect();
+    let rects: Vec<Rect> = triangles.iter().map(|(_, corners)| Rect::around(*corners)).collect();
+    let tree = RectTree::new(&rects);
+    let lake_at = |at: DVec2| {
+        let mut found = tree.meeting(&Rect::around([at])).map(|index| &triangles[index]);
+        found.find(|(_, corners)| convex::touches(corners, at)).map(|(lake, _)| *lake)
+    };
+    let inner = lattice.extent().grown(-SOURCE_CELLS * lattice.cell().max_element());
+    let may_rise_at = |at: DVec2| inner.contains(at);
+    order::orders(lines, &RiverSurroundings { lake_at: &lake_at, may_rise_at: &may_rise_at })
+}
+
+/// A river's centerline, downstream, and what is known along it.
+struct DirectedLine {
+    line: Polyline,
+    widths: Option<Profile>,
+    order: Profile,
 }
 
 fn stream(
     river: &RiverTable,
     attributes: &Attributes,
-    line: Polyline,
-    widths: Option<Profile>,
+    DirectedLine { line, widths, order }: DirectedLine,
     collected: &mut SceneBuilder,
 ) -> Stream {
     let name = attributes.name(river.name.as_deref());
@@ -93,5 +134,5 @@ fn stream(
     let alignment = Alignment { line, level: None, width, support: Support::Ground };
     let options = StrokeOptions::of(RibbonSurface::River, width_m);
     let street = Street { alignment, width_m, options, level: 0, surface: RibbonSurface::River };
-    Stream { street, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name }
+    Stream { street, bank_m, water: river.water, max_cut_m: river.max_cut, feature, name, order }
 }

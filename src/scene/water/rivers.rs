@@ -61,8 +61,9 @@ pub fn lay(
     report_cuts(&falling, &cuts, collected);
     report_climbs(&falling, &cuts, collected);
     ribbons(&streams, &lattice.extent(), collected);
-    let symbols = streams.iter().filter_map(|stream| LineSymbol::of(&stream.street, stream.feature));
-    collected.symbols.extend(symbols);
+    let symbol =
+        |stream: &Stream| LineSymbol::of_river(&stream.street, stream.bank_m, &stream.order, stream.feature);
+    collected.symbols.extend(streams.iter().map(symbol));
     Ok(())
 }
 
