@@ -34,9 +34,14 @@ const BELOW_ROADS: u8 = 3;
 /// The share of its surface's light that a casing has.
 const CASING_LIGHT: f32 = 0.45;
 
-/// That the fill of a paved road has: where roads are a city's pattern, fills as dark as asphalt would leave no ground
-/// to see.
-const PAVED_LIGHT: f32 = 1.8;
+/// The fills of paved roads, by the least width of their class, in pixels, as maps print them: the higher the class, the
+/// fuller the color. In the gray of asphalt a city's streets would leave no ground to see, and no class could be told.
+const PAVED_FILLS: [(f64, Srgba); 4] = [
+    (5.0, Srgba::opaque(238, 176, 108)),
+    (3.5, Srgba::opaque(246, 212, 132)),
+    (2.5, Srgba::opaque(248, 236, 190)),
+    (0.0, Srgba::opaque(244, 241, 233)),
+];
 
 /// Adds all ribbons and symbols, lower layers first.
 pub(super) fn add(
@@ -139,9 +144,11 @@ fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
     Some(partition::within(&ribbon.plan, &shown))
 }
 
-/// The share of a surface's light that the fill of its symbol has.
-fn fill_light(surface: RibbonSurface) -> f32 {
-    if surface.unmarked() == RibbonSurface::AsphaltPlain { PAVED_LIGHT } else { 1.0 }
+/// The color of the fill of a symbol; `None` where it is that of its surface.
+fn fill_color(symbol: &LineSymbol) -> Option<[u8; 4]> {
+    let is_paved = symbol.surface.unmarked() == RibbonSurface::AsphaltPlain;
+    let class = PAVED_FILLS.iter().find(|(least_px, _)| symbol.least_px >= *least_px);
+    class.filter(|_| is_paved).map(|(_, Srgba(color))| *color)
 }
 
 /// What a material is made for.
@@ -149,7 +156,7 @@ fn fill_light(surface: RibbonSurface) -> f32 {
 enum RibbonLook {
     Textured(RibbonSurface, [u8; 4]),
     Markings(RibbonSurface),
-    Fill(RibbonSurface),
+    Fill(RibbonSurface, Option<[u8; 4]>),
     Casing(RibbonSurface),
 }
 
@@ -167,7 +174,8 @@ impl Ribbons<'_> {
             self.add(casing, RibbonLook::Casing(draped.symbol.surface), layer, draped.symbol.feature);
         }
         for DrapedSymbol { symbol, fill, .. } in symbols {
-            self.add(fill, RibbonLook::Fill(symbol.surface), layer, symbol.feature);
+            let look = RibbonLook::Fill(symbol.surface, fill_color(symbol));
+            self.add(fill, look, layer, symbol.feature);
         }
     }
 
@@ -184,7 +192,10 @@ impl Ribbons<'_> {
             let material = match look {
                 RibbonLook::Textured(surface, tint) => draped_material(list, surface, Srgba(tint)),
                 RibbonLook::Markings(surface) => marking_material(list, surface),
-                RibbonLook::Fill(surface) => flat_material("line", surface, fill_light(surface)),
+                RibbonLook::Fill(surface, color) => {
+                    let material = flat_material("line", surface, 1.0);
+                    Material { base_color: color.map_or(material.base_color, Srgba), ..material }
+                }
                 RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
             };
             list.add_material(material)
