@@ -148,7 +148,7 @@ impl Contours {
 
 /// What changes across a pixel of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GroundChange {
+pub struct PixelChange {
     /// Of the elevation, in meters.
     pub height_m: f32,
     /// Of [`GroundPost::water`].
@@ -187,7 +187,7 @@ impl GroundMap {
     /// The color in linear light of ground that reads as `post` over a pixel across which it changes by `change`:
     /// the ramp, times the ground's `grain` (see [`ground_grain`](crate::draw::ground_grain::ground_grain)), with contours
     /// on it, or water.
-    pub fn albedo(&self, post: &GroundPost, change: GroundChange, grain: f32) -> Vec3 {
+    pub fn albedo(&self, post: &GroundPost, change: PixelChange, grain: f32) -> Vec3 {
         let land = self.ramp.linear_at(post.height_m) * grain;
         let shore = ShorePixel::new(post.water, change.water);
         let is_dry = shore.cover <= 0.0 && shore.line <= 0.0;

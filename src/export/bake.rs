@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundChange, GroundMap, GroundPost};
+use crate::draw::ground::{GroundMap, GroundPost, PixelChange};
 use crate::draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
@@ -54,7 +54,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         .map(|(x, y)| map.sample(at + Vec2::new(x, y) * half));
     let change =
         |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
-    let change = GroundChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
+    let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     Srgba::from_linear(map.albedo(&map.sample(at), change, 1.0))
 }
 

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundChange, GroundMap, GroundPost};
+use crate::draw::ground::{GroundMap, GroundPost, PixelChange};
 use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
@@ -72,7 +72,7 @@ impl<'a> GroundShader<'a> {
     /// The map's color at a point, in linear light: the ramp with contours on it, or water.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change =
-            GroundChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
+            PixelChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
         let grain = if self.map.has_grain { grain(&point.post, hit) } else { 1.0 };
         self.map.albedo(&point.post, change, grain)
     }

@@ -118,10 +118,10 @@ pub(super) fn symbols<'a>(
 ) -> Symbols<'a> {
     let view = SymbolView::new(scene, camera);
     let seen = |symbol: &'a LineSymbol| {
-        let seen = view.seen(symbol, Smoothing::None);
+        let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
         if symbol.surface == RibbonSurface::River && seen.show == Some(RibbonShow::Replaced) {
-            return view.seen(symbol, Smoothing::Curves);
+            return view.seen(symbol, LineSmoothing::Curves);
         }
         seen
     };
@@ -196,7 +196,7 @@ enum SymbolPart {
 
 /// Whether a line that is coarser than the picture is made a curve.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Smoothing {
+enum LineSmoothing {
     None,
     Curves,
 }
@@ -252,7 +252,7 @@ impl<'a> SymbolView<'a> {
         }
     }
 
-    fn seen(&self, symbol: &LineSymbol, smoothing: Smoothing) -> SeenLine {
+    fn seen(&self, symbol: &LineSymbol, smoothing: LineSmoothing) -> SeenLine {
         let mut seen = SeenLine::default();
         let mut end = None;
         for leg in self.points(&symbol.alignment.line, smoothing).windows(2) {
@@ -344,12 +344,12 @@ impl<'a> SymbolView<'a> {
     }
 
     /// The vertices of a line without those that cannot be told from a straight line.
-    fn points(&self, line: &Polyline, smoothing: Smoothing) -> Vec<LinePoint> {
+    fn points(&self, line: &Polyline, smoothing: LineSmoothing) -> Vec<LinePoint> {
         let z = f64::from(self.z[0]);
         let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
         let (flat, stations) = match smoothing {
-            Smoothing::None => (line.points().to_vec(), line.stations().to_vec()),
-            Smoothing::Curves => self.curve(line),
+            LineSmoothing::None => (line.points().to_vec(), line.stations().to_vec()),
+            LineSmoothing::Curves => self.curve(line),
         };
         let points: Vec<DVec3> = flat.iter().map(on_ground).collect();
         let eye = self.camera.eye().as_dvec3();
