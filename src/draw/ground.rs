@@ -171,7 +171,7 @@ pub struct GroundDetail {
 
 /// What changes across a pixel of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GroundChange {
+pub struct PixelChange {
     /// Of the elevation, in meters.
     pub height_m: f32,
     /// Of [`GroundPost::water`].
@@ -218,7 +218,7 @@ impl GroundMap {
 
     /// The color in linear light of ground that reads as `post` over a pixel across which it changes by `change`: the ramp
     /// under what covers it and under trees their [`Undergrowth`], or water; what is draped over them; and contours.
-    pub fn albedo(&self, post: &GroundPost, change: GroundChange, detail: &GroundDetail) -> Vec3 {
+    pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
         let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));
         let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * detail.grain;

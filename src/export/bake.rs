@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundChange, GroundDetail, GroundMap, GroundPost};
+use crate::draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
 use crate::draw::ground_cover::cover_noise;
 use crate::draw::pixels::Pixels;
 
@@ -56,7 +56,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
         .map(|(x, y)| map.sample(at + Vec2::new(x, y) * half));
     let change =
         |of: fn(&GroundPost) -> f32| Vec2::new(of(&east) - of(&west), of(&north) - of(&south)).length();
-    let change = GroundChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
+    let change = PixelChange { height_m: change(|post| post.height_m), water: change(|post| post.water) };
     let draped = map.imagery.as_deref().map(|imagery| imagery.at(at)).unwrap_or_default();
     let uneven = if map.cover.is_some() { cover_noise(at, step.max_element()) } else { 0.0 };
     let detail = GroundDetail { grain: 1.0, uneven, draped };

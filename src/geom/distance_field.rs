@@ -5,7 +5,7 @@
 
 /// A grid of cells, row by row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CellGrid {
+pub struct RegionGrid {
     /// Cells in a row.
     pub columns: usize,
     /// The distance between cells along a row and across rows, in meters, above 0.
@@ -13,7 +13,7 @@ pub struct CellGrid {
 }
 
 /// The distance in meters from each cell to the nearest that is not inside: 0 for those, infinite where all are inside.
-pub fn distances_m(is_inside: &[bool], grid: CellGrid) -> Vec<f64> {
+pub fn distances_m(is_inside: &[bool], grid: RegionGrid) -> Vec<f64> {
     let columns = grid.columns.max(1);
     let rows = is_inside.len() / columns;
     let mut field: Vec<f64> =
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn every_distance_is_that_to_the_nearest_cell_outside() {
         let (columns, rows) = (23usize, 17usize);
-        let grid = CellGrid { columns, step_m: [3.0, 5.0] };
+        let grid = RegionGrid { columns, step_m: [3.0, 5.0] };
         let is_inside: Vec<bool> =
             (0..columns * rows).map(|index| (index * 7919 + index * index * 31) % 11 > 0).collect();
         let found = distances_m(&is_inside, grid);
@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn without_an_outside_all_is_infinitely_far() {
-        let grid = CellGrid { columns: 3, step_m: [1.0; 2] };
+        let grid = RegionGrid { columns: 3, step_m: [1.0; 2] };
         assert!(distances_m(&[true; 6], grid).iter().all(|distance| distance.is_infinite()));
         assert_eq!(distances_m(&[], grid), Vec::<f64>::new());
     }

@@ -14,7 +14,7 @@
 
 use glam::DVec2;
 
-use crate::geom::distance_field::{CellGrid, distances_m};
+use crate::geom::distance_field::{RegionGrid, distances_m};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::water_cover::WaterCover;
 
@@ -97,7 +97,7 @@ impl<'a> WaterShore<'a> {
 
 /// The way to open water at every cell of a grid, each body of water for itself.
 fn open(is_water: &[bool], columns: usize, cell: DVec2) -> Vec<f32> {
-    let grid = CellGrid { columns, step_m: cell.to_array() };
+    let grid = RegionGrid { columns, step_m: cell.to_array() };
     let distances_m = distances_m(is_water, grid);
     let mut open = vec![0.0; is_water.len()];
     let mut is_found = vec![false; is_water.len()];

@@ -125,6 +125,18 @@ fn hatching_is_the_same_on_both() {
 }
 
 #[test]
+fn a_shore_and_the_water_off_it_are_the_same_on_both() {
+    let mut list = scene();
+    let map = Arc::make_mut(list.ground.as_mut().expect("there is ground"));
+    let middle_m = map.posts.iter().map(|post| post.height_m).sum::<f32>() / map.posts.len() as f32;
+    map.posts
+        .iter_mut()
+        .for_each(|post| post.water = (0.5 + 0.02 * (middle_m - post.height_m)).clamp(0.25, 1.0));
+    assert!(map.posts.iter().any(|post| post.water > 0.8) && map.posts.iter().any(|post| post.water < 0.4));
+    compare(&list, &camera(640, 480), "a shore");
+}
+
+#[test]
 fn contours_are_the_same_on_both() {
     compare(&scene_with_contours(), &camera(640, 480), "contours");
 }

@@ -5,7 +5,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundChange, GroundDetail, GroundMap, GroundPost};
+use crate::draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
 use crate::draw::ground_cover::cover_noise;
 use crate::draw::ground_grain::ground_grain;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
@@ -90,7 +90,7 @@ impl<'a> GroundShader<'a> {
     /// The map's color at a point, in linear light: the ramp, water or the picture over them, with contours.
     pub fn albedo(&self, point: &GroundPoint, hit: &FacePoint) -> Vec3 {
         let change =
-            GroundChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
+            PixelChange { height_m: change(point.gradient, hit), water: change(point.water_gradient, hit) };
         let uneven =
             if self.map.cover.is_some() { cover_noise(hit.world.truncate(), hit.pixel_m()) } else { 0.0 };
         let detail = GroundDetail { grain: self.grain(point, hit), uneven, draped: point.draped };

@@ -192,10 +192,7 @@ impl Ribbons<'_> {
             let material = match look {
                 RibbonLook::Textured(surface, tint) => draped_material(list, surface, Srgba(tint)),
                 RibbonLook::Markings(surface) => marking_material(list, surface),
-                RibbonLook::Fill(surface, color) => {
-                    let material = flat_material("line", surface, 1.0);
-                    Material { base_color: color.map_or(material.base_color, Srgba), ..material }
-                }
+                RibbonLook::Fill(surface, color) => fill_material(list, surface, color.map(Srgba)),
                 RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
             };
             list.add_material(material)
@@ -235,6 +232,21 @@ fn marking_material(list: &mut DrawList, surface: RibbonSurface) -> Material {
         normals: NormalSource::Ground,
         ..Material::default()
     }
+}
+
+/// The fill of a symbol: its surface's mean color, which along U becomes `color` where it has one.
+fn fill_material(list: &mut DrawList, surface: RibbonSurface, color: Option<Srgba>) -> Material {
+    /// Texels along U: the steps between them are not seen.
+    const STEPS: u32 = 64;
+    let material = flat_material("line", surface, 1.0);
+    let Some(color) = color else { return material };
+    let (from, to) = (material.base_color.linear(), color.linear());
+    let blend = Pixels::from_fn(STEPS, 1, |x, _| {
+        // The outermost texels run into each other.
+        let part = (x.clamp(1, STEPS - 2) - 1) as f32 / (STEPS - 3) as f32;
+        Srgba::from_linear(from.lerp(to, part))
+    });
+    Material { base_color: Srgba::WHITE, texture: Some(list.add_texture(blend)), ..material }
 }
 
 /// The mean color of a surface without markings, with this share of its light.

@@ -11,7 +11,7 @@ use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::draw::pixels::Pixels;
 use crate::draw::water::WaterColor;
-use crate::geom::distance_field::{CellGrid, distances_m};
+use crate::geom::distance_field::{RegionGrid, distances_m};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::ribbon::texture::RibbonSurface;
@@ -71,7 +71,7 @@ impl LakeOutline<'_> {
             let north = window.max.y - (f64::from(row) + 0.5) * step.y;
             is_water.extend(self.row(north, window.min.x, step.x, columns));
         }
-        let off_m = distances_m(&is_water, CellGrid { columns: columns as usize, step_m: step.to_array() });
+        let off_m = distances_m(&is_water, RegionGrid { columns: columns as usize, step_m: step.to_array() });
         let farthest_m = off_m.iter().copied().fold(0.0, f64::max);
         let color = |x: u32, y: u32| {
             let share = off_m[(y * columns + x) as usize] / (OPEN_SHARE * farthest_m).max(f64::MIN_POSITIVE);

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
+use crate::description::words::Join;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::polyline::Polyline;
@@ -53,6 +54,12 @@ const LONGEST_LEG: f64 = 0.1;
 
 /// A dash of a track and the gap after it, in pixels of a picture 1080 lines high.
 const DASH_PX: [f64; 2] = [7.0, 4.0];
+
+/// How many times as wide as it is a line is drawn where nothing but a symbol is left of it.
+const ALL_SYMBOL: f64 = 2.5;
+
+/// How symbols are stroked.
+const OPTIONS: StrokeOptions = StrokeOptions { join: Join::Miter, miter_limit: 2.0, texture_length_m: 12.0 };
 
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
@@ -118,10 +125,10 @@ pub(super) fn symbols<'a>(
 ) -> Symbols<'a> {
     let view = SymbolView::new(scene, camera);
     let seen = |symbol: &'a LineSymbol| {
-        let seen = view.seen(symbol, Smoothing::None);
+        let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
         if symbol.surface == RibbonSurface::River && seen.show == Some(RibbonShow::Replaced) {
-            return view.seen(symbol, Smoothing::Curves);
+            return view.seen(symbol, LineSmoothing::Curves);
         }
         seen
     };
@@ -173,6 +180,11 @@ struct SymbolVertex {
 }
 
 impl SymbolVertex {
+    /// 0 where the line is as wide as it is, 1 where it is so much wider that only a symbol is left of it.
+    fn symbolic_share(&self) -> f64 {
+        ((self.drawn_m / self.true_m.max(1e-6) - 1.0) / (ALL_SYMBOL - 1.0)).clamp(0.0, 1.0)
+    }
+
     /// The vertex `part` of the way to another.
     fn toward(&self, to: &Self, part: f64) -> Self {
         let blend = |from: f64, to: f64| from + (to - from) * part;
@@ -196,7 +208,7 @@ enum SymbolPart {
 
 /// Whether a line that is coarser than the picture is made a curve.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Smoothing {
+enum LineSmoothing {
     None,
     Curves,
 }
@@ -252,7 +264,7 @@ impl<'a> SymbolView<'a> {
         }
     }
 
-    fn seen(&self, symbol: &LineSymbol, smoothing: Smoothing) -> SeenLine {
+    fn seen(&self, symbol: &LineSymbol, smoothing: LineSmoothing) -> SeenLine {
         let mut seen = SeenLine::default();
         let mut end = None;
         for leg in self.points(&symbol.alignment.line, smoothing).windows(2) {
@@ -344,12 +356,12 @@ impl<'a> SymbolView<'a> {
     }
 
     /// The vertices of a line without those that cannot be told from a straight line.
-    fn points(&self, line: &Polyline, smoothing: Smoothing) -> Vec<LinePoint> {
+    fn points(&self, line: &Polyline, smoothing: LineSmoothing) -> Vec<LinePoint> {
         let z = f64::from(self.z[0]);
         let on_ground = |&at: &DVec2| at.extend(self.z_at(at.extend(z)));
         let (flat, stations) = match smoothing {
-            Smoothing::None => (line.points().to_vec(), line.stations().to_vec()),
-            Smoothing::Curves => self.curve(line),
+            LineSmoothing::None => (line.points().to_vec(), line.stations().to_vec()),
+            LineSmoothing::Curves => self.curve(line),
         };
         let points: Vec<DVec3> = flat.iter().map(on_ground).collect();
         let eye = self.camera.eye().as_dvec3();
@@ -444,7 +456,10 @@ fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
 }
 
 /// Strokes a part of a run of vertices, its ends round; the casing of a mouth is open toward the water.
+/// Strokes the part of a symbol along a run; U says how much of a symbol each place is, see
+/// [`SymbolVertex::symbolic_share`].
 fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
+    let first = plan.vertices.len();
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
     let width = |vertex: &SymbolVertex| match part {
         SymbolPart::Casing => vertex.casing_m,
@@ -460,15 +475,23 @@ fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
             continue;
         }
         let outward = (points[end] - points[inner]).normalize_or_zero();
-        cap(points[end], outward * widths.values()[end] / 2.0, plan);
+        cap(points[end], outward * widths.values()[end] / 2.0, line.stations()[end], plan);
     }
+    let shares = run.iter().map(SymbolVertex::symbolic_share).collect();
+    let shares = Profile::new(line.stations().to_vec(), shares);
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
-    stroke(&StrokePath::alone(&alignment), &StrokeOptions::default(), plan);
+    stroke(&StrokePath::alone(&alignment), &OPTIONS, plan);
+    let Some(shares) = shares else { return };
+    for vertex in &mut plan.vertices[first..] {
+        let station_m = f64::from(vertex.uv.y) * OPTIONS.texture_length_m;
+        vertex.uv = Vec2::new(shares.at(station_m) as f32, 0.5);
+    }
 }
 
-/// Half a disc about a line's end, on the side of `outward`, which is as long as its radius.
-fn cap(center: DVec2, outward: DVec2, plan: &mut PlanMesh) {
-    let mut vertex = |at: DVec2| plan.vertex(PlanVertex { at, uv: Vec2::ZERO });
+/// Half a disc about a line's end at `station_m`, on the side of `outward`, which is as long as its radius.
+fn cap(center: DVec2, outward: DVec2, station_m: f64, plan: &mut PlanMesh) {
+    let uv = Vec2::new(0.0, (station_m / OPTIONS.texture_length_m) as f32);
+    let mut vertex = |at: DVec2| plan.vertex(PlanVertex { at, uv });
     let middle = vertex(center);
     let corner = |index: u32| {
         let angle = std::f64::consts::PI * (f64::from(index) / f64::from(CAP_SIDES) - 0.5);
