@@ -281,6 +281,15 @@ mod tests {
     }
 
     #[test]
+    fn walls_have_windows_by_bays_and_stories_and_narrow_ones_none() {
+        let levels = BuildingLevels { foot_z: -1.0, base_z: 0.0, floor_z: 0.0, eaves_z: 6.2, top_z: 9.0 };
+        assert_eq!(wall_uv(12.0, levels)(0.0, 6.2), Vec2::ZERO);
+        assert_eq!(wall_uv(12.0, levels)(1.0, 0.0), Vec2::new(4.0, 2.0));
+        assert_eq!(wall_uv(1.9, levels)(1.0, 0.0), Vec2::ZERO);
+        assert_eq!(wall_uv(12.0, BuildingLevels { eaves_z: 2.0, ..levels })(1.0, 0.0), Vec2::ZERO);
+    }
+
+    #[test]
     fn a_courtyard_stays_open() {
         let at = |x: f64, y: f64| DVec2::new(x, y);
         let outer = [at(0.0, 0.0), at(20.0, 0.0), at(20.0, 20.0), at(0.0, 20.0)];

@@ -61,7 +61,7 @@ pub fn by_name(name: &str) -> Option<Model> {
 
 /// The models that scattered ones of this name are, one as often as the other: crowns of several forms where the name
 /// says no more than broadleaved tree or conifer, else the one model.
-pub fn forms<'a>(name: &'a str) -> Vec<&'a str> {
+pub fn forms(name: &str) -> Vec<&str> {
     match name {
         "broadleaf" => vec![name, "walnut", "beech"],
         // Spruces are the rule; here and there stands a pine.
@@ -104,6 +104,16 @@ mod tests {
             assert!((60..=220).contains(&model.triangle_count()), "{name}: {}", model.triangle_count());
         }
         assert!(by_name("palm").is_none() && by_name("").is_none());
+    }
+
+    #[test]
+    fn every_form_is_a_model_and_trees_that_are_not_named_have_several() {
+        for name in NAMES {
+            let forms = forms(name);
+            assert!(forms.contains(&name) && forms.iter().all(|form| NAMES.contains(form)), "{forms:?}");
+        }
+        assert!(forms("broadleaf").len() > 2 && forms("conifer").contains(&"pine"));
+        assert_eq!(forms("house.obj"), ["house.obj"]);
     }
 
     #[test]

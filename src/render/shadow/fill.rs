@@ -308,3 +308,36 @@ fn cut(corners: [Vec2; 3], size: [u32; 2]) -> Vec<Vec2> {
     }
     outline
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_skipped_between_centers_covers_none() {
+        let window = PixelWindow { from: [0, 0], to: [8, 8] };
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        let (mut skipped, mut drawn) = (0, 0);
+        for _ in 0..4000 {
+            let at = Vec2::new(random(), random()) * 6.0;
+            let size = random() * 2.0;
+            let corners = [(); 3].map(|()| at + Vec2::new(random(), random()) * size);
+            let snapped = corners.map(|at| [snapped(f64::from(at.x)), snapped(f64::from(at.y))]);
+            let [a, b, c] = snapped;
+            let turned = if doubled_area(&snapped) < 0 { [a, c, b] } else { snapped };
+            let mut count = 0;
+            if doubled_area(&turned) != 0 {
+                cover_centers(&turned, window, |_, _| count += 1);
+            }
+            let is_skipped = is_between_centers(&corners);
+            assert!(!is_skipped || count == 0, "{corners:?}");
+            skipped += u32::from(is_skipped);
+            drawn += u32::from(count > 0);
+        }
+        assert!(skipped > 500 && drawn > 100, "{skipped} {drawn}");
+    }
+}
