@@ -299,7 +299,10 @@ const BROKEN: &[(&str, &[&str])] = &[
     ),
     (
         "[style]\nelephant = 1\n",
-        &["hill.toml:4:1:", "[style] knows `ramp`, `contours`, `light`, `haze` and `table`"],
+        &[
+            "hill.toml:4:1:",
+            "[style] knows `ramp`, `contours`, `imagery`, `land_cover`, `light`, `haze` and `table`",
+        ],
     ),
     ("[style.light]\nalitude = 3\n", &["hill.toml:4:1:", "in [style.light]", "did you mean `altitude`?"]),
     ("exaggeration = 2\n", &["hill.toml:3:1:", "in [terrain]", "did you mean `vertical_exaggeration`?"]),
