@@ -51,6 +51,10 @@ const PIN_SLACK_M: f32 = 1e-3;
 /// batter's edges as teeth; more would round the edge of a road that is four posts wide.
 const WORKS_STEP: i64 = 2;
 
+/// The rise over run from which the ground between posts of earthworks is a wall's: steeper than batters are, where one
+/// side alone is.
+const WALL_SLOPE: f32 = 2.5;
+
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LatticeError {
@@ -387,7 +391,7 @@ impl Lattice {
     /// the planes between these, and would show the planes rather than the land. Pinned neighbors do not count there; the
     /// land is taken to continue straight from the opposite side. The neighbors of a pinned post and of those next to it
     /// are `WORKS_STEP` posts away: a batter's edges run aslant between posts, and slopes from post to post would show
-    /// how each post lies to them, as teeth.
+    /// how each post lies to them, as teeth. What stands or falls like a wall beside them does not count either.
     pub fn slopes(&self, post: Post) -> Vec2 {
         let own = self.height(post);
         if own.is_nan() {
@@ -400,14 +404,20 @@ impl Lattice {
             _ => WORKS_STEP,
         };
         let at = |east: i64, north: i64| -> f32 {
-            let (there, opposite) = (
-                self.beside(post, east * step, north * step),
-                self.beside(post, -east * step, -north * step),
-            );
-            let height = match (is_land && self.is_pinned(there), self.is_pinned(opposite)) {
-                (false, _) => self.height(there),
+            let (east, north) = (east * step, north * step);
+            let (there, opposite) = (self.beside(post, east, north), self.beside(post, -east, -north));
+            let is_other = |other: Post| match (is_land, self.doublings) {
+                (true, _) => self.is_pinned(other),
+                (false, 0) => false,
+                (false, _) => {
+                    let run_m = (self.cell * DVec2::new(east as f64, north as f64)).length() as f32;
+                    (self.height(other) - own).abs() > WALL_SLOPE * run_m
+                }
+            };
+            let height = match (is_other(there), is_other(opposite)) {
                 (true, false) => 2.0 * own - self.height(opposite),
-                (true, true) => own,
+                (true, true) if is_land => own,
+                _ => self.height(there),
             };
             if height.is_nan() { own } else { height }
         };
