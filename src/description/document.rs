@@ -83,7 +83,7 @@ table! {
         bridges as "bridge": Vec<BridgeTable> = key::styled_tables::<BridgeTable>(), default [];
         /// Rivers, in drawing order.
         rivers as "river": Vec<RiverTable> = key::styled_tables::<RiverTable>(), default [];
-        /// Still water: level, and cut out of the ground or filled up to it. Ground is moved up to 30 m from the shore, or a third of the side of a square of the water's area; where cells are too wide for that, more posts are put in.
+        /// Still water: level, and cut out of the ground or filled up to it.
         lakes as "lake": Vec<LakeTable> = key::styled_tables::<LakeTable>(), default [];
         /// What covers the ground, in drawing order.
         areas as "area": Vec<AreaTable> = key::styled_tables::<AreaTable>(), default [];
