@@ -93,7 +93,9 @@ fn clearance_of_draped(shot: &ViewDraw) -> (f64, usize) {
         let rounding = |number: f32| f64::from(number.abs().next_up() - number.abs());
         let aside = f64::max(rounding(x), rounding(y));
         let Some(here) = ground.displayed_z(at) else { continue };
-        let around = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ONE, -DVec2::ONE];
+        let across = DVec2::new(1.0, -1.0);
+        let around =
+            [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ONE, -DVec2::ONE, across, -across];
         let reach = around.iter().filter_map(|&way| ground.displayed_z(at + way * 2.0 * aside));
         // Beside 0 m, where heights cancel, their sum is less exact than its own digits: a nanometer is as good as none.
         let allowed = reach.map(|z| (z - here).abs()).fold(f64::max(2.0 * rounding(z), 1e-9), f64::max);

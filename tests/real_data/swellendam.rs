@@ -175,7 +175,8 @@ fn reservoirs_move_land_only_beside_their_shores() {
     };
     let (plain, flooded) = (build(""), build(LAKES));
     let spacing_m = flooded.lattice.cell().max_element();
-    // The smallest may move ground 30 m from their shores, and a moved post moves the ground up to the next.
+    // They may move ground 30 m from their shores, and a moved post moves the ground up to the next: around the mean
+    // of them, 65 m in radius, less than three times its area.
     let every = 1 << (flooded.lattice.doublings() - plain.lattice.doublings());
     let water_m2: f64 = flooded.report.lakes.iter().map(|lake| lake.area).sum();
     let posts = flooded.lattice.posts().filter(|post| post.row % every == 0 && post.column % every == 0);
@@ -189,7 +190,7 @@ fn reservoirs_move_land_only_beside_their_shores() {
         flooded.report.lakes.len()
     );
     assert!(spacing_m < 25.0, "{spacing_m}");
-    assert!(moved_m2 < 1.6 * water_m2, "{moved_m2} m² of land for {water_m2} m² of water");
+    assert!(moved_m2 < 3.0 * water_m2, "{moved_m2} m² of land for {water_m2} m² of water");
 }
 
 /// Meters of height: a tenth of a millimeter. Bringing a position to UTM and back moves it by less than a

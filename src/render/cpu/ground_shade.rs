@@ -135,8 +135,12 @@ impl<'a> GroundShader<'a> {
         let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
         sum.gradient += rise * self.posts_per_meter * (scale * weight);
         let [sw, se, nw, ne] = corners.map(|post| post.water);
-        let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
-        sum.water_gradient += rise * self.posts_per_meter * (scale * weight);
+        // Nearly everywhere there is no shore.
+        if [se, nw, ne] != [sw; 3] {
+            let rise =
+                Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
+            sum.water_gradient += rise * self.posts_per_meter * (scale * weight);
+        }
     }
 }
 

@@ -128,7 +128,8 @@ impl Lake {
                 described("lake", &self.name)
             ));
         }
-        if shore::bed_reach_m(lattice) > self.reach_m() {
+        // A part of a meter is less than the note tells.
+        if shore::bed_reach_m(lattice).round() > self.reach_m().round() {
             collected.notes.push(format!(
                 "{} lies on posts {:.3} m apart, and the ground is level up to {:.0} m from its shore; a model of a \
                  smaller area could have more posts",
