@@ -46,8 +46,11 @@ impl DisplayedTerrain {
         PatchedGround { lattice: &self.lattice, layout: self.active.layout() }
     }
 
-    fn plan_bounds(&self, corners: [Vertex; 3]) -> Rect {
-        Rect::around(corners.map(|vertex| self.ground().plan(vertex).as_dvec2()))
+    /// The rectangle around a triangle; called for every triangle that a walk comes to.
+    fn plan_bounds(&self, [apex, entry, exit]: [Vertex; 3]) -> Rect {
+        let ground = self.ground();
+        let (a, b, c) = (ground.plan(apex), ground.plan(entry), ground.plan(exit));
+        Rect { min: a.min(b).min(c).as_dvec2(), max: a.max(b).max(c).as_dvec2() }
     }
 
     /// The patches, of those displayed, that meet the world rectangle.
