@@ -31,7 +31,8 @@ pub fn triangles_where(
 ) {
     let layout = active.layout();
     let columns = layout.columns() as i32;
-    let vertices = |keys: [WalkKey; 3]| keys.map(|key| vertex(columns, key));
+    let at = |key: WalkKey| vertex(columns, key);
+    let vertices = |[apex, entry, exit]: [WalkKey; 3]| [at(apex), at(entry), at(exit)];
     let roots = Triangle::roots(corner, layout.patch()).map(|root| root.corners().map(|at| key(layout, at)));
     walk::leaves(active, roots, |keys| enter(vertices(keys)), |keys| emit(vertices(keys)));
 }
