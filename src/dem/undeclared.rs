@@ -32,6 +32,13 @@ pub struct UndeclaredNodata {
     pub evidence: String,
 }
 
+impl UndeclaredNodata {
+    /// The value as TOML takes it: an integer of more than 64 bits is a float.
+    pub fn written(&self) -> String {
+        if self.value.abs() < 1e15 { self.value.to_string() } else { format!("{:e}", self.value) }
+    }
+}
+
 /// The values that may mean no data without being declared so.
 pub fn undeclared_nodata(raster: &Raster) -> Vec<UndeclaredNodata> {
     let all = raster.samples.len() as f64;
@@ -147,6 +154,18 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_value_is_written_as_a_number_of_a_scene_file() {
+        for value in USUAL.into_iter().chain([0.0, -0.5]) {
+            let written = UndeclaredNodata { value, evidence: String::new() }.written();
+            let table: toml::Table = format!("nodata = {written}").parse().expect("TOML");
+            let read = table["nodata"].as_float().or(table["nodata"].as_integer().map(|whole| whole as f64));
+            assert_eq!(read, Some(value), "{written}");
+        }
+        let zero = UndeclaredNodata { value: 0.0, evidence: String::new() };
+        assert_eq!(zero.written(), "0");
+    }
     use crate::dem::raster::tests::small;
 
     /// Hills around `base` on 60 by 60 samples, but `value` in the first `columns` columns.

@@ -12,7 +12,7 @@ use crate::dem::largest_rectangle::{largest_rectangle, outside};
 use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
-use crate::dem::undeclared::{UndeclaredNodata, undeclared_nodata};
+use crate::dem::undeclared::undeclared_nodata;
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
@@ -44,7 +44,8 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let dem = &document.terrain.dem;
     let mut notes = Vec::new();
     let mut source = joined(document, assets, &mut notes)?;
-    notes.extend(undeclared_nodata(&source).into_iter().map(|UndeclaredNodata { value, evidence }| {
+    notes.extend(undeclared_nodata(&source).iter().map(|found| {
+        let (evidence, value) = (&found.evidence, found.written());
         format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]")
     }));
     let mut filled = None;

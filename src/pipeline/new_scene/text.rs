@@ -95,7 +95,8 @@ pub(super) fn terrain(draft: &SceneDraft) -> String {
     if let Some(crs) = &draft.crs {
         let _ = writeln!(out, "crs = {}", quoted(crs));
     }
-    for (index, UndeclaredNodata { value, evidence }) in draft.nodata.iter().enumerate() {
+    for (index, found) in draft.nodata.iter().enumerate() {
+        let (evidence, value) = (&found.evidence, found.written());
         let (advice, off) = if index == 0 {
             ("That is taken for missing data; remove the next line if it is ground", "")
         } else {
