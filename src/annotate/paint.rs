@@ -24,13 +24,14 @@ const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationReport {
     let mut composer = Composer::new(pixels.width(), pixels.height());
     let furniture = Furniture::lay_out(annotations, &mut composer);
-    let mut boxes: Vec<PixelBox> = furniture.drawings.iter().map(Drawing::bounds).collect();
+    let mut boxes: Vec<PixelBox> = furniture.pieces().map(Drawing::bounds).collect();
     let marks = rim::draw_marks(&annotations.rim, &boxes, &mut composer);
     boxes.extend(marks.iter().map(Drawing::bounds));
-    let mut report = AnnotationReport { left_out: furniture.left_out, ..AnnotationReport::default() };
-    furniture.drawings.iter().for_each(|drawing| report.add_texts(&drawing.texts));
+    let mut report = AnnotationReport::default();
+    furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
     let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.drawings.iter().chain(&marks).chain([&labels]));
+    paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
+    report.left_out = furniture.left_out;
     report
 }
 
@@ -42,17 +43,14 @@ const FREE: f32 = 0.05;
 
 struct Furniture {
     sheet: Sheet,
-    drawings: Vec<Drawing>,
-    /// What stands where.
-    corners: Vec<(FurnitureKind, PixelBox)>,
+    drawings: Vec<(FurnitureKind, Drawing)>,
     left_out: Vec<FurnitureKind>,
 }
 
 impl Furniture {
     /// Each piece in its corner; pieces that do not fit are left out.
     fn lay_out(annotations: &Annotations, composer: &mut Composer) -> Self {
-        let mut furniture =
-            Self { sheet: composer.sheet, drawings: Vec::new(), corners: Vec::new(), left_out: Vec::new() };
+        let mut furniture = Self { sheet: composer.sheet, drawings: Vec::new(), left_out: Vec::new() };
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
@@ -77,35 +75,35 @@ impl Furniture {
         furniture
     }
 
-    /// Moves a piece into its corner, or into the second one where that is free and the first is not, and keeps it where
-    /// it fits.
+    fn pieces(&self) -> impl Iterator<Item = &Drawing> {
+        self.drawings.iter().map(|(_, drawing)| drawing)
+    }
+
+    /// Moves a piece into its corner, or into the upper one on its side where that is free and its own is not, and keeps it
+    /// where it fits.
     fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
+        let is_free = |drawing: &Drawing| cover.is_none_or(|cover| cover.share(&drawing.bounds()) <= FREE);
         let moved = drawing.map(|drawing| {
-            let first = self.in_corner(kind, drawing.clone());
-            let above = match kind {
-                FurnitureKind::ScaleBar => FurnitureKind::Title,
-                FurnitureKind::Legend => FurnitureKind::NorthArrow,
-                _ => return first,
-            };
-            let covers = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
-            let second = || {
-                let mut inner = self.sheet.inner();
-                let under = self.corners.iter().find(|(of, _)| *of == above).map(|(_, bounds)| bounds.max.y);
-                inner.min.y = under.map_or(inner.min.y, |y| y + self.sheet.px(GAP));
-                let bounds = drawing.bounds();
-                let x = if kind == FurnitureKind::Legend {
-                    inner.max.x - bounds.max.x
-                } else {
-                    inner.min.x - bounds.min.x
-                };
-                drawing.clone().moved(Vec2::new(x, inner.min.y - bounds.min.y).round())
-            };
-            if covers(&first) <= FREE {
-                return first;
-            }
-            Some(second()).filter(|second| covers(second) <= FREE).unwrap_or(first)
+            let own = self.in_corner(kind, drawing);
+            let upper = if is_free(&own) { None } else { self.below_upper(kind, &own) };
+            upper.filter(is_free).unwrap_or(own)
         });
         self.keep(kind, moved);
+    }
+
+    /// A piece of a lower corner moved up, below what stands in the upper corner on its side; `None` for other pieces.
+    fn below_upper(&self, kind: FurnitureKind, own: &Drawing) -> Option<Drawing> {
+        let above = match kind {
+            FurnitureKind::ScaleBar => FurnitureKind::Title,
+            FurnitureKind::Legend => FurnitureKind::NorthArrow,
+            _ => return None,
+        };
+        let above = self.drawings.iter().find(|(other, _)| *other == above);
+        let top = match above {
+            Some((_, above)) => above.bounds().max.y + self.sheet.px(GAP),
+            None => self.sheet.inner().min.y,
+        };
+        Some(own.clone().moved(Vec2::new(0.0, top - own.bounds().min.y).round()))
     }
 
     /// A piece moved into its corner.
@@ -135,13 +133,10 @@ impl Furniture {
             let spaced = bounds.grown(self.sheet.px(6.0));
             is_small
                 && self.sheet.bounds().holds(&bounds)
-                && !self.drawings.iter().any(|other| other.bounds().overlaps(&spaced))
+                && !self.pieces().any(|other| other.bounds().overlaps(&spaced))
         };
         match drawing.filter(fits) {
-            Some(drawing) => {
-                self.corners.push((kind, drawing.bounds()));
-                self.drawings.push(drawing);
-            }
+            Some(drawing) => self.drawings.push((kind, drawing)),
             None => self.left_out.push(kind),
         }
     }
@@ -151,7 +146,7 @@ impl Furniture {
         let mut free = self.sheet.inner();
         let gap = self.sheet.px(14.0);
         let low = free.max.y - self.sheet.px(30.0);
-        for bounds in self.drawings.iter().map(Drawing::bounds).filter(|bounds| bounds.max.y > low) {
+        for bounds in self.pieces().map(Drawing::bounds).filter(|bounds| bounds.max.y > low) {
             if bounds.center().x < self.sheet.size.x * 0.5 {
                 free.min.x = free.min.x.max(bounds.max.x + gap);
             } else {

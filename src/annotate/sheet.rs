@@ -87,6 +87,7 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::color::luminance;
 
     #[test]
     fn sizes_are_as_designed_at_1080_double_at_4k_and_legible_at_270() {
@@ -98,7 +99,7 @@ mod tests {
 
     #[test]
     fn inks_stand_out_of_their_halo_on_any_ground() {
-        let luminance = |color: Srgba| color.linear().dot(glam::Vec3::new(0.2126, 0.7152, 0.0722));
+        let luminance = |color: Srgba| luminance(color.linear());
         let over = |ground: u8| {
             let share = HALO.alpha();
             let [red, green, blue, _] = HALO

@@ -6,8 +6,9 @@
 //! world moves all borders, so that they look grown and not drawn. Each cover keeps the tint's luminance but for a factor
 //! that is at most 6 of lightness L*: relief and tint by height stay readable.
 
-use glam::{Vec2, Vec3};
+use glam::{FloatExt, Vec2, Vec3};
 
+use crate::draw::color::luminance;
 use crate::draw::ground::GroundPost;
 use crate::draw::ground_grain::noise_of;
 
@@ -59,17 +60,14 @@ impl GroundCover {
         let scree = above_trees * step(rise, SCREE_RISE);
         let rock = step(rise, ROCK_RISE);
         let snow = step(height, [self.snow_m - half, self.snow_m + half]) * (1.0 - rock);
-        let luminance = tint.dot(LUMINANCE);
+        let own = luminance(tint);
         let mut color = tint;
         for ((hue, light), share) in [(MEADOW, meadow), (SCREE, scree), (ROCK, rock), (SNOW, snow)] {
-            color = color.lerp(hue * (luminance * light / hue.dot(LUMINANCE)), MOST * share);
+            color = color.lerp(hue * (own * light / luminance(hue)), MOST * share);
         }
         color
     }
 }
-
-/// The share of each channel in luminance.
-const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// The noise at world X and Y over a pixel `pixel_m` meters wide, -1..=1.
 pub fn cover_noise(at: Vec2, pixel_m: f32) -> f32 {
@@ -77,8 +75,7 @@ pub fn cover_noise(at: Vec2, pixel_m: f32) -> f32 {
 }
 
 fn step(value: f32, [from, to]: [f32; 2]) -> f32 {
-    let part = ((value - from) / (to - from)).clamp(0.0, 1.0);
-    part * part * (3.0 - 2.0 * part)
+    value.smoothstep(from, to)
 }
 
 #[cfg(test)]

@@ -150,6 +150,18 @@ pub fn cut_away(mut polygon: Vec<DVec2>, window: &[DVec2], outside: &mut Vec<Vec
     }
 }
 
+/// The X at which the edges of a polygon's `rings` cross the level line at `y`, from west to east: inside is from each
+/// first to each second.
+pub fn crossings<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>, y: f64) -> Vec<f64> {
+    let crossed = |(from, to): (DVec2, DVec2)| {
+        let crosses = (from.y > y) != (to.y > y);
+        crosses.then(|| from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y))
+    };
+    let mut crossings: Vec<f64> = rings.into_iter().flat_map(edges).filter_map(crossed).collect();
+    crossings.sort_by(f64::total_cmp);
+    crossings
+}
+
 /// The middle of the widest span inside a polygon's `rings` and `rect` along three level lines, and the width of that span;
 /// `None` where none of them meets the polygon. A place for a name: inside, and away from the outline to either side.
 pub fn inner_point<'a>(
@@ -164,12 +176,7 @@ pub fn inner_point<'a>(
     // The middle first: of equal spans the first counts.
     let spans = [0.5, 0.25, 0.75].into_iter().filter_map(|share| {
         let y = part.min.y + part.size().y * share;
-        let crossed = |(from, to): (DVec2, DVec2)| {
-            let crosses = (from.y > y) != (to.y > y);
-            crosses.then(|| from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y))
-        };
-        let mut crossings: Vec<f64> = rings.clone().into_iter().flat_map(edges).filter_map(crossed).collect();
-        crossings.sort_by(f64::total_cmp);
+        let crossings = crossings(rings.clone(), y);
         let clipped = |pair: &[f64]| (pair[0].max(part.min.x), pair[1].min(part.max.x));
         let spans = crossings.chunks_exact(2).map(clipped).filter(|(west, east)| west < east);
         let widest = spans.reduce(|best, next| if next.1 - next.0 > best.1 - best.0 { next } else { best });

@@ -1,5 +1,7 @@
 //! A texture of wooden boards; the same pixels on every machine, and without a seam where it repeats.
 
+use glam::FloatExt;
+
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 use crate::scene::scatter::chance::Chance;
@@ -42,7 +44,7 @@ fn fiber(x: u32, y: u32, columns: u32, rows: u32) -> f32 {
     let cell = |at: u32, count: u32| {
         let size = SIZE / count;
         let part = (at % size) as f32 / size as f32;
-        (at / size % count, part * part * (3.0 - 2.0 * part))
+        (at / size % count, part.smoothstep(0.0, 1.0))
     };
     let ((column, u), (row, v)) = (cell(x, columns), cell(y, rows));
     let at = |right: u32, down: u32| random(columns, (column + right) % columns, (row + down) % rows);

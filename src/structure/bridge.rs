@@ -15,7 +15,7 @@
 //! as they are drawn, on which all that is built keeps its own height. A road may be drawn much wider than any is, to be
 //! seen on a small picture; then what is built for it is magnified as well.
 
-use glam::{DVec2, Vec2, Vec3};
+use glam::{DVec2, FloatExt, Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::DrawMesh;
@@ -189,8 +189,7 @@ pub fn sections(
         for section in &mut sections {
             let from_end = (section.station_m - if index == 0 { 0.0 } else { length_m }).abs();
             // Smooth at both ends.
-            let part = (1.0 - from_end / fade_m).clamp(0.0, 1.0);
-            let share = part * part * (3.0 - 2.0 * part);
+            let share = (1.0 - from_end / fade_m).smoothstep(0.0, 1.0);
             for (edge_m, tilt_m) in section.edges_m.iter_mut().zip(tilt) {
                 *edge_m += tilt_m * share;
             }

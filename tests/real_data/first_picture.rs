@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use sandtable::draw::color::Srgba;
+use sandtable::draw::color::{Srgba, luminance};
 use sandtable::draw::pixels::Pixels;
 use sandtable::pipeline::new_scene::{self, NewSceneOptions};
 use sandtable::pipeline::picture::{PictureSize, annotate_view, draw_view};
@@ -88,7 +88,7 @@ fn least_contrast(bare: &Pixels, annotated: &Pixels) -> Option<f32> {
     /// How far letters' surroundings are looked at, pixels: as far as half a bold stroke and its halo.
     const NEAR: u32 = 3;
     let (width, height) = (bare.width(), bare.height());
-    let light = |x: u32, y: u32| annotated.at(x, y).linear().dot(glam::Vec3::new(0.2126, 0.7152, 0.0722));
+    let light = |x: u32, y: u32| luminance(annotated.at(x, y).linear());
     let mut least: Option<f32> = None;
     for y in NEAR..height - NEAR {
         for x in NEAR..width - NEAR {

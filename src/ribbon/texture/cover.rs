@@ -3,6 +3,8 @@
 //! Every texture holds a whole number of its figures (crowns, rows, houses) to a side, and looks for figures across its
 //! edges, so no seam shows. Colors stay near their mean: from afar, where a texture is a pixel, an area is an even tint.
 
+use glam::FloatExt;
+
 use crate::description::words::Cover;
 use crate::draw::color::Srgba;
 use crate::ribbon::texture::{grain, shade};
@@ -52,7 +54,7 @@ pub(super) fn edge_texel(cover: Cover, u: f32, v: f32, grain: f32) -> Srgba {
     let inward = (2.0 * u - 1.0).abs();
     let across = (u * (2.0 * EDGE_M / cover_length_m(cover)) as f32).fract();
     let Srgba([red, green, blue, alpha]) = texel(cover, across, v, grain);
-    let share = inward * inward * (3.0 - 2.0 * inward);
+    let share = inward.smoothstep(0.0, 1.0);
     Srgba([red, green, blue, (f32::from(alpha) * share + 0.5) as u8])
 }
 
@@ -229,8 +231,7 @@ fn crown(u: f32, v: f32, count: u32, (least, most): (f32, f32), seed: u32) -> Op
 fn noise(u: f32, v: f32, count: u32, seed: u32) -> f32 {
     let [x, y] = [u, v].map(|at| at * count as f32);
     let (column, row) = (x as u32, y as u32);
-    let smooth = |t: f32| t * t * (3.0 - 2.0 * t);
-    let (s, t) = (smooth(x.fract()), smooth(y.fract()));
+    let (s, t) = (x.fract().smoothstep(0.0, 1.0), y.fract().smoothstep(0.0, 1.0));
     let corner = |east: u32, south: u32| hashed((column + east) % count, (row + south) % count, seed);
     let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
     mix(mix(corner(0, 0), corner(1, 0), s), mix(corner(0, 1), corner(1, 1), s), t)

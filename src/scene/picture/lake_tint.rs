@@ -82,13 +82,7 @@ impl LakeOutline<'_> {
 
     /// Whether the middles of a row of cells lie in the lake, by the crossings of its outline to the west of each.
     fn row(&self, north: f64, west: f64, step_m: f64, columns: u32) -> Vec<bool> {
-        let edges = self.rings.iter().flat_map(|ring| polygon::edges(ring));
-        let crossing = |(from, to): (DVec2, DVec2)| {
-            ((from.y > north) != (to.y > north))
-                .then(|| from.x + (to.x - from.x) * (north - from.y) / (to.y - from.y))
-        };
-        let mut crossings: Vec<f64> = edges.filter_map(crossing).collect();
-        crossings.sort_by(f64::total_cmp);
+        let crossings = polygon::crossings(self.rings.iter().copied(), north);
         let is_in = |column: u32| {
             let middle = west + (f64::from(column) + 0.5) * step_m;
             crossings.partition_point(|&crossing| crossing < middle) % 2 == 1

@@ -14,7 +14,6 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
-use crate::description::words::Join;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::earthworks::alignment::{Alignment, Support, Width};
 use crate::geom::polyline::Polyline;
@@ -57,9 +56,6 @@ const DASH_PX: [f64; 2] = [7.0, 4.0];
 
 /// How many times as wide as it is a line is drawn where nothing but a symbol is left of it.
 const ALL_SYMBOL: f64 = 2.5;
-
-/// How symbols are stroked.
-const OPTIONS: StrokeOptions = StrokeOptions { join: Join::Miter, miter_limit: 2.0, texture_length_m: 12.0 };
 
 /// Sides of a round end.
 const CAP_SIDES: u32 = 4;
@@ -456,18 +452,19 @@ fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
 }
 
 /// Strokes a part of a run of vertices, its ends round; the casing of a mouth is open toward the water.
-/// Strokes the part of a symbol along a run; U says how much of a symbol each place is, see
+/// Strokes the part of a symbol along a run; U of a fill says how much of a symbol each place is, see
 /// [`SymbolVertex::symbolic_share`].
 fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
+    let options = StrokeOptions::default();
     let first = plan.vertices.len();
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
-    let width = |vertex: &SymbolVertex| match part {
-        SymbolPart::Casing => vertex.casing_m,
-        SymbolPart::Fill => vertex.drawn_m,
+    let along =
+        |of: fn(&SymbolVertex) -> f64| Profile::new(line.stations().to_vec(), run.iter().map(of).collect());
+    let (widths, shares) = match part {
+        SymbolPart::Casing => (along(|vertex| vertex.casing_m), None),
+        SymbolPart::Fill => (along(|vertex| vertex.drawn_m), along(SymbolVertex::symbolic_share)),
     };
-    let Some(widths) = Profile::new(line.stations().to_vec(), run.iter().map(width).collect()) else {
-        return;
-    };
+    let Some(widths) = widths else { return };
     let points = line.points();
     let last = points.len() - 1;
     for [end, inner] in [[0, 1], [last, last - 1]] {
@@ -475,22 +472,22 @@ fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
             continue;
         }
         let outward = (points[end] - points[inner]).normalize_or_zero();
-        cap(points[end], outward * widths.values()[end] / 2.0, line.stations()[end], plan);
+        let lengths = line.stations()[end] / options.texture_length_m;
+        cap(points[end], outward * widths.values()[end] / 2.0, lengths, plan);
     }
-    let shares = run.iter().map(SymbolVertex::symbolic_share).collect();
-    let shares = Profile::new(line.stations().to_vec(), shares);
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
-    stroke(&StrokePath::alone(&alignment), &OPTIONS, plan);
+    stroke(&StrokePath::alone(&alignment), &options, plan);
     let Some(shares) = shares else { return };
     for vertex in &mut plan.vertices[first..] {
-        let station_m = f64::from(vertex.uv.y) * OPTIONS.texture_length_m;
+        let station_m = f64::from(vertex.uv.y) * options.texture_length_m;
         vertex.uv = Vec2::new(shares.at(station_m) as f32, 0.5);
     }
 }
 
-/// Half a disc about a line's end at `station_m`, on the side of `outward`, which is as long as its radius.
-fn cap(center: DVec2, outward: DVec2, station_m: f64, plan: &mut PlanMesh) {
-    let uv = Vec2::new(0.0, (station_m / OPTIONS.texture_length_m) as f32);
+/// Half a disc about a line's end, `lengths` of the texture along it, on the side of `outward`, which is as long as its
+/// radius.
+fn cap(center: DVec2, outward: DVec2, lengths: f64, plan: &mut PlanMesh) {
+    let uv = Vec2::new(0.0, lengths as f32);
     let mut vertex = |at: DVec2| plan.vertex(PlanVertex { at, uv });
     let middle = vertex(center);
     let corner = |index: u32| {

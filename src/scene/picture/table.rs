@@ -3,7 +3,7 @@
 //! Paper and plain ground are one sheet with the shadow in its texture; it is full under and around the block and ends
 //! gradually in the backdrop. Boards have an edge, and the shadow lies over them as a sheet of its own.
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, FloatExt, Vec3};
 
 use crate::description::words::TableTop;
 use crate::draw::color::Srgba;
@@ -100,8 +100,7 @@ fn shadowed(scene: &SceneModel, to_sun: Vec3, rect: &Rect, top: Option<Vec3>, fu
         let part = DVec2::new(f64::from(x), f64::from(TEXELS - 1 - y)) / f64::from(TEXELS - 1);
         let at = rect.min + part * rect.size();
         let off = (block.min - at).max(at - block.max).max(DVec2::ZERO).length() / margin;
-        let left = (1.0 - off).clamp(0.0, 1.0) as f32;
-        let full = left * left * (3.0 - 2.0 * left);
+        let full = ((1.0 - off) as f32).smoothstep(0.0, 1.0);
         let shade = shades[(y * TEXELS + x) as usize] * full;
         let (sheet, under) = (if top.is_some() { full } else { 0.0 }, 1.0 - shade);
         let alpha = 1.0 - (1.0 - sheet) * under;
