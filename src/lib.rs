@@ -99,6 +99,7 @@ cfg_if::cfg_if! {
         pub mod roam;
         pub mod scene;
         pub mod structure;
+        pub mod symbology;
         pub mod terrain;
         pub mod vector;
         pub mod view;
@@ -121,6 +122,7 @@ cfg_if::cfg_if! {
         mod roam;
         mod scene;
         mod structure;
+        mod symbology;
         mod terrain;
         mod vector;
         mod view;

@@ -1,0 +1,1 @@
+//! Military symbols and tactical graphics: their codes, and how they are drawn in the plane.
