@@ -28,6 +28,7 @@ pub mod new_scene;
 pub mod picture;
 pub mod picture_statistics;
 pub mod positions;
+pub mod print_model;
 pub mod profile;
 pub mod raster_file;
 pub mod rim;
