@@ -26,6 +26,7 @@ pub mod lod;
 pub mod model_file;
 pub mod new_scene;
 pub mod picture;
+pub mod picture_buffers;
 pub mod picture_statistics;
 pub mod positions;
 pub mod print_model;
