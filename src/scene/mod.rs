@@ -81,6 +81,8 @@ pub struct SceneModel {
     pub title: Option<String>,
     /// A second line under it.
     pub subtitle: Option<String>,
+    /// The phase that it shows; `None` where it has none.
+    pub phase: Option<String>,
     /// The map coordinates' system.
     pub crs: Crs,
     /// The elevations of the ground, true to scale.

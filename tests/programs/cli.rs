@@ -15,6 +15,7 @@ mod prints;
 mod profile;
 mod report;
 mod schema;
+mod series;
 mod serve;
 mod viewshed;
 mod wrong_scenes;
