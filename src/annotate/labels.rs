@@ -5,6 +5,7 @@ use glam::Vec2;
 use crate::annotate::annotation::PictureLabel;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
+use crate::annotate::fonts::FontCut;
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, TextAlignment, place};
@@ -25,8 +26,6 @@ const WIDEST_SHARE: f32 = 0.33;
 const LONGEST_LEADER_SHARE: f32 = 0.26;
 /// From baseline to baseline, in ems of the lower line.
 const LEADING: f32 = 1.16;
-/// Tangent of the lean of water names, about 12 degrees.
-const WATER_SLANT: f32 = 0.21;
 
 /// Draws the labels that are visible and find a free place beside `furniture`; reports the outcome of each.
 pub fn draw_labels(
@@ -257,20 +256,20 @@ struct LabelStyle {
 impl LabelStyle {
     fn new(kind: LabelKind, composer: &Composer) -> Self {
         let sheet = composer.sheet;
-        let (size, weight, symbol, leader) = match kind {
-            LabelKind::Summit => (20.0, TextStyle::BOLD, 6.0, 44.0),
-            LabelKind::Place => (19.0, TextStyle::BOLD, 4.5, 34.0),
-            LabelKind::Water => (19.0, TextStyle::MEDIUM, 3.0, 34.0),
-            LabelKind::Point => (16.5, TextStyle::MEDIUM, 3.2, 26.0),
+        let (size, cut, symbol, leader) = match kind {
+            LabelKind::Summit => (20.0, FontCut::Bold, 6.0, 44.0),
+            LabelKind::Place => (19.0, FontCut::Bold, 4.5, 34.0),
+            LabelKind::Water => (19.0, FontCut::Italic, 3.0, 34.0),
+            LabelKind::Point => (16.5, FontCut::Medium, 3.2, 26.0),
         };
-        let (slant, tracking, ink, note_ink) = match kind {
-            LabelKind::Water => (WATER_SLANT, 0.06, WATER_INK, WATER_INK),
-            _ => (0.0, 0.0, INK, SOFT_INK),
+        let (note_cut, tracking, ink, note_ink) = match kind {
+            LabelKind::Water => (FontCut::Italic, 0.06, WATER_INK, WATER_INK),
+            _ => (FontCut::Medium, 0.0, INK, SOFT_INK),
         };
-        let leaning = |style: TextStyle| TextStyle { slant, tracking, ..style };
+        let tracked = |style: TextStyle| TextStyle { tracking, ..style };
         Self {
-            name: leaning(composer.style(size, weight)),
-            note: leaning(composer.style(size * 0.8, TextStyle::MEDIUM)),
+            name: tracked(composer.style(size, cut)),
+            note: tracked(composer.style(size * 0.8, note_cut)),
             ink,
             note_ink,
             halo: sheet.px(2.2).max(1.5),

@@ -21,6 +21,7 @@ mod composer;
 pub mod cover;
 mod credit;
 mod drawing;
+mod fonts;
 mod labels;
 pub mod legend;
 pub mod map;

@@ -1,20 +1,14 @@
 //! Typesetting: converts a line of text to one outline, in the fonts embedded in the program.
 //!
 //! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the outlines, and the
-//! result is one path whose baseline starts at the origin. The font is Ubuntu Light; Hack provides characters that it
-//! lacks (arrows, primes). Both are part of `epaint_default_fonts`. The machine's own fonts are never used: a picture
-//! must not depend on the machine. Characters that neither font has appear as boxes and are counted.
-//!
-//! A light font is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same color, which
-//! gives the weight of a regular or medium font without a second font.
-
-use std::sync::Arc;
+//! result is one path whose baseline starts at the origin. Characters that the embedded fonts lack come from the font
+//! that the scene names. The machine's own fonts are never used: a picture must not depend on the machine. Characters
+//! that no font has appear as boxes and are counted.
 
 use glam::Vec2;
 use parley::GlyphRun;
-use parley::fontique::{Blob, Collection, FontInfoOverride};
 use parley::layout::{Layout, PositionedLayoutItem};
-use parley::style::{FontFamily, FontFamilyName, StyleProperty};
+use parley::style::StyleProperty;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -22,43 +16,38 @@ use tiny_skia::{Path, PathBuilder};
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, box_of};
+use crate::annotate::fonts::FontCut;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::HALO;
 use crate::draw::color::Srgba;
 
 /// Height of capitals and figures above the baseline, in ems of the embedded font.
-pub const CAP_HEIGHT: f32 = 0.693;
+pub const CAP_HEIGHT: f32 = 0.714;
 /// Depth of letters below the baseline, in ems of the embedded font.
-pub const DESCENT: f32 = 0.189;
+pub const DESCENT: f32 = 0.24;
 
 /// Longer lines are cut before they are shaped, which bounds the time of shaping: no picture has room for more.
 const MOST_CHARACTERS: usize = 300;
-
-const FONT: &str = "sandtable sheet";
-const FALLBACK_FONT: &str = "sandtable signs";
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextStyle {
     /// Height of the em in pixels.
     pub size_px: f32,
-    /// Lean to the right: the tangent of the angle. 0 is upright.
-    pub slant: f32,
-    /// Width of the stroke that strengthens the letters, in ems.
-    pub weight: f32,
+    pub cut: FontCut,
     /// Space added between letters, in ems.
     pub tracking: f32,
 }
 
 impl TextStyle {
-    /// The weight of running text on a panel.
-    pub const REGULAR: f32 = 0.03;
-    /// The weight of titles, and of text on the picture itself, where halos thin the letters.
-    pub const MEDIUM: f32 = 0.055;
-    /// The weight of names on the picture.
-    pub const BOLD: f32 = 0.08;
+    /// Running text on a panel.
+    pub const REGULAR: FontCut = FontCut::Regular;
+    /// Headings, and text on the picture itself, where halos thin the letters.
+    pub const MEDIUM: FontCut = FontCut::Medium;
+    /// Titles, and names on the picture.
+    pub const BOLD: FontCut = FontCut::Bold;
 
-    pub fn upright(size_px: f32, weight: f32) -> Self {
-        Self { size_px, slant: 0.0, weight, tracking: 0.0 }
+    pub const fn new(size_px: f32, cut: FontCut) -> Self {
+        Self { size_px, cut, tracking: 0.0 }
     }
 
     /// Height of capitals above the baseline, in pixels.
@@ -66,18 +55,13 @@ impl TextStyle {
         self.size_px * CAP_HEIGHT
     }
 
-    fn stroke_px(&self) -> f32 {
-        self.weight * self.size_px
-    }
-
-    /// Space between letters in pixels: the tracking, the space that the stroke takes, and a little more for small
-    /// type, whose letters would otherwise run together.
+    /// Space between letters in pixels: the tracking, and a little more for small type, whose letters would otherwise run
+    /// together.
     fn tracking_px(&self) -> f32 {
         /// Larger type needs no extra space, in pixels.
         const SMALL_PX: f32 = 13.0;
-        let stroke = self.weight * 0.5;
-        let small = (SMALL_PX - self.size_px).max(0.0) * 0.007;
-        (self.tracking + stroke + small) * self.size_px
+        let small = (SMALL_PX - self.size_px).max(0.0) * 0.005;
+        (self.tracking + small) * self.size_px
     }
 }
 
@@ -100,7 +84,7 @@ impl Composer {
         let text: String =
             text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
         let layout = self.shape(&text, style);
-        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: style.slant };
+        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO };
         let (mut missing, mut advance) = (0, 0.0f32);
         for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
             if let PositionedLayoutItem::GlyphRun(run) = item {
@@ -112,9 +96,8 @@ impl Composer {
     }
 
     fn shape(&mut self, text: &str, style: TextStyle) -> Layout<()> {
-        let families = [FontFamilyName::named(FONT), FontFamilyName::named(FALLBACK_FONT)];
         let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
-        builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
+        builder.push_default(StyleProperty::FontFamily(style.cut.families()));
         builder.push_default(StyleProperty::FontSize(style.size_px));
         builder.push_default(StyleProperty::LetterSpacing(style.tracking_px()));
         let mut layout = builder.build(text);
@@ -127,8 +110,7 @@ impl TypesetLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
     pub fn bounds(&self, halo: f32) -> PixelBox {
-        let around = halo.max(self.style.stroke_px() * 0.5);
-        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(around))
+        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(halo))
     }
 
     fn outline_at(&self, at: Vec2) -> Option<Path> {
@@ -138,12 +120,9 @@ impl TypesetLine {
 
 impl Drawing {
     pub fn write(&mut self, line: &TypesetLine, at: Vec2, color: Srgba) {
-        let Some(path) = line.outline_at(at) else { return };
-        let stroke = line.style.stroke_px();
-        if stroke > 0.0 {
-            self.stroke(&path, stroke, color);
+        if let Some(path) = line.outline_at(at) {
+            self.fill(path, color);
         }
-        self.fill(path, color);
     }
 
     /// Writes a line on a halo reaching `reach` pixels around its letters.
@@ -162,15 +141,6 @@ impl Drawing {
         if let Some(all) = all.finish() {
             self.stroke(&all, reach * 2.0, HALO);
         }
-    }
-}
-
-pub fn register_fonts(collection: &mut Collection) {
-    for (font, name) in
-        [(epaint_default_fonts::UBUNTU_LIGHT, FONT), (epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT)]
-    {
-        let naming = FontInfoOverride { family_name: Some(name), ..FontInfoOverride::default() };
-        collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
     }
 }
 
@@ -196,12 +166,11 @@ fn draw_run(run: &GlyphRun<'_, ()>, outliner: &mut Outliner) -> usize {
 struct Outliner {
     path: PathBuilder,
     at: Vec2,
-    slant: f32,
 }
 
 impl Outliner {
     fn map(&self, x: f32, y: f32) -> Vec2 {
-        self.at + Vec2::new(x + self.slant * y, -y)
+        self.at + Vec2::new(x, -y)
     }
 }
 
@@ -236,7 +205,7 @@ mod tests {
     use super::*;
 
     fn set(text: &str) -> TypesetLine {
-        Composer::new(100, 100).line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
+        Composer::new(100, 100).line(text, TextStyle::new(20.0, FontCut::Regular))
     }
 
     #[test]
@@ -282,10 +251,30 @@ mod tests {
     }
 
     #[test]
-    fn slanted_type_leans_right() {
-        let style = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
-        let lean = box_of(&Composer::new(100, 100).line("I", style).outline.expect("a letter"));
-        let upright = box_of(&set("I").outline.expect("a letter"));
-        assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);
+    fn figures_are_of_one_width_in_every_cut() {
+        use FontCut::{Bold, Condensed, Italic, Medium, Regular};
+        for cut in [Regular, Medium, Bold, Italic, Condensed] {
+            let width = |text: &str| {
+                let line = Composer::new(100, 100).line(text, TextStyle::new(20.0, cut));
+                assert_eq!(line.missing, 0, "{cut:?}");
+                line.advance
+            };
+            for figure in '0'..='9' {
+                // A unit of the em, as rounding leaves it.
+                assert!((width(&figure.to_string()) - width("0")).abs() < 0.021, "{cut:?} {figure}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_cuts_are_five_different_drawings_and_kern_their_letters() {
+        let width = |text: &str, cut| Composer::new(9, 9).line(text, TextStyle::new(20.0, cut)).advance;
+        let [light, medium, bold, condensed] =
+            [FontCut::Regular, FontCut::Medium, FontCut::Bold, FontCut::Condensed]
+                .map(|cut| width("Hamburg", cut));
+        assert!(condensed < light && light < medium && medium < bold, "{condensed} {light} {medium} {bold}");
+        for cut in [FontCut::Regular, FontCut::Italic, FontCut::Condensed] {
+            assert!(width("To", cut) < width("T", cut) + width("o", cut) - 1.0, "{cut:?}");
+        }
     }
 }
