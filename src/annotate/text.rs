@@ -77,13 +77,31 @@ pub struct TypesetLine {
     pub style: TextStyle,
 }
 
+/// A letter with its accents, or letters that are one glyph.
+#[derive(Clone, Debug)]
+pub struct TypesetLetter {
+    /// Its outline, from the middle of its advance on the baseline; `None` for a space.
+    pub outline: Option<Path>,
+    /// The middle of its advance, from the start of the line, in pixels.
+    pub middle: f32,
+    pub advance: f32,
+}
+
+/// A line of text as letters from left to right, to be set along a curve.
+#[derive(Clone, Debug)]
+pub struct TypesetLetters {
+    pub letters: Vec<TypesetLetter>,
+    /// Width along the baseline, in pixels.
+    pub advance: f32,
+    /// Characters that the fonts lack; each shows as a box.
+    pub missing: usize,
+}
+
 impl Composer {
     /// `text` as one line. Line ends and other control characters become spaces; text is cut after 300 characters.
     pub fn line(&mut self, text: &str, style: TextStyle) -> TypesetLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
-        let text: String =
-            text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let layout = self.shape(&text, style);
+        let layout = self.shape(&printable(text), style);
         let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO };
         let (mut missing, mut advance) = (0, 0.0f32);
         for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
@@ -93,6 +111,20 @@ impl Composer {
             }
         }
         TypesetLine { outline: outliner.path.finish(), advance, missing, shortened, style }
+    }
+
+    /// The letters of `text` on one line. Line ends and other control characters become spaces; text is cut after 300
+    /// characters.
+    pub fn letters(&mut self, text: &str, style: TextStyle) -> TypesetLetters {
+        let layout = self.shape(&printable(text), style);
+        let mut set = TypesetLetters { letters: Vec::new(), advance: 0.0, missing: 0 };
+        for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
+            if let PositionedLayoutItem::GlyphRun(run) = item {
+                set.missing += add_letters(&run, &mut set.letters);
+                set.advance = set.advance.max(run.offset() + run.advance());
+            }
+        }
+        set
     }
 
     fn shape(&mut self, text: &str, style: TextStyle) -> Layout<()> {
@@ -142,6 +174,56 @@ impl Drawing {
             self.stroke(&all, reach * 2.0, HALO);
         }
     }
+}
+
+/// The first characters of `text`, control characters as spaces.
+fn printable(text: &str) -> String {
+    text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// Adds the letters of `run` from left to right; returns the number of glyphs that the font lacks. A glyph without
+/// advance, an accent, belongs to the letter on whose origin it stands: the one before it in a line from left to right,
+/// the one after it in a line from right to left.
+fn add_letters(run: &GlyphRun<'_, ()>, letters: &mut Vec<TypesetLetter>) -> usize {
+    let font = run.run().font();
+    let Ok(tables) = FontRef::from_index(font.data.data(), font.index) else { return 0 };
+    let outlines = tables.outline_glyphs();
+    let size = Size::new(run.run().font_size());
+    let is_rtl = run.run().is_rtl();
+    let glyphs: Vec<_> = run.glyphs().collect();
+    let (mut missing, mut pen, mut next) = (0, run.offset(), 0);
+    while next < glyphs.len() {
+        let is_accent = |index: usize| glyphs.get(index).is_some_and(|glyph| glyph.advance.abs() < 1e-3);
+        // The glyphs of one letter: one with an advance, and the accents before or after it.
+        let mut end = next;
+        if is_rtl {
+            while is_accent(end) && end + 1 < glyphs.len() {
+                end += 1;
+            }
+            end += 1;
+        } else {
+            end += 1;
+            while is_accent(end) {
+                end += 1;
+            }
+        }
+        let advance: f32 = glyphs[next..end].iter().map(|glyph| glyph.advance).sum();
+        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO };
+        let mut x = -0.5 * advance;
+        for glyph in &glyphs[next..end] {
+            missing += usize::from(glyph.id == 0);
+            outliner.at = Vec2::new(x + glyph.x, glyph.y);
+            if let Some(outline) = outlines.get(GlyphId::new(glyph.id)) {
+                // As in `draw_run`: a broken outline leaves a gap.
+                let _ = outline.draw(DrawSettings::unhinted(size, LocationRef::default()), &mut outliner);
+            }
+            x += glyph.advance;
+        }
+        letters.push(TypesetLetter { outline: outliner.path.finish(), middle: pen + 0.5 * advance, advance });
+        pen += advance;
+        next = end;
+    }
+    missing
 }
 
 /// Adds the outlines of `run`, relative to its baseline; returns the number of glyphs that the font lacks.
@@ -248,6 +330,24 @@ mod tests {
     fn endless_text_is_cut() {
         let line = set(&"m".repeat(100_000));
         assert!(line.shortened && line.advance < 300.0 * 20.0);
+    }
+
+    #[test]
+    fn the_letters_of_a_line_are_the_line() {
+        for text in ["Clear Fork", "Žďa\u{301}r", "Όλυμπος 2918 m"] {
+            let mut composer = Composer::new(100, 100);
+            let style = TextStyle::new(20.0, FontCut::Italic);
+            let line = composer.line(text, style);
+            let letters = composer.letters(text, style);
+            assert!((line.advance - letters.advance).abs() < 1e-3);
+            let put = |letter: &TypesetLetter| {
+                let shift = tiny_skia::Transform::from_translate(letter.middle, 0.0);
+                Some(box_of(&letter.outline.clone()?.transform(shift)?))
+            };
+            let all = letters.letters.iter().filter_map(put).fold(PixelBox::EMPTY, PixelBox::union);
+            let whole = box_of(&line.outline.expect("letters"));
+            assert!((all.min - whole.min).length() + (all.max - whole.max).length() < 0.01, "{text}");
+        }
     }
 
     #[test]

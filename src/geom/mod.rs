@@ -20,6 +20,7 @@ pub mod rect_tree;
 pub mod region;
 pub mod segment;
 pub mod simplify;
+pub mod smooth;
 pub mod spline;
 pub mod sun_position;
 pub mod triangle;
