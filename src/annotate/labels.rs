@@ -328,16 +328,6 @@ mod tests {
     }
 
     #[test]
-    fn a_leader_goes_up_whatever_the_top_says() {
-        for top in [Vec2::new(400.0, 900.0), Vec2::new(900.0, 499.0), Vec2::NAN, Vec2::new(400.0, 500.0)] {
-            let odd = PictureLabel { top_px: Some(top), ..label("odd", 400.0, 500.0) };
-            assert_eq!(reach(&odd, 40.0, 250.0), Vec2::new(0.0, -40.0), "{top}");
-        }
-        let long = PictureLabel { top_px: Some(Vec2::new(400.0, -9000.0)), ..label("long", 400.0, 500.0) };
-        assert!((reach(&long, 40.0, 250.0) - Vec2::new(0.0, -250.0)).length() < 0.01);
-    }
-
-    #[test]
     fn what_is_drawn_stays_inside_the_picture() {
         let labels: Vec<_> =
             (0..60).map(|n| label("At the border", 33.0 * n as f32, 18.5 * n as f32)).collect();

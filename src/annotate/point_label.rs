@@ -147,3 +147,32 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
     }
     PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn label(text: &str, x: f32, y: f32) -> PictureLabel {
+        let anchor_px = Vec2::new(x, y);
+        let text = text.to_owned();
+        PictureLabel {
+            text,
+            anchor_px,
+            top_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            kind: LabelKind::Place,
+            rank: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_leader_goes_up_whatever_the_top_says() {
+        for top in [Vec2::new(400.0, 900.0), Vec2::new(900.0, 499.0), Vec2::NAN, Vec2::new(400.0, 500.0)] {
+            let odd = PictureLabel { top_px: Some(top), ..label("odd", 400.0, 500.0) };
+            assert_eq!(reach(&odd, 40.0, 250.0), Vec2::new(0.0, -40.0), "{top}");
+        }
+        let long = PictureLabel { top_px: Some(Vec2::new(400.0, -9000.0)), ..label("long", 400.0, 500.0) };
+        assert!((reach(&long, 40.0, 250.0) - Vec2::new(0.0, -250.0)).length() < 0.01);
+    }
+}

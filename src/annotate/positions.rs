@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn the_first_candidate_is_centered_over_the_leaders_wished_end() {
-        let first = metrics().positions()[0];
+        let first = &metrics().positions()[0];
         let end = metrics().anchor + metrics().reach;
         assert!((first.text.center().x - end.x).abs() <= 0.5);
         assert!((first.text.max.y + 3.0 - end.y).abs() <= 0.5);
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = LabelMetrics { may_lie_on_place: true, ..metrics() }.positions()[0];
+        let first = &LabelMetrics { may_lie_on_place: true, ..metrics() }.positions()[0];
         assert!((first.text.center() - metrics().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }
