@@ -19,6 +19,7 @@ pub mod chart_ground;
 pub mod chart_profile;
 pub mod chart_sight;
 mod composer;
+pub mod contact_sheet;
 pub mod cover;
 mod credit;
 mod drawing;

@@ -22,6 +22,7 @@ mod pick;
 mod profile;
 mod progress;
 mod render;
+mod render_series;
 mod report;
 mod schema;
 mod serve;
