@@ -6,6 +6,7 @@
 use glam::Vec2;
 
 use crate::annotate::cover::SceneCover;
+use crate::annotate::grid::PictureGrid;
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
@@ -19,6 +20,8 @@ pub struct Annotations {
     pub labels: Vec<PictureLabel>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
     pub rim: Vec<RimMark>,
+    /// The coordinate grid on the ground, under everything else.
+    pub grid: Option<PictureGrid>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.

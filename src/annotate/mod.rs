@@ -21,6 +21,8 @@ mod composer;
 pub mod cover;
 mod credit;
 mod drawing;
+pub mod figure;
+pub mod grid;
 mod labels;
 pub mod legend;
 pub mod map;

@@ -11,7 +11,7 @@ use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
 use crate::annotate::sheet::Sheet;
-use crate::annotate::{credit, legend, north, rim, scale_bar, title};
+use crate::annotate::{credit, grid, legend, north, rim, scale_bar, title};
 use crate::draw::pixels::Pixels;
 
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
@@ -27,10 +27,14 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     let mut boxes: Vec<PixelBox> = furniture.pieces().map(Drawing::bounds).collect();
     let marks = rim::draw_marks(&annotations.rim, &boxes, &mut composer);
     boxes.extend(marks.iter().map(Drawing::bounds));
+    let grid = annotations.grid.as_ref();
+    let lines = grid.map(|grid| grid::draw_lines(grid, &composer));
+    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, &mut composer)).unwrap_or_default();
+    boxes.extend(figures.iter().map(Drawing::bounds));
     let mut report = AnnotationReport::default();
     furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
     let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
+    paint(pixels, lines.iter().chain(furniture.pieces()).chain(&marks).chain(&figures).chain([&labels]));
     report.left_out = furniture.left_out;
     report
 }
@@ -54,9 +58,10 @@ impl Furniture {
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
+        let note = annotations.grid.as_ref().and_then(|grid| grid.note.as_deref());
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
-            (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, composer))),
+            (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, note, composer))),
             (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
             (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
         ] {

@@ -50,7 +50,7 @@ use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
-use crate::description::words::{CameraProjection, HeightEncodingWord, LabelKind, TableTop};
+use crate::description::words::{CameraProjection, GridName, HeightEncodingWord, LabelKind, TableTop};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -286,7 +286,7 @@ table! {
     }
 
     /// `[furniture]`: what frames the picture.
-    #[derive(Copy, PartialEq, Eq)]
+    #[derive(PartialEq)]
     struct FurnitureTable {
         /// Whether the picture has its title and subtitle.
         title: bool = key::switch(), default true;
@@ -296,6 +296,18 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+        /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
+        grid: GridName = key::word::<GridName>(), default "none";
+        /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
+        /// lines. One line in 10, 5 or 2 is drawn heavier.
+        grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
+            otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
+    }
+    check(reader) {
+        if grid.unwrap_or_default() == GridName::None {
+            let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
+            reader.without_effect(&["grid_interval"], "without a `grid`", help);
+        }
     }
 }
 

@@ -8,6 +8,7 @@ pub mod datum_shift;
 pub mod distance_field;
 pub mod geodesic;
 pub mod leg_tree;
+pub mod mgrs;
 pub mod morton;
 pub mod offset;
 pub mod polygon;

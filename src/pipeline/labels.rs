@@ -9,6 +9,7 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::grid::{grid_over, picture_grid};
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::{SceneLabel, SceneModel};
@@ -16,10 +17,12 @@ use crate::view::camera::Camera;
 
 /// The annotations of a picture: labels with their positions on it, and furniture.
 pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Annotations {
-    let furniture = scene.furniture;
+    let furniture = &scene.furniture;
+    let grid = grid_over(scene, camera, picture);
     Annotations {
         labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
-        rim: rim_marks(scene, camera),
+        rim: rim_marks(scene, camera, grid.as_ref()),
+        grid: grid.map(|grid| picture_grid(&grid, scene, camera, picture)),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
         north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),

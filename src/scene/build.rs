@@ -128,7 +128,7 @@ pub fn build(
         placements: placed.placements,
         labels,
         cameras,
-        furniture: document.furniture,
+        furniture: document.furniture.clone(),
         features: collected.features,
         notes: collected.notes,
         report: collected.report,
