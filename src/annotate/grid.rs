@@ -25,6 +25,8 @@ const LINE_EDGE: Srgba = Srgba([0xfd, 0xfc, 0xf9, 0x50]);
 const AT_BORDER: f32 = 1.5;
 /// From the border of the picture to a number, in design pixels.
 const INSET: f32 = 6.0;
+/// How far beside the picture numbers may reach, in design pixels: to the next part of a page.
+const BESIDE: f32 = 44.0;
 /// The size of the letters of a square, in design pixels.
 const SQUARE: f32 = 34.0;
 const SQUARE_INK: Srgba = Srgba([0x1e, 0x23, 0x27, 0xc0]);
@@ -117,18 +119,30 @@ impl PictureSide {
     }
 }
 
+/// Where the numbers of lines stand that leave the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::annotate) enum FigurePlace {
+    /// On the picture, inside its border.
+    Inside,
+    /// Beside the picture, on the margin.
+    Outside,
+}
+
 /// The numbers of the lines where they leave the picture, and the letters of squares: those that find a place off
 /// `taken` and off each other. The first of each axis on a side has its number in full.
 pub(in crate::annotate) fn draw_figures(
     grid: &PictureGrid,
     taken: &[PixelBox],
+    place: FigurePlace,
     composer: &mut Composer,
 ) -> Vec<Drawing> {
     let sheet = composer.sheet;
+    let beside = if place == FigurePlace::Outside { sheet.px(BESIDE) } else { 0.0 };
+    let within = sheet.bounds().grown(beside);
     let mut drawn: Vec<Drawing> = Vec::new();
     let keep = |drawing: Drawing, drawn: &mut Vec<Drawing>| {
         let spaced = drawing.bounds().grown(sheet.px(6.0));
-        let is_free = sheet.bounds().holds(&drawing.bounds())
+        let is_free = within.holds(&drawing.bounds())
             && !taken.iter().any(|other| other.overlaps(&spaced))
             && !drawn.iter().any(|other| other.bounds().overlaps(&spaced));
         if is_free {
@@ -144,7 +158,7 @@ pub(in crate::annotate) fn draw_figures(
                 let Some(side) = PictureSide::of(end, sheet.size) else { continue };
                 let is_first = !begun.contains(&(side, line.axis));
                 let figure = if is_first { &line.full } else { &line.figure };
-                if keep(number(figure, end, side, composer), &mut drawn) && is_first {
+                if keep(number(figure, end, (side, place), composer), &mut drawn) && is_first {
                     begun.push((side, line.axis));
                 }
             }
@@ -163,11 +177,17 @@ pub(in crate::annotate) fn draw_figures(
 }
 
 /// A number inside the border, its middle on the line's end.
-fn number(figure: &CoordinateFigure, end: Vec2, side: PictureSide, composer: &mut Composer) -> Drawing {
+fn number(
+    figure: &CoordinateFigure,
+    end: Vec2,
+    (side, place): (PictureSide, FigurePlace),
+    composer: &mut Composer,
+) -> Drawing {
     let sheet = composer.sheet;
     let set = figure.set(composer);
     let half = set.size * 0.5;
     let inset = half + sheet.px(INSET);
+    let inset = if place == FigurePlace::Outside { -inset } else { inset };
     let center = match side {
         PictureSide::Bottom => Vec2::new(end.x, sheet.size.y - inset.y),
         PictureSide::Top => Vec2::new(end.x, inset.y),
@@ -175,7 +195,12 @@ fn number(figure: &CoordinateFigure, end: Vec2, side: PictureSide, composer: &mu
         PictureSide::Right => Vec2::new(sheet.size.x - inset.x, end.y),
     };
     // A line that leaves near a corner keeps its number in the picture.
-    let center = center.clamp(inset.min(sheet.size * 0.5), (sheet.size - inset).max(sheet.size * 0.5));
+    let center = match place {
+        FigurePlace::Inside => {
+            center.clamp(inset.min(sheet.size * 0.5), (sheet.size - inset).max(sheet.size * 0.5))
+        }
+        FigurePlace::Outside => center,
+    };
     let mut drawing = Drawing::default();
     set.write_haloed((center + Vec2::new(-half.x, half.y)).round(), sheet.px(2.2).max(1.4), &mut drawing);
     drawing
@@ -201,7 +226,7 @@ mod tests {
         let mut composer = Composer::new(1920, 1080);
         let lines = [400.0, 800.0].map(|x| line(Vec2::new(x, 0.0), Vec2::new(x, 1080.0), "49"));
         let grid = PictureGrid { lines: lines.to_vec(), ..PictureGrid::default() };
-        let drawn = draw_figures(&grid, &[], &mut composer);
+        let drawn = draw_figures(&grid, &[], FigurePlace::Inside, &mut composer);
         assert_eq!(drawn.len(), 4);
         let width = |at: usize| drawn[at].bounds().size().x;
         assert!(width(0) > 2.0 * width(2) && width(1) > 2.0 * width(3));
@@ -213,9 +238,9 @@ mod tests {
         let mut composer = Composer::new(1920, 1080);
         let crowded = [400.0, 405.0].map(|x| line(Vec2::new(x, 300.0), Vec2::new(x, 1080.0), "49"));
         let grid = PictureGrid { lines: crowded.to_vec(), ..PictureGrid::default() };
-        assert_eq!(draw_figures(&grid, &[], &mut composer).len(), 1);
+        assert_eq!(draw_figures(&grid, &[], FigurePlace::Inside, &mut composer).len(), 1);
         let panel = PixelBox::at(Vec2::new(300.0, 1000.0), Vec2::splat(200.0));
-        assert!(draw_figures(&grid, &[panel], &mut composer).is_empty());
+        assert!(draw_figures(&grid, &[panel], FigurePlace::Inside, &mut composer).is_empty());
     }
 
     #[test]

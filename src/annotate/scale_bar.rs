@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_black_of_the_bar_is_drawn_as_long_as_measured() {
-        let drawing = compose(&bar(0.0437), &mut Composer::new(1920, 1080)).expect("a bar");
+        let drawing = compose(&bar(0.0437), None, &mut Composer::new(1920, 1080)).expect("a bar");
         let expected = measure(&bar(0.0437), 260.0).expect("a scale").length_px;
         let black = drawing.marks.iter().find(|mark| mark.color == INK).expect("the bar comes first");
         assert_eq!(black.path.bounds().width(), expected);

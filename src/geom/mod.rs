@@ -5,6 +5,7 @@ pub mod convex;
 pub mod crs;
 pub mod crs_fault;
 pub mod datum_shift;
+pub mod declination;
 pub mod distance_field;
 pub mod geodesic;
 pub mod leg_tree;

@@ -129,6 +129,7 @@ pub fn build(
         labels,
         cameras,
         furniture: document.furniture.clone(),
+        sheet_day: style::sheet_day(document)?,
         features: collected.features,
         notes: collected.notes,
         report: collected.report,

@@ -106,6 +106,8 @@ fn sheet(width: u32, height: u32) -> Annotations {
     let stops = stops.map(|(at, [r, g, b])| (at, Srgba::opaque(r, g, b))).to_vec();
     Annotations {
         grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels: labels(w, h),
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
@@ -154,6 +156,8 @@ fn trouble(width: u32, height: u32) -> Annotations {
     labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
         grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
