@@ -17,6 +17,7 @@ use crate::draw::list::DrawList;
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
 use crate::pipeline::picture::{PictureSize, RenderedView, annotate_view, draw_view};
+use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::{Lightness, PictureStatistics};
 use crate::pipeline::scene_file::open_scene;
 use crate::render::RenderBackend;
@@ -44,6 +45,9 @@ pub struct RenderArguments {
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Also write what each pixel shows into this folder: depth.tif, elevation.tif, normal.png, feature.tif, features.csv
+    #[arg(long, value_name = "DIR")]
+    pub buffers: Option<PathBuf>,
     /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step
     #[arg(long)]
     pub json: bool,
@@ -92,6 +96,11 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
         .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
     let drawn = draw_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
     let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
+    if let Some(folder) = &arguments.buffers {
+        progress("writing buffers");
+        files::make_folder(folder)?;
+        PictureBuffers { scene: &scene, camera: &drawn.camera, rendering: &drawn.picture }.write(folder)?;
+    }
     let view = annotate_view(&scene, drawn, &progress);
     progress("writing the picture");
     files::write_picture(path, &view.pixels)?;
@@ -106,7 +115,8 @@ fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
     }
 }
 
-fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {
+/// The camera called `name`, or the first where no name is given.
+pub fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let name = name.unwrap_or_default();

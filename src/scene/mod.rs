@@ -452,6 +452,20 @@ impl SceneModel {
         }
     }
 
+    /// What a feature is called: its kind and its name; empty for nothing.
+    pub fn feature_name(&self, feature: FeatureId) -> String {
+        match feature {
+            FeatureId::GROUND => return "ground".into(),
+            FeatureId::PLINTH => return "plinth".into(),
+            _ => {}
+        }
+        let feature = feature.index().and_then(|index| self.features.get(index));
+        feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+            "" => kind.noun(1).to_owned(),
+            name => format!("{} {name}", kind.noun(1)),
+        })
+    }
+
     /// The number of features of each kind that is present, in the order of [`FeatureKind`].
     pub fn census(&self) -> Vec<(FeatureKind, usize)> {
         let count = |kind| self.features.iter().filter(|feature| feature.kind == kind).count();

@@ -11,6 +11,7 @@ mod manners;
 mod meshes;
 mod new;
 mod pictures;
+mod prints;
 mod profile;
 mod report;
 mod schema;
