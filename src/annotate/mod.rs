@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ──► canvas ──► Pixels
-//!             └─► labels ──► positions ──► place (pure, two dimensions) ──► Drawing ──┘
+//!             └─► labels ─┬► point_label ──► positions ─┬► place (two dimensions) ──► Drawing ──┘
+//!                         └► line_label ───────────────┘
 //! ```
 //!
 //! Every mark is a filled path, so that the box with which a thing is laid out is the box that it paints. Type is set
@@ -24,18 +25,23 @@ mod credit;
 mod drawing;
 pub mod figure;
 pub mod grid;
+mod fonts;
+mod label_style;
 mod labels;
 pub mod legend;
 pub mod locator;
+mod line_label;
 pub mod map;
 pub mod margin;
 pub mod nice;
 pub mod north;
 pub mod norths;
+mod occupied;
 pub mod paint;
 mod paragraph;
 mod pixel_box;
 mod place;
+mod point_label;
 mod positions;
 pub mod report;
 pub mod rim;

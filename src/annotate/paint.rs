@@ -49,7 +49,8 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
 
 /// Lays out `annotations` on and around a picture.
 pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedSheet, AnnotationReport) {
-    let mut composer = Composer::new(picture.width(), picture.height());
+    let font = annotations.font.as_ref();
+    let mut composer = Composer::with_font(picture.width(), picture.height(), font);
     let mut report = AnnotationReport::default();
     let Some(margin) = &annotations.margin else {
         let furniture = Furniture::lay_out(annotations, &mut composer);
@@ -62,7 +63,7 @@ pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedShe
         return (ComposedSheet { pixels: picture, drawings }, report);
     };
     let page = margin.frame.page;
-    let mut page_composer = Composer::new(page.x, page.y);
+    let mut page_composer = Composer::with_font(page.x, page.y, font);
     // Type on the picture is as large as beside it.
     composer.sheet.scale = page_composer.sheet.scale;
     let place = FigurePlace::Outside;
@@ -97,7 +98,8 @@ fn on_picture(
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
     let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
-    let labels = draw_labels(&annotations.labels, &boxes, composer, report);
+    let Annotations { labels, line_labels, .. } = annotations;
+    let labels = draw_labels(labels, line_labels, &boxes, composer, report);
     lines.into_iter().chain(furniture).chain(marks).chain(figures).chain([labels]).collect()
 }
 

@@ -24,6 +24,7 @@ pub mod gridding;
 pub mod ground;
 pub mod labels;
 pub mod legend;
+mod line_labels;
 pub mod lod;
 pub mod margin;
 pub mod model_file;

@@ -126,6 +126,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
         }),
         credit: Some("Elevation: USGS 3D Elevation Program".to_owned()),
         cover: None,
+        ..Annotations::default()
     }
 }
 
@@ -174,6 +175,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
         }),
         credit: Some("Elevation: nobody knows; ".repeat(20)),
         cover: None,
+        ..Annotations::default()
     }
 }
 
