@@ -50,7 +50,9 @@ use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
-use crate::description::words::{CameraProjection, HeightEncodingWord, LabelKind, TableTop};
+use crate::description::words::{
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, TableTop,
+};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -304,7 +306,7 @@ table! {
     }
 
     /// `[furniture]`: what frames the picture.
-    #[derive(Copy, PartialEq, Eq)]
+    #[derive(PartialEq)]
     struct FurnitureTable {
         /// Whether the picture has its title and subtitle.
         title: bool = key::switch(), default true;
@@ -314,6 +316,37 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+        /// What stands on the picture, and what round it. The picture of a layout with a margin is as much smaller.
+        layout: SheetLayout = key::word::<SheetLayout>(), default "compact";
+        /// Whether there is a legend of the roads, waters, areas, buildings and models that the picture shows.
+        classes: Option<bool> = key::switch(), otherwise "in layouts with a margin";
+        /// The classification, above and below all else.
+        classification: Option<String> = key::filled_text(), otherwise "none";
+        /// The day of the information, such as "2026-06-21"; magnetic north is that of this day.
+        date: Option<Stated<String>> = key::filled_text(), otherwise "none, and no magnetic north";
+        /// Where the data come from, a line each, in a layout with a margin.
+        sources: Option<Vec<String>> = key::text_list(), otherwise "none";
+        /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
+        grid: GridName = key::word::<GridName>(), default "none";
+        /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
+        /// lines. One line in 10, 5 or 2 is drawn heavier.
+        grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
+            otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
+    }
+    check(reader) {
+        if grid.unwrap_or_default() == GridName::None {
+            let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
+            reader.without_effect(&["grid_interval"], "without a `grid`", help);
+        }
+        let layout = layout.unwrap_or_default();
+        if !matches!(layout, SheetLayout::Margin | SheetLayout::Military) {
+            let help = "set `layout` to margin or military, or remove it";
+            reader.without_effect(&["date", "sources"], "in a layout without a margin", help);
+        }
+        if layout != SheetLayout::Military {
+            let help = "set `layout = \"military\"`, or remove it";
+            reader.without_effect(&["classification"], "in another layout than military", help);
+        }
     }
 }
 

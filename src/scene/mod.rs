@@ -57,6 +57,7 @@ use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
+use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
@@ -143,6 +144,8 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The day of its information.
+    pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
     /// Notes for the user: features off the model, missing textures, earth moved.
