@@ -107,6 +107,8 @@ table! {
         phases as "phase": Vec<PhaseTable> = key::tables::<PhaseTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
+        /// Paths through the scene that `sandtable fly` follows.
+        flights as "flight": Vec<FlightTable> = key::tables::<FlightTable>(), default [];
         /// What frames the picture.
         furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
     }
@@ -115,6 +117,8 @@ table! {
         check_names(reader, "camera", cameras);
         let phases = phases.iter().flatten().map(|phase: &PhaseTable| &phase.name);
         check_names(reader, "phase", phases);
+        let flights = flights.iter().flatten().map(|flight: &FlightTable| &flight.name);
+        check_names(reader, "flight", flights);
     }
 
     /// `[terrain]`: the elevation model.
@@ -241,6 +245,29 @@ table! {
             reader.need_expression("text");
         } else {
             reader.without_effect(&["layer", "where", "most"], "on a label without a `file`", "name a `file`, or remove it");
+        }
+    }
+
+    /// `[[flight]]`: a path through the scene that `sandtable fly` follows, a picture for each frame.
+    struct FlightTable {
+        /// Name for `--flight`; no two flights share one.
+        name: Stated<String> = key::filled_text(), required;
+        /// The path; of a file's lines the longest.
+        source: FeatureSource = key::source::<2>(), inline;
+        /// Height of the eye above the highest ground around it. Bends are rounded over twice as much.
+        height: f64 = key::number(Above(0.0, 1e6), "m"), default 300;
+        /// How fast the eye moves.
+        speed: Option<f64> = key::number(Above(0.0, 1e6), "m/s"), otherwise "as fast as takes 20 seconds";
+        /// How far the eye looks down from the horizon.
+        pitch: f64 = key::number(Within(-60.0, 89.0), "°"), default 20;
+        /// Place on the ground that the eye looks at all the way.
+        look_at: Option<Stated<[f64; 2]>> = key::point(), otherwise "ahead, along the path";
+        /// Vertical field of view.
+        field_of_view: f64 = key::number(Within(1.0, 170.0), "°"), default 45;
+    }
+    check(reader) {
+        if reader.key_span("look_at").is_some() {
+            reader.without_effect(&["pitch"], "on a flight with `look_at`", "remove one of the two");
         }
     }
 

@@ -19,6 +19,8 @@ pub mod dem;
 pub mod error;
 pub mod export;
 pub mod files;
+pub mod fingerprint;
+pub mod fly;
 pub mod grid;
 pub mod gridding;
 pub mod ground;

@@ -16,6 +16,7 @@ pub mod buildings;
 mod facade;
 pub mod feature_labels;
 pub mod fences;
+pub mod flights;
 mod font;
 pub mod footprint;
 pub mod ground;
