@@ -29,8 +29,7 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     boxes.extend(marks.iter().map(Drawing::bounds));
     let mut report = AnnotationReport::default();
     furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
-    let labels =
-        draw_labels(&annotations.labels, &annotations.line_labels, &boxes, &mut composer, &mut report);
+    let labels = draw_labels(annotations, pixels, &boxes, &mut composer, &mut report);
     paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
     report.left_out = furniture.left_out;
     report

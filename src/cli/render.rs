@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::annotate::report::AnnotationReport;
+use crate::annotate::report::{AnnotationReport, LabelMove};
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
@@ -131,7 +131,10 @@ fn summary(rendered: &RenderedScene) -> Vec<String> {
     let (all, ground) = (drawn.list.triangle_count(), drawn.ground_triangles);
     let camera = format!("{}: {all} triangles, {ground} of them ground", rendered.camera);
     let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &rendered.view.annotations;
+    let [led, off_line] = moved(&rendered.view.annotations);
     let labels = [
+        ("led by a line", &led),
+        ("at a place, not along their line", &off_line),
         ("hidden", hidden),
         ("outside the picture", outside),
         ("without room", crowded_out),
@@ -144,11 +147,19 @@ fn summary(rendered: &RenderedScene) -> Vec<String> {
     std::iter::once(row(9, "camera", camera)).chain(labels).collect()
 }
 
+/// The labels drawn at the end of a leader line for want of room, and those not drawn along their line.
+fn moved(report: &AnnotationReport) -> [Vec<String>; 2] {
+    [LabelMove::Led, LabelMove::OffLine].map(|to| {
+        report.moved.iter().filter(|moved| moved.to == to).map(|moved| moved.text.clone()).collect()
+    })
+}
+
 /// The rendered scene as an object with a member for each fact.
 fn as_json(path: &Path, rendered: &RenderedScene, times: &[(&'static str, f64)]) -> Value {
     let RenderedScene { scene, camera, view, statistics } = rendered;
     let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
     let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &view.annotations;
+    let [led, off_line] = moved(&view.annotations);
     let notes: Vec<String> = scene.notes.iter().cloned().chain(scene.inferred_notes()).collect();
     let seconds: Map<String, Value> = times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
     json!({
@@ -161,7 +172,8 @@ fn as_json(path: &Path, rendered: &RenderedScene, times: &[(&'static str, f64)])
         }),
         "triangles": triangles(scene, &view.drawn.list),
         "labels": {
-            "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened
+            "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
+            "led": led, "off_line": off_line
         },
         "notes": notes,
         "seconds": seconds,

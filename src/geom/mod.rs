@@ -8,6 +8,7 @@ pub mod crs_fault;
 pub mod datum_shift;
 pub mod distance_field;
 pub mod geodesic;
+pub mod isolines;
 pub mod join;
 pub mod leg_tree;
 pub mod morton;

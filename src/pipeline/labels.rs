@@ -7,6 +7,7 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::contour_marks::contour_marks;
 use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
@@ -28,6 +29,7 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
     Annotations {
         labels,
         line_labels,
+        contours: contour_marks(scene, camera, picture),
         font: scene.font.clone(),
         rim: rim_marks(scene, camera),
         title: scene.title.clone().filter(|_| furniture.title),
