@@ -24,6 +24,8 @@ pub struct Annotations {
     pub labels: Vec<PictureLabel>,
     /// Names along lines, in any order.
     pub line_labels: Vec<LineLabel>,
+    /// Numbers and ticks of contour lines.
+    pub contours: Option<ContourMarks>,
     /// The font for characters that the embedded fonts lack.
     pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
@@ -85,6 +87,30 @@ pub enum LinePlacement {
     Ends,
     /// On the line, its letters spaced over most of it.
     Spread,
+    /// On the line, where it runs to the right, so that the tops of the letters point to its left.
+    Uphill,
+}
+
+/// What contour lines carry on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContourMarks {
+    /// Lines that may carry their number.
+    pub numbered: Vec<NumberedContour>,
+    /// Short strokes from lines round hollows, downhill, in pixels.
+    pub ticks: Vec<[Vec2; 2]>,
+    /// The color of the lines; numbers have it at full strength, darkened where that is needed to read them.
+    pub color: Srgba,
+}
+
+/// A contour line seen on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberedContour {
+    /// The elevation.
+    pub text: String,
+    /// How many intervals of numbered lines it lies above 0.
+    pub level: i64,
+    /// In pixels, the higher ground to the left as one looks along it, X right and Y down.
+    pub path_px: Vec<Vec2>,
 }
 
 /// A name at a place on the picture.

@@ -9,6 +9,7 @@ use glam::Vec2;
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::halo::Halo;
 use crate::annotate::sheet::INK;
 use crate::annotate::text::{TextStyle, TypesetLine};
 
@@ -84,7 +85,7 @@ impl SetFigure {
     pub fn write_haloed(&self, at: Vec2, halo: f32, drawing: &mut Drawing) {
         let lines: Vec<(&TypesetLine, Vec2)> =
             self.parts.iter().map(|(line, start)| (line, at + *start)).collect();
-        drawing.draw_halo(&lines, halo);
+        drawing.draw_halo(&lines, Halo::paper(halo));
         lines.into_iter().for_each(|(line, at)| drawing.write(line, at, INK));
     }
 }

@@ -9,6 +9,7 @@ use tiny_skia::PathBuilder;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::figure::CoordinateFigure;
+use crate::annotate::halo::Halo;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::text::TextStyle;
 use crate::draw::color::Srgba;
@@ -169,7 +170,7 @@ pub(in crate::annotate) fn draw_figures(
         let letters = composer.line(&square.letters, style);
         let mut drawing = Drawing::default();
         let start = square.at_px + Vec2::new(-letters.advance, letters.style.cap_px()) * 0.5;
-        drawing.draw_halo(&[(&letters, start.round())], sheet.px(2.4));
+        drawing.draw_halo(&[(&letters, start.round())], Halo::paper(sheet.px(2.4)));
         drawing.write(&letters, start.round(), SQUARE_INK);
         keep(drawing, &mut drawn);
     }

@@ -58,7 +58,7 @@ pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedShe
         let Furniture { drawings, left_out, .. } = furniture;
         let drawings = drawings.into_iter().map(|(_, drawing)| drawing).collect();
         let place = FigurePlace::Inside;
-        let drawings = on_picture(annotations, drawings, place, &mut composer, &mut report);
+        let drawings = on_picture(annotations, (&picture, drawings), place, &mut composer, &mut report);
         report.left_out = left_out;
         return (ComposedSheet { pixels: picture, drawings }, report);
     };
@@ -67,7 +67,7 @@ pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedShe
     // Type on the picture is as large as beside it.
     composer.sheet.scale = page_composer.sheet.scale;
     let place = FigurePlace::Outside;
-    let drawings = on_picture(annotations, Vec::new(), place, &mut composer, &mut report);
+    let drawings = on_picture(annotations, (&picture, Vec::new()), place, &mut composer, &mut report);
     let corner = margin.frame.picture.min;
     let mut drawings: Vec<Drawing> = drawings.into_iter().map(|drawing| drawing.moved(corner)).collect();
     let set = margin::compose(margin, annotations, &mut page_composer);
@@ -83,10 +83,10 @@ pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedShe
 /// The paper of a page.
 const WHITE: Srgba = Srgba::opaque(255, 255, 255);
 
-/// Grid, marks and labels on the picture, round the pieces of `furniture` on it.
+/// Grid, marks and labels on `picture`, round the pieces of `furniture` on it.
 fn on_picture(
     annotations: &Annotations,
-    furniture: Vec<Drawing>,
+    (picture, furniture): (&Pixels, Vec<Drawing>),
     place: FigurePlace,
     composer: &mut Composer,
     report: &mut AnnotationReport,
@@ -98,8 +98,7 @@ fn on_picture(
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
     let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
-    let Annotations { labels, line_labels, .. } = annotations;
-    let labels = draw_labels(labels, line_labels, &boxes, composer, report);
+    let labels = draw_labels(annotations, picture, &boxes, composer, report);
     lines.into_iter().chain(furniture).chain(marks).chain(figures).chain([labels]).collect()
 }
 

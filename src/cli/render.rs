@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::annotate::report::AnnotationReport;
+use crate::annotate::report::{AnnotationReport, LabelMove};
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
@@ -151,6 +151,7 @@ impl RenderedScene {
             let RenderedPicture { camera, triangles, annotations, statistics, .. } = picture;
             let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
             let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = annotations;
+            let [led, off_line] = moved(annotations);
             json!({
                 "picture": picture.path().map(|path| path.display().to_string()),
                 "camera": camera,
@@ -162,7 +163,8 @@ impl RenderedScene {
                 }),
                 "triangles": triangles,
                 "labels": {
-                    "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened
+                    "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
+                    "led": led, "off_line": off_line
                 },
                 "notes": notes,
                 "seconds": seconds,
@@ -179,7 +181,10 @@ impl RenderedPicture {
         let ground = self.ground_triangles;
         let camera = format!("{}: {all} triangles, {ground} of them ground", self.camera);
         let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &self.annotations;
+        let [led, off_line] = moved(&self.annotations);
         let labels = [
+            ("led by a line", &led),
+            ("at a place, not along their line", &off_line),
             ("hidden", hidden),
             ("outside the picture", outside),
             ("without room", crowded_out),
@@ -191,6 +196,13 @@ impl RenderedPicture {
         });
         std::iter::once(row(9, "camera", camera)).chain(labels).collect()
     }
+}
+
+/// The labels drawn at the end of a leader line for want of room, and those not drawn along their line.
+fn moved(report: &AnnotationReport) -> [Vec<String>; 2] {
+    [LabelMove::Led, LabelMove::OffLine].map(|to| {
+        report.moved.iter().filter(|moved| moved.to == to).map(|moved| moved.text.clone()).collect()
+    })
 }
 
 /// A label on one line, cut where it is long.

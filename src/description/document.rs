@@ -161,6 +161,8 @@ table! {
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
+        /// How many summits, saddles and lakes without a label show their elevation, the most prominent first.
+        spot_heights: u32 = key::integer(0, 1000), default 0;
         /// A picture of the ground over the colors by height, such as an aerial photograph.
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;

@@ -9,6 +9,7 @@ pub mod datum_shift;
 pub mod declination;
 pub mod distance_field;
 pub mod geodesic;
+pub mod isolines;
 pub mod join;
 pub mod leg_tree;
 pub mod mgrs;

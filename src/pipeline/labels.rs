@@ -9,6 +9,7 @@ use crate::annotate::sheet_frame::SheetFrame;
 use crate::description::words::SheetLayout;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::contour_marks::contour_marks;
 use crate::pipeline::grid::{grid_over, picture_grid};
 use crate::pipeline::legend::legend_entries;
 use crate::pipeline::line_labels::{is_seen, line_label};
@@ -42,6 +43,7 @@ pub fn annotations(
     Annotations {
         labels,
         line_labels,
+        contours: contour_marks(scene, camera, picture),
         font: scene.font.clone(),
         rim: rim_marks(scene, camera, grid.as_ref()),
         margin: frame

@@ -12,6 +12,7 @@
 pub mod api;
 pub mod bounded_mesh;
 pub mod choice;
+mod contour_marks;
 pub mod convert;
 pub mod csv;
 pub mod dataset;

@@ -34,6 +34,7 @@ pub mod report;
 pub mod roads;
 pub mod scatter;
 pub mod sources;
+mod spot_heights;
 pub mod style;
 pub mod sunlight;
 pub mod symbols;

@@ -223,7 +223,7 @@ fn labels_left_out_leave_no_pixel_and_do_not_disturb_the_others() {
 fn a_good_sheet_is_drawn_whole() {
     let (pixels, report) = annotated(1920, 1080, &sheet(1920, 1080));
     assert_eq!(report.placed.len(), 14);
-    let whole = AnnotationReport { placed: vec![], ..report };
+    let whole = AnnotationReport { placed: vec![], moved: vec![], ..report };
     assert_eq!(whole, AnnotationReport::default());
     assert!(pixels.data().iter().all(|color| color.0[3] == 255), "an opaque picture stays opaque");
 }
