@@ -51,7 +51,7 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
 use crate::description::words::{
-    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, TableTop,
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, StylePreset, TableTop,
 };
 use crate::geom::crs::Crs;
 
@@ -147,6 +147,8 @@ table! {
 
     /// `[style]`: how the ground looks.
     struct StyleTable {
+        /// A look in one word: other keys of this table, and `grid`, have its defaults where they are not stated.
+        preset: Option<StylePreset> = key::word::<StylePreset>(), otherwise "none: the defaults below";
         /// Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`.
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
@@ -155,7 +157,7 @@ table! {
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
         /// the tree line and the snow line are those of the latitude.
-        land_cover: bool = key::switch(), default false;
+        land_cover: Stated<bool> = key::switch(), default false;
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
@@ -164,7 +166,7 @@ table! {
             otherwise "fitted to the view";
         /// What the block stands on, with its shadow and coordinates along its near edges, in a picture that shows its
         /// edge from outside and no horizon.
-        table: TableTop = key::word::<TableTop>(), default "paper";
+        table: Stated<TableTop> = key::word::<TableTop>(), default "paper";
     }
 
     /// `[style.contours]`.
@@ -313,14 +315,14 @@ table! {
         /// Where the data come from, a line each, in a layout with a margin.
         sources: Option<Vec<String>> = key::text_list(), otherwise "none";
         /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
-        grid: GridName = key::word::<GridName>(), default "none";
+        grid: Option<GridName> = key::word::<GridName>(), otherwise "none; mgrs with `preset = \"military\"`";
         /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
         /// lines. One line in 10, 5 or 2 is drawn heavier.
         grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
             otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
     }
     check(reader) {
-        if grid.unwrap_or_default() == GridName::None {
+        if grid.flatten() == Some(GridName::None) {
             let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
             reader.without_effect(&["grid_interval"], "without a `grid`", help);
         }

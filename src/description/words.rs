@@ -93,6 +93,16 @@ words! {
         None = "none": "nothing; no coordinates are written along its edge",
     }
 
+    /// A look in one word: defaults of other keys, and for print and night a look of the finished picture.
+    enum StylePreset {
+        Topographic = "topographic": "tints by height, contour lines, clear air",
+        Relief = "relief": "shaded relief in grays, without lines",
+        Satellite = "satellite": "the ground's natural cover, or `imagery`, without lines",
+        Military = "military": "pale tints, contour lines, the military grid, clear air",
+        Print = "print": "black on white, patterns in place of colors",
+        Night = "night": "red light",
+    }
+
     /// What stands on the picture, and what round it.
     enum SheetLayout {
         Compact = "compact": "furniture in the corners of the picture",

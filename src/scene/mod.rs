@@ -49,7 +49,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
-use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
+use crate::description::words::{Anchor, Clamp, Footing, GridName, LabelKind, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
@@ -142,6 +142,10 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The look in one word that its pictures have.
+    pub preset: Option<StylePreset>,
+    /// The coordinate grid on the ground.
+    pub grid: GridName,
     /// The day of its information.
     pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
