@@ -16,11 +16,13 @@ use crate::cli::values::{choice, picture_size};
 use crate::draw::list::DrawList;
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
-use crate::pipeline::picture::{PictureSize, RenderedView, annotate_view, draw_view};
+use crate::pipeline::picture::{ComposedView, PictureSize, compose_view, draw_view};
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::{Lightness, PictureStatistics};
 use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::sheet_file::write_sheet;
 use crate::render::RenderBackend;
+use crate::scene::picture::ViewDraw;
 use crate::scene::{SceneModel, SceneView};
 
 /// The longest text of a label in the summary, in characters.
@@ -30,12 +32,13 @@ const LONGEST_LABEL: usize = 60;
 pub struct RenderArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the picture to this file [default: the scene's name with .png, in the current folder]
-    #[arg(short, long, value_name = "OUT.png")]
+    /// Write the picture to this file: .png, or .pdf or .svg with letters and lines as vectors [default: the scene's name
+    /// with .png, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = picture_size)]
-    pub size: PictureSize,
+    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<PictureSize>,
     /// The camera of the scene to look through [default: its first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -58,7 +61,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
     let scene_file = &arguments.scene.scene;
     let path = arguments.output.clone().unwrap_or_else(|| default_output(scene_file));
-    files::check_picture_output(&path, &[scene_file])
+    files::check_sheet_output(&path, &[scene_file])
         .map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let steps = StepTimer::default();
     let rendered = pool.install(|| render(arguments, &path, &steps))?;
@@ -83,9 +86,15 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
 struct RenderedScene {
     scene: SceneModel,
     camera: String,
-    view: RenderedView,
+    view: WrittenView,
     /// Measured where JSON is printed.
     statistics: Option<PictureStatistics>,
+}
+
+/// What is told of a picture.
+struct WrittenView {
+    drawn: ViewDraw,
+    annotations: AnnotationReport,
 }
 
 fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result<RenderedScene, CliError> {
@@ -94,16 +103,18 @@ fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result
     let camera = find_camera(&scene, arguments.camera.as_deref())?.clone();
     files::check_output(path, &scene.files)
         .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
-    let drawn = draw_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
+    let size = arguments.size.unwrap_or_else(|| PictureSize::of(&camera));
+    let drawn = draw_view(&scene, &camera, size, arguments.backend, &progress)?;
     let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
     if let Some(folder) = &arguments.buffers {
         progress("writing buffers");
         files::make_folder(folder)?;
         PictureBuffers { scene: &scene, camera: &drawn.camera, rendering: &drawn.picture }.write(folder)?;
     }
-    let view = annotate_view(&scene, drawn, &progress);
+    let ComposedView { sheet, drawn, annotations } = compose_view(&scene, drawn, &progress);
     progress("writing the picture");
-    files::write_picture(path, &view.pixels)?;
+    write_sheet(path, sheet, camera.dpi(), scene.title.as_deref())?;
+    let view = WrittenView { drawn, annotations };
     Ok(RenderedScene { scene, camera: camera.name, view, statistics })
 }
 

@@ -51,7 +51,7 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
 use crate::description::words::{
-    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, StylePreset, TableTop,
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
 use crate::geom::crs::Crs;
 
@@ -250,8 +250,12 @@ table! {
         /// picture's middle.
         scale: Option<f64> = key::number(Within(1.0, 1e9), ""),
             otherwise "as large as what it shows fits the picture, `n` rounded up to two figures";
-        /// Pixels per inch of the print on which `scale` is true; 96 is that of screens.
-        dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96";
+        /// Pixels per inch of the print on which `scale` is true, and of `paper`; 96 is that of screens.
+        dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96, and 150 on `paper`";
+        /// The paper that the picture fills at `dpi`, unless the command line states a size in pixels.
+        paper: Option<PaperName> = key::word::<PaperName>(), otherwise "none";
+        /// Whether the paper stands upright.
+        portrait: bool = key::switch(), default false;
         /// Place of the eye.
         eye: Option<Stated<[f64; 2]>> = key::point(), otherwise "where the ground fills the picture";
         /// Height of the eye above the ground.
@@ -278,7 +282,10 @@ table! {
         let projection = projection.unwrap_or_default();
         if projection == CameraProjection::Perspective {
             let help = "set `projection` to plan, orthographic or oblique, or remove it";
-            reader.without_effect(&["scale", "dpi"], "in perspective, which has no single scale", help);
+            reader.without_effect(&["scale"], "in perspective, which has no single scale", help);
+            if reader.key_span("paper").is_none() {
+                reader.without_effect(&["dpi"], "in perspective without `paper`", help);
+            }
         } else {
             let keys = ["eye", "eye_height", "eye_elevation", "look_at", "look_at_height", "field_of_view"];
             let help = "state what it `shows`, or set `projection = \"perspective\"`";
@@ -287,6 +294,15 @@ table! {
                 let help = "set `projection = \"orthographic\"`, or remove it";
                 reader.without_effect(&["pitch"], "on a plan or an oblique picture", help);
             }
+        }
+        if reader.key_span("paper").is_none() {
+            reader.without_effect(&["portrait"], "without `paper`", "set `paper`, or remove it");
+        }
+        let sides_mm = paper.flatten().map(paper_mm).unwrap_or_default();
+        let longest_px = sides_mm[0] / 25.4 * dpi.flatten().unwrap_or(PAPER_DPI);
+        if let Some(span) = reader.key_span("dpi").filter(|_| longest_px > 16_384.0) {
+            let message = format!("the picture would be {longest_px:.0} pixels long, and may be 16384");
+            reader.error(span, message, "lower `dpi`, or take smaller `paper`");
         }
         if projection == CameraProjection::Perspective {
             check_eye(reader);
@@ -335,6 +351,20 @@ table! {
             let help = "set `layout = \"military\"`, or remove it";
             reader.without_effect(&["classification"], "in another layout than military", help);
         }
+    }
+}
+
+/// Pixels per inch on paper where none are stated: fine enough for its lines, and a page is drawn in a second.
+pub const PAPER_DPI: f64 = 150.0;
+
+/// The longer and the shorter side of a paper in millimeters.
+pub fn paper_mm(paper: PaperName) -> [f64; 2] {
+    match paper {
+        PaperName::A4 => [297.0, 210.0],
+        PaperName::A3 => [420.0, 297.0],
+        PaperName::A2 => [594.0, 420.0],
+        PaperName::A1 => [841.0, 594.0],
+        PaperName::A0 => [1189.0, 841.0],
     }
 }
 

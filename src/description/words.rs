@@ -111,6 +111,15 @@ words! {
         Military = "military": "the same with the classification and the three norths",
     }
 
+    /// A size of paper (ISO 216).
+    enum PaperName {
+        A4 = "A4": "297 × 210 mm",
+        A3 = "A3": "420 × 297 mm",
+        A2 = "A2": "594 × 420 mm",
+        A1 = "A1": "841 × 594 mm",
+        A0 = "A0": "1189 × 841 mm",
+    }
+
     /// The lines of a coordinate grid on the ground.
     enum GridName {
         None = "none": "no lines; the block's edge has coordinates of the scene's system",

@@ -22,7 +22,7 @@ const DARKEST: f32 = 0.66;
 /// Gray of the walls of the block.
 const WALL: u8 = 225;
 /// The brightest red of the night look: full red dazzles.
-const BRIGHTEST: f32 = 0.72;
+const BRIGHTEST: f32 = 0.5;
 
 /// Gives a picture the look of the scene's preset; most have none of their own.
 pub fn apply_look(scene: &SceneModel, picture: &mut Rendering) {

@@ -41,6 +41,7 @@ pub mod raster_file;
 pub mod rim;
 pub mod scene_file;
 pub mod service;
+pub mod sheet_file;
 pub mod sight;
 pub mod viewshed;
 pub mod viewshed_map;

@@ -23,6 +23,14 @@ pub struct PictureSize {
     pub height: u32,
 }
 
+impl PictureSize {
+    /// The size of a view's paper, or 1920 × 1080.
+    pub fn of(view: &SceneView) -> Self {
+        let (width, height) = view.paper.map_or((1920, 1080), |paper| paper.size_px());
+        Self { width, height }
+    }
+}
+
 impl Choice for RenderBackend {
     const CHOICES: &'static [ChoiceWord<Self>] = &[
         word(Self::Cpu, "cpu", "The processor"),

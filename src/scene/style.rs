@@ -1,5 +1,7 @@
 //! How the ground looks: ramp and contours.
 
+use glam::Vec3;
+
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -18,6 +20,8 @@ const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);
 pub enum RampSource {
     /// A built-in ramp, which spans the heights of the ground.
     Named(RampName),
+    /// The same, halfway to white: what is drawn over it stands out.
+    Pale(RampName),
     /// A ramp with heights of its own.
     Own(ColorRamp),
 }
@@ -47,14 +51,22 @@ impl RampSource {
     pub fn over(&self, ground: &TintedGround) -> ColorRamp {
         match self {
             Self::Named(name) => named(*name, ground),
+            Self::Pale(name) => paler(&named(*name, ground)),
             Self::Own(ramp) => ramp.clone(),
         }
     }
 }
 
+/// A ramp halfway to white.
+fn paler(ramp: &ColorRamp) -> ColorRamp {
+    let pale = |&(height, light): &(f32, Vec3)| (height, Srgba::from_linear(light.lerp(Vec3::ONE, 0.5)));
+    ColorRamp::new(ramp.stops().iter().map(pale).collect()).unwrap_or_else(|| ramp.clone())
+}
+
 /// The tints of a preset.
 fn preset_ramp(preset: StylePreset) -> RampSource {
     match preset {
+        StylePreset::Military => RampSource::Pale(RampName::Atlas),
         StylePreset::Relief | StylePreset::Print => RampSource::Named(RampName::Gray),
         _ => RampSource::Named(RampName::Atlas),
     }

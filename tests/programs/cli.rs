@@ -16,6 +16,7 @@ mod profile;
 mod report;
 mod schema;
 mod serve;
+mod sheets;
 mod viewshed;
 mod wrong_scenes;
 
