@@ -28,6 +28,16 @@ pub struct ComposedSheet {
 }
 
 impl ComposedSheet {
+    /// Gives what is drawn, and the paper round the picture, other colors; the picture itself keeps its own.
+    pub fn recolor(&mut self, color: &dyn Fn(Srgba) -> Srgba) {
+        for mark in self.drawings.iter_mut().flat_map(|drawing| &mut drawing.marks) {
+            mark.color = color(mark.color);
+        }
+        for pixel in self.pixels.data_mut().iter_mut().filter(|pixel| **pixel == WHITE) {
+            *pixel = color(WHITE);
+        }
+    }
+
     /// The sheet with everything painted.
     pub fn painted(self) -> Pixels {
         let Self { mut pixels, drawings } = self;

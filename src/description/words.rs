@@ -93,12 +93,31 @@ words! {
         None = "none": "nothing; no coordinates are written along its edge",
     }
 
+    /// A look in one word: defaults of other keys, and for print and night a look of the finished picture.
+    enum StylePreset {
+        Topographic = "topographic": "tints by height, contour lines, clear air",
+        Relief = "relief": "shaded relief in grays, without lines",
+        Satellite = "satellite": "the ground's natural cover, or `imagery`, without lines",
+        Military = "military": "pale tints, contour lines, the military grid, clear air",
+        Print = "print": "black on white, patterns in place of colors",
+        Night = "night": "red light",
+    }
+
     /// What stands on the picture, and what round it.
     enum SheetLayout {
         Compact = "compact": "furniture in the corners of the picture",
         None = "none": "nothing but labels and the grid",
         Margin = "margin": "the picture in a frame, furniture on the white margin, with a locator",
         Military = "military": "the same with the classification and the three norths",
+    }
+
+    /// A size of paper (ISO 216).
+    enum PaperName {
+        A4 = "A4": "297 × 210 mm",
+        A3 = "A3": "420 × 297 mm",
+        A2 = "A2": "594 × 420 mm",
+        A1 = "A1": "841 × 594 mm",
+        A0 = "A0": "1189 × 841 mm",
     }
 
     /// The lines of a coordinate grid on the ground.

@@ -31,7 +31,7 @@ use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
 use crate::scene::sources::Sources;
 use crate::scene::spot_heights::spot_heights;
-use crate::scene::style::{self, RampSource};
+use crate::scene::style::{self, RampSource, Surroundings};
 use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
@@ -100,6 +100,7 @@ pub fn build(
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
+    let surroundings = Surroundings::new(document);
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
@@ -107,12 +108,14 @@ pub fn build(
         heights,
         ramp: RampSource::new(document)?,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
-        land_cover: document.style.land_cover,
+        land_cover: surroundings.land_cover,
         imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
-        contours: style::contours(document),
+        contours: style::contours(document, height_range_m),
+        preset: document.style.preset,
+        grid: style::grid(document),
         sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,
-        haze_m: document.style.haze.map(|distance_m| distance_m as f32),
-        table: document.style.table,
+        haze_m: surroundings.haze_m,
+        table: surroundings.table,
         maps: Default::default(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),

@@ -51,7 +51,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
-use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
+use crate::description::words::{Anchor, Clamp, Footing, GridName, LabelKind, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
@@ -146,6 +146,10 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The look in one word that its pictures have.
+    pub preset: Option<StylePreset>,
+    /// The coordinate grid on the ground.
+    pub grid: GridName,
     /// The day of its information.
     pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
@@ -333,6 +337,35 @@ pub struct SceneView {
     pub aim: ViewAim,
     /// Vertical field of view in radians; without effect on parallel rays.
     pub fov_y_rad: f32,
+    /// The paper that it fills, where it is meant for print.
+    pub paper: Option<PaperSheet>,
+}
+
+/// A sheet of paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperSheet {
+    /// Width and height in millimeters.
+    pub size_mm: [f64; 2],
+    /// Pixels per inch.
+    pub dpi: f64,
+}
+
+impl PaperSheet {
+    /// Width and height in pixels.
+    pub fn size_px(&self) -> (u32, u32) {
+        let [width, height] = self.size_mm.map(|side| libm::round(side / 25.4 * self.dpi) as u32);
+        (width.clamp(16, 16_384), height.clamp(16, 16_384))
+    }
+}
+
+impl SceneView {
+    /// Pixels per inch of its print; `None` where it has no print in mind.
+    pub fn dpi(&self) -> Option<f64> {
+        match self.aim {
+            ViewAim::Parallel(ParallelView { dpi, .. }) => Some(dpi),
+            _ => self.paper.map(|paper| paper.dpi),
+        }
+    }
 }
 
 /// From where a view looks, and whereto.
