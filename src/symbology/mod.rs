@@ -1,1 +1,5 @@
 //! Military symbols and tactical graphics: their codes, and how they are drawn in the plane.
+
+pub mod code;
+pub mod fields;
+mod letter_code;
