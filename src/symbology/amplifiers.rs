@@ -131,7 +131,7 @@ impl Amplification {
             return;
         }
         self.stroke(path("M45,60 L100,35 L155,60"), FRAME_LINE);
-        self.cover(SymbolBox::new(45.0, 35.0, 155.0, 155.0));
+        self.cover(SymbolBox::new(45.0, 25.0, 155.0, 155.0));
     }
 
     /// Task force bracket and feint or dummy chevron over a frame, headquarters staff below it.

@@ -23,6 +23,8 @@ use crate::symbology::modifiers::modifiers;
 const ASSUMED_DASH: [f32; 2] = [4.0, 4.0];
 const PLANNED_DASH: [f32; 2] = [8.0, 12.0];
 const WHITE: [u8; 3] = [255, 255, 255];
+/// In the frame of a thing of an unknown set.
+const UNKNOWN_SET: &str = "text 80 ?";
 
 /// A symbol in its box of 200 × 200 units, Y down; what is drawn at the frame may leave the box.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +67,13 @@ impl MilitarySymbol {
         let bottom = if code.amplifier.is_mobility() { amplified.bounds.max.y } else { frame.max.y };
         amplified.condition(code.status, frame, bottom.min(frame.max.y + 40.0));
         marks.extend(amplified.marks);
-        marks.extend(exercise_letter(code, frame));
+        if let Some(letter) = exercise_letter(code, frame) {
+            // The letter's field, as wide and high as a field of text beside the frame.
+            let (at, size) = (frame.min, Vec2::new(frame.max.x + 32.0, frame.min.y + 10.0));
+            amplified.bounds =
+                amplified.bounds.union(SymbolBox { min: Vec2::new(at.x, at.y - 35.0), max: size });
+            marks.push(letter);
+        }
         let anchor = if code.role.is_headquarters() { staff_foot(shape) } else { Vec2::splat(100.0) };
         Some(Self { marks, bounds: amplified.bounds, frame, anchor, notes })
     }
@@ -74,6 +82,9 @@ impl MilitarySymbol {
 /// The icon and its modifiers; what is missing is noted.
 fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<SymbolMark> {
     let mut drawings = Vec::new();
+    if code.set == SymbolSet::Unknown {
+        drawings.push(UNKNOWN_SET);
+    }
     if let Some(function) = code.unknown_function {
         let function = String::from_utf8_lossy(&function).into_owned();
         notes.push(format!("the function {function} of 2525C is not drawn: the frame stands alone"));
@@ -192,7 +203,7 @@ fn exercise_letter(code: &SymbolCode, frame: SymbolBox) -> Option<SymbolMark> {
         (SymbolContext::Simulation, _) => "S",
         _ => return None,
     };
-    let center = Vec2::new(frame.max.x + 18.0, frame.min.y - 5.0);
+    let center = Vec2::new(frame.max.x + 19.0, frame.min.y - 9.0);
     Some(SymbolMark::Text { text: letter.to_owned(), center, size: 30.0 })
 }
 

@@ -3,7 +3,7 @@
 use crate::symbology::entities::{SymbolEntity, entity};
 
 pub(super) const AIRCRAFT: &[SymbolEntity] = &[
-    entity(110000, "military", "text 33 MIL"),
+    entity(110000, "military", "text 39 MIL"),
     entity(
         110100,
         "military, fixed wing",

@@ -3,7 +3,7 @@
 use crate::symbology::entities::{SymbolEntity, entity};
 
 pub(super) const SHIPS: &[SymbolEntity] = &[
-    entity(110000, "military", "text 33 MIL"),
+    entity(110000, "military", "text 39 MIL"),
     entity(120100, "carrier", "fill M78.5,79 L101.5,79 L101.5,99 L124,99 L100,122 L78.5,101 Z"),
     entity(120202, "cruiser", "text 45 CG"),
     entity(120203, "destroyer", "text 45 DD"),
