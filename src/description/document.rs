@@ -59,7 +59,8 @@ pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);
 table! {
     /// A whole scene file.
     struct Document {
-        with source: Arc<SourceText> = TableReader::source;
+        with source: Arc<SourceText> = TableReader::source, "The text that it was read from; messages point into it.";
+        with phase: Option<String> = TableReader::phase, "The phase that it was read for; `None` where it has none.";
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
         include: Option<Vec<String>> = key::text_list(), otherwise "none";
@@ -99,14 +100,19 @@ table! {
         /// Models strewn over areas.
         scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
         /// Names and heights on the picture.
-        labels as "label": Vec<LabelTable> = key::tables::<LabelTable>(), default [];
+        labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
+        /// What the scene shows one after the other: one picture each.
+        phases as "phase": Vec<PhaseTable> = key::tables::<PhaseTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
         /// What frames the picture.
         furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
     }
     check(reader) {
-        check_names(reader, cameras.as_deref().unwrap_or_default());
+        let cameras = cameras.iter().flatten().map(|camera: &CameraTable| &camera.name);
+        check_names(reader, "camera", cameras);
+        let phases = phases.iter().flatten().map(|phase: &PhaseTable| &phase.name);
+        check_names(reader, "phase", phases);
     }
 
     /// `[terrain]`: the elevation model.
@@ -236,6 +242,14 @@ table! {
         }
     }
 
+    /// `[[phase]]`: a time of which the scene has a picture. Every table of features may have the key `phases`.
+    struct PhaseTable {
+        /// Name for `--phase`; no two phases share one.
+        name: Stated<String> = key::filled_text(), required;
+        /// Second line under the picture's title.
+        title: Option<String> = key::text(), otherwise "the scene's `subtitle`";
+    }
+
     /// `[[camera]]`: an eye and what it looks at, or, without them, a view that fills the picture.
     struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
@@ -320,6 +334,12 @@ impl Document {
     /// The keys outside tables, and the tables with their keys.
     pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
 
+    /// The title of the phase that the scene is read for.
+    pub fn phase_title(&self) -> Option<&str> {
+        let is_chosen = |phase: &&PhaseTable| Some(phase.name.as_str()) == self.phase.as_deref();
+        self.phases.iter().find(is_chosen)?.title.as_deref()
+    }
+
     /// An error about a value; `cause` is an error or a sentence.
     pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
         self.error_at(value.span().unwrap_or_default(), cause)
@@ -360,18 +380,22 @@ fn check_eye(reader: &mut TableReader<'_, '_>) {
     }
 }
 
-/// Reports cameras with the name of an earlier one.
-fn check_names(reader: &mut TableReader<'_, '_>, cameras: &[CameraTable]) {
+/// Reports things of one kind with the name of an earlier one.
+fn check_names<'a>(
+    reader: &mut TableReader<'_, '_>,
+    kind: &str,
+    names: impl IntoIterator<Item = &'a Stated<String>>,
+) {
     let (source, mut seen) = (reader.source(), BTreeMap::new());
-    for camera in cameras {
-        let span = camera.name.span().unwrap_or_default();
-        let first = *seen.entry(camera.name.as_str()).or_insert(span.start);
+    for name in names {
+        let span = name.span().unwrap_or_default();
+        let first = *seen.entry(name.as_str()).or_insert(span.start);
         if first == span.start {
             continue;
         }
         let (line, file) = (source.line_column(first).line, source.name_at(first));
         let other = if file == source.name_at(span.start) { String::new() } else { format!(" of {file}") };
-        let message = format!("the camera on line {line}{other} already has this name");
-        reader.error(span, message, "give each camera a name of its own");
+        let message = format!("the {kind} on line {line}{other} already has this name");
+        reader.error(span, message, format!("give each {kind} a name of its own"));
     }
 }

@@ -85,6 +85,8 @@ pub struct SceneModel {
     pub title: Option<String>,
     /// A second line under it.
     pub subtitle: Option<String>,
+    /// The phase that it shows; `None` where it has none.
+    pub phase: Option<String>,
     /// The map coordinates' system.
     pub crs: Crs,
     /// The elevations of the ground, true to scale.
@@ -455,6 +457,20 @@ impl SceneModel {
             Some(name) => self.cameras.iter().find(|view| view.name == name),
             None => self.cameras.first(),
         }
+    }
+
+    /// What a feature is called: its kind and its name; empty for nothing.
+    pub fn feature_name(&self, feature: FeatureId) -> String {
+        match feature {
+            FeatureId::GROUND => return "ground".into(),
+            FeatureId::PLINTH => return "plinth".into(),
+            _ => {}
+        }
+        let feature = feature.index().and_then(|index| self.features.get(index));
+        feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+            "" => kind.noun(1).to_owned(),
+            name => format!("{} {name}", kind.noun(1)),
+        })
     }
 
     /// The number of features of each kind that is present, in the order of [`FeatureKind`].
