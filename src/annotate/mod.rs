@@ -41,5 +41,7 @@ pub mod report;
 pub mod rim;
 pub mod scale_bar;
 mod sheet;
+mod symbol_drawing;
+mod symbols;
 mod text;
 mod title;

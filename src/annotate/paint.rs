@@ -11,6 +11,7 @@ use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
 use crate::annotate::sheet::Sheet;
+use crate::annotate::symbols::draw_symbols;
 use crate::annotate::{credit, legend, north, rim, scale_bar, title};
 use crate::draw::pixels::Pixels;
 
@@ -29,9 +30,12 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     boxes.extend(marks.iter().map(Drawing::bounds));
     let mut report = AnnotationReport::default();
     furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
+    let symbols = draw_symbols(&annotations.symbols, &boxes, &mut composer, &mut report.symbols);
+    report.add_texts(&symbols.drawing.texts);
+    boxes.extend(&symbols.boxes);
     let labels =
         draw_labels(&annotations.labels, &annotations.line_labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
+    paint(pixels, furniture.pieces().chain(&marks).chain([&symbols.drawing, &labels]));
     report.left_out = furniture.left_out;
     report
 }

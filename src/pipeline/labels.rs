@@ -8,6 +8,7 @@ use crate::annotate::scale_bar::ScaleBar;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
 use crate::pipeline::line_labels::{is_seen, line_label};
+use crate::pipeline::military::picture_symbols;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::label_course::LabelCourse;
@@ -29,6 +30,7 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
         labels,
         line_labels,
         font: scene.font.clone(),
+        symbols: picture_symbols(scene, camera, picture),
         rim: rim_marks(scene, camera),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),

@@ -24,6 +24,7 @@ pub mod ground;
 pub mod labels;
 mod line_labels;
 pub mod lod;
+pub mod military;
 pub mod model_file;
 pub mod new_scene;
 pub mod picture;

@@ -26,6 +26,7 @@ use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
 use crate::scene::ground;
 use crate::scene::imagery;
+use crate::scene::military;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
@@ -93,6 +94,7 @@ pub fn build(
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
     let labels = views::labels(&sources, &lattice, &mut collected.notes)?;
+    let military = military::symbols(&sources, &lattice, &mut collected.notes)?;
     let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
@@ -129,6 +131,7 @@ pub fn build(
         models,
         placements: placed.placements,
         labels,
+        military,
         cameras,
         font: font::load(document, assets)?,
         furniture: document.furniture,

@@ -14,3 +14,4 @@ mod letter_code;
 pub mod modifiers;
 mod pieces;
 pub mod symbol;
+pub mod texts;
