@@ -175,11 +175,12 @@ impl<'a> PreparedStack<'a> {
         let (anchor, frame) = (self.anchor, self.frame_px);
         let own_staff = has_own_staff(self.symbols[0]);
         let center = self.blocks[0].1;
+        let moves = self.symbols.iter().any(|symbol| symbol.direction_px.is_some());
         let first = if own_staff {
             Some(StackPosition { foot: anchor, staff: None })
         } else {
             // On a map a symbol's middle is at its place.
-            let on_place = self.symbols[0].is_on_map && self.symbols.len() == 1;
+            let on_place = self.symbols[0].is_on_map && self.symbols.len() == 1 && !moves;
             on_place.then(|| StackPosition { foot: anchor - center, staff: None })
         };
         let width = self.blocks.iter().map(|(block, _)| block.symbol.size().x).fold(0.0, f32::max);

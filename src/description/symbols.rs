@@ -31,7 +31,7 @@ table! {
         crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
         /// Height of the frame of a friendly unit in a picture 1080 pixels high; in smaller pictures symbols shrink less than
         /// the picture.
-        size: f64 = key::number(Within(12.0, 200.0), "px"), default 32;
+        size: f64 = key::number(Within(12.0, 200.0), "px"), default 38;
         /// Instead of `size`: height of that frame on the ground, so that near symbols are larger, from 16 to 120 pixels.
         extent: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by `size`";
         /// The lower, the more important: symbols that find no place beside more important ones are left out.
