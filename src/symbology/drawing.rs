@@ -3,7 +3,7 @@
 //! ```text
 //! drawing   := statement { ";" statement }
 //! statement := { "fill" | "pale" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
-//! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "A" center radii from to | "Z" }
+//! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "C" x,y x,y x,y | "A" center radii from to | "Z" }
 //! circle    := "circle" x,y radius
 //! text      := "text" size [ x,y ] WORD        centered; size of the em
 //! piece     := "@" name                        a drawing of `pieces`
@@ -198,6 +198,11 @@ fn steps(words: &[&str]) -> Option<Vec<PathStep>> {
             "Q" => {
                 let (end, after) = rest.split_first()?;
                 steps.push(PathStep::Quad(point(operand)?, point(end)?));
+                rest = after;
+            }
+            "C" => {
+                let [second, end, after @ ..] = rest else { return None };
+                steps.push(PathStep::Cubic(point(operand)?, point(second)?, point(end)?));
                 rest = after;
             }
             "A" => {

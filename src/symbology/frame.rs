@@ -155,12 +155,13 @@ impl FrameShape {
             Self::Square => (path("M45,45 L155,45 L155,155 L45,155 Z"), FrameOpening::Below),
             Self::Quatrefoil => (
                 path(
-                    "M63,63 A100,63 37,32.25 180 360 A137,100 32.25,37 -90 90 A100,137 37,32.25 0 180 \
-                     A63,100 32.25,37 90 270 Z",
+                    "M63,63 C63,42 80,30.75 100,30.75 C120,30.75 137,42 137,63 C158,63 169.25,80 169.25,100 \
+                     C169.25,120 158,137 137,137 C137,158 120,169.25 100,169.25 C80,169.25 63,158 63,137 \
+                     C42,137 30.75,120 30.75,100 C30.75,80 42,63 63,63 Z",
                 ),
                 FrameOpening::Below,
             ),
-            Self::Arch(opening) => (path("M45,150 A100,150 55,120 180 360"), opening),
+            Self::Arch(opening) => (path("M45,150 C45,76 70,30 100,30 C130,30 155,76 155,150"), opening),
             Self::Tent(opening) => (path("M45,150 L45,70 L100,20 L155,70 L155,150"), opening),
             Self::OpenBox(opening) => (path("M45,150 L45,30 L155,30 L155,150"), opening),
             Self::Trefoil(opening) => (

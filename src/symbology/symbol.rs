@@ -22,6 +22,8 @@ use crate::symbology::modifiers::modifiers;
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
 const ASSUMED_DASH: [f32; 2] = [4.0, 4.0];
 const PLANNED_DASH: [f32; 2] = [8.0, 12.0];
+/// Between the marks of mobility and the condition bar, besides its own gap.
+const MOBILITY_GAP: f32 = 2.0;
 const WHITE: [u8; 3] = [255, 255, 255];
 /// In the frame of a thing of an unknown set.
 const UNKNOWN_SET: &str = "text 80 ?";
@@ -60,12 +62,15 @@ impl MilitarySymbol {
             bounds = bounds.union(around);
         }
         let mut amplified = Amplification::new(bounds);
+        amplified.mobility(code.amplifier, shape);
+        let bottom = match amplified.bounds.max.y {
+            below if below > frame.max.y => below + MOBILITY_GAP,
+            _ => frame.max.y,
+        };
         amplified.role(code.role, code.amplifier, shape);
         amplified.echelon(code.amplifier, frame);
-        amplified.mobility(code.amplifier, shape);
         amplified.leader(code.amplifier, shape);
-        let bottom = if code.amplifier.is_mobility() { amplified.bounds.max.y } else { frame.max.y };
-        amplified.condition(code.status, frame, bottom.min(frame.max.y + 40.0));
+        amplified.condition(code.status, frame, bottom);
         marks.extend(amplified.marks);
         if let Some(letter) = exercise_letter(code, frame) {
             // The letter's field, as wide and high as a field of text beside the frame.
@@ -173,7 +178,9 @@ fn set_marks(set: SymbolSet, shape: FrameShape) -> Option<(Vec<SymbolMark>, Symb
         }
         SymbolSet::Space | SymbolSet::SpaceMissile | SymbolSet::SignalsSpace => {
             let top = match shape {
-                FrameShape::Arch(FrameOpening::Below) => "M70,50 A100,150 55,120 -123.7 -56.3 Z",
+                FrameShape::Arch(FrameOpening::Below) => {
+                    "M68.5,50 C75,38.5 87,30 100,30 C113,30 125,38.5 131.5,50 Z"
+                }
                 FrameShape::Tent(FrameOpening::Below) => "M67,50 L100,20 L133,50 Z",
                 FrameShape::OpenBox(FrameOpening::Below) => "M45,30 L155,30 L155,50 L45,50 Z",
                 FrameShape::Trefoil(FrameOpening::Below) => "M63.3,50 A100,57.4 37.4,37.4 -168.6 -11.4 Z",
@@ -181,8 +188,16 @@ fn set_marks(set: SymbolSet, shape: FrameShape) -> Option<(Vec<SymbolMark>, Symb
             };
             Some((vec![black(top)], frame))
         }
-        SymbolSet::Cyberspace if shape == FrameShape::Rectangle => {
-            Some((vec![black("M135,150 L175,110 L175,150 Z")], frame))
+        SymbolSet::Cyberspace => {
+            let corner = match shape {
+                FrameShape::Diamond => "M150,78 L172,100 L150,122 Z",
+                FrameShape::Square => "M117,155 L155,117 L155,155 Z",
+                FrameShape::Quatrefoil => {
+                    "M150,66 C162,72 169.25,84 169.25,100 C169.25,116 162,128 150,134 Z"
+                }
+                _ => "M135,150 L175,110 L175,150 Z",
+            };
+            Some((vec![black(corner)], frame))
         }
         _ => None,
     }
