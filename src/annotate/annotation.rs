@@ -13,9 +13,12 @@ use crate::annotate::margin::MarginNotes;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::annotate::sheet::Sheet;
 use crate::description::words::LabelKind;
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
+use crate::symbology::symbol::MilitarySymbol;
+use crate::symbology::texts::PlacedText;
 
 /// Everything to paint on one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +35,8 @@ pub struct Annotations {
     pub rim: Vec<RimMark>,
     /// The coordinate grid on the ground, under everything else.
     pub grid: Option<PictureGrid>,
+    /// Military symbols, placed before labels.
+    pub symbols: Vec<PictureSymbol>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.
@@ -130,4 +135,48 @@ pub struct PictureLabel {
     pub kind: LabelKind,
     /// The lower, the more important.
     pub rank: f64,
+}
+
+/// A military symbol at a place on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureSymbol {
+    /// The drawing.
+    pub symbol: MilitarySymbol,
+    /// The lines of text round it.
+    pub texts: Vec<PlacedText>,
+    /// What the report calls it.
+    pub name: String,
+    /// The place on the ground, pixels.
+    pub anchor_px: Vec2,
+    /// Where it moves to on the picture, of length 1.
+    pub direction_px: Option<Vec2>,
+    /// Meters from the eye to the place.
+    pub depth_m: f32,
+    /// Whether the place is seen, not hidden behind terrain.
+    pub visible: bool,
+    /// Whether it may lie on its place, as on a map, instead of standing over it.
+    pub is_on_map: bool,
+    /// The lower, the more important.
+    pub rank: f64,
+    /// The height of the frame of a friendly unit.
+    pub height: SymbolHeight,
+}
+
+/// A height on the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SymbolHeight {
+    /// Pixels of a picture 1080 pixels high.
+    Design(f32),
+    /// Pixels of the picture.
+    Pixels(f32),
+}
+
+impl SymbolHeight {
+    /// In pixels of a sheet's picture.
+    pub(in crate::annotate) fn pixels(self, sheet: &Sheet) -> f32 {
+        match self {
+            Self::Design(height) => sheet.px(height),
+            Self::Pixels(height) => height,
+        }
+    }
 }

@@ -53,5 +53,7 @@ pub mod scale_bar;
 mod sheet;
 pub mod sheet_frame;
 pub mod svg;
+mod symbol_drawing;
+mod symbols;
 mod text;
 mod title;

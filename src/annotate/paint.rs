@@ -12,6 +12,7 @@ use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
 use crate::annotate::sheet::{PAPER, Sheet};
+use crate::annotate::symbols::draw_symbols;
 use crate::annotate::{class_legend, credit, grid, legend, margin, north, rim, scale_bar, title};
 use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
@@ -108,8 +109,11 @@ fn on_picture(
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
     let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
+    let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
+    report.add_texts(&symbols.drawing.texts);
+    boxes.extend(&symbols.boxes);
     let labels = draw_labels(annotations, picture, &boxes, composer, report);
-    lines.into_iter().chain(furniture).chain(marks).chain(figures).chain([labels]).collect()
+    lines.into_iter().chain(furniture).chain(marks).chain(figures).chain([symbols.drawing, labels]).collect()
 }
 
 /// Copies a picture onto a page, as far as it lies on it.

@@ -41,6 +41,8 @@ pub struct AnnotationReport {
     pub empty: usize,
     /// Texts drawn with an ellipsis because they were too long.
     pub shortened: Vec<String>,
+    /// Military symbols.
+    pub symbols: SymbolReport,
     /// Furniture not drawn: too large for the picture, or without sensible values.
     pub left_out: Vec<FurnitureKind>,
     /// Texts drawn with boxes in place of characters that the embedded fonts lack.
@@ -63,6 +65,19 @@ pub enum LabelMove {
     Led,
     /// At one place: its line, or its area, is too short, too bent or too crowded for the letters.
     OffLine,
+}
+
+/// What becomes of military symbols, by their names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SymbolReport {
+    /// Drawn.
+    pub placed: Vec<String>,
+    /// Drawn with a dashed staff and a hollow foot, because terrain hides their place.
+    pub hidden: Vec<String>,
+    /// Not drawn because their place is outside the picture.
+    pub outside: Vec<String>,
+    /// Not drawn because no position near their place was free.
+    pub crowded_out: Vec<String>,
 }
 
 /// What becomes of a label.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::annotate::report::{AnnotationReport, LabelMove};
+use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
@@ -151,7 +151,7 @@ impl RenderedScene {
         let object = |picture: &RenderedPicture| {
             let RenderedPicture { camera, triangles, annotations, statistics, .. } = picture;
             let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
-            let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = annotations;
+            let AnnotationReport { hidden, outside, crowded_out, shortened, symbols, .. } = annotations;
             let [led, off_line] = moved(annotations);
             json!({
                 "picture": picture.path().map(|path| path.display().to_string()),
@@ -166,6 +166,10 @@ impl RenderedScene {
                 "labels": {
                     "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
                     "led": led, "off_line": off_line
+                },
+                "symbols": {
+                    "placed": symbols.placed, "hidden": symbols.hidden, "outside": symbols.outside,
+                    "without_room": symbols.crowded_out
                 },
                 "notes": notes,
                 "seconds": seconds,
@@ -195,7 +199,23 @@ impl RenderedPicture {
             let names: Vec<String> = labels.iter().map(|label| shortened_label(label)).collect();
             row(9, "labels", format!("{why}: {}", names.join(", ")))
         });
-        std::iter::once(row(9, "camera", camera)).chain(labels).collect()
+        std::iter::once(row(9, "camera", camera)).chain(labels).chain(self.symbols()).collect()
+    }
+}
+
+impl RenderedPicture {
+    /// The military symbols that are not drawn, or not where they can be seen, in lines.
+    fn symbols(&self) -> impl Iterator<Item = String> {
+        let SymbolReport { hidden, outside, crowded_out, .. } = &self.annotations.symbols;
+        let reasons = [
+            ("over hidden places (dashed staffs)", hidden),
+            ("outside the picture", outside),
+            ("without room", crowded_out),
+        ];
+        reasons.into_iter().filter(|(_, symbols)| !symbols.is_empty()).map(|(why, symbols)| {
+            let names: Vec<String> = symbols.iter().map(|name| shortened_label(name)).collect();
+            row(9, "symbols", format!("{why}: {}", names.join(", ")))
+        })
     }
 }
 

@@ -49,6 +49,7 @@ use crate::description::reader::TableReader;
 use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
+use crate::description::symbols::SymbolTable;
 use crate::description::table::Table;
 use crate::description::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
@@ -105,6 +106,8 @@ table! {
         labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
         /// What the scene shows one after the other: one picture each.
         phases as "phase": Vec<PhaseTable> = key::tables::<PhaseTable>(), default [];
+        /// Military symbols, standing on the ground.
+        symbols as "symbol": Vec<SymbolTable> = key::styled_tables::<SymbolTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
         /// Paths through the scene that `sandtable fly` follows.

@@ -22,5 +22,6 @@ pub mod selection;
 pub mod source_text;
 pub mod stated;
 pub mod styles;
+pub mod symbols;
 mod value;
 pub mod words;

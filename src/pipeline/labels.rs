@@ -14,6 +14,7 @@ use crate::pipeline::grid::{grid_over, picture_grid};
 use crate::pipeline::legend::legend_entries;
 use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::margin::margin_notes;
+use crate::pipeline::military::picture_symbols;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::label_course::LabelCourse;
@@ -45,6 +46,7 @@ pub fn annotations(
         line_labels,
         contours: contour_marks(scene, camera, picture),
         font: scene.font.clone(),
+        symbols: picture_symbols(scene, camera, picture),
         rim: rim_marks(scene, camera, grid.as_ref()),
         margin: frame
             .map(|frame| margin_notes(scene, camera, frame, grid.as_ref().map(|grid| grid.note.as_str()))),

@@ -31,6 +31,7 @@ mod line_labels;
 pub mod lod;
 pub mod look;
 pub mod margin;
+pub mod military;
 pub mod model_file;
 pub mod new_scene;
 pub mod picture;

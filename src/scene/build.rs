@@ -26,6 +26,7 @@ use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
 use crate::scene::ground;
 use crate::scene::imagery;
+use crate::scene::military;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
@@ -96,6 +97,7 @@ pub fn build(
     let mut labels = views::labels(&sources, &lattice, &mut collected.notes)?;
     let most = document.style.spot_heights as usize;
     labels.extend(spot_heights(most, &labels, &collected.lakes, &frame, &lattice));
+    let military = military::symbols(&sources, &lattice, &mut collected.notes)?;
     let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
@@ -135,6 +137,7 @@ pub fn build(
         models,
         placements: placed.placements,
         labels,
+        military,
         cameras,
         font: font::load(document, assets)?,
         furniture: document.furniture.clone(),

@@ -178,7 +178,7 @@ impl LeftOut {
 }
 
 /// A value as text; `None` for text without a letter.
-fn written(value: &Scalar) -> Option<String> {
+pub fn written(value: &Scalar) -> Option<String> {
     let text = match value {
         Scalar::Bool(value) => value.to_string(),
         Scalar::Number(number) => number.to_string(),
@@ -211,7 +211,7 @@ fn next_brace(text: &str) -> Option<(&str, &str, &str)> {
 }
 
 /// The place on the ground that names a shape of the system `crs`; `None` where nothing of it lies on ground with data.
-fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
+pub fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
     let extent = lattice.extent();
     let world = |points: &[DVec2]| world_points(points, crs, frame);
     let longest = |best: (DVec2, f64), next: (DVec2, f64)| if next.1 > best.1 { next } else { best };

@@ -24,6 +24,7 @@ pub mod ground_map;
 pub mod imagery;
 pub mod label_course;
 pub mod land_cover;
+pub mod military;
 pub mod models;
 pub mod near;
 pub mod picture;
@@ -70,6 +71,7 @@ use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
+use crate::scene::military::SceneSymbol;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
@@ -140,6 +142,8 @@ pub struct SceneModel {
     pub placements: Vec<Placement>,
     /// Names and heights.
     pub labels: Vec<SceneLabel>,
+    /// Military symbols.
+    pub military: Vec<SceneSymbol>,
     /// Views; at least one.
     pub cameras: Vec<SceneView>,
     /// The font for characters that the embedded fonts lack.

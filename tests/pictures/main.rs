@@ -8,3 +8,4 @@ mod gallery;
 mod render_cpu;
 mod render_gpu;
 mod render_parity;
+mod symbols;

@@ -3,6 +3,7 @@
 mod layers;
 mod reference;
 mod schema;
+mod symbols_page;
 
 use proptest::prelude::{ProptestConfig, any};
 use sandtable::description::color::{Color, RampChoice};

@@ -1,0 +1,140 @@
+//! The scene file's table of military symbols.
+
+use crate::description::bounds::Bounds::{Above, Within};
+use crate::description::declaration::{KeyDeclaration, Presence};
+use crate::description::document::DIRECTION;
+use crate::description::feature_value::{DefaultedValue, FeatureValue};
+use crate::description::features::FeatureSource;
+use crate::description::key;
+use crate::description::reader::TableReader;
+use crate::description::selection::Selection;
+use crate::description::stated::Stated;
+use crate::description::table::Table;
+use crate::geom::crs::Crs;
+
+table! {
+    /// `[[symbol]]`.
+    struct SymbolTable {
+        /// The symbol code: 20 or 30 digits (MIL-STD-2525D and E, APP-6D), or 15 letters (2525C). With `file`: an expression,
+        /// such as `sidc`. So are the texts below.
+        sidc: Stated<String> = key::filled_text(), required;
+        /// Where it is.
+        at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `file`";
+        /// Instead of `at`: a vector file whose features are symbols: points where they are, lines at the middle of their
+        /// longest piece, polygons at a point inside.
+        file: Option<Stated<String>> = key::file(), otherwise "by `at`";
+        /// With `file`: the layer of a file that holds several.
+        layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer";
+        /// With `file`: the features that are symbols, as in other tables.
+        selection as "where": Option<Stated<Selection>> = key::selection(), otherwise "all features";
+        /// Coordinate system of `at`, or of a file that names none or a wrong one.
+        crs: Option<Crs> = key::crs(), otherwise "the scene's `points_crs`, or what the file names";
+        /// Height of the frame of a friendly unit in a picture 1080 pixels high; in smaller pictures symbols shrink less than
+        /// the picture.
+        size: f64 = key::number(Within(12.0, 200.0), "px"), default 38;
+        /// Instead of `size`: height of that frame on the ground, so that near symbols are larger, from 16 to 120 pixels.
+        extent: Option<f64> = key::number(Above(0.0, 1e6), "m"), otherwise "by `size`";
+        /// The lower, the more important: symbols that find no place beside more important ones are left out.
+        rank: DefaultedValue<f64> = key::feature_number(Within(-1e9, 1e9), ""), default 0;
+        /// Field Q: the direction of movement, as an arrow from the place.
+        direction: Option<Stated<FeatureValue<f64>>> = key::feature_number(DIRECTION, "°"), otherwise "no arrow";
+        /// Field C: how many, over the frame.
+        quantity: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field F: `(+)`, `(-)` or `(±)`.
+        reinforced: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field G.
+        staff_comments: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field H.
+        additional_information: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field M: the number or title of the higher formation, lower right.
+        higher_formation: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field J: reliability and credibility, such as `B2`.
+        evaluation_rating: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field K.
+        combat_effectiveness: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field P: identification modes.
+        iff: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field T: what the unit is called, lower left.
+        unique_designation: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field V: the type of equipment.
+        kind as "type": Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field W: date and time.
+        dtg: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field X.
+        altitude: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field Y.
+        location: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field Z.
+        speed: Option<Stated<String>> = key::filled_text(), otherwise "none";
+        /// Field AA: the name of a special headquarters, in the frame.
+        special_headquarters: Option<Stated<String>> = key::filled_text(), otherwise "none";
+    }
+    check(reader) {
+        reader.exclude("file", "at");
+        reader.need_either("at", "file", "add `at = [x, y]`, or `file = \"name.geojson\"` for a symbol a feature");
+        if reader.key_span("extent").is_some() {
+            reader.without_effect(&["size"], "on a symbol with an `extent`", "remove one of them");
+        }
+        if reader.key_span("file").is_some() {
+            for key in TEXT_KEYS {
+                reader.need_expression(key);
+            }
+        } else {
+            reader.without_effect(&["layer", "where"], "on a symbol without a `file`", "name a `file`, or remove it");
+        }
+    }
+}
+
+/// The keys that are texts, or with a file expressions.
+const TEXT_KEYS: [&str; 16] = [
+    "sidc",
+    "quantity",
+    "reinforced",
+    "staff_comments",
+    "additional_information",
+    "higher_formation",
+    "evaluation_rating",
+    "combat_effectiveness",
+    "iff",
+    "unique_designation",
+    "type",
+    "dtg",
+    "altitude",
+    "location",
+    "speed",
+    "special_headquarters",
+];
+
+impl SymbolTable {
+    /// The features that are symbols; `None` for a symbol at one place.
+    pub fn source(&self) -> Option<FeatureSource> {
+        self.file.is_some().then(|| FeatureSource {
+            points: None,
+            file: self.file.clone(),
+            layer: self.layer.clone(),
+            selection: self.selection.clone(),
+            crs: self.crs.clone(),
+        })
+    }
+
+    /// The fields of text with their texts or expressions, as the table of text fields has their keys.
+    pub fn texts(&self) -> [(&'static str, &Option<Stated<String>>); 15] {
+        [
+            ("quantity", &self.quantity),
+            ("reinforced", &self.reinforced),
+            ("staff_comments", &self.staff_comments),
+            ("additional_information", &self.additional_information),
+            ("higher_formation", &self.higher_formation),
+            ("evaluation_rating", &self.evaluation_rating),
+            ("combat_effectiveness", &self.combat_effectiveness),
+            ("iff", &self.iff),
+            ("unique_designation", &self.unique_designation),
+            ("type", &self.kind),
+            ("dtg", &self.dtg),
+            ("altitude", &self.altitude),
+            ("location", &self.location),
+            ("speed", &self.speed),
+            ("special_headquarters", &self.special_headquarters),
+        ]
+    }
+}

@@ -1,0 +1,221 @@
+//! Military symbols of the scene: codes and texts from the scene file or from the features of a file, set on the ground.
+
+use glam::Vec3;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::expression::Expression;
+use crate::description::stated::Stated;
+use crate::description::symbols::SymbolTable;
+use crate::geom::crs::Crs;
+use crate::scene::attributes::Attributes;
+use crate::scene::feature_labels::{place, written};
+use crate::scene::sources::Sources;
+use crate::scene::world_frame::WorldFrame;
+use crate::symbology::code::SymbolCode;
+use crate::symbology::symbol::MilitarySymbol;
+use crate::symbology::texts::{PlacedText, SymbolText, TEXT_FIELDS, placed};
+use crate::terrain::lattice::Lattice;
+
+/// More symbols are not read: no picture has room for them.
+const MOST_SYMBOLS: usize = 4096;
+
+/// A symbol at its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSymbol {
+    /// The drawing.
+    pub symbol: MilitarySymbol,
+    /// The lines of text round it.
+    pub texts: Vec<PlacedText>,
+    /// What reports call it: its designation, else its code.
+    pub name: String,
+    /// The position on the ground, world space, displayed height.
+    pub ground: Vec3,
+    /// Where it moves to, radians clockwise from north.
+    pub direction_rad: Option<f32>,
+    /// How large it is.
+    pub size: SymbolSize,
+    /// The lower, the more important; never NaN.
+    pub rank: f64,
+}
+
+/// The height of the frame of a friendly unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SymbolSize {
+    /// Pixels of a picture 1080 pixels high.
+    Design(f32),
+    /// Meters on the ground.
+    Ground(f32),
+}
+
+/// The symbols of the document; `notes` gets a line for what is not drawn.
+///
+/// # Errors
+/// A code that the scene file states is none, or its place lies off the ground; a file cannot be read or holds no feature
+/// that matches.
+pub fn symbols(
+    sources: &Sources<'_>,
+    lattice: &Lattice,
+    notes: &mut Vec<String>,
+) -> Result<Vec<SceneSymbol>, Diagnostic> {
+    let mut symbols = Vec::new();
+    for table in &sources.frame.document.symbols {
+        match &table.at {
+            Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, notes)?),
+            None => read_features(table, sources, lattice, &mut symbols, notes)?,
+        }
+    }
+    if symbols.len() > MOST_SYMBOLS {
+        notes.push(format!(
+            "{} symbols beyond the first {MOST_SYMBOLS} are left out",
+            symbols.len() - MOST_SYMBOLS
+        ));
+        symbols.truncate(MOST_SYMBOLS);
+    }
+    Ok(symbols)
+}
+
+fn symbol_at(
+    table: &SymbolTable,
+    at: &Stated<[f64; 2]>,
+    frame: &WorldFrame<'_>,
+    lattice: &Lattice,
+    notes: &mut Vec<String>,
+) -> Result<SceneSymbol, Diagnostic> {
+    let error = |message: String| frame.document.error(&table.sidc, message);
+    let code = SymbolCode::parse(&table.sidc).map_err(|found| error(found.to_string()))?;
+    let symbol = MilitarySymbol::new(&code).ok_or_else(|| error(frameless(&code)))?;
+    let world = frame.point(at, table.crs.as_ref())?;
+    let ground = frame.on_ground(lattice, at, world)?;
+    let text = |field| stated_text(table, field).map(|text| text.as_str());
+    let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &table.sidc), ground };
+    Ok(found.finished(table, &Attributes::default(), notes))
+}
+
+/// Adds the symbols of the features of a file.
+fn read_features(
+    table: &SymbolTable,
+    sources: &Sources<'_>,
+    lattice: &Lattice,
+    symbols: &mut Vec<SceneSymbol>,
+    notes: &mut Vec<String>,
+) -> Result<(), Diagnostic> {
+    let frame = sources.frame;
+    let Some(source) = table.source() else { return Ok(()) };
+    let expression =
+        |text: &Stated<String>| Expression::parse(text).map_err(|error| frame.document.error(text, error));
+    let sidc = expression(&table.sidc)?;
+    let mut fields = Vec::new();
+    for row in &TEXT_FIELDS {
+        if let Some(text) = stated_text(table, row.field) {
+            fields.push((row.field, expression(text)?));
+        }
+    }
+    let (crs, features) = sources.features(&source)?;
+    let mut left_out = LeftOutSymbols::default();
+    for attributes in features {
+        let code = attributes.evaluated(&sidc).and_then(|code| written(&code)).unwrap_or_default();
+        let symbol = SymbolCode::parse(&code).map_err(|error| error.to_string());
+        let symbol = symbol.and_then(|code| MilitarySymbol::new(&code).ok_or_else(|| frameless(&code)));
+        let Some(symbol) = symbol.map_err(|error| left_out.no_code(error)).ok() else { continue };
+        let Some(ground) = on_ground(&attributes, &crs, frame, lattice) else {
+            left_out.off += 1;
+            continue;
+        };
+        let texts: Vec<(SymbolText, String)> = fields
+            .iter()
+            .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
+            .collect();
+        let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
+        let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
+        symbols.push(found.finished(table, &attributes, notes));
+        if symbols.len() > MOST_SYMBOLS {
+            break;
+        }
+    }
+    notes.extend(left_out.note(source.file.as_ref().map_or("", |file| file.as_str())));
+    Ok(())
+}
+
+fn on_ground(attributes: &Attributes, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
+    place(attributes.geometry()?, crs, frame, lattice)
+}
+
+fn frameless(code: &SymbolCode) -> String {
+    let (number, name) = (code.set.number(), code.set.name());
+    format!(
+        "the set {number:02} of the symbol code, {name}, has no symbols with frames: use another set, or a graphic"
+    )
+}
+
+/// The text or expression of a field.
+fn stated_text(table: &SymbolTable, field: SymbolText) -> Option<&Stated<String>> {
+    let key = TEXT_FIELDS.iter().find(|row| row.field == field)?.key;
+    table.texts().into_iter().find(|(name, _)| *name == key)?.1.as_ref()
+}
+
+/// What reports call a symbol.
+fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String {
+    match (text(SymbolText::UniqueDesignation), text(SymbolText::HigherFormation)) {
+        (Some(unit), Some(higher)) => format!("{unit}/{higher}"),
+        (Some(unit), None) => unit.to_owned(),
+        _ => code.to_owned(),
+    }
+}
+
+/// A symbol before the keys that any feature may compute.
+struct FoundSymbol {
+    symbol: MilitarySymbol,
+    texts: Vec<PlacedText>,
+    name: String,
+    ground: Vec3,
+}
+
+impl FoundSymbol {
+    fn finished(self, table: &SymbolTable, attributes: &Attributes, notes: &mut Vec<String>) -> SceneSymbol {
+        let Self { symbol, texts, name, ground } = self;
+        for note in &symbol.notes {
+            let note = format!("symbol {name}: {note}");
+            if !notes.contains(&note) {
+                notes.push(note);
+            }
+        }
+        let direction = attributes.value(table.direction.as_deref());
+        SceneSymbol {
+            symbol,
+            texts,
+            name,
+            ground,
+            direction_rad: direction.map(|degrees| degrees.to_radians() as f32),
+            size: match table.extent {
+                Some(meters) => SymbolSize::Ground(meters as f32),
+                None => SymbolSize::Design(table.size as f32),
+            },
+            rank: match table.rank.stated() {
+                Some(rank) => attributes.value(Some(rank)).unwrap_or(f64::INFINITY),
+                None => *table.rank.default(),
+            },
+        }
+    }
+}
+
+/// The features of a file without a symbol.
+#[derive(Default)]
+struct LeftOutSymbols {
+    codeless: usize,
+    first: Option<String>,
+    off: usize,
+}
+
+impl LeftOutSymbols {
+    fn no_code(&mut self, error: String) {
+        self.codeless += 1;
+        self.first.get_or_insert(error);
+    }
+
+    fn note(&self, file: &str) -> Option<String> {
+        let codeless = self.first.as_ref().map(|first| format!("{} (the first: {first})", self.codeless));
+        let off = (self.off > 0).then(|| format!("{} lie off the elevation model", self.off));
+        let told: Vec<String> = codeless.into_iter().chain(off).collect();
+        (!told.is_empty()).then(|| format!("features of '{file}' without a symbol: {}", told.join(", ")))
+    }
+}

@@ -1,0 +1,272 @@
+//! Drawings in a box of 200 × 200 units, X right, Y down, the icon round (100, 100); and the text that they are written in.
+//!
+//! ```text
+//! drawing   := statement { ";" statement }
+//! statement := { "fill" | "pale" | "thin" | "bold" | "broad" } ( path | circle | text | piece )
+//! path      := "M" x,y { "M" x,y | "L" x,y | "Q" x,y x,y | "C" x,y x,y x,y | "A" center radii from to | "Z" }
+//! circle    := "circle" x,y radius
+//! text      := "text" size [ x,y ] WORD        centered; size of the em
+//! piece     := "@" name                        a drawing of `pieces`
+//! ```
+//!
+//! `A` is an arc of an axis-parallel ellipse, from one angle to another in degrees, clockwise from the right; a straight
+//! line leads to its start. A path is stroked in black; `fill` fills it in black instead, `pale` in near white under its
+//! stroke, and the others change the stroke's width.
+
+use std::f32::consts::FRAC_PI_4;
+
+use glam::Vec2;
+
+use crate::symbology::frame::FrameShape;
+use crate::symbology::pieces::piece;
+
+/// Width of the lines of an icon. The figures of the standard have about this share of the frame's height.
+const LINE: f32 = 3.0;
+const THIN: f32 = 2.0;
+const BOLD: f32 = 4.0;
+const BROAD: f32 = 6.0;
+
+/// Black ink.
+pub const BLACK: [u8; 3] = [0, 0, 0];
+/// The light parts of civilian icons.
+pub const PALE: [u8; 3] = [239, 239, 239];
+
+/// Where a centered text stands that states no place: capitals look centered a little above the middle.
+const TEXT_CENTER: Vec2 = Vec2::new(100.0, 99.5);
+
+/// A step of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathStep {
+    /// Begins a line.
+    Move(Vec2),
+    /// Straight to a point.
+    Line(Vec2),
+    /// A quadratic curve: control point, end.
+    Quad(Vec2, Vec2),
+    /// A cubic curve: two control points, end.
+    Cubic(Vec2, Vec2, Vec2),
+    /// Straight back to where the line began.
+    Close,
+}
+
+/// How a path is stroked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymbolPen {
+    /// In units of the box.
+    pub width: f32,
+    /// Red, green, blue.
+    pub color: [u8; 3],
+    /// Lengths of dash and gap; `None` for an unbroken line.
+    pub dash: Option<[f32; 2]>,
+}
+
+impl SymbolPen {
+    /// An unbroken black line.
+    pub fn black(width: f32) -> Self {
+        Self { width, color: BLACK, dash: None }
+    }
+}
+
+/// A part of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SymbolMark {
+    /// A path, filled first and then stroked.
+    Shape {
+        /// The path.
+        steps: Vec<PathStep>,
+        /// The color inside.
+        fill: Option<[u8; 3]>,
+        /// The line along it.
+        stroke: Option<SymbolPen>,
+    },
+    /// A short text in heavy capitals.
+    Text {
+        /// The text.
+        text: String,
+        /// The middle of its capitals.
+        center: Vec2,
+        /// The size of the em.
+        size: f32,
+    },
+}
+
+impl SymbolMark {
+    /// A stroked path.
+    pub fn stroke(steps: Vec<PathStep>, pen: SymbolPen) -> Self {
+        Self::Shape { steps, fill: None, stroke: Some(pen) }
+    }
+
+    /// A filled path.
+    pub fn filled(steps: Vec<PathStep>, color: [u8; 3]) -> Self {
+        Self::Shape { steps, fill: Some(color), stroke: None }
+    }
+}
+
+/// The marks of a drawing in a frame of a shape; `None` where the text is none.
+pub fn parse(drawing: &str, shape: FrameShape) -> Option<Vec<SymbolMark>> {
+    let mut marks = Vec::new();
+    add(drawing, DrawingStyle::default(), shape, &mut marks)?;
+    Some(marks)
+}
+
+/// The steps of one path of the drawing text.
+pub fn path(text: &str) -> Vec<PathStep> {
+    steps(&text.split_whitespace().collect::<Vec<_>>()).unwrap_or_default()
+}
+
+/// A circle as a path.
+pub fn circle(center: Vec2, radius: f32) -> Vec<PathStep> {
+    let mut steps = Vec::new();
+    arc(center, Vec2::splat(radius), 0.0, 360.0, &mut steps);
+    steps.push(PathStep::Close);
+    steps
+}
+
+#[derive(Clone, Copy)]
+struct DrawingStyle {
+    width: f32,
+    fill: Option<[u8; 3]>,
+    has_stroke: bool,
+}
+
+impl Default for DrawingStyle {
+    fn default() -> Self {
+        Self { width: LINE, fill: None, has_stroke: true }
+    }
+}
+
+impl DrawingStyle {
+    fn with(self, word: &str) -> Option<Self> {
+        Some(match word {
+            "fill" => Self { fill: Some(BLACK), has_stroke: false, ..self },
+            "pale" => Self { fill: Some(PALE), ..self },
+            "thin" => Self { width: THIN, ..self },
+            "bold" => Self { width: BOLD, ..self },
+            "broad" => Self { width: BROAD, ..self },
+            _ => return None,
+        })
+    }
+
+    fn mark(self, steps: Vec<PathStep>) -> SymbolMark {
+        let stroke = self.has_stroke.then(|| SymbolPen::black(self.width));
+        SymbolMark::Shape { steps, fill: self.fill, stroke }
+    }
+}
+
+fn add(drawing: &str, style: DrawingStyle, shape: FrameShape, marks: &mut Vec<SymbolMark>) -> Option<()> {
+    for statement in drawing.split(';') {
+        let words: Vec<&str> = statement.split_whitespace().collect();
+        let (mut words, mut style) = (words.as_slice(), style);
+        while let Some(styled) = words.first().and_then(|word| style.with(word)) {
+            (words, style) = (words.get(1..)?, styled);
+        }
+        match words {
+            ["circle", center, radius] => {
+                marks.push(style.mark(circle(point(center)?, radius.parse().ok()?)))
+            }
+            ["text", size, text] => marks.push(text_mark(text, TEXT_CENTER, size)?),
+            ["text", size, center, text] => marks.push(text_mark(text, point(center)?, size)?),
+            [name] => {
+                let drawing = piece(name.strip_prefix('@')?, shape);
+                // A piece holds no pieces, so that this ends.
+                if drawing.is_empty() || drawing.contains('@') {
+                    return None;
+                }
+                add(drawing, style, shape, marks)?;
+            }
+            _ => marks.push(style.mark(steps(words)?)),
+        }
+    }
+    Some(())
+}
+
+fn text_mark(text: &str, center: Vec2, size: &str) -> Option<SymbolMark> {
+    Some(SymbolMark::Text { text: text.to_owned(), center, size: size.parse().ok()? })
+}
+
+fn steps(words: &[&str]) -> Option<Vec<PathStep>> {
+    let (mut steps, mut rest) = (Vec::new(), words);
+    if !rest.first()?.starts_with('M') {
+        return None;
+    }
+    while let Some((word, after)) = rest.split_first() {
+        let operand = word.get(1..)?;
+        rest = after;
+        match word.get(..1)? {
+            "M" => steps.push(PathStep::Move(point(operand)?)),
+            "L" => steps.push(PathStep::Line(point(operand)?)),
+            "Q" => {
+                let (end, after) = rest.split_first()?;
+                steps.push(PathStep::Quad(point(operand)?, point(end)?));
+                rest = after;
+            }
+            "C" => {
+                let [second, end, after @ ..] = rest else { return None };
+                steps.push(PathStep::Cubic(point(operand)?, point(second)?, point(end)?));
+                rest = after;
+            }
+            "A" => {
+                let [radii, from, to, after @ ..] = rest else { return None };
+                arc(point(operand)?, point(radii)?, from.parse().ok()?, to.parse().ok()?, &mut steps);
+                rest = after;
+            }
+            "Z" => steps.push(PathStep::Close),
+            _ => return None,
+        }
+    }
+    Some(steps)
+}
+
+fn point(text: &str) -> Option<Vec2> {
+    let (x, y) = text.split_once(',')?;
+    Some(Vec2::new(x.parse().ok()?, y.parse().ok()?))
+}
+
+/// Adds an arc, from one angle to another in degrees, in pieces of at most 45°, whose cubic curves are off by less than
+/// 10⁻⁵ of the radius.
+fn arc(center: Vec2, radii: Vec2, from: f32, to: f32, steps: &mut Vec<PathStep>) {
+    let (start, sweep) = (from.to_radians(), (to - from).to_radians());
+    let count = (sweep.abs() / FRAC_PI_4).ceil().max(1.0);
+    let step = sweep / count;
+    let handle = 4.0 / 3.0 * libm::tanf(step / 4.0);
+    let unit = |angle: f32| Vec2::new(libm::cosf(angle), libm::sinf(angle));
+    let at = |direction: Vec2| center + radii * direction;
+    let begin = at(unit(start));
+    steps.push(if steps.is_empty() { PathStep::Move(begin) } else { PathStep::Line(begin) });
+    for index in 0..count as usize {
+        let (one, two) = (unit(start + step * index as f32), unit(start + step * (index + 1) as f32));
+        let (leaving, arriving) = (one + handle * one.perp(), two - handle * two.perp());
+        steps.push(PathStep::Cubic(at(leaving), at(arriving), at(two)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_gives_its_marks() {
+        let marks = parse("fill circle 100,100 10; bold M1,2 L3,4 Z; text 45 CA; @wheel", FrameShape::Circle);
+        let marks = marks.expect("a drawing");
+        assert_eq!(marks.len(), 5);
+        let expected =
+            vec![PathStep::Move(Vec2::new(1.0, 2.0)), PathStep::Line(Vec2::new(3.0, 4.0)), PathStep::Close];
+        assert_eq!(marks[1], SymbolMark::stroke(expected, SymbolPen::black(BOLD)));
+    }
+
+    #[test]
+    fn what_is_no_drawing_gives_none() {
+        for text in ["", "L1,2", "M1", "M1,2 X3,4", "circle 1,2", "@nothing", "text CA", "M1,2 A3,4 5"] {
+            assert_eq!(parse(text, FrameShape::Circle), None, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_full_arc_is_a_circle_within_a_thousandth() {
+        for step in circle(Vec2::new(100.0, 100.0), 50.0) {
+            if let PathStep::Cubic(_, _, end) = step {
+                assert!((end.distance(Vec2::splat(100.0)) - 50.0).abs() < 1e-3, "{end}");
+            }
+        }
+    }
+}

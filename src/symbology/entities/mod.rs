@@ -1,0 +1,69 @@
+//! The entities that are drawn, set by set, each with its drawing ([`crate::symbology::drawing`]).
+//!
+//! The drawings follow the descriptions and figures of MIL-STD-2525D, appendices B to G.
+
+mod activity;
+mod air;
+mod land_equipment;
+mod land_installation;
+mod land_unit;
+mod sea_surface;
+
+use crate::symbology::fields::SymbolSet;
+
+/// An entity with its drawing.
+#[derive(Clone, Copy, Debug)]
+pub struct SymbolEntity {
+    /// Entity, type and subtype: six digits.
+    pub code: u32,
+    /// The standard's name, in lower case.
+    pub name: &'static str,
+    /// What is drawn in the frame.
+    pub drawing: &'static str,
+}
+
+const fn entity(code: u32, name: &'static str, drawing: &'static str) -> SymbolEntity {
+    SymbolEntity { code, name, drawing }
+}
+
+/// The sets that have entities.
+pub const SETS: [SymbolSet; 6] = [
+    SymbolSet::LandUnit,
+    SymbolSet::LandEquipment,
+    SymbolSet::LandInstallation,
+    SymbolSet::Activity,
+    SymbolSet::Air,
+    SymbolSet::SeaSurface,
+];
+
+/// The entities of a set that are drawn; none of a set outside [`SETS`].
+pub fn entities(set: SymbolSet) -> &'static [SymbolEntity] {
+    match set {
+        SymbolSet::LandUnit => land_unit::LAND_UNITS,
+        SymbolSet::LandEquipment => land_equipment::LAND_EQUIPMENT,
+        SymbolSet::LandInstallation => land_installation::LAND_INSTALLATIONS,
+        SymbolSet::Activity => activity::ACTIVITIES,
+        SymbolSet::Air => air::AIRCRAFT,
+        SymbolSet::SeaSurface => sea_surface::SHIPS,
+        _ => &[],
+    }
+}
+
+/// An entity of a set, if it is drawn.
+pub fn find(set: SymbolSet, code: u32) -> Option<&'static SymbolEntity> {
+    entities(set).iter().find(|entity| entity.code == code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_ascend_and_have_six_digits() {
+        for set in SETS {
+            let codes: Vec<u32> = entities(set).iter().map(|entity| entity.code).collect();
+            assert!(codes.windows(2).all(|pair| pair[0] < pair[1]), "{set:?}");
+            assert!(codes.iter().all(|code| (110_000..1_000_000).contains(code)), "{set:?}");
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! `scenes/SYMBOLS.md` lists the military symbols that are drawn, and those that are not.
+//! `SANDTABLE_BLESS=1 cargo test --test scenes symbols_page` writes it.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use sandtable::symbology::entities::{SETS, SymbolEntity, entities};
+use sandtable::symbology::fields::{
+    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
+    SymbolVersion,
+};
+use sandtable::symbology::modifiers::modifiers;
+use sandtable::symbology::texts::{TEXT_FIELDS, TextPlace};
+
+/// The entities of MIL-STD-2525D in the sets that have drawings.
+const STANDARD: &str = include_str!("../../symbology/standard.txt");
+
+const HEAD: &str = "# Military symbols: what is drawn
+
+The key `sidc` of `[[symbol]]` is a symbol code: 20 or 30 digits as MIL-STD-2525D, MIL-STD-2525E and APP-6D write them, or
+15 letters as MIL-STD-2525C did. The digits are, in this order: version (2), context (1), standard identity (1), symbol set
+(2), status (1), headquarters, task force, dummy (1), echelon or mobility (2), entity (6), sector 1 modifier (2), sector 2
+modifier (2); of a code of 30 digits, common modifiers (2), frame shape (1), 4 that are not read, and country (3, not read).
+So `10031000161211020000` is a friendly armored infantry battalion.
+
+An entity or a modifier that is not drawn leaves the frame, and a note that names it. Of codes of 15 letters those functions
+are known whose entity is drawn. `tests/pictures/symbols.rs` holds the drawings to those of npm milsymbol 3.0.4: boxes
+within 2 of 200 units, anchors within 1, and dark pixels at 128 pixels, blurred by 2, overlapping by 0.8 at least.
+";
+
+fn page() -> String {
+    let mut page = HEAD.to_owned();
+    add_field::<SymbolVersion>(&mut page, 2);
+    add_field::<SymbolContext>(&mut page, 1);
+    add_field::<SymbolIdentity>(&mut page, 1);
+    add_field::<SymbolSet>(&mut page, 2);
+    add_field::<SymbolStatus>(&mut page, 1);
+    add_field::<SymbolRole>(&mut page, 1);
+    add_field::<SymbolAmplifier>(&mut page, 2);
+    add_texts(&mut page);
+    for set in SETS {
+        add_set(&mut page, set);
+    }
+    add_missing(&mut page);
+    page
+}
+
+/// A table of the values of a field.
+fn add_field<T: CodedField>(page: &mut String, digits: usize) {
+    let _ = writeln!(page, "\n## {}\n\n| code | meaning |\n|---|---|", capitalized(T::FIELD));
+    for row in T::VALUES {
+        let _ = writeln!(page, "| {:0digits$} | {} |", row.number, row.name);
+    }
+}
+
+fn add_texts(page: &mut String) {
+    page.push_str("\n## Text round the frame\n\n| field | key | place |\n|---|---|---|\n");
+    for row in &TEXT_FIELDS {
+        let place = match row.place {
+            TextPlace::Above => "over the frame".to_owned(),
+            TextPlace::Inside => "in the frame".to_owned(),
+            TextPlace::Left(row) => format!("left, row {}", row + 1),
+            TextPlace::Right(row) => format!("right, row {}", row + 1),
+        };
+        let _ = writeln!(page, "| {} | `{}` | {place} |", row.letter, row.key);
+    }
+    page.push_str("| Q | `direction` | an arrow from the place |\n");
+}
+
+fn add_set(page: &mut String, set: SymbolSet) {
+    let (number, drawn) = (set.number(), entities(set));
+    let title = capitalized(set.name());
+    let _ = writeln!(
+        page,
+        "\n## {title} ({number:02}): {} entities\n\n| entity | name |\n|---|---|",
+        drawn.len()
+    );
+    add_entities(page, drawn, 6);
+    for sector in [1, 2] {
+        let drawn = modifiers(set, sector);
+        if !drawn.is_empty() {
+            let _ = writeln!(page, "\n| sector {sector} modifier | name |\n|---|---|");
+            add_entities(page, drawn, 2);
+        }
+    }
+}
+
+fn add_entities(page: &mut String, rows: &[SymbolEntity], digits: usize) {
+    for row in rows {
+        let _ = writeln!(page, "| {:0digits$} | {} |", row.code, row.name);
+    }
+}
+
+/// The sets without drawings, and in the others the entities without.
+fn add_missing(page: &mut String) {
+    page.push_str("\n## What is missing\n\nFrames alone are drawn of the sets ");
+    let frameless =
+        [SymbolSet::ControlMeasure, SymbolSet::Atmosphere, SymbolSet::Ocean, SymbolSet::MeteorologicalSpace];
+    let named = |set: &SymbolSet| format!("{:02} ({})", set.number(), set.name());
+    let sets = SymbolSet::VALUES.iter().map(|row| row.value);
+    let frames: Vec<String> =
+        sets.filter(|set| !SETS.contains(set) && !frameless.contains(set)).map(|set| named(&set)).collect();
+    let without: Vec<String> = frameless.iter().map(named).collect();
+    let _ = writeln!(
+        page,
+        "{}.\nOf these nothing is drawn by `[[symbol]]`: {}.",
+        frames.join(", "),
+        without.join(", ")
+    );
+    page.push_str(
+        "Modifiers of other sets than land units, the common modifiers of 2525E, country codes, signature and installation\n\
+         composition fields, and engagement bars are not drawn.\n",
+    );
+    let mut missing: BTreeMap<u8, Vec<String>> = BTreeMap::new();
+    for line in STANDARD.lines().filter(|line| !line.starts_with('#')) {
+        let mut words = line.splitn(3, ' ');
+        let mut word = || words.next().expect("set, code and name");
+        let (set, code, name) = (word(), word(), word());
+        let set = SymbolSet::from_number(set.parse().expect("a number")).expect("a set");
+        let is_drawn = entities(set).iter().any(|row| Ok(row.code) == code.parse());
+        if !is_drawn {
+            missing.entry(set.number()).or_default().push(format!("{code} {name}"));
+        }
+    }
+    for set in SETS {
+        let names = missing.remove(&set.number()).unwrap_or_default();
+        let _ = writeln!(
+            page,
+            "\n{} ({:02}), {} entities: {}.",
+            capitalized(set.name()),
+            set.number(),
+            names.len(),
+            names.join("; ")
+        );
+    }
+}
+
+fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[test]
+fn the_page_of_symbols_is_up_to_date() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/SYMBOLS.md");
+    if std::env::var_os("SANDTABLE_BLESS").is_some() {
+        std::fs::write(&file, page()).expect("scenes/SYMBOLS.md");
+    }
+    let committed = std::fs::read_to_string(&file).expect("scenes/SYMBOLS.md");
+    assert!(committed == page(), "scenes/SYMBOLS.md is outdated; write it with SANDTABLE_BLESS=1");
+}
