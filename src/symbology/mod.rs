@@ -1,1 +1,3 @@
 //! Military symbols and tactical graphics: their codes, and how they are drawn in the plane.
+
+pub mod graphic;
