@@ -1,3 +1,6 @@
 //! Military symbols and tactical graphics: their codes, and how they are drawn in the plane.
 
+pub mod code;
+pub mod fields;
 pub mod graphic;
+mod letter_code;
