@@ -23,6 +23,7 @@ use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::fences::{self, FenceLine};
+use crate::scene::graphics;
 use crate::scene::ground;
 use crate::scene::imagery;
 use crate::scene::models;
@@ -87,6 +88,8 @@ pub fn build(
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
+    graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
+
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
@@ -121,6 +124,7 @@ pub fn build(
         ground: OnceLock::new(),
         ribbons: collected.ribbons,
         symbols: collected.symbols,
+        graphics: collected.graphics,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),

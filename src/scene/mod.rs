@@ -17,6 +17,7 @@ mod facade;
 pub mod feature_labels;
 pub mod fences;
 pub mod footprint;
+pub mod graphics;
 pub mod ground;
 pub mod ground_map;
 pub mod imagery;
@@ -61,6 +62,7 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
+use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::land_cover::CoverLines;
 use crate::scene::ramps::TintedGround;
@@ -119,6 +121,8 @@ pub struct SceneModel {
     pub ribbons: Vec<Ribbon>,
     /// Roads and rivers, as lines for pictures in which their ribbons are too narrow.
     pub symbols: Vec<LineSymbol>,
+    /// Tactical graphics, in drawing order.
+    pub graphics: Vec<SceneGraphic>,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
     /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
@@ -178,10 +182,12 @@ pub enum FeatureKind {
     Model,
     /// Models scattered over areas: one feature per table.
     Scattered,
+    /// A tactical graphic.
+    Graphic,
 }
 
 /// The noun of each kind for one feature and for several, in the order of summaries.
-const FEATURE_NOUNS: [(FeatureKind, &str, &str); 10] = [
+const FEATURE_NOUNS: [(FeatureKind, &str, &str); 11] = [
     (FeatureKind::Lake, "lake", "lakes"),
     (FeatureKind::River, "river", "rivers"),
     (FeatureKind::Road, "road", "roads"),
@@ -192,6 +198,7 @@ const FEATURE_NOUNS: [(FeatureKind, &str, &str); 10] = [
     (FeatureKind::Fence, "line", "lines"),
     (FeatureKind::Model, "model", "models"),
     (FeatureKind::Scattered, "scatter of models", "scatters of models"),
+    (FeatureKind::Graphic, "tactical graphic", "tactical graphics"),
 ];
 
 impl FeatureKind {

@@ -4,6 +4,8 @@ mod detail;
 mod drapes;
 mod fit;
 mod fitted_view;
+pub mod graphic_colors;
+pub mod graphics;
 mod ground;
 mod haze;
 mod lake_tint;
@@ -31,6 +33,7 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
+use crate::scene::picture::graphics::PlacedText;
 use crate::scene::picture::parallel_view::parallel_camera;
 use crate::scene::picture::setting::PictureSetting;
 use crate::scene::{SceneModel, SceneView, ViewAim};
@@ -44,6 +47,8 @@ pub struct ViewDraw {
     pub displayed: Arc<DisplayedTerrain>,
     /// Triangles of the ground among those drawn.
     pub ground_triangles: usize,
+    /// The texts of tactical graphics.
+    pub graphic_texts: Vec<PlacedText>,
 }
 
 /// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
@@ -64,8 +69,10 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
     let displayed = Arc::new(display(scene, camera));
-    let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
-    ViewDraw { list, displayed, ground_triangles }
+    let mut graphic_texts = Vec::new();
+    let (list, ground_triangles) =
+        listed(scene, &displayed, Viewer::Camera(camera), &mut graphic_texts, progress);
+    ViewDraw { list, displayed, ground_triangles, graphic_texts }
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
@@ -75,7 +82,7 @@ pub fn draw_list(
     displayed: &DisplayedTerrain,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    listed(scene, displayed, Viewer::Anyone, progress)
+    listed(scene, displayed, Viewer::Anyone, &mut Vec::new(), progress)
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -91,6 +98,7 @@ fn listed(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,
     viewer: Viewer<'_>,
+    graphic_texts: &mut Vec<PlacedText>,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
     let camera = match viewer {
@@ -113,6 +121,9 @@ fn listed(
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
+    if let Some(camera) = camera {
+        graphic_texts.extend(graphics::add(&mut list, scene, camera, displayed));
+    }
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
     if setting.is_some_and(|setting| has_table(scene, setting)) {

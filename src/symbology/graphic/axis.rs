@@ -9,7 +9,6 @@ use glam::DVec2;
 use crate::geom::polyline::Polyline;
 use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::lines::label_at;
 use crate::symbology::graphic::plane::{direction, offset, turned};
 
 /// The half width of the shaft, as a share of that of the head.
@@ -65,17 +64,10 @@ pub fn axis(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
         let middle = base.midpoint(center[1]);
         rotor(middle, toward, half_m, drawing);
     }
-    let text = input.fields.labeled(kind.label);
+    // Inside the shaft.
     if let Some(line) = Polyline::new(center.iter().copied(), 0.0) {
-        let station = line.length() * if is_crossed { 0.75 } else { 0.5 };
-        let mut over = GraphicDrawing::default();
-        label_at(&line, station, text, input, &mut over);
-        // Inside the shaft, not over it.
-        drawing.texts.extend(over.texts.into_iter().map(|mut text| {
-            text.at = line.at(station);
-            text.toward = DVec2::ZERO;
-            text
-        }));
+        let station = line.length() * if is_crossed { 0.75 } else { 0.55 };
+        drawing.text(input.fields.labeled(kind.label), line.at(station));
     }
 }
 

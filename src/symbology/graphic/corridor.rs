@@ -2,11 +2,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::geom::polyline::Polyline;
-use crate::geom::segment;
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput, TextCourse};
 use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::lines::label_at;
 use crate::symbology::graphic::plane::{circle, direction, offset, turned};
 
 /// The barbs of a lane in text heights.
@@ -28,7 +25,7 @@ pub fn air_corridor(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut 
     if !input.fields.heights.is_empty() {
         text = format!("{text}\n{}", input.fields.heights.join("\u{2013}"));
     }
-    label_middle(input, text, drawing);
+    drawing.text_on(text.replace('\n', " "), TextCourse::Once(input.points.to_vec()));
 }
 
 /// The width of a corridor in meters: stated as `width` or as the first distance.
@@ -46,11 +43,7 @@ pub fn infiltration_lane(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: 
     drawing.line(offset(center, half_m));
     drawing.line(offset(center, -half_m));
     let text = input.fields.labeled(kind.label);
-    if let Some(line) = Polyline::new(center.iter().copied(), 0.0) {
-        let mut over = GraphicDrawing::default();
-        label_at(&line, line.length() / 2.0, text, input, &mut over);
-        drawing.texts.extend(over.texts);
-    }
+    drawing.text_on(text, TextCourse::Once(center.to_vec()));
 }
 
 /// A lane through an obstacle (LINE14): a line with barbs that open outward.
@@ -61,25 +54,5 @@ pub fn lane(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
         let barb = |side: f64| end + turned(outward, side * FRAC_PI_4) * (LANE_EM * input.em_m);
         drawing.line([barb(1.0), end, barb(-1.0)]);
     }
-    label_middle(input, input.fields.labeled(kind.label), drawing);
-}
-
-fn label_middle(input: &GraphicInput<'_>, text: String, drawing: &mut GraphicDrawing) {
-    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
-    let longest = input.points.windows(2).max_by(|a, b| segment_m(a).total_cmp(&segment_m(b)));
-    let Some(leg) = longest else { return };
-    let middle = leg[0].midpoint(leg[1]);
-    let station = line
-        .legs()
-        .enumerate()
-        .min_by(|(_, a), (_, b)| {
-            let off = |leg: &[glam::DVec2; 2]| segment::distance_squared((leg[0], leg[1]), middle);
-            off(a).total_cmp(&off(b))
-        })
-        .map_or(0.0, |(index, leg)| line.stations()[index] + leg[0].distance(middle));
-    label_at(&line, station, text, input, drawing);
-}
-
-fn segment_m(leg: &[glam::DVec2]) -> f64 {
-    leg[0].distance(leg[1])
+    drawing.text_on(input.fields.labeled(kind.label), TextCourse::Once(vec![from, to]));
 }

@@ -87,10 +87,9 @@ pub fn abatis(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDr
 pub fn convoy(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let [rear, front] = [input.points[1], input.points[0]];
     let (along, length_m) = (direction(rear, front), rear.distance(front));
-    /// The head's length and half width, and the box's half width, in text heights.
-    const CONVOY_EM: [f64; 3] = [4.5, 2.4, 1.5];
-    let [head_m, wide_m, half_m] = CONVOY_EM.map(|size| size * input.em_m);
-    let head_m = head_m.min(0.4 * length_m);
+    /// The head's length and half width, and the box's half width, in lengths.
+    const CONVOY: [f64; 3] = [0.12, 0.06, 0.04];
+    let [head_m, wide_m, half_m] = CONVOY.map(|share| share * length_m);
     let at = |far: f64, aside: f64| rear + along * far + along.perp() * aside;
     let neck = length_m - head_m;
     if kind.code == "330100" {

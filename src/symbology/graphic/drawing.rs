@@ -69,8 +69,21 @@ pub struct GraphicText {
     pub at: DVec2,
     /// On which side of that point it is, of length 1; zero for a text centered on it.
     pub toward: DVec2,
-    /// The line that it follows, of at least two points; empty for a text that is level on the picture.
-    pub along: Vec<DVec2>,
+    /// Whether it is there, or where a line leaves it a place.
+    pub course: TextCourse,
+}
+
+/// Where a text is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TextCourse {
+    /// At its point, level on the picture.
+    Level,
+    /// On this line at both of its ends.
+    Ends(Vec<DVec2>),
+    /// Beside this line, once.
+    Once(Vec<DVec2>),
+    /// Beside this line, again and again.
+    Repeated(Vec<DVec2>),
 }
 
 impl GraphicDrawing {
@@ -112,21 +125,19 @@ impl GraphicDrawing {
     pub(super) fn text_beside(&mut self, text: impl Into<String>, at: DVec2, toward: DVec2) {
         let text = text.into();
         if !text.is_empty() {
-            self.texts.push(GraphicText { text, at, toward, along: Vec::new() });
+            self.texts.push(GraphicText { text, at, toward, course: TextCourse::Level });
         }
     }
 
-    /// Adds a text at a point of a line that it follows, on the side `toward`.
-    pub(super) fn text_along(
-        &mut self,
-        text: impl Into<String>,
-        at: DVec2,
-        toward: DVec2,
-        along: Vec<DVec2>,
-    ) {
+    /// Adds a text that a line leaves a place.
+    pub(super) fn text_on(&mut self, text: impl Into<String>, course: TextCourse) {
         let text = text.into();
-        if !text.is_empty() {
-            self.texts.push(GraphicText { text, at, toward, along });
+        let at = match &course {
+            TextCourse::Level => None,
+            TextCourse::Ends(line) | TextCourse::Once(line) | TextCourse::Repeated(line) => line.first(),
+        };
+        if let Some(&at) = at.filter(|_| !text.is_empty()) {
+            self.texts.push(GraphicText { text, at, toward: DVec2::ZERO, course });
         }
     }
 

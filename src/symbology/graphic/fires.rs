@@ -23,14 +23,10 @@ pub fn linear_target(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut
     }
     let above = if aside.dot(input.up) < 0.0 { -aside } else { aside };
     let middle = from.midpoint(to);
-    drawing.text_along(
-        input.fields.target.clone(),
-        middle + above * (0.3 * input.em_m),
-        above,
-        vec![from, to],
-    );
+    let beside = above * (0.3 * input.em_m);
+    drawing.text_beside(input.fields.target.clone(), middle + beside, above);
     let under = kind.label.replace("{}", &input.fields.designation_2);
-    drawing.text_along(under, middle - above * (0.3 * input.em_m), -above, vec![from, to]);
+    drawing.text_beside(under.trim(), middle - beside, -above);
 }
 
 /// A circle of a stated radius with a name inside (CIRCULAR1).

@@ -3,12 +3,12 @@
 use glam::DVec2;
 
 use crate::geom::polyline::Polyline;
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput, TextCourse};
 use crate::symbology::graphic::kind::GraphicKind;
 use crate::symbology::graphic::plane::{arrowhead, direction, gapped, text_m};
 
-/// Legs of a route shorter than its label have none; of longer ones one in so many label widths has one.
-const LABEL_EVERY: f64 = 6.0;
+/// From arrow to arrow of traffic, in widths of the route's name.
+const ARROW_EVERY: f64 = 6.0;
 
 /// Sides of an arrowhead of traffic, in text heights.
 const TRAFFIC_EM: [f64; 2] = [0.8, 0.5];
@@ -18,13 +18,13 @@ pub fn plain(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDra
     drawing.line(input.points);
 }
 
-/// A line with its name beyond both ends (LINE2).
+/// A line with its name at both ends (LINE2).
 pub fn end_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
-    label_ends(kind, input, drawing);
+    drawing.text_on(input.fields.labeled(kind.label), TextCourse::Ends(input.points.to_vec()));
 }
 
-/// The texts of LINE2.
+/// The texts of LINE2, beyond the ends of a line that they cannot lie on.
 pub fn label_ends(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let points = input.points;
     let last = points.len() - 1;
@@ -35,38 +35,35 @@ pub fn label_ends(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gr
     }
 }
 
-/// A line with its name once, in the middle, over it (LINE7).
+/// A line with its name once, near its middle (LINE7).
 pub fn middle_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
-    let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
-    let text = input.fields.labeled(kind.label);
-    label_at(&line, line.length() / 2.0, text, input, drawing);
+    drawing.text_on(input.fields.labeled(kind.label), TextCourse::Once(input.points.to_vec()));
 }
 
-/// A line with its name in every long leg (LINE21), and arrows of one-way traffic or both ways'.
+/// A line with its name along it again and again (LINE21), and arrows of one-way traffic or both ways'.
 pub fn route(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let text = input.fields.labeled(kind.label);
-    let every_m = (LABEL_EVERY * text_m(&text, input.em_m)).max(line.length() / 64.0);
+    let every_m = (ARROW_EVERY * text_m(&text, input.em_m)).max(line.length() / 64.0);
+    drawing.text_on(text, TextCourse::Repeated(input.points.to_vec()));
+    let ways: &[f64] = match kind.code {
+        "330301" | "330401" => &[1.0],
+        "330302" | "330402" => &[1.0, -1.0],
+        _ => return,
+    };
     let count = (line.length() / every_m).floor().max(1.0);
+    let half_m = 2.5 * input.em_m;
     for number in 0..count as u32 {
         let station = line.length() * (f64::from(number) + 0.5) / count;
-        label_at(&line, station, text.clone(), input, drawing);
-        let ways: &[f64] = match kind.code {
-            "330301" | "330401" => &[1.0],
-            "330302" | "330402" => &[1.0, -1.0],
-            _ => &[],
-        };
+        if !(half_m..=line.length() - half_m).contains(&station) {
+            continue;
+        }
         for (place, &way) in ways.iter().enumerate() {
-            let half_m = 2.5 * input.em_m;
-            let shifted_m = station + way * half_m;
-            if !(half_m..=line.length() - half_m).contains(&station) {
-                continue;
-            }
             let along = direction(line.at(station - half_m), line.at(station + half_m)) * way;
             let aside = -(along * way).perp() * input.em_m * (0.9 + 0.7 * place as f64);
-            let tip = line.at(shifted_m) + aside;
+            let tip = line.at(station + way * half_m) + aside;
             drawing.line([line.at(station - way * half_m) + aside, tip]);
             let [length, half] = TRAFFIC_EM.map(|size| size * input.em_m);
             drawing.line(arrowhead(tip, along, length, half));
@@ -83,8 +80,6 @@ pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     gapped(&line, &[(middle, gap_m)]).into_iter().for_each(|piece| drawing.line(piece));
     drawing.text(fields.echelon.clone(), line.at(middle));
     let along = direction(line.at(middle - em_m), line.at(middle + em_m));
-    let near = gap_m.max(em_m);
-    let follows = line.between((middle - near).max(0.0), (middle + near).min(line.length()));
     let sides = [(&fields.designation, along.perp()), (&fields.designation_2, -along.perp())];
     for (name, aside) in sides {
         let text = if fields.country.is_empty() || name.is_empty() {
@@ -92,23 +87,8 @@ pub fn boundary(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
         } else {
             format!("{name} ({})", fields.country)
         };
-        drawing.text_along(text, line.at(middle) + aside * (0.6 * em_m), aside, follows.clone());
+        drawing.text_beside(text, line.at(middle) + aside * (0.6 * em_m), aside);
     }
-}
-
-/// A text over a line at a station.
-pub fn label_at(
-    line: &Polyline,
-    station: f64,
-    text: String,
-    input: &GraphicInput<'_>,
-    drawing: &mut GraphicDrawing,
-) {
-    let half_m = (text_m(&text, input.em_m) / 2.0).max(0.25 * input.em_m);
-    let follows = line.between((station - half_m).max(0.0), (station + half_m).min(line.length()));
-    let along = direction(follows[0], follows[follows.len() - 1]);
-    let above = if along.perp().dot(input.up) < 0.0 { -along.perp() } else { along.perp() };
-    drawing.text_along(text, line.at(station) + above * (0.3 * input.em_m), above, follows);
 }
 
 /// The direction of attack (LINE1, from its tip): supporting, main, aviation and feint.

@@ -20,6 +20,8 @@ pub mod fields;
 mod fires;
 pub mod kind;
 mod lines;
+#[cfg(test)]
+mod oracle;
 mod plane;
 mod point;
 mod task;

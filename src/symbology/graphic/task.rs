@@ -1,13 +1,13 @@
 //! Mission tasks and obstacle effects: figures of a fixed number of points, with a letter.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec2;
 
 use crate::geom::polyline::Polyline;
 use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::plane::{arc, arrowhead, bulge, direction, gapped, text_m, turned};
+use crate::symbology::graphic::plane::{arc, arrowhead, bulge, circle, direction, gapped, text_m, turned};
 
 /// Length and half width of an open arrowhead, in text heights.
 const HEAD_EM: [f64; 2] = [1.5, 0.9];
@@ -202,7 +202,7 @@ pub fn seize(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     /// The arc leaves the circle so far from the straight way; its sagitta in chords.
     const LEAVES_RAD: f64 = 0.64;
     const SAGITTA: f64 = 1.0 / 6.0;
-    drawing.ring(crate::symbology::graphic::plane::circle(center, radius_m));
+    drawing.ring(circle(center, radius_m));
     let from = center + turned(toward, way * LEAVES_RAD) * radius_m;
     let curve = bulge(from, tip, way * SAGITTA);
     head(tip, direction(curve[curve.len() - 2], tip), input, drawing);
@@ -253,39 +253,41 @@ pub fn ambush(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDr
     drawing.line(curve);
 }
 
-/// Follow and assume (LINE25): an outlined arrow; follow and support: with a filled head. Point 1 is the rear.
+/// Follow and assume, follow and support (LINE25): an arrow from point 2 to its tip at point 1.
 pub fn follow(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [rear, tip] = [input.points[0], input.points[1]];
-    let along = direction(rear, tip);
-    let (em_m, aside) = (input.em_m, along.perp());
-    let shaft_end = tip - along * (1.6 * em_m);
-    let tail = rear + along * (1.6 * em_m);
-    drawing.line([tail, shaft_end]);
-    let half = aside * em_m;
-    let head = [shaft_end + half, tip, shaft_end - half];
-    if kind.code == "341300" {
-        drawing.filled(head)
+    let [tip, rear] = [input.points[0], input.points[1]];
+    let (along, em_m) = (direction(rear, tip), input.em_m);
+    let before_tip = |[far, aside]: [f64; 2]| tip - (along * far + along.perp() * aside) * em_m;
+    let after_rear = |[far, aside]: [f64; 2]| rear + (along * far + along.perp() * aside) * em_m;
+    let (from, to) = if kind.code == "341300" {
+        let head = [[1.75, 0.875], [0.0, 0.0], [1.75, -0.875]];
+        drawing.filled(head.map(before_tip));
+        let tail = [[0.0, 0.875], [2.375, 0.875], [4.07, 0.0], [2.375, -0.875], [0.0, -0.875], [1.69, 0.0]];
+        drawing.ring(tail.map(after_rear));
+        (after_rear([4.07, 0.0]), before_tip([1.75, 0.0]))
     } else {
-        drawing.ring(head)
-    }
-    let nose = tail + along * em_m;
-    drawing.ring([rear + half, tail + half, nose, tail - half, rear - half, rear + along * em_m]);
+        let head = [[1.25, 0.625], [0.0, 0.0], [1.25, -0.625], [2.18, -0.625], [0.93, 0.0], [2.18, 0.625]];
+        drawing.ring(head.map(before_tip));
+        let tail = [[0.0, 0.625], [1.25, 0.625], [2.5, 0.0], [1.25, -0.625], [0.0, -0.625]];
+        drawing.ring(tail.map(after_rear));
+        (after_rear([2.5, 0.0]), before_tip([0.93, 0.0]))
+    };
+    drawing.line([from, to]);
+    let aside = along.perp();
     drawing.text_beside(input.fields.labeled("{}"), rear.midpoint(tip) + aside * (0.5 * em_m), aside);
 }
 
-/// Contain (AREA5): a half circle over points 1 and 2 on the side of point 3, its teeth inward, and an arrow through it.
+/// Contain (AREA5): a half circle over points 1 and 2 with teeth inward, and an arrow to its center from point 3.
 pub fn contain(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let [a, b, side] = [input.points[0], input.points[1], input.points[2]];
+    let [a, b, rear] = [input.points[0], input.points[1], input.points[2]];
     let center = a.midpoint(b);
-    let way = if (b - a).perp_dot(side - a) > 0.0 { -1.0 } else { 1.0 };
-    let curve = arc(center, a - center, way * PI);
-    drawing.line(curve.clone());
-    for tooth in 1..8 {
-        let radius = turned(a - center, way * PI * f64::from(tooth) / 8.0);
-        drawing.line([center + radius, center + radius * 0.86]);
+    // The half circle is on the side away from point 3.
+    let way = if (b - a).perp_dot(rear - a) > 0.0 { 1.0 } else { -1.0 };
+    drawing.line(arc(center, a - center, way * PI));
+    for tooth in 0..5 {
+        let radius = turned(a - center, way * FRAC_PI_4 * f64::from(tooth));
+        drawing.line([center + radius, center + radius / 2.0]);
     }
-    let outside = turned(a - center, way * FRAC_PI_2);
-    let tip = center + outside;
-    lettered(&[side, tip], 0.5, kind, input, drawing);
-    head(tip, direction(side, tip), input, drawing);
+    lettered(&[rear, center], 0.5, kind, input, drawing);
+    head(center, direction(rear, center), input, drawing);
 }
