@@ -11,12 +11,18 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::description::words::LabelKind;
+use crate::draw::color::Srgba;
+use crate::draw::font::FontFile;
 
 /// Everything to paint on one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Annotations {
     /// Names and heights, in any order.
     pub labels: Vec<PictureLabel>,
+    /// Names along lines, in any order.
+    pub line_labels: Vec<LineLabel>,
+    /// The font for characters that the embedded fonts lack.
+    pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
     pub rim: Vec<RimMark>,
     /// The title, upper left.
@@ -34,6 +40,42 @@ pub struct Annotations {
     /// Where the picture shows the scene; scale bar and legend leave their lower corners for the upper ones where they
     /// would cover it there and not here.
     pub cover: Option<SceneCover>,
+}
+
+/// A name whose letters follow a line on the picture: a river, a road, a phase line, the axis of an area.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineLabel {
+    /// The name, on one line.
+    pub text: String,
+    /// The parts of the line that are seen: vertices in pixels from the picture's upper left corner, Y down, in either
+    /// direction; the name is never upside down. Parts outside the picture are cut off.
+    pub path_px: Vec<Vec<Vec2>>,
+    /// Half of the width with which the line is drawn, in pixels; the name keeps clear of it, or stands inside a line
+    /// that is wide enough. 0 for no width.
+    pub half_width_px: f32,
+    /// Where along the line.
+    pub placement: LinePlacement,
+    /// Decides type and color.
+    pub kind: LabelKind,
+    /// The color of the letters; `None` takes that of `kind`.
+    pub ink: Option<Srgba>,
+    /// The lower, the more important.
+    pub rank: f64,
+    /// The label drawn instead where the name finds no place along the line.
+    pub fallback: Option<PictureLabel>,
+}
+
+/// Where along its line a name stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinePlacement {
+    /// Beside the line, once and again at a distance.
+    Repeated,
+    /// Beside the line, once, near the middle of its longest part.
+    Once,
+    /// On the line at both ends of each part, the line broken by the name's halo.
+    Ends,
+    /// On the line, its letters spaced over most of it.
+    Spread,
 }
 
 /// A name at a place on the picture.

@@ -3,9 +3,11 @@
 use parley::fontique::{Collection, CollectionOptions, SourceCache};
 use parley::{FontContext, LayoutContext};
 
+use crate::annotate::fonts::{FontCut, register_fonts};
 use crate::annotate::nice::{Ticks, format_number};
 use crate::annotate::sheet::Sheet;
-use crate::annotate::text::{TextStyle, TypesetLine, register_fonts};
+use crate::annotate::text::{TextStyle, TypesetLine};
+use crate::draw::font::FontFile;
 
 /// Lays out text on a sheet; holds tables of the embedded fonts and scratch space between lines.
 pub struct Composer {
@@ -17,16 +19,21 @@ pub struct Composer {
 impl Composer {
     /// The composer for a picture of `width` × `height` pixels, with the embedded fonts and no others.
     pub fn new(width: u32, height: u32) -> Self {
+        Self::with_font(width, height, None)
+    }
+
+    /// The composer with the embedded fonts, and `font` for characters that they lack.
+    pub fn with_font(width: u32, height: u32, font: Option<&FontFile>) -> Self {
         let options = CollectionOptions { shared: false, system_fonts: false };
         let mut collection = Collection::new(options);
-        register_fonts(&mut collection);
+        register_fonts(&mut collection, font);
         let fonts = FontContext { collection, source_cache: SourceCache::default() };
         Self { sheet: Sheet::new(width, height), fonts, layouts: LayoutContext::new() }
     }
 
-    /// Upright type of `design_px` design pixels.
-    pub fn style(&self, design_px: f32, weight: f32) -> TextStyle {
-        TextStyle::upright(self.sheet.type_px(design_px), weight)
+    /// Type of `design_px` design pixels.
+    pub fn style(&self, design_px: f32, cut: FontCut) -> TextStyle {
+        TextStyle::new(self.sheet.type_px(design_px), cut)
     }
 
     pub fn figures(&mut self, ticks: &Ticks, style: TextStyle) -> Vec<(f64, TypesetLine)> {

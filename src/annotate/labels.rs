@@ -1,98 +1,56 @@
-//! Labels: selection, style and placement.
+//! Labels: selection, order and drawing.
+//!
+//! Names at places and names along lines take their turns in one order of importance. Repetitions of a name along its
+//! line come after all names; a name that finds no place along its line is tried at a place last.
 
-use glam::Vec2;
-
-use crate::annotate::annotation::PictureLabel;
+use crate::annotate::annotation::{LineLabel, PictureLabel};
 use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon};
-use crate::annotate::paragraph::{Paragraph, written_lines};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelField, LabelRequest, TextAlignment, place};
-use crate::annotate::positions::LabelMetrics;
-use crate::annotate::report::AnnotationReport;
-use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::{TextStyle, TypesetLine};
+use crate::annotate::drawing::Drawing;
+use crate::annotate::line_label::PreparedLine;
+use crate::annotate::pixel_box::PixelBox;
+use crate::annotate::place::{LabelCandidate, LabelField, LabelPlacer, LabelRequest};
+use crate::annotate::point_label::PreparedLabel;
+use crate::annotate::report::{AnnotationReport, LabelOutcome};
+use crate::annotate::sheet::Sheet;
 use crate::description::words::LabelKind;
-use crate::draw::color::Srgba;
 
-/// More labels are not tried: no picture has room for them, and the time grows with the square.
+/// More labels are not tried: no picture has room for them, and the time grows with their number.
 const MOST_LABELS: usize = 4096;
-/// Lines of a label that are drawn; more would hide what they name.
-const MOST_LINES: usize = 4;
-/// The greatest width of a label's line, as a share of the picture's.
-const WIDEST_SHARE: f32 = 0.33;
-/// The longest leader line, as a share of the picture's height.
-const LONGEST_LEADER_SHARE: f32 = 0.26;
-/// From baseline to baseline, in ems of the lower line.
-const LEADING: f32 = 1.16;
-/// Tangent of the lean of water names, about 12 degrees.
-const WATER_SLANT: f32 = 0.21;
 
 /// Draws the labels that are visible and find a free place beside `furniture`; reports the outcome of each.
 pub fn draw_labels(
     labels: &[PictureLabel],
+    lines: &[LineLabel],
     furniture: &[PixelBox],
     composer: &mut Composer,
     report: &mut AnnotationReport,
 ) -> Drawing {
     let sheet = composer.sheet;
-    let mut outcomes = vec![LabelOutcome::CrowdedOut; labels.len()];
-    let mut prepared: Vec<PreparedLabel<'_>> = Vec::new();
-    for (number, label) in by_importance(labels) {
-        if !sheet.bounds().contains(label.anchor_px) {
-            outcomes[number] = LabelOutcome::Outside;
-        } else if !label.visible {
-            outcomes[number] = LabelOutcome::Hidden;
-        } else if prepared.len() < MOST_LABELS {
-            match PreparedLabel::new(number, label, composer) {
-                Ok(label) => prepared.push(label),
-                Err(outcome) => outcomes[number] = outcome,
+    let field = field(furniture, &sheet);
+    let mut placer = LabelPlacer::new(&field);
+    let mut sheet_names = SheetNames {
+        names: Vec::new(),
+        outcomes: vec![LabelOutcome::CrowdedOut; labels.len() + lines.len()],
+    };
+    let turns: Vec<LabelTurn<'_>> = by_importance(labels, lines);
+    for turn in &turns {
+        if sheet_names.names.len() < MOST_LABELS {
+            match PreparedName::new(turn, composer) {
+                Ok(name) => {
+                    sheet_names.names.push(NumberedName { number: turn.number, name, drawn: Vec::new() })
+                }
+                Err(outcome) => sheet_names.outcomes[turn.number] = outcome,
             }
         }
     }
-    let requests: Vec<LabelRequest> = prepared.iter().map(PreparedLabel::request).collect();
-    let field = field(furniture, &sheet);
-    let choices = place(&requests, &field);
-    let mut drawing = Drawing::default();
-    let chosen = prepared.iter().zip(choices);
-    let chosen: Vec<_> =
-        chosen.filter_map(|(label, choice)| Some((label, label.positions[choice?]))).collect();
-    // Symbols and leaders first, all texts over them.
-    for (label, position) in &chosen {
-        outcomes[label.number] = LabelOutcome::Placed;
-        label.draw_symbol(position, &sheet, &mut drawing);
-    }
-    chosen.iter().for_each(|(label, position)| label.draw_text(position, &mut drawing));
-    // In the order of the input.
-    let mut in_order: Vec<_> = chosen.iter().map(|(label, _)| *label).collect();
-    in_order.sort_by_key(|label| label.number);
-    for label in in_order {
-        drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
-    }
+    sheet_names.place_first(&mut placer);
+    sheet_names.place_repetitions(&mut placer);
+    sheet_names.place_fallbacks(&mut placer, composer);
+    let drawing = sheet_names.draw(&sheet);
     report.add_texts(&drawing.texts);
-    labels.iter().zip(outcomes).for_each(|(label, outcome)| outcome.report(&label.text, report));
+    let texts = labels.iter().map(|label| &label.text).chain(lines.iter().map(|line| &line.text));
+    texts.zip(&sheet_names.outcomes).for_each(|(text, outcome)| outcome.report(text, report));
     drawing
-}
-
-#[derive(Clone, Copy, Debug)]
-enum LabelOutcome {
-    Placed,
-    Hidden,
-    Outside,
-    CrowdedOut,
-    Empty,
-}
-
-impl LabelOutcome {
-    fn report(self, text: &str, report: &mut AnnotationReport) {
-        match self {
-            Self::Placed => report.placed.push(text.to_owned()),
-            Self::Hidden => report.hidden.push(text.to_owned()),
-            Self::Outside => report.outside.push(text.to_owned()),
-            Self::CrowdedOut => report.crowded_out.push(text.to_owned()),
-            Self::Empty => report.empty += 1,
-        }
-    }
 }
 
 /// The field of labels: inside half of the margin, off the furniture.
@@ -104,200 +62,211 @@ fn field(furniture: &[PixelBox], sheet: &Sheet) -> LabelField {
     }
 }
 
+/// A label in the order of importance.
+struct LabelTurn<'a> {
+    /// Among the labels at places, or behind them among those along lines.
+    number: usize,
+    source: LabelSource<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum LabelSource<'a> {
+    Point(&'a PictureLabel),
+    Line(&'a LineLabel),
+}
+
+impl LabelSource<'_> {
+    fn rank(&self) -> f64 {
+        match self {
+            Self::Point(label) => label.rank,
+            Self::Line(label) => label.rank,
+        }
+    }
+
+    fn kind_order(&self) -> u8 {
+        let kind = match self {
+            Self::Point(label) => label.kind,
+            Self::Line(label) => label.kind,
+        };
+        match kind {
+            LabelKind::Summit => 0,
+            LabelKind::Place => 1,
+            LabelKind::Area => 2,
+            LabelKind::Water => 3,
+            LabelKind::Road => 4,
+            LabelKind::Point => 5,
+        }
+    }
+
+    /// Names along lines come after names at places that are like them in all else.
+    fn depth_m(&self) -> f32 {
+        match self {
+            Self::Point(label) => label.depth_m,
+            Self::Line(_) => f32::INFINITY,
+        }
+    }
+
+    fn text(&self) -> &str {
+        match self {
+            Self::Point(label) => &label.text,
+            Self::Line(label) => &label.text,
+        }
+    }
+}
+
 /// Rank first, then kind, then the nearer, then by text; equal labels keep the input's order.
-fn by_importance(labels: &[PictureLabel]) -> Vec<(usize, &PictureLabel)> {
-    let by_kind = |kind| match kind {
-        LabelKind::Summit => 0,
-        LabelKind::Place => 1,
-        LabelKind::Water => 2,
-        LabelKind::Point => 3,
-    };
-    let mut order: Vec<_> = labels.iter().enumerate().collect();
-    order.sort_by(|(_, a), (_, b)| {
-        let by_rank = a.rank.total_cmp(&b.rank).then(by_kind(a.kind).cmp(&by_kind(b.kind)));
-        by_rank.then(a.depth_m.total_cmp(&b.depth_m)).then_with(|| a.text.cmp(&b.text))
+fn by_importance<'a>(labels: &'a [PictureLabel], lines: &'a [LineLabel]) -> Vec<LabelTurn<'a>> {
+    let sources = labels.iter().map(LabelSource::Point).chain(lines.iter().map(LabelSource::Line));
+    let mut order: Vec<_> =
+        sources.enumerate().map(|(number, source)| LabelTurn { number, source }).collect();
+    order.sort_by(|LabelTurn { source: a, .. }, LabelTurn { source: b, .. }| {
+        let by_rank = a.rank().total_cmp(&b.rank()).then(a.kind_order().cmp(&b.kind_order()));
+        by_rank.then(a.depth_m().total_cmp(&b.depth_m())).then_with(|| a.text().cmp(b.text()))
     });
     order
 }
 
-struct PreparedLabel<'a> {
-    number: usize,
-    label: &'a PictureLabel,
-    style: LabelStyle,
-    block: Paragraph,
-    metrics: LabelMetrics,
-    positions: Vec<LabelCandidate>,
+/// A label with its text set.
+enum PreparedName<'a> {
+    Point(PreparedLabel<'a>),
+    Line(PreparedLine<'a>),
 }
 
-impl<'a> PreparedLabel<'a> {
-    fn new(number: usize, label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
-        let style = LabelStyle::new(label.kind, composer);
-        let block = set_lines(&label.text, &style, composer);
-        if block.lines.is_empty() {
-            return Err(if block.shortened { LabelOutcome::CrowdedOut } else { LabelOutcome::Empty });
-        }
-        // Space around the text, so that no two labels read as one.
-        let space = composer.sheet.px(2.0);
-        let texts = [TextAlignment::Left, TextAlignment::Center, TextAlignment::Right]
-            .map(|alignment| block_box(&block.lines, alignment, style.halo).grown(space));
-        if texts.iter().any(|text| text.size().cmple(Vec2::ZERO).any() || !text.size().is_finite()) {
-            return Err(LabelOutcome::Empty);
-        }
-        let metrics = metrics(label, texts, &style, &composer.sheet);
-        Ok(Self { number, label, style, block, metrics, positions: metrics.positions() })
-    }
-
-    fn request(&self) -> LabelRequest {
-        LabelRequest { candidates: self.positions.clone(), reserved: Some(self.metrics.symbol_box()) }
-    }
-
-    fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
-        if let Some(line) = candidate.leader {
-            let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));
-            drawing.line(line, width + sheet.px(2.4).max(1.6), HALO);
-            drawing.line(line, width, self.style.ink);
-        }
-        if candidate.symbol.is_some() {
-            self.style.draw_symbol(self.label, sheet, drawing);
-        }
-    }
-
-    /// Writes the text: all halos first, for the name's must not cover the height below it.
-    fn draw_text(&self, position: &LabelCandidate, drawing: &mut Drawing) {
-        let text = self.metrics.texts[position.alignment as usize];
-        let by = (position.text.min - text.min).round();
-        let mut lines = baselines(&self.block.lines, position.alignment);
-        lines.iter_mut().for_each(|(_, at)| *at += by);
-        drawing.draw_halo(&lines, self.style.halo);
-        let inks = std::iter::once(self.style.ink).chain(std::iter::repeat(self.style.note_ink));
-        lines.iter().zip(inks).for_each(|((line, at), ink)| drawing.write(line, *at, ink));
-    }
-}
-
-fn metrics(label: &PictureLabel, texts: [PixelBox; 3], style: &LabelStyle, sheet: &Sheet) -> LabelMetrics {
-    let longest = sheet.size.y * LONGEST_LEADER_SHARE;
-    LabelMetrics {
-        anchor: pixel_center(label.anchor_px),
-        reach: reach(label, style.leader, longest),
-        texts,
-        symbol: Vec2::splat(style.symbol + style.halo),
-        gap: sheet.px(1.0),
-        longest,
-        may_lie_on_place: label.kind == LabelKind::Water,
-    }
-}
-
-/// The center of the pixel that holds `point`: makes symbols and upright lines crisp.
-fn pixel_center(point: Vec2) -> Vec2 {
-    point.floor() + 0.5
-}
-
-/// From the anchor to the preferred end of the leader: as given, but upward and of a sensible length.
-fn reach(label: &PictureLabel, usual: f32, longest: f32) -> Vec2 {
-    let given = label.top_px.map(|top| top - label.anchor_px).filter(|reach| reach.is_finite());
-    match given {
-        // Leaning more than 45° it would not read as a line upward.
-        Some(reach) if reach.y < 0.0 && reach.x.abs() <= -reach.y => reach.clamp_length(usual, longest),
-        _ => Vec2::new(0.0, -usual),
-    }
-}
-
-fn set_lines(text: &str, style: &LabelStyle, composer: &mut Composer) -> Paragraph {
-    let (written, dropped) = written_lines(text, MOST_LINES);
-    let widest = composer.sheet.size.x * WIDEST_SHARE;
-    let styles = std::iter::once(style.name).chain(std::iter::repeat(style.note));
-    let set = |(text, style): (&String, TextStyle)| composer.fitted(text, style, widest);
-    let lines: Vec<TypesetLine> = written.iter().zip(styles).filter_map(set).collect();
-    let shortened = dropped || lines.len() < written.len() || lines.iter().any(|line| line.shortened);
-    Paragraph { lines, shortened }
-}
-
-/// The lines with the starts of their baselines: the first at y = 0, all aligned to x = 0.
-fn baselines(lines: &[TypesetLine], alignment: TextAlignment) -> Vec<(&TypesetLine, Vec2)> {
-    let share = match alignment {
-        TextAlignment::Left => 0.0,
-        TextAlignment::Center => 0.5,
-        TextAlignment::Right => 1.0,
-    };
-    let mut y = 0.0;
-    let place = |(number, line): (usize, &'_ TypesetLine)| {
-        if number > 0 {
-            y += (line.style.size_px * LEADING).round();
-        }
-        Vec2::new((-line.advance * share).round(), y)
-    };
-    let starts: Vec<Vec2> = lines.iter().enumerate().map(place).collect();
-    lines.iter().zip(starts).collect()
-}
-
-fn block_box(lines: &[TypesetLine], alignment: TextAlignment, halo: f32) -> PixelBox {
-    let boxes = baselines(lines, alignment).into_iter().map(|(line, at)| line.bounds(halo).moved(at));
-    boxes.fold(PixelBox::EMPTY, PixelBox::union)
-}
-
-/// An almost upright line, made upright; other lines as they are.
-fn uprighted(line: PixelSegment) -> PixelSegment {
-    if (line.to.x - line.from.x).abs() > 0.6 {
-        return line;
-    }
-    PixelSegment { from: line.from, to: Vec2::new(line.from.x, line.to.y) }
-}
-
-struct LabelStyle {
-    name: TextStyle,
-    note: TextStyle,
-    ink: Srgba,
-    note_ink: Srgba,
-    halo: f32,
-    /// Half the size of the symbol.
-    symbol: f32,
-    leader: f32,
-}
-
-impl LabelStyle {
-    fn new(kind: LabelKind, composer: &Composer) -> Self {
-        let sheet = composer.sheet;
-        let (size, weight, symbol, leader) = match kind {
-            LabelKind::Summit => (20.0, TextStyle::BOLD, 6.0, 44.0),
-            LabelKind::Place => (19.0, TextStyle::BOLD, 4.5, 34.0),
-            LabelKind::Water => (19.0, TextStyle::MEDIUM, 3.0, 34.0),
-            LabelKind::Point => (16.5, TextStyle::MEDIUM, 3.2, 26.0),
-        };
-        let (slant, tracking, ink, note_ink) = match kind {
-            LabelKind::Water => (WATER_SLANT, 0.06, WATER_INK, WATER_INK),
-            _ => (0.0, 0.0, INK, SOFT_INK),
-        };
-        let leaning = |style: TextStyle| TextStyle { slant, tracking, ..style };
-        Self {
-            name: leaning(composer.style(size, weight)),
-            note: leaning(composer.style(size * 0.8, TextStyle::MEDIUM)),
-            ink,
-            note_ink,
-            halo: sheet.px(2.2).max(1.5),
-            symbol: sheet.px(symbol).max(2.6),
-            leader: sheet.px(leader),
-        }
-    }
-
-    fn draw_symbol(&self, label: &PictureLabel, sheet: &Sheet, drawing: &mut Drawing) {
-        let (at, size, reach) = (pixel_center(label.anchor_px), self.symbol, self.halo * 0.8);
-        if label.kind == LabelKind::Summit {
-            let corners = [(0.0, -1.0), (0.95, 0.72), (-0.95, 0.72)];
-            if let Some(triangle) = polygon(&corners.map(|(x, y)| at + Vec2::new(x, y) * size)) {
-                drawing.fill_haloed(triangle, self.ink, reach);
+impl<'a> PreparedName<'a> {
+    fn new(turn: &LabelTurn<'a>, composer: &mut Composer) -> Result<Self, LabelOutcome> {
+        match turn.source {
+            LabelSource::Point(label) => Self::at_place(label, composer),
+            LabelSource::Line(label) => {
+                let line = PreparedLine::new(label, composer).ok_or(LabelOutcome::Empty)?;
+                match &label.fallback {
+                    _ if line.count() > 0 => Ok(Self::Line(line)),
+                    Some(fallback) => Self::at_place(fallback, composer),
+                    None if label.path_px.is_empty() => Err(LabelOutcome::Hidden),
+                    None => Err(LabelOutcome::CrowdedOut),
+                }
             }
-            return;
         }
-        drawing.disc(at, size + reach, HALO);
-        drawing.disc(at, size, self.ink);
-        if label.kind == LabelKind::Place {
-            drawing.disc(at, size - sheet.px(1.6).max(1.0), PAPER);
+    }
+
+    fn at_place(label: &'a PictureLabel, composer: &mut Composer) -> Result<Self, LabelOutcome> {
+        if !composer.sheet.bounds().contains(label.anchor_px) {
+            return Err(LabelOutcome::Outside);
         }
+        if !label.visible {
+            return Err(LabelOutcome::Hidden);
+        }
+        PreparedLabel::new(label, composer).map(Self::Point)
+    }
+
+    fn first_request(&self) -> LabelRequest {
+        match self {
+            Self::Point(label) => label.request(),
+            Self::Line(line) => line.request(0),
+        }
+    }
+}
+
+/// A name with what is drawn of it.
+struct NumberedName<'a> {
+    /// As in [`LabelTurn`].
+    number: usize,
+    name: PreparedName<'a>,
+    drawn: Vec<DrawnName>,
+}
+
+/// An occurrence of a name, and the candidate chosen for it.
+#[derive(Clone, Copy)]
+struct DrawnName {
+    occurrence: usize,
+    choice: usize,
+}
+
+/// All names of a sheet, in the order of importance.
+struct SheetNames<'a> {
+    names: Vec<NumberedName<'a>>,
+    /// By the numbers of labels.
+    outcomes: Vec<LabelOutcome>,
+}
+
+impl<'a> SheetNames<'a> {
+    fn place_first(&mut self, placer: &mut LabelPlacer<'_>) {
+        let requests: Vec<LabelRequest> = self.names.iter().map(|name| name.name.first_request()).collect();
+        for (name, choice) in self.names.iter_mut().zip(placer.place(&requests)) {
+            name.drawn.extend(choice.map(|choice| DrawnName { occurrence: 0, choice }));
+        }
+    }
+
+    fn place_repetitions(&mut self, placer: &mut LabelPlacer<'_>) {
+        for name in &mut self.names {
+            if let PreparedName::Line(line) = &name.name {
+                let requests: Vec<_> = (1..line.count()).map(|occurrence| line.request(occurrence)).collect();
+                for (index, choice) in placer.place(&requests).into_iter().enumerate() {
+                    name.drawn.extend(choice.map(|choice| DrawnName { occurrence: index + 1, choice }));
+                }
+            }
+        }
+    }
+
+    /// Names along lines that found no place on them become names at places.
+    fn place_fallbacks(&mut self, placer: &mut LabelPlacer<'_>, composer: &mut Composer) {
+        for name in self.names.iter_mut().filter(|name| name.drawn.is_empty()) {
+            let PreparedName::Line(PreparedLine {
+                label: LineLabel { fallback: Some(fallback), .. }, ..
+            }) = &name.name
+            else {
+                continue;
+            };
+            if let Ok(prepared) = PreparedName::at_place(fallback, composer) {
+                let choice = placer.place(&[prepared.first_request()])[0];
+                name.drawn.extend(choice.map(|choice| DrawnName { occurrence: 0, choice }));
+                name.name = prepared;
+            }
+        }
+    }
+
+    /// Symbols and leaders first, then names along lines, all other texts over them.
+    fn draw(&mut self, sheet: &Sheet) -> Drawing {
+        let mut drawing = Drawing::default();
+        let points = |name: &'_ NumberedName<'a>| -> Option<LabelCandidate> {
+            let PreparedName::Point(label) = &name.name else { return None };
+            name.drawn.first().map(|drawn| label.positions[drawn.choice].clone())
+        };
+        for name in &self.names {
+            if let (PreparedName::Point(label), Some(position)) = (&name.name, points(name)) {
+                label.draw_symbol(&position, sheet, &mut drawing);
+            }
+        }
+        for name in &self.names {
+            if let PreparedName::Line(line) = &name.name {
+                name.drawn.iter().for_each(|drawn| line.draw(drawn.occurrence, drawn.choice, &mut drawing));
+            }
+        }
+        for name in &self.names {
+            if let (PreparedName::Point(label), Some(position)) = (&name.name, points(name)) {
+                label.draw_text(&position, &mut drawing);
+            }
+        }
+        // In the order of the input.
+        let mut in_order: Vec<&NumberedName<'a>> =
+            self.names.iter().filter(|name| !name.drawn.is_empty()).collect();
+        in_order.sort_by_key(|name| name.number);
+        for name in in_order {
+            self.outcomes[name.number] = LabelOutcome::Placed;
+            match &name.name {
+                PreparedName::Point(label) => {
+                    drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
+                }
+                PreparedName::Line(line) => drawing.record_text(&line.label.text, line.missing, false),
+            }
+        }
+        drawing
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
 
     fn label(text: &str, x: f32, y: f32) -> PictureLabel {
@@ -316,7 +285,7 @@ mod tests {
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
         let mut report = AnnotationReport::default();
-        let drawing = draw_labels(labels, &[], &mut Composer::new(1920, 1080), &mut report);
+        let drawing = draw_labels(labels, &[], &[], &mut Composer::new(1920, 1080), &mut report);
         (drawing, report)
     }
 
@@ -356,16 +325,6 @@ mod tests {
         let forth = draw(&labels).0.marks;
         labels.reverse();
         assert_eq!(draw(&labels).0.marks, forth);
-    }
-
-    #[test]
-    fn a_leader_goes_up_whatever_the_top_says() {
-        for top in [Vec2::new(400.0, 900.0), Vec2::new(900.0, 499.0), Vec2::NAN, Vec2::new(400.0, 500.0)] {
-            let odd = PictureLabel { top_px: Some(top), ..label("odd", 400.0, 500.0) };
-            assert_eq!(reach(&odd, 40.0, 250.0), Vec2::new(0.0, -40.0), "{top}");
-        }
-        let long = PictureLabel { top_px: Some(Vec2::new(400.0, -9000.0)), ..label("long", 400.0, 500.0) };
-        assert!((reach(&long, 40.0, 250.0) - Vec2::new(0.0, -250.0)).length() < 0.01);
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //!
 //! ```text
 //! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ──► canvas ──► Pixels
-//!             └─► labels ──► positions ──► place (pure, two dimensions) ──► Drawing ──┘
+//!             └─► labels ─┬► point_label ──► positions ─┬► place (two dimensions) ──► Drawing ──┘
+//!                         └► line_label ───────────────┘
 //! ```
 //!
 //! Every mark is a filled path, so that the box with which a thing is laid out is the box that it paints. Type is set
@@ -21,15 +22,20 @@ mod composer;
 pub mod cover;
 mod credit;
 mod drawing;
+mod fonts;
+mod label_style;
 mod labels;
 pub mod legend;
+mod line_label;
 pub mod map;
 pub mod nice;
 pub mod north;
+mod occupied;
 pub mod paint;
 mod paragraph;
 mod pixel_box;
 mod place;
+mod point_label;
 mod positions;
 pub mod report;
 pub mod rim;

@@ -22,14 +22,15 @@ const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 /// Nothing drawn overlaps anything else drawn, or leaves the picture. The same picture and annotations give the same
 /// bytes on every machine. Without annotations the picture is unchanged.
 pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationReport {
-    let mut composer = Composer::new(pixels.width(), pixels.height());
+    let mut composer = Composer::with_font(pixels.width(), pixels.height(), annotations.font.as_ref());
     let furniture = Furniture::lay_out(annotations, &mut composer);
     let mut boxes: Vec<PixelBox> = furniture.pieces().map(Drawing::bounds).collect();
     let marks = rim::draw_marks(&annotations.rim, &boxes, &mut composer);
     boxes.extend(marks.iter().map(Drawing::bounds));
     let mut report = AnnotationReport::default();
     furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
-    let labels = draw_labels(&annotations.labels, &boxes, &mut composer, &mut report);
+    let labels =
+        draw_labels(&annotations.labels, &annotations.line_labels, &boxes, &mut composer, &mut report);
     paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
     report.left_out = furniture.left_out;
     report

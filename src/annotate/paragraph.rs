@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use crate::annotate::composer::widest;
 
-    const FACE: TextStyle = TextStyle { size_px: 20.0, slant: 0.0, weight: 0.0, tracking: 0.0 };
+    const FACE: TextStyle = TextStyle::new(20.0, TextStyle::REGULAR);
 
     #[test]
     fn written_lines_are_clean_and_never_empty() {

@@ -1,4 +1,4 @@
-//! Placement of labels: a pure function from boxes to choices.
+//! Placement of labels: from boxes to choices.
 //!
 //! Labels come in order of importance, each with candidate positions in order of preference. One after the other takes
 //! the first candidate that is free. Greedy placement by priority is what a reader expects (a minor label never
@@ -8,11 +8,14 @@
 //! It looks one step ahead: a candidate that would cover the symbol of a later label is taken only where no other
 //! candidate is free.
 
+use crate::annotate::occupied::{OccupiedShape, OccupiedSheet};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LabelCandidate {
     pub text: PixelBox,
+    /// The boxes of the letters of a name along a line, which take less than `text`; empty for upright text.
+    pub letters: Vec<PixelBox>,
     /// Around the symbol at the place; `None` where it is drawn without.
     pub symbol: Option<PixelBox>,
     /// The leader line from the symbol to the text; `None` where it is drawn without.
@@ -49,32 +52,90 @@ pub struct LabelField {
     pub leader_gap: f32,
 }
 
-/// For every request the index of the candidate chosen, or `None` where none is free.
-pub fn place(requests: &[LabelRequest], field: &LabelField) -> Vec<Option<usize>> {
-    let mut placed: Vec<LabelCandidate> = Vec::new();
-    let mut choices = Vec::with_capacity(requests.len());
-    for (number, request) in requests.iter().enumerate() {
-        let is_free = |candidate: &LabelCandidate| {
-            field.keeps_inside(candidate)
-                && !field.taken.iter().any(|taken| field.touches(candidate, taken))
-                && !placed.iter().any(|other| field.conflict(candidate, other))
-        };
-        let later = &requests[number + 1..];
-        let covers_reserved = |candidate: &LabelCandidate| {
-            later.iter().filter_map(|request| request.reserved).any(|area| candidate.text.overlaps(&area))
-        };
-        let candidates = request.candidates.iter().enumerate();
-        let free: Vec<_> = candidates.filter(|(_, candidate)| is_free(candidate)).collect();
-        let choice = free.iter().find(|(_, candidate)| !covers_reserved(candidate)).or(free.first());
-        placed.extend(choice.map(|(_, candidate)| **candidate));
-        choices.push(choice.map(|(which, _)| *which));
+/// Labels placed so far.
+pub struct LabelPlacer<'a> {
+    field: &'a LabelField,
+    placed: OccupiedSheet,
+}
+
+impl<'a> LabelPlacer<'a> {
+    pub fn new(field: &'a LabelField) -> Self {
+        let mut placed = OccupiedSheet::new(&field.bounds);
+        for taken in &field.taken {
+            placed.add(OccupiedShape::Box(*taken), 0);
+        }
+        Self { field, placed }
     }
-    choices
+
+    /// For every request the index of the candidate chosen, or `None` where none is free of what this placer has placed
+    /// before.
+    pub fn place(&mut self, requests: &[LabelRequest]) -> Vec<Option<usize>> {
+        let mut reserved = OccupiedSheet::new(&self.field.bounds);
+        for (number, request) in requests.iter().enumerate() {
+            if let Some(area) = request.reserved {
+                reserved.add(OccupiedShape::Box(area), number);
+            }
+        }
+        let choose = |(number, request): (usize, &LabelRequest)| {
+            let covers_later = |candidate: &LabelCandidate| {
+                candidate.text_boxes().any(|own| {
+                    let later = reserved.near(own).filter(|mark| mark.number > number);
+                    later
+                        .map(|mark| mark.shape)
+                        .any(|shape| matches!(shape, OccupiedShape::Box(area) if area.overlaps(own)))
+                })
+            };
+            let mut second = None;
+            for (which, candidate) in
+                request.candidates.iter().enumerate().filter(|(_, one)| self.is_free(one))
+            {
+                if !covers_later(candidate) {
+                    self.keep(candidate);
+                    return Some(which);
+                }
+                second = second.or(Some(which));
+            }
+            self.keep(&request.candidates[second?]);
+            second
+        };
+        requests.iter().enumerate().map(choose).collect()
+    }
+
+    fn keep(&mut self, candidate: &LabelCandidate) {
+        candidate.boxes().for_each(|area| self.placed.add(OccupiedShape::Box(*area), 0));
+        if let Some(leader) = candidate.leader {
+            self.placed.add(OccupiedShape::Leader(leader), 0);
+        }
+    }
+
+    fn is_free(&self, candidate: &LabelCandidate) -> bool {
+        let gap = self.field.leader_gap;
+        let mut boxes = candidate.boxes();
+        self.field.keeps_inside(candidate)
+            && !boxes.any(|own| {
+                self.placed.near(&own.grown(gap)).any(|mark| match &mark.shape {
+                    OccupiedShape::Box(area) => own.overlaps(area),
+                    OccupiedShape::Leader(leader) => own.grown(gap).meets(leader),
+                })
+            })
+            && candidate.leader.is_none_or(|own| {
+                let around = PixelBox { min: own.from.min(own.to), max: own.from.max(own.to) };
+                !self.placed.near(&around.grown(gap)).any(|mark| match &mark.shape {
+                    OccupiedShape::Box(area) => area.grown(gap).meets(&own),
+                    OccupiedShape::Leader(leader) => own.crosses(leader),
+                })
+            })
+    }
 }
 
 impl LabelCandidate {
+    fn text_boxes(&self) -> impl Iterator<Item = &PixelBox> {
+        let whole = self.letters.is_empty().then_some(&self.text);
+        whole.into_iter().chain(&self.letters)
+    }
+
     fn boxes(&self) -> impl Iterator<Item = &PixelBox> {
-        std::iter::once(&self.text).chain(&self.symbol)
+        self.text_boxes().chain(&self.symbol)
     }
 }
 
@@ -82,23 +143,6 @@ impl LabelField {
     fn keeps_inside(&self, candidate: &LabelCandidate) -> bool {
         let contains = |line: PixelSegment| self.bounds.contains(line.from) && self.bounds.contains(line.to);
         candidate.boxes().all(|area| self.bounds.holds(area)) && candidate.leader.is_none_or(contains)
-    }
-
-    fn touches(&self, candidate: &LabelCandidate, area: &PixelBox) -> bool {
-        candidate.boxes().any(|own| own.overlaps(area))
-            || candidate.leader.is_some_and(|leader| self.passes_near(&leader, area))
-    }
-
-    fn passes_near(&self, leader: &PixelSegment, area: &PixelBox) -> bool {
-        area.grown(self.leader_gap).meets(leader)
-    }
-
-    fn conflict(&self, one: &LabelCandidate, other: &LabelCandidate) -> bool {
-        other.boxes().any(|area| self.touches(one, area))
-            || other.leader.is_some_and(|leader| {
-                one.boxes().any(|area| self.passes_near(&leader, area))
-                    || one.leader.is_some_and(|own| own.crosses(&leader))
-            })
     }
 }
 
@@ -109,6 +153,30 @@ mod tests {
     use proptest::prelude::{Strategy, prop_assert, prop_assert_eq, proptest};
 
     use super::*;
+
+    fn place(requests: &[LabelRequest], field: &LabelField) -> Vec<Option<usize>> {
+        LabelPlacer::new(field).place(requests)
+    }
+
+    // Every pair compared, without cells: what the placer is held to.
+    impl LabelField {
+        fn touches(&self, candidate: &LabelCandidate, area: &PixelBox) -> bool {
+            candidate.boxes().any(|own| own.overlaps(area))
+                || candidate.leader.is_some_and(|leader| self.passes_near(&leader, area))
+        }
+
+        fn passes_near(&self, leader: &PixelSegment, area: &PixelBox) -> bool {
+            area.grown(self.leader_gap).meets(leader)
+        }
+
+        fn conflict(&self, one: &LabelCandidate, other: &LabelCandidate) -> bool {
+            other.boxes().any(|area| self.touches(one, area))
+                || other.leader.is_some_and(|leader| {
+                    one.boxes().any(|area| self.passes_near(&leader, area))
+                        || one.leader.is_some_and(|own| own.crosses(&leader))
+                })
+        }
+    }
 
     /// A fault of a placement; numbers index the requests.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,7 +212,7 @@ mod tests {
             if let Some((other, _)) = placed.iter().find(|(_, other)| field.conflict(chosen, other)) {
                 return Err(PlacementFault::Overlap(*other, number));
             }
-            placed.push((number, *chosen));
+            placed.push((number, chosen.clone()));
         }
         Ok(())
     }
@@ -156,7 +224,7 @@ mod tests {
 
     fn text(x: f32, y: f32) -> LabelCandidate {
         let text = PixelBox::at(Vec2::new(x, y), Vec2::new(40.0, 10.0));
-        LabelCandidate { text, symbol: None, leader: None, alignment: TextAlignment::Center }
+        LabelCandidate { text, letters: vec![], symbol: None, leader: None, alignment: TextAlignment::Center }
     }
 
     fn request(candidates: &[LabelCandidate]) -> LabelRequest {
@@ -228,6 +296,16 @@ mod tests {
             let leader = PixelSegment { from: anchor, to: anchor - Vec2::new(3.0, 28.0) };
             LabelCandidate {
                 text: PixelBox::at(Vec2::new(x, y), Vec2::new(width, height)),
+                letters: match parts {
+                    // The halves of a text that rises to the right.
+                    0 => [(0.0, 8.0), (0.5, 0.0)]
+                        .map(|(along, down)| {
+                            let min = Vec2::new(x + along * width, y + down);
+                            PixelBox::at(min, Vec2::new(width * 0.5, height * 0.5))
+                        })
+                        .to_vec(),
+                    _ => Vec::new(),
+                },
                 symbol: (parts & 1 > 0).then(|| PixelBox::around(anchor, Vec2::splat(3.0))),
                 leader: (parts & 2 > 0).then_some(leader),
                 alignment: TextAlignment::Center,

@@ -1,5 +1,15 @@
 //! The candidate positions of a label around its place, the best first.
 //!
+//! Eight positions beside the place, in the order of Imhof (1962): to the upper right, right, above, and so on.
+//!
+//! ```text
+//!    4 3 1
+//!    5 ● 2
+//!    8 7 6
+//! ```
+//!
+//! Where all are taken, the text stands at the end of a leader line:
+//!
 //! ```text
 //!        Name              Name              Name
 //!       1062 m            1062 m            1062 m          ▲ Name      Name ▲
@@ -8,9 +18,8 @@
 //!       centered       to the right          to the left          beside it
 //! ```
 //!
-//! Readers look above a place first, so that the text stands at the end of a leader line. Where that is taken, the
-//! leader is lengthened or shortened and the text shifted along it; beside the place comes last. Names of waters stand
-//! on the water itself first.
+//! The leader is lengthened or shortened and the text shifted along it. A label that is wished above its place has its
+//! leader first. Names of waters stand on the water itself first.
 
 use glam::Vec2;
 
@@ -30,6 +39,8 @@ pub struct LabelMetrics {
     /// The gap between text and leader line, and text and symbol.
     pub gap: f32,
     pub longest: f32,
+    /// Whether the text is wished at the end of a leader line.
+    pub leads_first: bool,
     /// Whether the first position is on the place itself, without symbol and leader line.
     pub may_lie_on_place: bool,
 }
@@ -40,6 +51,10 @@ const LENGTHS: [f32; 7] = [1.0, 0.55, 1.5, 2.1, 2.8, 3.7, 5.0];
 const MEETINGS: [(f32, TextAlignment); 3] =
     [(0.5, TextAlignment::Center), (0.14, TextAlignment::Left), (0.86, TextAlignment::Right)];
 
+/// The eight positions: right is 1, down is 1.
+const BESIDE: [(f32, f32); 8] =
+    [(1.0, -1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, -1.0), (-1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0)];
+
 impl LabelMetrics {
     pub fn positions(&self) -> Vec<LabelCandidate> {
         let on_place = self.may_lie_on_place.then(|| self.on_place());
@@ -47,8 +62,14 @@ impl LabelMetrics {
             .iter()
             .filter(|&&length| self.reach.length() * length <= self.longest)
             .flat_map(|&length| MEETINGS.map(|meeting| self.above(self.reach * length, meeting)));
-        let beside = [(1.0, TextAlignment::Left), (-1.0, TextAlignment::Right)].map(|side| self.beside(side));
-        on_place.into_iter().chain(above).chain(beside).collect()
+        let beside = BESIDE.iter().map(|&side| self.beside(side));
+        let mut positions: Vec<_> = on_place.into_iter().collect();
+        if self.leads_first {
+            positions.extend(above.chain(beside));
+        } else {
+            positions.extend(beside.chain(above));
+        }
+        positions
     }
 
     pub fn symbol_box(&self) -> PixelBox {
@@ -58,7 +79,7 @@ impl LabelMetrics {
     fn on_place(&self) -> LabelCandidate {
         let alignment = TextAlignment::Center;
         let text = moved_center(self.texts[alignment as usize], self.anchor);
-        LabelCandidate { text, symbol: None, leader: None, alignment }
+        LabelCandidate { text, letters: Vec::new(), symbol: None, leader: None, alignment }
     }
 
     fn above(&self, reach: Vec2, (meeting, alignment): (f32, TextAlignment)) -> LabelCandidate {
@@ -70,18 +91,28 @@ impl LabelMetrics {
         // The text is moved by whole pixels; the line ends where the text is then.
         let to = Vec2::new(end.x, text.max.y + self.gap);
         let leader = Some(PixelSegment { from, to });
-        LabelCandidate { text, symbol: Some(self.symbol_box()), leader, alignment }
+        LabelCandidate { text, letters: Vec::new(), symbol: Some(self.symbol_box()), leader, alignment }
     }
 
-    fn beside(&self, (side, alignment): (f32, TextAlignment)) -> LabelCandidate {
+    fn beside(&self, (right, down): (f32, f32)) -> LabelCandidate {
+        let alignment = match right {
+            1.0 => TextAlignment::Left,
+            -1.0 => TextAlignment::Right,
+            _ => TextAlignment::Center,
+        };
         let (area, symbol) = (self.texts[alignment as usize], self.symbol_box());
-        let away = self.symbol.x + self.gap + area.size().x * 0.5;
-        let mut text = moved_center(area, self.anchor + Vec2::new(side * away, 0.0));
+        let half = area.size() * 0.5;
+        // In a corner the text stands closer than the symbol's own corner.
+        let upward =
+            if right == 0.0 { self.symbol.y + self.gap + half.y } else { half.y - self.symbol.y * 0.2 };
+        let away = Vec2::new(right * (self.symbol.x + self.gap + half.x), down * upward);
+        let mut text = moved_center(area, self.anchor + away);
         // Rounding to whole pixels must not move the text over the symbol.
         if text.overlaps(&symbol) {
-            text = text.moved(Vec2::new(side, 0.0));
+            let side = if right == 0.0 { Vec2::new(0.0, down) } else { Vec2::new(right, 0.0) };
+            text = text.moved(side);
         }
-        LabelCandidate { text, symbol: Some(symbol), leader: None, alignment }
+        LabelCandidate { text, letters: Vec::new(), symbol: Some(symbol), leader: None, alignment }
     }
 }
 
@@ -103,13 +134,23 @@ mod tests {
             symbol: Vec2::splat(6.0),
             gap: 3.0,
             longest: 200.0,
+            leads_first: true,
             may_lie_on_place: false,
         }
     }
 
     #[test]
+    fn a_label_stands_at_the_upper_right_first_and_has_a_leader_only_after_eight_positions() {
+        let positions = LabelMetrics { leads_first: false, ..metrics() }.positions();
+        let away = positions[0].text.center() - metrics().anchor;
+        assert!(away.x > 40.0 && away.y < -5.0, "{away}");
+        let first_led = positions.iter().position(|candidate| candidate.leader.is_some());
+        assert_eq!(first_led, Some(8));
+    }
+
+    #[test]
     fn the_first_candidate_is_centered_over_the_leaders_wished_end() {
-        let first = metrics().positions()[0];
+        let first = &metrics().positions()[0];
         let end = metrics().anchor + metrics().reach;
         assert!((first.text.center().x - end.x).abs() <= 0.5);
         assert!((first.text.max.y + 3.0 - end.y).abs() <= 0.5);
@@ -157,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_water_name_stands_on_the_water_first() {
-        let first = LabelMetrics { may_lie_on_place: true, ..metrics() }.positions()[0];
+        let first = &LabelMetrics { may_lie_on_place: true, ..metrics() }.positions()[0];
         assert!((first.text.center() - metrics().anchor).abs().max_element() <= 0.5);
         assert_eq!((first.symbol, first.leader), (None, None));
     }

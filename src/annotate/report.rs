@@ -39,6 +39,28 @@ pub struct AnnotationReport {
     pub missing_glyphs: Vec<MissingGlyphs>,
 }
 
+/// What becomes of a label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::annotate) enum LabelOutcome {
+    Placed,
+    Hidden,
+    Outside,
+    CrowdedOut,
+    Empty,
+}
+
+impl LabelOutcome {
+    pub(in crate::annotate) fn report(self, text: &str, report: &mut AnnotationReport) {
+        match self {
+            Self::Placed => report.placed.push(text.to_owned()),
+            Self::Hidden => report.hidden.push(text.to_owned()),
+            Self::Outside => report.outside.push(text.to_owned()),
+            Self::CrowdedOut => report.crowded_out.push(text.to_owned()),
+            Self::Empty => report.empty += 1,
+        }
+    }
+}
+
 /// A drawn text with characters that the embedded fonts lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingGlyphs {

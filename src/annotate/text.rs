@@ -1,20 +1,14 @@
 //! Typesetting: converts a line of text to one outline, in the fonts embedded in the program.
 //!
 //! `parley` orders and shapes the line (right-to-left scripts, ligatures, kerning), `skrifa` reads the outlines, and the
-//! result is one path whose baseline starts at the origin. The font is Ubuntu Light; Hack provides characters that it
-//! lacks (arrows, primes). Both are part of `epaint_default_fonts`. The machine's own fonts are never used: a picture
-//! must not depend on the machine. Characters that neither font has appear as boxes and are counted.
-//!
-//! A light font is too thin on a picture. Its outline is drawn a second time with a fine stroke of the same color, which
-//! gives the weight of a regular or medium font without a second font.
-
-use std::sync::Arc;
+//! result is one path whose baseline starts at the origin. Characters that the embedded fonts lack come from the font
+//! that the scene names. The machine's own fonts are never used: a picture must not depend on the machine. Characters
+//! that no font has appear as boxes and are counted.
 
 use glam::Vec2;
 use parley::GlyphRun;
-use parley::fontique::{Blob, Collection, FontInfoOverride};
 use parley::layout::{Layout, PositionedLayoutItem};
-use parley::style::{FontFamily, FontFamilyName, StyleProperty};
+use parley::style::StyleProperty;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -22,43 +16,38 @@ use tiny_skia::{Path, PathBuilder};
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, box_of};
+use crate::annotate::fonts::FontCut;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::HALO;
 use crate::draw::color::Srgba;
 
 /// Height of capitals and figures above the baseline, in ems of the embedded font.
-pub const CAP_HEIGHT: f32 = 0.693;
+pub const CAP_HEIGHT: f32 = 0.714;
 /// Depth of letters below the baseline, in ems of the embedded font.
-pub const DESCENT: f32 = 0.189;
+pub const DESCENT: f32 = 0.24;
 
 /// Longer lines are cut before they are shaped, which bounds the time of shaping: no picture has room for more.
 const MOST_CHARACTERS: usize = 300;
-
-const FONT: &str = "sandtable sheet";
-const FALLBACK_FONT: &str = "sandtable signs";
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextStyle {
     /// Height of the em in pixels.
     pub size_px: f32,
-    /// Lean to the right: the tangent of the angle. 0 is upright.
-    pub slant: f32,
-    /// Width of the stroke that strengthens the letters, in ems.
-    pub weight: f32,
+    pub cut: FontCut,
     /// Space added between letters, in ems.
     pub tracking: f32,
 }
 
 impl TextStyle {
-    /// The weight of running text on a panel.
-    pub const REGULAR: f32 = 0.03;
-    /// The weight of titles, and of text on the picture itself, where halos thin the letters.
-    pub const MEDIUM: f32 = 0.055;
-    /// The weight of names on the picture.
-    pub const BOLD: f32 = 0.08;
+    /// Running text on a panel.
+    pub const REGULAR: FontCut = FontCut::Regular;
+    /// Headings, and text on the picture itself, where halos thin the letters.
+    pub const MEDIUM: FontCut = FontCut::Medium;
+    /// Titles, and names on the picture.
+    pub const BOLD: FontCut = FontCut::Bold;
 
-    pub fn upright(size_px: f32, weight: f32) -> Self {
-        Self { size_px, slant: 0.0, weight, tracking: 0.0 }
+    pub const fn new(size_px: f32, cut: FontCut) -> Self {
+        Self { size_px, cut, tracking: 0.0 }
     }
 
     /// Height of capitals above the baseline, in pixels.
@@ -66,18 +55,13 @@ impl TextStyle {
         self.size_px * CAP_HEIGHT
     }
 
-    fn stroke_px(&self) -> f32 {
-        self.weight * self.size_px
-    }
-
-    /// Space between letters in pixels: the tracking, the space that the stroke takes, and a little more for small
-    /// type, whose letters would otherwise run together.
+    /// Space between letters in pixels: the tracking, and a little more for small type, whose letters would otherwise run
+    /// together.
     fn tracking_px(&self) -> f32 {
         /// Larger type needs no extra space, in pixels.
         const SMALL_PX: f32 = 13.0;
-        let stroke = self.weight * 0.5;
-        let small = (SMALL_PX - self.size_px).max(0.0) * 0.007;
-        (self.tracking + stroke + small) * self.size_px
+        let small = (SMALL_PX - self.size_px).max(0.0) * 0.005;
+        (self.tracking + small) * self.size_px
     }
 }
 
@@ -93,14 +77,32 @@ pub struct TypesetLine {
     pub style: TextStyle,
 }
 
+/// A letter with its accents, or letters that are one glyph.
+#[derive(Clone, Debug)]
+pub struct TypesetLetter {
+    /// Its outline, from the middle of its advance on the baseline; `None` for a space.
+    pub outline: Option<Path>,
+    /// The middle of its advance, from the start of the line, in pixels.
+    pub middle: f32,
+    pub advance: f32,
+}
+
+/// A line of text as letters from left to right, to be set along a curve.
+#[derive(Clone, Debug)]
+pub struct TypesetLetters {
+    pub letters: Vec<TypesetLetter>,
+    /// Width along the baseline, in pixels.
+    pub advance: f32,
+    /// Characters that the fonts lack; each shows as a box.
+    pub missing: usize,
+}
+
 impl Composer {
     /// `text` as one line. Line ends and other control characters become spaces; text is cut after 300 characters.
     pub fn line(&mut self, text: &str, style: TextStyle) -> TypesetLine {
         let shortened = text.chars().nth(MOST_CHARACTERS).is_some();
-        let text: String =
-            text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let layout = self.shape(&text, style);
-        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO, slant: style.slant };
+        let layout = self.shape(&printable(text), style);
+        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO };
         let (mut missing, mut advance) = (0, 0.0f32);
         for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
             if let PositionedLayoutItem::GlyphRun(run) = item {
@@ -111,10 +113,23 @@ impl Composer {
         TypesetLine { outline: outliner.path.finish(), advance, missing, shortened, style }
     }
 
+    /// The letters of `text` on one line. Line ends and other control characters become spaces; text is cut after 300
+    /// characters.
+    pub fn letters(&mut self, text: &str, style: TextStyle) -> TypesetLetters {
+        let layout = self.shape(&printable(text), style);
+        let mut set = TypesetLetters { letters: Vec::new(), advance: 0.0, missing: 0 };
+        for item in layout.lines().next().into_iter().flat_map(|line| line.items()) {
+            if let PositionedLayoutItem::GlyphRun(run) = item {
+                set.missing += add_letters(&run, &mut set.letters);
+                set.advance = set.advance.max(run.offset() + run.advance());
+            }
+        }
+        set
+    }
+
     fn shape(&mut self, text: &str, style: TextStyle) -> Layout<()> {
-        let families = [FontFamilyName::named(FONT), FontFamilyName::named(FALLBACK_FONT)];
         let mut builder = self.layouts.ranged_builder(&mut self.fonts, text, 1.0, false);
-        builder.push_default(StyleProperty::FontFamily(FontFamily::from(&families[..])));
+        builder.push_default(StyleProperty::FontFamily(style.cut.families()));
         builder.push_default(StyleProperty::FontSize(style.size_px));
         builder.push_default(StyleProperty::LetterSpacing(style.tracking_px()));
         let mut layout = builder.build(text);
@@ -127,8 +142,7 @@ impl TypesetLine {
     /// The smallest box around the letters with a halo of `halo` pixels, baseline from the origin;
     /// [`PixelBox::EMPTY`] where nothing shows.
     pub fn bounds(&self, halo: f32) -> PixelBox {
-        let around = halo.max(self.style.stroke_px() * 0.5);
-        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(around))
+        self.outline.as_ref().map_or(PixelBox::EMPTY, |path| box_of(path).grown(halo))
     }
 
     fn outline_at(&self, at: Vec2) -> Option<Path> {
@@ -138,12 +152,9 @@ impl TypesetLine {
 
 impl Drawing {
     pub fn write(&mut self, line: &TypesetLine, at: Vec2, color: Srgba) {
-        let Some(path) = line.outline_at(at) else { return };
-        let stroke = line.style.stroke_px();
-        if stroke > 0.0 {
-            self.stroke(&path, stroke, color);
+        if let Some(path) = line.outline_at(at) {
+            self.fill(path, color);
         }
-        self.fill(path, color);
     }
 
     /// Writes a line on a halo reaching `reach` pixels around its letters.
@@ -165,13 +176,54 @@ impl Drawing {
     }
 }
 
-pub fn register_fonts(collection: &mut Collection) {
-    for (font, name) in
-        [(epaint_default_fonts::UBUNTU_LIGHT, FONT), (epaint_default_fonts::HACK_REGULAR, FALLBACK_FONT)]
-    {
-        let naming = FontInfoOverride { family_name: Some(name), ..FontInfoOverride::default() };
-        collection.register_fonts(Blob::new(Arc::new(font)), Some(naming));
+/// The first characters of `text`, control characters as spaces.
+fn printable(text: &str) -> String {
+    text.chars().take(MOST_CHARACTERS).map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// Adds the letters of `run` from left to right; returns the number of glyphs that the font lacks. A glyph without
+/// advance, an accent, belongs to the letter on whose origin it stands: the one before it in a line from left to right,
+/// the one after it in a line from right to left.
+fn add_letters(run: &GlyphRun<'_, ()>, letters: &mut Vec<TypesetLetter>) -> usize {
+    let font = run.run().font();
+    let Ok(tables) = FontRef::from_index(font.data.data(), font.index) else { return 0 };
+    let outlines = tables.outline_glyphs();
+    let size = Size::new(run.run().font_size());
+    let is_rtl = run.run().is_rtl();
+    let glyphs: Vec<_> = run.glyphs().collect();
+    let (mut missing, mut pen, mut next) = (0, run.offset(), 0);
+    while next < glyphs.len() {
+        let is_accent = |index: usize| glyphs.get(index).is_some_and(|glyph| glyph.advance.abs() < 1e-3);
+        // The glyphs of one letter: one with an advance, and the accents before or after it.
+        let mut end = next;
+        if is_rtl {
+            while is_accent(end) && end + 1 < glyphs.len() {
+                end += 1;
+            }
+            end += 1;
+        } else {
+            end += 1;
+            while is_accent(end) {
+                end += 1;
+            }
+        }
+        let advance: f32 = glyphs[next..end].iter().map(|glyph| glyph.advance).sum();
+        let mut outliner = Outliner { path: PathBuilder::new(), at: Vec2::ZERO };
+        let mut x = -0.5 * advance;
+        for glyph in &glyphs[next..end] {
+            missing += usize::from(glyph.id == 0);
+            outliner.at = Vec2::new(x + glyph.x, glyph.y);
+            if let Some(outline) = outlines.get(GlyphId::new(glyph.id)) {
+                // As in `draw_run`: a broken outline leaves a gap.
+                let _ = outline.draw(DrawSettings::unhinted(size, LocationRef::default()), &mut outliner);
+            }
+            x += glyph.advance;
+        }
+        letters.push(TypesetLetter { outline: outliner.path.finish(), middle: pen + 0.5 * advance, advance });
+        pen += advance;
+        next = end;
     }
+    missing
 }
 
 /// Adds the outlines of `run`, relative to its baseline; returns the number of glyphs that the font lacks.
@@ -196,12 +248,11 @@ fn draw_run(run: &GlyphRun<'_, ()>, outliner: &mut Outliner) -> usize {
 struct Outliner {
     path: PathBuilder,
     at: Vec2,
-    slant: f32,
 }
 
 impl Outliner {
     fn map(&self, x: f32, y: f32) -> Vec2 {
-        self.at + Vec2::new(x + self.slant * y, -y)
+        self.at + Vec2::new(x, -y)
     }
 }
 
@@ -236,7 +287,7 @@ mod tests {
     use super::*;
 
     fn set(text: &str) -> TypesetLine {
-        Composer::new(100, 100).line(text, TextStyle::upright(20.0, TextStyle::REGULAR))
+        Composer::new(100, 100).line(text, TextStyle::new(20.0, FontCut::Regular))
     }
 
     #[test]
@@ -282,10 +333,48 @@ mod tests {
     }
 
     #[test]
-    fn slanted_type_leans_right() {
-        let style = TextStyle { slant: 0.2, ..TextStyle::upright(20.0, 0.0) };
-        let lean = box_of(&Composer::new(100, 100).line("I", style).outline.expect("a letter"));
-        let upright = box_of(&set("I").outline.expect("a letter"));
-        assert!((lean.max.x - upright.max.x - 0.2 * 20.0 * CAP_HEIGHT).abs() < 0.01);
+    fn the_letters_of_a_line_are_the_line() {
+        for text in ["Clear Fork", "Žďa\u{301}r", "Όλυμπος 2918 m"] {
+            let mut composer = Composer::new(100, 100);
+            let style = TextStyle::new(20.0, FontCut::Italic);
+            let line = composer.line(text, style);
+            let letters = composer.letters(text, style);
+            assert!((line.advance - letters.advance).abs() < 1e-3);
+            let put = |letter: &TypesetLetter| {
+                let shift = tiny_skia::Transform::from_translate(letter.middle, 0.0);
+                Some(box_of(&letter.outline.clone()?.transform(shift)?))
+            };
+            let all = letters.letters.iter().filter_map(put).fold(PixelBox::EMPTY, PixelBox::union);
+            let whole = box_of(&line.outline.expect("letters"));
+            assert!((all.min - whole.min).length() + (all.max - whole.max).length() < 0.01, "{text}");
+        }
+    }
+
+    #[test]
+    fn figures_are_of_one_width_in_every_cut() {
+        use FontCut::{Bold, Condensed, Italic, Medium, Regular};
+        for cut in [Regular, Medium, Bold, Italic, Condensed] {
+            let width = |text: &str| {
+                let line = Composer::new(100, 100).line(text, TextStyle::new(20.0, cut));
+                assert_eq!(line.missing, 0, "{cut:?}");
+                line.advance
+            };
+            for figure in '0'..='9' {
+                // A unit of the em, as rounding leaves it.
+                assert!((width(&figure.to_string()) - width("0")).abs() < 0.021, "{cut:?} {figure}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_cuts_are_five_different_drawings_and_kern_their_letters() {
+        let width = |text: &str, cut| Composer::new(9, 9).line(text, TextStyle::new(20.0, cut)).advance;
+        let [light, medium, bold, condensed] =
+            [FontCut::Regular, FontCut::Medium, FontCut::Bold, FontCut::Condensed]
+                .map(|cut| width("Hamburg", cut));
+        assert!(condensed < light && light < medium && medium < bold, "{condensed} {light} {medium} {bold}");
+        for cut in [FontCut::Regular, FontCut::Italic, FontCut::Condensed] {
+            assert!(width("To", cut) < width("T", cut) + width("o", cut) - 1.0, "{cut:?}");
+        }
     }
 }

@@ -72,6 +72,9 @@ table! {
         crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center where it is in degrees";
         /// Coordinate system of inline points, unless a table has its own `crs`.
         points_crs: Option<Crs> = key::crs(), otherwise "the scene's";
+        /// A TTF or OTF file, or a collection (TTC): the font of characters that the built-in one lacks. That one has Latin,
+        /// Greek and Cyrillic.
+        font: Option<Stated<String>> = key::file(), otherwise "none; characters that the built-in font lacks are boxes, and reported";
         /// The ground.
         terrain: TerrainTable = key::table::<TerrainTable>(), required;
         /// How the ground looks.
@@ -211,8 +214,9 @@ table! {
         text: Stated<String> = key::filled_text(), required;
         /// The place that it names.
         at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `file`";
-        /// Instead of `at`: a vector file whose features are labeled, points where they are, lines at the middle of their
-        /// longest piece on the ground, polygons at a point inside.
+        /// Instead of `at`: a vector file whose features are labeled: points where they are; lines along their course, each
+        /// name again at a distance; polygons across their area. Where a name is too long for that, or with `height`, it
+        /// stands at the middle of the longest line, or at a point inside.
         file: Option<Stated<String>> = key::file(), otherwise "by `at`";
         /// With `file`: the layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer";

@@ -63,6 +63,8 @@ words! {
         Summit = "summit": "a summit",
         Place = "place": "a town or a farm",
         Water = "water": "a river or a lake",
+        Road = "road": "a road; its name stands along it",
+        Area = "area": "a forest, a parish, a range of hills; its name is spread across it",
         Point = "point": "anything else",
     }
 

@@ -4,6 +4,7 @@
 pub mod backdrop;
 pub mod bathymetry;
 pub mod color;
+pub mod font;
 pub mod ground;
 pub mod ground_cover;
 pub mod ground_grain;

@@ -1,12 +1,14 @@
 //! Mathematics on `glam` and `geo`: no terrain, no files.
 
 pub mod aabb;
+pub mod axis;
 pub mod convex;
 pub mod crs;
 pub mod crs_fault;
 pub mod datum_shift;
 pub mod distance_field;
 pub mod geodesic;
+pub mod join;
 pub mod leg_tree;
 pub mod morton;
 pub mod offset;
@@ -20,6 +22,7 @@ pub mod rect_tree;
 pub mod region;
 pub mod segment;
 pub mod simplify;
+pub mod smooth;
 pub mod spline;
 pub mod sun_position;
 pub mod triangle;

@@ -1,7 +1,5 @@
 //! Makes the annotations of a picture from its scene and camera.
 
-use glam::Vec2;
-
 use crate::annotate::annotation::{Annotations, PictureLabel};
 use crate::annotate::cover::SceneCover;
 use crate::annotate::legend::Legend;
@@ -9,16 +7,28 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
+use crate::scene::label_course::LabelCourse;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
 
 /// The annotations of a picture: labels with their positions on it, and furniture.
 pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Annotations {
     let furniture = scene.furniture;
+    let (mut labels, mut line_labels) = (Vec::new(), Vec::new());
+    for label in &scene.labels {
+        let at_place = project(label, camera, picture);
+        match label.course {
+            LabelCourse::Place => labels.extend(at_place),
+            _ => line_labels.extend(line_label(label, at_place, camera, picture)),
+        }
+    }
     Annotations {
-        labels: scene.labels.iter().filter_map(|label| project(label, camera, picture)).collect(),
+        labels,
+        line_labels,
+        font: scene.font.clone(),
         rim: rim_marks(scene, camera),
         title: scene.title.clone().filter(|_| furniture.title),
         subtitle: scene.subtitle.clone().filter(|_| furniture.title),
@@ -44,25 +54,9 @@ fn project(label: &SceneLabel, camera: &Camera, picture: &Rendering) -> Option<P
         anchor_px: ground.pixel,
         top_px: (label.anchor != label.ground).then_some(top.pixel),
         depth_m: ground.depth_m,
-        visible: is_visible(picture, ground.pixel, ground.depth_m)
-            || is_visible(picture, top.pixel, top.depth_m),
+        visible: is_seen(picture, ground.pixel, ground.depth_m) || is_seen(picture, top.pixel, top.depth_m),
         kind: label.kind,
         rank: label.rank,
-    })
-}
-
-/// Whether a place is in front of, or within 2 % of, the depth of one of the pixels around it. The drawn ground may be
-/// off by its tolerance, and the pixel of a summit may show the ground behind it.
-fn is_visible(picture: &Rendering, pixel: Vec2, depth_m: f32) -> bool {
-    let (width, height) = (i64::from(picture.pixels.width()), i64::from(picture.pixels.height()));
-    // A place near the plane of the eye may project beyond the range of an i32.
-    let (column, row) = (i64::from(pixel.x.floor() as i32), i64::from(pixel.y.floor() as i32));
-    (-2..=1).any(|up| {
-        (-1..=1).any(|aside| {
-            let (x, y) = (column + aside, row + up);
-            let inside = (0..width).contains(&x) && (0..height).contains(&y);
-            inside && picture.depth_m[(y * width + x) as usize] >= depth_m * 0.98
-        })
     })
 }
 

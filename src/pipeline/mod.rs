@@ -22,6 +22,7 @@ pub mod files;
 pub mod gridding;
 pub mod ground;
 pub mod labels;
+mod line_labels;
 pub mod lod;
 pub mod model_file;
 pub mod new_scene;

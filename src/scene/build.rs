@@ -23,6 +23,7 @@ use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::fences::{self, FenceLine};
+use crate::scene::font;
 use crate::scene::graphics;
 use crate::scene::ground;
 use crate::scene::imagery;
@@ -132,6 +133,7 @@ pub fn build(
         placements: placed.placements,
         labels,
         cameras,
+        font: font::load(document, assets)?,
         furniture: document.furniture,
         features: collected.features,
         notes: collected.notes,

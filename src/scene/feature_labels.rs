@@ -3,7 +3,7 @@
 //! Features are taken in the order of their rank, and no more is done for a feature than its rank and its size until
 //! it is its turn, so that of a large file the few that count are placed and written.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use glam::{DVec2, Vec3};
 
@@ -16,6 +16,7 @@ use crate::geom::polygon::{doubled_area, inner_point};
 use crate::geom::polyline::Polyline;
 use crate::scene::SceneLabel;
 use crate::scene::attributes::Attributes;
+use crate::scene::label_course::{LabelCourse, across, along};
 use crate::scene::near::MERGE_M;
 use crate::scene::sources::Sources;
 use crate::scene::views::whole_meters;
@@ -45,23 +46,33 @@ pub fn labels(
         features.into_iter().map(|attributes| RankedFeature::new(table, attributes)).collect();
     // Stable: the file's order decides in the end.
     features.sort_by(|a, b| a.rank.total_cmp(&b.rank).then(b.size.total_cmp(&a.size)));
-    let (most, count) = (table.most as usize, features.len());
-    let (mut labels, mut left_out, mut lines) = (Vec::new(), LeftOut::default(), BTreeSet::new());
-    for (index, RankedFeature { attributes, rank, .. }) in features.into_iter().enumerate() {
-        if labels.len() == most {
-            left_out.beyond = count - index;
-            break;
+    let most = table.most as usize;
+    let (mut named, mut left_out, mut lines) = (Vec::new(), LeftOut::default(), BTreeMap::new());
+    for RankedFeature { attributes, rank, .. } in features {
+        let is_line = matches!(attributes.geometry(), Some(Geometry::Lines(_)));
+        if named.len() == most && (!is_line || lines.is_empty()) {
+            left_out.beyond += 1;
+            continue;
         }
         let Some(text) = attributes.evaluated(&text).and_then(|text| written(&text)) else {
             left_out.nameless += 1;
             continue;
         };
-        // The pieces that a river or a road consists of in a file carry its name once, on the longest.
-        let is_line = matches!(attributes.geometry(), Some(Geometry::Lines(_)));
-        if is_line && lines.contains(&text) {
+        let Some(shape) = attributes.geometry() else {
+            left_out.off += 1;
+            continue;
+        };
+        // The pieces that a river or a road consists of in a file carry its name together.
+        if let Some(&label) = lines.get(&text).filter(|_| is_line) {
+            let NamedFeature { lines, .. }: &mut NamedFeature = &mut named[label];
+            lines.extend(world_lines(shape, &crs, frame));
             continue;
         }
-        let Some(ground) = attributes.geometry().and_then(|shape| place(shape, &crs, frame, lattice)) else {
+        if named.len() == most {
+            left_out.beyond += 1;
+            continue;
+        }
+        let Some(ground) = place(shape, &crs, frame, lattice) else {
             left_out.off += 1;
             continue;
         };
@@ -70,14 +81,43 @@ pub fn labels(
             left_out.nameless += 1;
             continue;
         };
+        let course = match shape {
+            Geometry::Polygons(polygons) if follows(table) => {
+                across(&world_polygons(polygons, &crs, frame), frame, lattice)
+            }
+            _ => LabelCourse::Place,
+        };
+        let pieces = if is_line && follows(table) { world_lines(shape, &crs, frame) } else { Vec::new() };
         if is_line {
-            lines.insert(text);
+            lines.insert(text, named.len());
         }
         let anchor = ground + Vec3::Z * table.height as f32;
-        labels.push(SceneLabel { text: filled, ground, anchor, kind: table.kind, rank });
+        let label = SceneLabel { text: filled, ground, anchor, course, kind: table.kind, rank };
+        named.push(NamedFeature { label, lines: pieces });
     }
+    let labels = named.into_iter().map(|named| named.with_course(frame, lattice)).collect();
     notes.extend(left_out.note(source.file.as_ref().map_or("", |file| file.as_str()), most));
     Ok(labels)
+}
+
+/// Whether names follow their features; those wished above them on a leader line do not.
+fn follows(table: &LabelTable) -> bool {
+    table.height == 0.0
+}
+
+/// A label with the lines along which it may stand.
+struct NamedFeature {
+    label: SceneLabel,
+    /// In world coordinates.
+    lines: Vec<Vec<DVec2>>,
+}
+
+impl NamedFeature {
+    fn with_course(self, frame: &WorldFrame<'_>, lattice: &Lattice) -> SceneLabel {
+        let course =
+            if self.lines.is_empty() { self.label.course } else { along(self.lines, frame, lattice) };
+        SceneLabel { course, ..self.label }
+    }
 }
 
 /// The rank of a feature in `table`; infinite where an expression gives none.
@@ -173,9 +213,7 @@ fn next_brace(text: &str) -> Option<(&str, &str, &str)> {
 /// The place on the ground that names a shape of the system `crs`; `None` where nothing of it lies on ground with data.
 fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
     let extent = lattice.extent();
-    let world = |points: &[DVec2]| -> Option<Vec<DVec2>> {
-        points.iter().map(|&at| frame.world(crs, at).ok().filter(|at| at.is_finite())).collect()
-    };
+    let world = |points: &[DVec2]| world_points(points, crs, frame);
     let longest = |best: (DVec2, f64), next: (DVec2, f64)| if next.1 > best.1 { next } else { best };
     let on_ground = |at: DVec2| frame.ground_at(lattice, at);
     match shape {
@@ -197,4 +235,22 @@ fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice)
             polygons.iter().filter_map(inside).reduce(longest).and_then(|(at, _)| on_ground(at))
         }
     }
+}
+
+/// Points of the system `crs` in world coordinates; `None` where one has none.
+fn world_points(points: &[DVec2], crs: &Crs, frame: &WorldFrame<'_>) -> Option<Vec<DVec2>> {
+    points.iter().map(|&at| frame.world(crs, at).ok().filter(|at| at.is_finite())).collect()
+}
+
+fn world_lines(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>) -> Vec<Vec<DVec2>> {
+    match shape {
+        Geometry::Lines(lines) => lines.iter().filter_map(|line| world_points(line, crs, frame)).collect(),
+        Geometry::Points(_) | Geometry::Polygons(_) => Vec::new(),
+    }
+}
+
+/// The outer rings; holes do not matter to a name.
+fn world_polygons(polygons: &[Polygon], crs: &Crs, frame: &WorldFrame<'_>) -> Vec<Polygon> {
+    let outer = |polygon: &Polygon| world_points(&polygon.exterior, crs, frame);
+    polygons.iter().filter_map(outer).map(|exterior| Polygon { exterior, holes: Vec::new() }).collect()
 }

@@ -16,11 +16,13 @@ pub mod buildings;
 mod facade;
 pub mod feature_labels;
 pub mod fences;
+mod font;
 pub mod footprint;
 pub mod graphics;
 pub mod ground;
 pub mod ground_map;
 pub mod imagery;
+pub mod label_course;
 pub mod land_cover;
 pub mod models;
 pub mod near;
@@ -50,6 +52,7 @@ use glam::{Vec2, Vec3};
 use crate::description::document::FurnitureTable;
 use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
 use crate::draw::color::Srgba;
+use crate::draw::font::FontFile;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
@@ -64,6 +67,7 @@ use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
+use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
@@ -137,6 +141,8 @@ pub struct SceneModel {
     pub labels: Vec<SceneLabel>,
     /// Views; at least one.
     pub cameras: Vec<SceneView>,
+    /// The font for characters that the embedded fonts lack.
+    pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
     /// Every feature, in the order of ids from 2 up.
@@ -310,6 +316,8 @@ pub struct SceneLabel {
     pub ground: Vec3,
     /// Where the leader line starts, at or above the ground.
     pub anchor: Vec3,
+    /// What it follows on the ground.
+    pub course: LabelCourse,
     /// The kind of thing that it names.
     pub kind: LabelKind,
     /// The lower, the more important; never NaN.

@@ -11,6 +11,7 @@ use crate::description::words::CameraProjection;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels;
+use crate::scene::label_course::LabelCourse;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
@@ -50,6 +51,7 @@ fn label(
         text: table.text.replace("{height}", &elevation),
         ground,
         anchor: ground + Vec3::Z * table.height as f32,
+        course: LabelCourse::Place,
         kind: table.kind,
         rank: feature_labels::rank(table, &Attributes::default()),
     })

@@ -123,6 +123,7 @@ fn sheet(width: u32, height: u32) -> Annotations {
         }),
         credit: Some("Elevation: USGS 3D Elevation Program".to_owned()),
         cover: None,
+        ..Annotations::default()
     }
 }
 
@@ -168,6 +169,7 @@ fn trouble(width: u32, height: u32) -> Annotations {
         }),
         credit: Some("Elevation: nobody knows; ".repeat(20)),
         cover: None,
+        ..Annotations::default()
     }
 }
 
