@@ -22,6 +22,7 @@ mod composer;
 pub mod cover;
 mod credit;
 mod drawing;
+mod fixed_text;
 mod fonts;
 mod label_style;
 mod labels;

@@ -7,6 +7,7 @@ use crate::annotate::canvas::paint;
 use crate::annotate::composer::Composer;
 use crate::annotate::cover::SceneCover;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::fixed_text::draw_fixed;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
@@ -29,9 +30,10 @@ pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationRep
     boxes.extend(marks.iter().map(Drawing::bounds));
     let mut report = AnnotationReport::default();
     furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
+    let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, &mut composer, &mut report);
     let labels =
         draw_labels(&annotations.labels, &annotations.line_labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.pieces().chain(&marks).chain([&labels]));
+    paint(pixels, furniture.pieces().chain(&marks).chain([&fixed, &labels]));
     report.left_out = furniture.left_out;
     report
 }

@@ -7,15 +7,22 @@ use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::graphic_texts::{GraphicTexts, graphic_texts};
 use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::label_course::LabelCourse;
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
 
 /// The annotations of a picture: labels with their positions on it, and furniture.
-pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Annotations {
+pub fn annotations(
+    scene: &SceneModel,
+    camera: &Camera,
+    picture: &Rendering,
+    graphics: &[PlacedText],
+) -> Annotations {
     let furniture = scene.furniture;
     let (mut labels, mut line_labels) = (Vec::new(), Vec::new());
     for label in &scene.labels {
@@ -25,9 +32,12 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
             _ => line_labels.extend(line_label(label, at_place, camera, picture)),
         }
     }
+    let GraphicTexts { fixed, along } = graphic_texts(graphics, camera, picture);
+    line_labels.extend(along);
     Annotations {
         labels,
         line_labels,
+        fixed_texts: fixed,
         font: scene.font.clone(),
         rim: rim_marks(scene, camera),
         title: scene.title.clone().filter(|_| furniture.title),

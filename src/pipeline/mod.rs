@@ -19,6 +19,7 @@ pub mod dem;
 pub mod error;
 pub mod export;
 pub mod files;
+pub mod graphic_texts;
 pub mod gridding;
 pub mod ground;
 pub mod labels;

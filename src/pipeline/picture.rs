@@ -95,7 +95,7 @@ pub fn draw_view(
 pub fn annotate_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> RenderedView {
     progress("annotating");
     let DrawnView { camera, mut picture, drawn } = view;
-    let annotations = labels::annotations(scene, &camera, &picture);
+    let annotations = labels::annotations(scene, &camera, &picture, &drawn.graphic_texts);
     let annotations = annotate(&mut picture.pixels, &annotations);
     RenderedView { pixels: picture.pixels, drawn, annotations }
 }

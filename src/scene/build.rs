@@ -30,6 +30,7 @@ use crate::scene::imagery;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
+use crate::scene::sight_layers;
 use crate::scene::sources::Sources;
 use crate::scene::style::{self, RampSource};
 use crate::scene::sunlight::Sunlight;
@@ -90,6 +91,7 @@ pub fn build(
     collected.notes.extend(defaulted);
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
+    let sight = sight_layers::lay(&frame, &lattice, &mut collected)?;
 
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
@@ -126,6 +128,7 @@ pub fn build(
         ribbons: collected.ribbons,
         symbols: collected.symbols,
         graphics: collected.graphics,
+        sight,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),

@@ -33,6 +33,7 @@ pub mod ramps;
 pub mod report;
 pub mod roads;
 pub mod scatter;
+pub mod sight_layers;
 pub mod sources;
 pub mod style;
 pub mod sunlight;
@@ -72,6 +73,7 @@ use crate::scene::land_cover::CoverLines;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::sight_layers::SightLayers;
 use crate::scene::style::RampSource;
 use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
@@ -127,6 +129,8 @@ pub struct SceneModel {
     pub symbols: Vec<LineSymbol>,
     /// Tactical graphics, in drawing order.
     pub graphics: Vec<SceneGraphic>,
+    /// Viewsheds, lines of sight and ranges.
+    pub sight: SightLayers,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
     /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
@@ -190,10 +194,12 @@ pub enum FeatureKind {
     Scattered,
     /// A tactical graphic.
     Graphic,
+    /// A viewshed, lines of sight or a range.
+    Sight,
 }
 
 /// The noun of each kind for one feature and for several, in the order of summaries.
-const FEATURE_NOUNS: [(FeatureKind, &str, &str); 11] = [
+const FEATURE_NOUNS: [(FeatureKind, &str, &str); 12] = [
     (FeatureKind::Lake, "lake", "lakes"),
     (FeatureKind::River, "river", "rivers"),
     (FeatureKind::Road, "road", "roads"),
@@ -205,6 +211,7 @@ const FEATURE_NOUNS: [(FeatureKind, &str, &str); 11] = [
     (FeatureKind::Model, "model", "models"),
     (FeatureKind::Scattered, "scatter of models", "scatters of models"),
     (FeatureKind::Graphic, "tactical graphic", "tactical graphics"),
+    (FeatureKind::Sight, "layer of sight", "layers of sight"),
 ];
 
 impl FeatureKind {

@@ -89,8 +89,12 @@ fn length_m(line: &[DVec2]) -> f64 {
 
 /// The greatest distance of a place on `from` from the lines `to`; places near `ignored` do not count.
 fn farthest_m(from: &[Vec<DVec2>], to: &[Vec<DVec2>], ignored: &[DVec2]) -> f64 {
-    let legs: Vec<(DVec2, DVec2)> =
-        to.iter().flat_map(|line| line.windows(2)).filter(|leg| leg[0] != leg[1]).map(|leg| (leg[0], leg[1])).collect();
+    let legs: Vec<(DVec2, DVec2)> = to
+        .iter()
+        .flat_map(|line| line.windows(2))
+        .filter(|leg| leg[0] != leg[1])
+        .map(|leg| (leg[0], leg[1]))
+        .collect();
     let mut farthest: f64 = 0.0;
     for leg in from.iter().flat_map(|line| line.windows(2)) {
         let steps = (leg[0].distance(leg[1]) / STEP_M).ceil().max(1.0);
@@ -99,7 +103,8 @@ fn farthest_m(from: &[Vec<DVec2>], to: &[Vec<DVec2>], ignored: &[DVec2]) -> f64 
             if ignored.iter().any(|gap| gap.distance(at) < EM_M) {
                 continue;
             }
-            let square = legs.iter().map(|&leg| segment::distance_squared(leg, at)).fold(f64::INFINITY, f64::min);
+            let square =
+                legs.iter().map(|&leg| segment::distance_squared(leg, at)).fold(f64::INFINITY, f64::min);
             farthest = farthest.max(square.sqrt());
         }
     }
@@ -153,8 +158,7 @@ fn lines_without_teeth_lie_within_two_percent_of_the_graphic_of_another_renderer
         let gaps: Vec<DVec2> = drawing.texts.iter().map(|text| text.at).collect();
         // The length of a graphic is that of its lines in the other renderer.
         let length_m: f64 = recorded.lines.iter().map(|line| length_m(line)).sum();
-        let off_m =
-            farthest_m(&ours, &recorded.lines, &[]).max(farthest_m(&recorded.lines, &ours, &gaps));
+        let off_m = farthest_m(&ours, &recorded.lines, &[]).max(farthest_m(&recorded.lines, &ours, &gaps));
         let share = off_m / length_m;
         compared += 1;
         if share > worst.0 {
@@ -174,7 +178,9 @@ fn lines_without_teeth_lie_within_two_percent_of_the_graphic_of_another_renderer
 fn lines_with_teeth_have_as_many_as_those_of_another_renderer_but_one() {
     let mut wrong = Vec::new();
     for recorded in recorded() {
-        let Some(&(word, how)) = TOOTHED.iter().find(|(word, _)| *word == recorded.kind.word) else { continue };
+        let Some(&(word, how)) = TOOTHED.iter().find(|(word, _)| *word == recorded.kind.word) else {
+            continue;
+        };
         let ours = teeth(&strokes(&drawn(&recorded)), &recorded, how);
         let theirs = teeth(&recorded.lines, &recorded, how);
         println!("{word:32} {ours} teeth, {theirs} in the table");
