@@ -15,6 +15,12 @@ pub enum FurnitureKind {
     Legend,
     /// The credit line.
     Credit,
+    /// The legend of classes.
+    Classes,
+    /// The diagram of the three norths.
+    Norths,
+    /// The whole model in plan.
+    Locator,
 }
 
 /// The labels and pieces of furniture that were drawn, and the others by reason. Texts are as given, in the order of

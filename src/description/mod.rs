@@ -15,6 +15,7 @@ pub mod graphics;
 pub mod include;
 mod key;
 pub mod parse;
+pub mod phases;
 mod reader;
 pub mod scalar;
 pub mod schema;

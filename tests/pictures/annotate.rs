@@ -105,6 +105,9 @@ fn sheet(width: u32, height: u32) -> Annotations {
     ];
     let stops = stops.map(|(at, [r, g, b])| (at, Srgba::opaque(r, g, b))).to_vec();
     Annotations {
+        grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels: labels(w, h),
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
@@ -153,6 +156,9 @@ fn trouble(width: u32, height: u32) -> Annotations {
     labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
     labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
+        grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),

@@ -1,4 +1,4 @@
-//! Colors of tactical graphics.
+//! Colors of tactical graphics and of layers of sight.
 
 use crate::description::words::GraphicSide;
 use crate::draw::color::Srgba;
@@ -6,6 +6,16 @@ use crate::symbology::graphic::kind::GraphicTint;
 
 /// Obstacles, whoever made them.
 const OBSTACLE: Srgba = Srgba::opaque(0, 104, 40);
+
+/// Tints of seen and of hidden ground. Relief shows through both.
+pub const SEEN: Srgba = Srgba([60, 200, 70, 96]);
+/// See [`SEEN`].
+pub const HIDDEN: Srgba = Srgba([24, 20, 52, 132]);
+
+/// Lines of sight over seen and over hidden ground.
+pub const SEEN_LINE: Srgba = Srgba::opaque(0, 130, 40);
+/// See [`SEEN_LINE`].
+pub const HIDDEN_LINE: Srgba = Srgba::opaque(200, 16, 24);
 
 /// The color of a graphic's lines: dark enough to be read on the lightest ground, light enough to be told from black.
 pub fn graphic_color(side: GraphicSide, tint: GraphicTint) -> Srgba {

@@ -30,6 +30,7 @@ use std::sync::Arc;
 use glam::Mat4;
 
 use crate::description::words::TableTop;
+use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::geom::aabb::Aabb;
@@ -73,10 +74,16 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
     let displayed = Arc::new(display(scene, camera));
-    let mut graphic_texts = Vec::new();
-    let (list, ground_triangles) =
-        listed(scene, &displayed, Viewer::Camera(camera), &mut graphic_texts, progress);
+    let ListedScene { list, ground_triangles, graphic_texts } =
+        listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Picture, progress);
     ViewDraw { list, displayed, ground_triangles, graphic_texts }
+}
+
+/// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
+pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
@@ -86,7 +93,24 @@ pub fn draw_list(
     displayed: &DisplayedTerrain,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    listed(scene, displayed, Viewer::Anyone, &mut Vec::new(), progress)
+    let listed = listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress);
+    (listed.list, listed.ground_triangles)
+}
+
+/// A draw list with what else a picture needs.
+struct ListedScene {
+    list: DrawList,
+    ground_triangles: usize,
+    graphic_texts: Vec<PlacedText>,
+}
+
+/// What a draw list is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ListPurpose {
+    /// To be seen.
+    Picture,
+    /// To be measured: nobody asks how the ground is lit.
+    Shapes,
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -102,16 +126,19 @@ fn listed(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,
     viewer: Viewer<'_>,
-    graphic_texts: &mut Vec<PlacedText>,
+    purpose: ListPurpose,
     progress: &dyn Fn(&'static str),
-) -> (DrawList, usize) {
+) -> ListedScene {
     let camera = match viewer {
         Viewer::Camera(camera) => Some(camera),
         Viewer::Anyone => None,
     };
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
-    let map = scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain"));
+    let map = match purpose {
+        ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
+        ListPurpose::Shapes => Arc::new(GroundMap::level()),
+    };
     let lighting = Lighting { to_sun, ..Lighting::default() };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
@@ -125,9 +152,7 @@ fn listed(
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
-    if let Some(camera) = camera {
-        graphic_texts.extend(overlay::add(&mut list, scene, camera, displayed, progress));
-    }
+    let graphic_texts = camera.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
     if setting.is_some_and(|setting| has_table(scene, setting)) {
@@ -139,7 +164,7 @@ fn listed(
     }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
-    (list, ground_triangles)
+    ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
 }
 
 /// The ground as `camera` shows it, off by at most the scene's own tolerance.

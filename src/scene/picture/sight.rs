@@ -18,7 +18,7 @@ use crate::ribbon::drape::drape;
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
 use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
-use crate::scene::picture::graphic_colors::side_color;
+use crate::scene::picture::graphic_colors::{self, HIDDEN, SEEN, side_color};
 use crate::scene::picture::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
 use crate::scene::picture::placed_text::{PlacedCourse, PlacedText};
 use crate::scene::sight_layers::{SceneRange, SceneSight, SceneViewshed};
@@ -34,13 +34,9 @@ use crate::terrain::triangle_surface::TriangleSurface;
 /// Tints lie under lines.
 const TINT_LAYER: u8 = LAYER - 1;
 
-/// Seen and hidden ground. Relief shows through both.
-const SEEN: Srgba = Srgba([60, 200, 70, 96]);
-const HIDDEN: Srgba = Srgba([24, 20, 52, 132]);
-
 /// Lines of sight to seen and to hidden ground.
-const SEEN_LINE: LineLook = LineLook { color: Srgba::opaque(0, 130, 40), is_dashed: false };
-const HIDDEN_LINE: LineLook = LineLook { color: Srgba::opaque(200, 16, 24), is_dashed: false };
+const SEEN_LINE: LineLook = LineLook { color: graphic_colors::SEEN_LINE, is_dashed: false };
+const HIDDEN_LINE: LineLook = LineLook { color: graphic_colors::HIDDEN_LINE, is_dashed: false };
 
 /// The marks of observers.
 const OBSERVER_LINE: LineLook = LineLook { color: Srgba::opaque(10, 10, 10), is_dashed: false };
