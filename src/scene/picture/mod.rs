@@ -1,5 +1,6 @@
 //! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
+mod airspace;
 mod detail;
 mod drapes;
 mod fit;
@@ -164,6 +165,9 @@ fn listed(
     }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
+    if camera.is_some() {
+        airspace::add(&mut list, scene);
+    }
     ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
 }
 
