@@ -47,7 +47,6 @@ pub fn range_rings(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Grap
         drawing.ring(circle(center, radius_m));
         drawing.text(range_text(input, index, radius_m), center + up * radius_m);
     }
-    cross(center, input, drawing);
 }
 
 /// A sector of range (ARC1): for each pair of azimuths an arc at its distance, and an arrow along the middle.
@@ -95,13 +94,6 @@ fn range_text(input: &GraphicInput<'_>, index: usize, radius_m: f64) -> String {
         Some(height) => format!("{distance}\n{height}"),
         None => distance,
     }
-}
-
-/// The cross of a place.
-fn cross(at: DVec2, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    let arm = 0.5 * input.em_m;
-    drawing.line([at - DVec2::X * arm, at + DVec2::X * arm]);
-    drawing.line([at - DVec2::Y * arm, at + DVec2::Y * arm]);
 }
 
 /// The principal direction of fire (LINE3): a vertex and two tips, the first the principal one.

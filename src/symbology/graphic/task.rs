@@ -121,10 +121,10 @@ pub fn delay(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     lettered(&[turn, tip], 0.5, kind, input, drawing);
     let toward = direction(turn, tip);
     drawing.line(arrowhead(tip, toward, 1.5 * input.em_m, 1.2 * input.em_m));
-    let center = turn.midpoint(end);
-    // The half circle is on the side away from the tip.
-    let way = (end - turn).perp_dot(toward).signum();
-    drawing.line(arc(center, turn - center, way * PI));
+    // The half circle goes on where the line ends, toward the side of point 3.
+    let way = if toward.perp_dot(end - turn) > 0.0 { 1.0 } else { -1.0 };
+    let radius = toward.perp() * (way * turn.distance(end) / 2.0);
+    drawing.line(arc(turn + radius, -radius, -way * PI));
     let below = (turn - tip).perp().normalize_or_zero() * way;
     drawing.text_beside(input.fields.times(), turn.lerp(tip, 0.3) + below * input.em_m, below);
 }
@@ -152,19 +152,17 @@ pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut G
         _ => head(end, toward, input, drawing),
     }
     if matches!(kind.code, "341500" | "151205") {
-        /// Teeth round the circle, and how far they reach.
-        const TEETH: u32 = 7;
-        const REACH: f64 = 0.28;
-        for tooth in 0..TEETH {
-            let at = |part: f64| {
-                let angle = (open - 2.0 * PI) * (f64::from(tooth) + 0.5 + part) / f64::from(TEETH);
-                turned(radius, angle)
-            };
-            if kind.code == "341500" {
-                let apex = center + at(0.0) * (1.0 - REACH);
-                drawing.line([center + at(-0.25), apex, center + at(0.25)]);
-            } else {
-                drawing.line([center + at(0.0), center + at(0.0) * (1.0 + REACH)]);
+        /// The parts of the circle: of isolate every third has a tooth inward, of retain each a tick outward.
+        const PARTS: u32 = 25;
+        const TOOTH: f64 = 0.2;
+        let at = |part: u32| turned(radius, (open - 2.0 * PI) * f64::from(part) / f64::from(PARTS));
+        for part in 1..PARTS - 1 {
+            if kind.code == "341500" && part % 3 == 0 {
+                let apex = center + at(part) * (1.0 - TOOTH);
+                drawing.line([center + at(part - 1), apex, center + at(part + 1)]);
+            } else if kind.code == "151205" {
+                let tick = at(part).normalize_or_zero() * (BARB_EM * input.em_m);
+                drawing.line([center + at(part), center + at(part) + tick]);
             }
         }
     }
@@ -176,7 +174,7 @@ pub fn screen(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphi
     let center = input.points[0];
     let tips = [input.points[1], input.points[2]];
     /// The gap at the center, and half of the jag, in text heights.
-    const GAP_EM: f64 = 1.2;
+    const GAP_EM: f64 = 2.5;
     const JAG_EM: f64 = 0.88;
     let away = center - tips[0].midpoint(tips[1]);
     for tip in tips {
@@ -188,7 +186,7 @@ pub fn screen(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphi
         let jag = |way: f64| middle + (along * way + side * way) * jag_m;
         drawing.line([center + along * gap_m, jag(1.0), jag(-1.0), tip]);
         head(tip, along, input, drawing);
-        drawing.text(kind.label, center + along * (gap_m - 0.55 * input.em_m));
+        drawing.text(kind.label, center + along * (gap_m - 0.75 * input.em_m));
     }
 }
 
@@ -205,7 +203,8 @@ pub fn seize(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graphic
     drawing.ring(circle(center, radius_m));
     let from = center + turned(toward, way * LEAVES_RAD) * radius_m;
     let curve = bulge(from, tip, way * SAGITTA);
-    head(tip, direction(curve[curve.len() - 2], tip), input, drawing);
+    let barb = 0.5 * radius_m;
+    drawing.line(arrowhead(tip, direction(curve[curve.len() - 2], tip), barb, barb));
     lettered(&curve, 0.5, kind, input, drawing);
 }
 
@@ -284,8 +283,8 @@ pub fn contain(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Graph
     // The half circle is on the side away from point 3.
     let way = if (b - a).perp_dot(rear - a) > 0.0 { 1.0 } else { -1.0 };
     drawing.line(arc(center, a - center, way * PI));
-    for tooth in 0..5 {
-        let radius = turned(a - center, way * FRAC_PI_4 * f64::from(tooth));
+    for tooth in 0..9 {
+        let radius = turned(a - center, way * PI * f64::from(tooth) / 8.0);
         drawing.line([center + radius, center + radius / 2.0]);
     }
     lettered(&[rear, center], 0.5, kind, input, drawing);

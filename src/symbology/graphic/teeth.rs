@@ -18,9 +18,7 @@ use crate::symbology::graphic::plane::{bulge, circle, closed};
 const MOST_TEETH: f64 = 2000.0;
 
 /// From tooth to tooth, of arcs, squares and triangles, in text heights.
-const PITCH_EM: f64 = 1.667;
-/// Of obstacle lines, which have a flat stretch after each tooth.
-const OBSTACLE_PITCH_EM: f64 = 1.75;
+const PITCH_EM: f64 = 1.72;
 /// Of ditches.
 const DITCH_PITCH_EM: f64 = 1.0;
 
@@ -132,7 +130,7 @@ pub fn obstacle(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Grap
     let Some(line) = base_line(kind, input) else { return };
     let side = if kind.code == "270300" { -1.0 } else { 1.0 };
     let mut outline = vec![line.at(0.0)];
-    for base in bases(&line, OBSTACLE_PITCH_EM * input.em_m) {
+    for base in bases(&line, PITCH_EM * input.em_m) {
         outline.extend(base.between(0.0, 0.5));
         outline.push(base.at(0.75) + base.left() * side * TOOTH_EM * input.em_m);
         outline.extend([base.at(1.0)]);

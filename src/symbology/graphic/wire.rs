@@ -24,23 +24,27 @@ const LOOP_SIDES: u32 = 16;
 pub fn wire(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let Some(line) = Polyline::new(input.points.iter().copied(), 0.0) else { return };
     let em_m = input.em_m;
-    // Lines beside the first point's line, by text heights, and marks out of three that are there.
-    let (lines, marks, is_loop): (&[f64], &[u32], bool) = match kind.code {
-        "290301" => (&[], &[0, 1, 2, 3], false),
-        "290302" => (&[0.0], &[1], false),
-        "290303" => (&[0.0], &[1, 2], false),
-        "290304" => (&[0.0], &[0, 1, 2, 3], false),
-        "290305" => (&[-0.62], &[0, 1, 2, 3], false),
-        "290306" => (&[-0.62, 0.62], &[0, 1, 2, 3], false),
-        "290307" => (&[0.0], &[0, 1, 2, 3], true),
-        "290308" => (&[-0.31, 0.31], &[0, 1, 2, 3], true),
-        "290309" => (&[-0.5, 0.0, 0.5], &[0, 1, 2, 3], true),
-        _ => (&[0.0], &[0, 1, 2, 3], false),
+    // The lines along it, in text heights beside it; and its marks, by their places in a period of so many pitches.
+    const EVERY: (f64, &[f64]) = (1.0, &[0.5]);
+    let (lines, (period, marks), is_loop): (&[f64], (f64, &[f64]), bool) = match kind.code {
+        "290301" => (&[], EVERY, false),
+        "290302" => (&[0.0], (3.5, &[0.5]), false),
+        "290303" => (&[0.0], (5.0, &[0.5, 1.5]), false),
+        "290305" => (&[-0.62], EVERY, false),
+        "290306" => (&[-0.62, 0.62], EVERY, false),
+        "290307" => (&[0.0], EVERY, true),
+        "290308" => (&[-0.31, 0.31], EVERY, true),
+        "290309" => (&[-0.5, 0.0, 0.5], EVERY, true),
+        _ => (&[0.0], EVERY, false),
     };
     lines.iter().for_each(|&aside| drawing.line(offset(line.points(), aside * em_m)));
-    let count = (line.length() / (PITCH_EM * em_m)).floor().clamp(1.0, MOST_MARKS);
-    for number in (0..count as u32).filter(|number| marks.contains(&(number % 4))) {
-        let station = line.length() * (f64::from(number) + 0.5) / count;
+    let period_m = period * PITCH_EM * em_m;
+    let count = (line.length() / period_m).floor().clamp(1.0, MOST_MARKS);
+    let pitch_m = line.length() / (count * period);
+    let numbers = 0..count as u32;
+    let stations = numbers
+        .flat_map(|number| marks.iter().map(move |mark| (f64::from(number) * period + mark) * pitch_m));
+    for station in stations {
         let (at, half) = (line.at(station), 0.25 * em_m);
         let along = (line.at(station + half) - line.at(station - half)).normalize_or_zero();
         if is_loop {
