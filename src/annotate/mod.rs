@@ -26,6 +26,7 @@ pub mod cover;
 mod credit;
 mod drawing;
 pub mod figure;
+mod fixed_text;
 mod fonts;
 pub mod grid;
 mod halo;

@@ -7,6 +7,7 @@ use crate::annotate::canvas::paint;
 use crate::annotate::composer::Composer;
 use crate::annotate::cover::SceneCover;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::fixed_text::draw_fixed;
 use crate::annotate::grid::FigurePlace;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
@@ -109,11 +110,18 @@ fn on_picture(
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
     let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
+    let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, composer, report);
     let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
     report.add_texts(&symbols.drawing.texts);
     boxes.extend(&symbols.boxes);
     let labels = draw_labels(annotations, picture, &boxes, composer, report);
-    lines.into_iter().chain(furniture).chain(marks).chain(figures).chain([symbols.drawing, labels]).collect()
+    lines
+        .into_iter()
+        .chain(furniture)
+        .chain(marks)
+        .chain(figures)
+        .chain([fixed, symbols.drawing, labels])
+        .collect()
 }
 
 /// Copies a picture onto a page, as far as it lies on it.

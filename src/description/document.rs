@@ -44,6 +44,7 @@ use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
     RoadTable, ScatterTable,
 };
+use crate::description::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::description::key;
 use crate::description::reader::TableReader;
 use crate::description::selection::Selection;
@@ -102,6 +103,14 @@ table! {
         models as "model": Vec<ModelPlacement> = key::styled_tables::<ModelPlacement>(), default [];
         /// Models strewn over areas.
         scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
+        /// Tactical graphics, laid over everything else on the ground.
+        graphics as "graphic": Vec<GraphicTable> = key::styled_tables::<GraphicTable>(), default [];
+        /// What observers see, as a tint of the ground.
+        viewsheds as "viewshed": Vec<ViewshedTable> = key::styled_tables::<ViewshedTable>(), default [];
+        /// Lines of sight.
+        sights as "sight": Vec<SightTable> = key::styled_tables::<SightTable>(), default [];
+        /// Rings and fans of range.
+        ranges as "range": Vec<RangeTable> = key::styled_tables::<RangeTable>(), default [];
         /// Names and heights on the picture.
         labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
         /// What the scene shows one after the other: one picture each.

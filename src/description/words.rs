@@ -232,4 +232,32 @@ words! {
         Plinth = "plinth": "a block down to the ground",
         Pad = "pad": "the ground is leveled",
     }
+
+    /// Whose a tactical graphic is.
+    enum GraphicSide {
+        Friend = "friend": "one's own, in blue",
+        Hostile = "hostile": "the enemy's, in red",
+        Neutral = "neutral": "a third side's, in green",
+        Unknown = "unknown": "nobody knows, in yellow",
+    }
+
+    /// Whether a tactical graphic is there.
+    enum GraphicStatus {
+        Present = "present": "there, in solid lines",
+        Planned = "planned": "planned, anticipated or suspected, in dashes",
+    }
+
+    /// Which ground a viewshed tints.
+    enum ViewshedTint {
+        Both = "both": "seen ground green, hidden ground dark",
+        Seen = "seen": "seen ground alone, green",
+        Hidden = "hidden": "hidden ground alone, dark",
+    }
+
+    /// Which ground within a range is filled.
+    enum RangeExtent {
+        None = "none": "none",
+        All = "all": "all of it",
+        Seen = "seen": "what is in sight",
+    }
 }

@@ -140,6 +140,7 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
                 false => ShownClass::OtherModels,
             },
             FeatureKind::Scattered => ShownClass::Trees,
+            FeatureKind::Graphic | FeatureKind::Sight => return None,
         })
     };
     scene.features.iter().enumerate().map(class).collect()

@@ -135,7 +135,7 @@ pub struct ComposedView {
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
     let DrawnView { camera, picture, drawn, frame } = view;
-    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref());
+    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {
         sheet.recolor(&red_light);

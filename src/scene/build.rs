@@ -24,12 +24,14 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
+use crate::scene::graphics;
 use crate::scene::ground;
 use crate::scene::imagery;
 use crate::scene::military;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
+use crate::scene::sight_layers;
 use crate::scene::sources::Sources;
 use crate::scene::spot_heights::spot_heights;
 use crate::scene::style::{self, RampSource, Surroundings};
@@ -90,6 +92,9 @@ pub fn build(
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
+    graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
+    let sight = sight_layers::lay(&frame, &lattice, &mut collected)?;
+
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
@@ -131,6 +136,8 @@ pub fn build(
         ground: OnceLock::new(),
         ribbons: collected.ribbons,
         symbols: collected.symbols,
+        graphics: collected.graphics,
+        sight,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),
