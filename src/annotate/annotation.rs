@@ -5,8 +5,11 @@
 
 use glam::Vec2;
 
+use crate::annotate::class_legend::LegendEntry;
 use crate::annotate::cover::SceneCover;
+use crate::annotate::grid::PictureGrid;
 use crate::annotate::legend::Legend;
+use crate::annotate::margin::MarginNotes;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
 use crate::annotate::scale_bar::ScaleBar;
@@ -27,6 +30,8 @@ pub struct Annotations {
     pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
     pub rim: Vec<RimMark>,
+    /// The coordinate grid on the ground, under everything else.
+    pub grid: Option<PictureGrid>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.
@@ -37,8 +42,12 @@ pub struct Annotations {
     pub scale_bar: Option<ScaleBar>,
     /// The elevation legend, lower right or under the north arrow.
     pub legend: Option<Legend>,
+    /// The classes that the picture shows; with a margin, there.
+    pub classes: Vec<LegendEntry>,
     /// The source of the data, small along the lower border.
     pub credit: Option<String>,
+    /// What stands round the picture on a sheet with a margin; furniture is there then, and not on the picture.
+    pub margin: Option<MarginNotes>,
     /// Where the picture shows the scene; scale bar and legend leave their lower corners for the upper ones where they
     /// would cover it there and not here.
     pub cover: Option<SceneCover>,

@@ -89,8 +89,12 @@ impl Drawing {
         self.marks.extend(path.finish().map(|path| PaintedPath { path, color }));
     }
 
-    /// This drawing on a panel from the origin to `corner`: a light ground with a hairline around it.
+    /// This drawing on a panel from the origin to `corner`: a light ground with a hairline around it. On a sheet without
+    /// panels, this drawing.
     pub fn on_panel(self, corner: Vec2, sheet: &Sheet) -> Self {
+        if !sheet.has_panels {
+            return self;
+        }
         let area = PixelBox { min: Vec2::ZERO, max: corner };
         let mut panel = Self::default();
         panel.rect(area, PANEL);

@@ -128,6 +128,11 @@ impl<'a> PreparedLine<'a> {
         LabelRequest { candidates, reserved: None }
     }
 
+    /// What an occurrence takes of the sheet.
+    pub fn candidate(&self, occurrence: usize, choice: usize) -> &LabelCandidate {
+        &self.occurrences[occurrence][choice].boxes
+    }
+
     pub fn draw(&self, occurrence: usize, choice: usize, ground: &Pixels, drawing: &mut Drawing) {
         let area = self.occurrences[occurrence][choice].boxes.text;
         let halo = Halo::over(ground, &area, self.style.ink, self.style.halo);

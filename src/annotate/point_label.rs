@@ -86,7 +86,7 @@ impl<'a> PreparedLabel<'a> {
         let by = (position.text.min - text.min).round();
         let mut lines = baselines(&self.block.lines, position.alignment);
         lines.iter_mut().for_each(|(_, at)| *at += by);
-        drawing.draw_halo(&lines, self.halo(position, ground));
+        drawing.draw_halo_of(&lines, self.halo(position, ground));
         let inks = std::iter::once(self.style.ink).chain(std::iter::repeat(self.style.note_ink));
         lines.iter().zip(inks).for_each(|((line, at), ink)| drawing.write(line, *at, ink));
     }

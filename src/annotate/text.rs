@@ -165,13 +165,19 @@ impl Drawing {
 
     /// Writes a line on a halo reaching `reach` pixels around its letters.
     pub fn write_haloed(&mut self, line: &TypesetLine, at: Vec2, reach: f32, color: Srgba) {
-        self.draw_halo(&[(line, at)], Halo { reach_px: reach, color: HALO });
+        self.draw_halo(&[(line, at)], reach);
         self.write(line, at, color);
     }
 
-    /// Draws one halo under all of `lines`. Drawn before any line is
-    /// written, it covers no neighbor's letters, and has one even tone where lines are close.
-    pub fn draw_halo(&mut self, lines: &[(&TypesetLine, Vec2)], halo: Halo) {
+    /// Draws one halo of paper under all of `lines`, reaching `reach` pixels around their letters; see
+    /// [`Drawing::draw_halo_of`].
+    pub fn draw_halo(&mut self, lines: &[(&TypesetLine, Vec2)], reach: f32) {
+        self.draw_halo_of(lines, Halo { reach_px: reach, color: HALO });
+    }
+
+    /// Draws one halo under all of `lines`. Drawn before any line is written, it covers no neighbor's letters, and has one
+    /// even tone where lines are close.
+    pub fn draw_halo_of(&mut self, lines: &[(&TypesetLine, Vec2)], halo: Halo) {
         let mut all = PathBuilder::new();
         for path in lines.iter().filter_map(|(line, at)| line.outline_at(*at)) {
             all.push_path(&path);

@@ -1,14 +1,15 @@
-//! Zip archives, gzip files and zlib streams, unpacked in memory within limits.
+//! Zip archives, gzip files and zlib streams, unpacked in memory within limits; zip archives made of members.
 //!
 //! The `zip` and `flate2` crates decode. This module bounds their work: the members of an archive are counted
 //! before its directory is read, and no content grows past the caller's limit or past what deflate can make of the
 //! packed bytes. All limits stand here.
 
-use std::io::{self, Cursor, Read};
+use std::io::{self, Cursor, Read, Write};
 
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
-use zip::ZipArchive;
 use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{DateTime, ZipArchive, ZipWriter};
 
 /// Most bytes of an unpacked elevation file: a raster of the most samples that are read.
 pub const MAX_RASTER_BYTES: u64 = 1 << 30;
@@ -38,6 +39,20 @@ pub enum ArchiveError {
     },
     #[error("the zip archive has more than {MAX_MEMBERS} members; pack fewer files")]
     TooManyMembers,
+}
+
+/// A zip archive of `members`, names with contents, deflated; the same bytes at any time.
+///
+/// # Errors
+/// A name or a content is longer than the format holds.
+pub fn zip(members: &[(&str, &[u8])]) -> io::Result<Vec<u8>> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().last_modified_time(DateTime::default());
+    for (name, content) in members {
+        archive.start_file(*name, options.large_file(content.len() as u64 >= u64::from(u32::MAX)))?;
+        archive.write_all(content)?;
+    }
+    Ok(archive.finish()?.into_inner())
 }
 
 /// Whether `bytes` start as a gzip file.
@@ -133,20 +148,13 @@ fn has_too_many_members(bytes: &[u8]) -> bool {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use std::io::Write;
 
     use flate2::Compression;
     use flate2::write::{GzEncoder, ZlibEncoder};
-    use zip::write::{SimpleFileOptions, ZipWriter};
 
     /// A zip archive of deflated members.
     pub(crate) fn zipped(members: &[(&str, &[u8])]) -> Vec<u8> {
-        let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-        for (name, content) in members {
-            writer.start_file(*name, SimpleFileOptions::default()).expect("memory");
-            writer.write_all(content).expect("memory");
-        }
-        writer.finish().expect("memory").into_inner()
+        zip(members).expect("memory")
     }
 
     fn deflated(content: &[u8]) -> Vec<u8> {

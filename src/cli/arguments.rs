@@ -13,6 +13,7 @@ use crate::cli::mesh::MeshArguments;
 use crate::cli::model::ModelArguments;
 use crate::cli::new::NewArguments;
 use crate::cli::options::SceneArguments;
+use crate::cli::pick::PickArguments;
 use crate::cli::profile::ProfileArguments;
 use crate::cli::render::RenderArguments;
 use crate::cli::report::ReportArguments;
@@ -32,6 +33,8 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene file to an annotated PNG
     Render(RenderArguments),
+    /// Say what a picture of a scene shows at a pixel: where it is, how high, and of which feature
+    Pick(PickArguments),
     /// Load and validate a scene file without rendering it
     Check(SceneArguments),
     /// Write a first scene file for an elevation file and vector files

@@ -1,6 +1,6 @@
-//! `sandtable export`: a scene as a file that modeling programs open.
+//! `sandtable export`: a scene as a file that modeling programs open, or as a model to print.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::slice::from_ref;
 
 use clap::Args;
@@ -12,40 +12,117 @@ use crate::cli::output_format::output_format;
 use crate::cli::progress::StepTimer;
 use crate::cli::values::number;
 use crate::pipeline::export::{ExportFormat, export};
-use crate::pipeline::scene_file::open_scene_true_to_scale;
+use crate::pipeline::files;
+use crate::pipeline::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
+use crate::pipeline::scene_file::{open_scene, open_scene_true_to_scale};
+
+/// The largest error of exported ground in meters, where none is stated.
+const MAX_ERROR_M: f64 = 1.0;
+
+/// The longer side of a printed model, and the bed it is printed on, in millimeters, where none is stated: most printers
+/// have a bed of 220 mm or more.
+const SIDE_MM: f64 = 180.0;
+const BED_MM: f64 = 200.0;
 
 #[derive(Debug, Args)]
 #[command(
     after_help = "Lengths and heights are meters from the south-west post, heights without exaggeration; the file says where that\n\
                   is. In a .glb north is -Z and up is Y; in an .obj north is Y and up is Z. The materials (.mtl) and textures of\n\
-                  an .obj are written beside it. Light, labels and furniture are not exported."
+                  an .obj are written beside it. Light, labels and furniture are not exported.\n\n\
+                  A .3mf or .stl is a solid to print in millimeters, with the scene's exaggeration: what is seen from above, on a\n\
+                  base. A model larger than the bed is cut into pieces with pegs and sockets; as .stl each is a file of its own."
 )]
 pub struct ExportArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the scene to this file; the extension names the format, .glb or .obj
-    #[arg(short, long, value_name = "OUT.glb|.obj")]
+    /// Write the scene to this file; the extension names the format, .glb or .obj, or .3mf or .stl to print it
+    #[arg(short, long, value_name = "OUT.glb|.obj|.3mf|.stl")]
     pub output: PathBuf,
-    /// The largest error of the ground at any post, in meters; under features that lie level in it, it is exact
-    #[arg(long, value_name = "METERS", default_value = "1", value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
-    pub max_error: f64,
+    /// The largest error of the ground at any post, in meters [default: 1]; under features that lie level in it, it is exact
+    #[arg(long, value_name = "METERS", value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
+    pub max_error: Option<f64>,
+    /// The longer side of a printed model, in millimeters [default: 180]
+    #[arg(long, value_name = "MM", value_parser = number::<f64>(20.0..=4000.0, "write millimeters as a number from 20 to 4000"))]
+    pub side: Option<f64>,
+    /// The side of the printer's bed, in millimeters [default: 200]
+    #[arg(long, value_name = "MM", value_parser = number::<f64>(50.0..=2000.0, "write millimeters as a number from 50 to 2000"))]
+    pub bed: Option<f64>,
+}
+
+/// What a file is exported as.
+#[derive(Clone, Copy, Debug)]
+enum ExportKind {
+    Scene(ExportFormat),
+    Print(PrintFormat),
+}
+
+impl ExportKind {
+    fn from_extension(extension: &str) -> Option<Self> {
+        let scene = ExportFormat::from_extension(extension).map(Self::Scene);
+        scene.or_else(|| PrintFormat::from_extension(extension).map(Self::Print))
+    }
 }
 
 pub fn run(arguments: &ExportArguments) -> Result<(), CliError> {
     let (scene, out) = (&arguments.scene, &arguments.output);
-    let written = "scenes are exported as .glb or .obj";
-    let format = output_format(out, from_ref(&scene.scene), ExportFormat::from_extension, written)?;
+    let written = "scenes are exported as .glb or .obj, or as .3mf or .stl to print";
+    let unused = |option: &str, kind: &str| {
+        Err(CliError::Usage(format!("--{option} has no effect on {kind}; remove it")))
+    };
+    match output_format(out, from_ref(&scene.scene), ExportKind::from_extension, written)? {
+        ExportKind::Scene(_) if arguments.side.is_some() => unused("side", "a .glb or .obj"),
+        ExportKind::Scene(_) if arguments.bed.is_some() => unused("bed", "a .glb or .obj"),
+        ExportKind::Print(_) if arguments.max_error.is_some() => unused("max-error", "a model to print"),
+        ExportKind::Scene(format) => run_scene(arguments, format),
+        ExportKind::Print(format) => run_print(arguments, format),
+    }
+}
+
+fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), CliError> {
+    let (scene, out) = (&arguments.scene, &arguments.output);
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
     let scene = open_scene_true_to_scale(&scene.scene, &scene.access.allow, &progress)?;
-    let exported = export(&scene, out, format, arguments.max_error, &progress)?;
+    let max_error_m = arguments.max_error.unwrap_or(MAX_ERROR_M);
+    let exported = export(&scene, out, format, max_error_m, &progress)?;
     steps.finish();
-    let mut lines: Vec<String> = exported.files.iter().map(|path| path.display().to_string()).collect();
-    lines.extend([
+    let facts = [
         row(10, "objects", exported.list.items.len()),
         row(10, "triangles", exported.list.triangle_count()),
         row(10, "materials", exported.list.materials.len()),
-    ]);
-    lines.extend(scene.notes.iter().map(|note| row(10, "note", note)));
-    print_lines(&lines)
+    ];
+    print_lines(&summary(&exported.files, &facts, &scene.notes))
+}
+
+fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), CliError> {
+    let (scene, out) = (&arguments.scene, &arguments.output);
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let scene = open_scene(&scene.scene, &scene.access.allow, &progress)?;
+    files::check_output(out, &scene.files)?;
+    let size =
+        PrintSize { side_mm: arguments.side.unwrap_or(SIDE_MM), bed_mm: arguments.bed.unwrap_or(BED_MM) };
+    let model = print_model(&scene, size, &progress)
+        .map_err(|error| CliError::input(format!("{}: {error}", arguments.scene.scene.display())))?;
+    progress("writing");
+    let files = print_model::write(&model, &scene, out, format)?;
+    steps.finish();
+    let PrintModel { pieces, counts: [across, deep], size_mm, scale, notes } = &model;
+    let triangles: usize = pieces.iter().map(|piece| piece.mesh.triangles.len()).sum();
+    let facts = [
+        row(10, "size", format!("{:.1} x {:.1} x {:.1} mm, 1:{scale:.0}", size_mm.x, size_mm.y, size_mm.z)),
+        row(
+            10,
+            "pieces",
+            format!("{} ({across} from west to east, {deep} from south to north)", pieces.len()),
+        ),
+        row(10, "triangles", triangles),
+    ];
+    print_lines(&summary(&files, &facts, &[&scene.notes[..], &notes[..]].concat()))
+}
+
+/// The files, what they hold, and notes.
+fn summary(files: &[impl AsRef<Path>], facts: &[String], notes: &[String]) -> Vec<String> {
+    let files = files.iter().map(|path| path.as_ref().display().to_string());
+    files.chain(facts.iter().cloned()).chain(notes.iter().map(|note| row(10, "note", note))).collect()
 }

@@ -18,9 +18,11 @@ mod new;
 mod options;
 mod output;
 mod output_format;
+mod pick;
 mod profile;
 mod progress;
 mod render;
+mod render_series;
 mod report;
 mod schema;
 mod serve;
@@ -53,6 +55,7 @@ pub fn main(serve: Option<ServeProgram>) -> ExitCode {
 fn run(arguments: &Arguments, serve: Option<ServeProgram>) -> Result<(), CliError> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
+        Command::Pick(arguments) => pick::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema => schema::run(),

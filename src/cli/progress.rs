@@ -27,12 +27,21 @@ impl StepTimer {
         self.starts.lock().unwrap_or_else(PoisonError::into_inner).push((step, Instant::now()));
     }
 
-    /// Removes the spinner and returns every step with its time in seconds, in order.
+    /// Removes the spinner and returns every step with its time in seconds, in the order in which they first began; of one
+    /// that began several times, the sum.
     pub fn finish(&self) -> Vec<(&'static str, f64)> {
         self.bar.finish_and_clear();
         let starts = self.starts.lock().unwrap_or_else(PoisonError::into_inner);
         let ends = starts.iter().skip(1).map(|(_, start)| *start).chain([Instant::now()]);
-        starts.iter().zip(ends).map(|(&(step, start), end)| (step, (end - start).as_secs_f64())).collect()
+        let mut times: Vec<(&'static str, f64)> = Vec::new();
+        for (&(step, start), end) in starts.iter().zip(ends) {
+            let seconds = (end - start).as_secs_f64();
+            match times.iter_mut().find(|(other, _)| *other == step) {
+                Some((_, sum)) => *sum += seconds,
+                None => times.push((step, seconds)),
+            }
+        }
+        times
     }
 }
 

@@ -1,6 +1,5 @@
 //! `sandtable render`: a scene file to an annotated PNG.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,13 +11,12 @@ use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
+use crate::cli::render_series::{RenderedPicture, RenderedScene, contact_sheet, render};
 use crate::cli::values::{choice, picture_size};
-use crate::draw::list::DrawList;
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
-use crate::pipeline::picture::{PictureSize, RenderedView, annotate_view, draw_view};
-use crate::pipeline::picture_statistics::{Lightness, PictureStatistics};
-use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::picture_statistics::Lightness;
 use crate::render::RenderBackend;
 use crate::scene::{SceneModel, SceneView};
 
@@ -38,15 +36,37 @@ pub struct RenderArguments {
     /// The camera of the scene to look through [default: its first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
+    /// Write a picture for each camera, OUT-CAMERA.png
+    #[arg(long, conflicts_with = "camera")]
+    pub all_cameras: bool,
+    /// The phase of the scene to show [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub phase: Option<String>,
+    /// Write a picture for each phase, OUT-PHASE.png
+    #[arg(long, conflicts_with = "phase")]
+    pub all_phases: bool,
     /// What draws: the processor, the same on every machine, or a graphics adapter
     #[arg(long, default_value = "cpu", value_parser = choice::<RenderBackend>())]
     pub backend: RenderBackend,
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Write one sheet of small pictures, one for each camera, or for each phase with --all-phases
+    #[arg(long, conflicts_with_all = ["buffers", "json"])]
+    pub sheet: bool,
+    /// Also write what each pixel shows into this folder: depth.tif, elevation.tif, normal.png, feature.tif, features.csv
+    #[arg(long, value_name = "DIR")]
+    pub buffers: Option<PathBuf>,
     /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step
     #[arg(long)]
     pub json: bool,
+}
+
+impl RenderArguments {
+    /// Whether every camera has a picture: on a sheet, unless it is one of phases.
+    pub fn shows_all_cameras(&self) -> bool {
+        self.all_cameras || (self.sheet && !self.all_phases && self.camera.is_none())
+    }
 }
 
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
@@ -57,56 +77,41 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     files::check_picture_output(&path, &[scene_file])
         .map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let steps = StepTimer::default();
-    let rendered = pool.install(|| render(arguments, &path, &steps))?;
-    let times = steps.finish();
-    if arguments.json {
-        return print(&format!("{:#}\n", as_json(&path, &rendered, &times)));
+    let scenes = pool.install(|| render(arguments, &path, &steps))?;
+    if arguments.sheet {
+        steps.begin("writing the sheet");
+        files::write_picture(&path, &contact_sheet(arguments, &scenes)?)?;
     }
-    let mut lines = vec![path.display().to_string()];
-    lines.extend(contents(&rendered.scene));
-    lines.extend(rendered.scene.inferred_notes().iter().map(|note| row(9, "note", note)));
-    lines.extend(summary(&rendered));
+    let times = steps.finish();
+    let pictures = || scenes.iter().flat_map(|scene| &scene.pictures);
+    if arguments.json {
+        let all: Vec<Value> = scenes.iter().flat_map(|scene| scene.as_json(&times)).collect();
+        return match &all[..] {
+            [one] if !arguments.all_cameras && !arguments.all_phases => print(&format!("{one:#}\n")),
+            all => print(&format!("{:#}\n", Value::from(all))),
+        };
+    }
+    let mut lines: Vec<String> = arguments.sheet.then(|| path.display().to_string()).into_iter().collect();
+    lines.extend(scenes.iter().flat_map(RenderedScene::lines));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));
     print_lines(&lines)?;
-    for missing in &rendered.view.annotations.missing_glyphs {
+    for missing in pictures().flat_map(|picture| &picture.annotations.missing_glyphs) {
         warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
     }
     Ok(())
 }
 
-/// A scene and the picture of it that was written.
-struct RenderedScene {
-    scene: SceneModel,
-    camera: String,
-    view: RenderedView,
-    /// Measured where JSON is printed.
-    statistics: Option<PictureStatistics>,
-}
-
-fn render(arguments: &RenderArguments, path: &Path, steps: &StepTimer) -> Result<RenderedScene, CliError> {
-    let progress = |step| steps.begin(step);
-    let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
-    let camera = find_camera(&scene, arguments.camera.as_deref())?.clone();
-    files::check_output(path, &scene.files)
-        .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
-    let drawn = draw_view(&scene, &camera, arguments.size, arguments.backend, &progress)?;
-    let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
-    let view = annotate_view(&scene, drawn, &progress);
-    progress("writing the picture");
-    files::write_picture(path, &view.pixels)?;
-    Ok(RenderedScene { scene, camera: camera.name, view, statistics })
-}
-
 /// The error with `reason` and the option to change, where the picture would replace an input.
-fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
+pub fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
     match error.cause {
         WriteFileCause::Input => CliError::input(format!("{error}: {reason}; name another with -o")),
         _ => error.into(),
     }
 }
 
-fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {
+/// The camera called `name`, or the first where no name is given.
+pub fn find_camera<'a>(scene: &'a SceneModel, name: Option<&str>) -> Result<&'a SceneView, CliError> {
     scene.view(name).ok_or_else(|| {
         let names: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
         let name = name.unwrap_or_default();
@@ -125,26 +130,72 @@ fn default_output(scene: &Path) -> PathBuf {
     PathBuf::from(scene.file_stem().unwrap_or("scene".as_ref())).with_extension("png")
 }
 
-/// The camera, and the labels that were not placed or were shortened, in lines.
-fn summary(rendered: &RenderedScene) -> Vec<String> {
-    let drawn = &rendered.view.drawn;
-    let (all, ground) = (drawn.list.triangle_count(), drawn.ground_triangles);
-    let camera = format!("{}: {all} triangles, {ground} of them ground", rendered.camera);
-    let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &rendered.view.annotations;
-    let [led, off_line] = moved(&rendered.view.annotations);
-    let labels = [
-        ("led by a line", &led),
-        ("at a place, not along their line", &off_line),
-        ("hidden", hidden),
-        ("outside the picture", outside),
-        ("without room", crowded_out),
-        ("shortened", shortened),
-    ];
-    let labels = labels.into_iter().filter(|(_, labels)| !labels.is_empty()).map(|(why, labels)| {
-        let names: Vec<String> = labels.iter().map(|label| shortened_label(label)).collect();
-        row(9, "labels", format!("{why}: {}", names.join(", ")))
-    });
-    std::iter::once(row(9, "camera", camera)).chain(labels).collect()
+impl RenderedScene {
+    /// What the pictures show, in lines.
+    fn lines(&self) -> Vec<String> {
+        let paths =
+            self.pictures.iter().filter_map(|picture| picture.path()).map(|path| path.display().to_string());
+        let notes = self.scene.inferred_notes();
+        let notes = notes.iter().map(|note| row(9, "note", note));
+        let summaries = self.pictures.iter().flat_map(RenderedPicture::summary);
+        paths.chain(contents(&self.scene)).chain(notes).chain(summaries).collect()
+    }
+
+    /// Each picture as an object with a member for each fact.
+    fn as_json(&self, times: &[(&'static str, f64)]) -> Vec<Value> {
+        let inferred = self.scene.inferred_notes();
+        let notes: Vec<&String> = self.scene.notes.iter().chain(&inferred).collect();
+        let seconds: Map<String, Value> =
+            times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
+        let object = |picture: &RenderedPicture| {
+            let RenderedPicture { camera, triangles, annotations, statistics, .. } = picture;
+            let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
+            let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = annotations;
+            let [led, off_line] = moved(annotations);
+            json!({
+                "picture": picture.path().map(|path| path.display().to_string()),
+                "camera": camera,
+                "phase": self.scene.phase,
+                "filled_fraction": statistics.map(|statistics| statistics.filled),
+                "ground_fraction": statistics.map(|statistics| statistics.ground),
+                "ground_lightness": lightness.map(|Lightness { mean, sd, p2, p98 }| {
+                    json!({"mean": mean, "sd": sd, "p2": p2, "p98": p98})
+                }),
+                "triangles": triangles,
+                "labels": {
+                    "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
+                    "led": led, "off_line": off_line
+                },
+                "notes": notes,
+                "seconds": seconds,
+            })
+        };
+        self.pictures.iter().map(object).collect()
+    }
+}
+
+impl RenderedPicture {
+    /// The camera, and the labels that were not placed or were shortened, in lines.
+    fn summary(&self) -> Vec<String> {
+        let all: usize = self.triangles.values().sum();
+        let ground = self.ground_triangles;
+        let camera = format!("{}: {all} triangles, {ground} of them ground", self.camera);
+        let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &self.annotations;
+        let [led, off_line] = moved(&self.annotations);
+        let labels = [
+            ("hidden", hidden),
+            ("outside the picture", outside),
+            ("without room", crowded_out),
+            ("led by a line", &led),
+            ("at a place, not along their line", &off_line),
+            ("shortened", shortened),
+        ];
+        let labels = labels.into_iter().filter(|(_, labels)| !labels.is_empty()).map(|(why, labels)| {
+            let names: Vec<String> = labels.iter().map(|label| shortened_label(label)).collect();
+            row(9, "labels", format!("{why}: {}", names.join(", ")))
+        });
+        std::iter::once(row(9, "camera", camera)).chain(labels).collect()
+    }
 }
 
 /// The labels drawn at the end of a leader line for want of room, and those not drawn along their line.
@@ -152,43 +203,6 @@ fn moved(report: &AnnotationReport) -> [Vec<String>; 2] {
     [LabelMove::Led, LabelMove::OffLine].map(|to| {
         report.moved.iter().filter(|moved| moved.to == to).map(|moved| moved.text.clone()).collect()
     })
-}
-
-/// The rendered scene as an object with a member for each fact.
-fn as_json(path: &Path, rendered: &RenderedScene, times: &[(&'static str, f64)]) -> Value {
-    let RenderedScene { scene, camera, view, statistics } = rendered;
-    let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
-    let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &view.annotations;
-    let [led, off_line] = moved(&view.annotations);
-    let notes: Vec<String> = scene.notes.iter().cloned().chain(scene.inferred_notes()).collect();
-    let seconds: Map<String, Value> = times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
-    json!({
-        "picture": path.display().to_string(),
-        "camera": camera,
-        "filled_fraction": statistics.map(|statistics| statistics.filled),
-        "ground_fraction": statistics.map(|statistics| statistics.ground),
-        "ground_lightness": lightness.map(|Lightness { mean, sd, p2, p98 }| {
-            json!({"mean": mean, "sd": sd, "p2": p2, "p98": p98})
-        }),
-        "triangles": triangles(scene, &view.drawn.list),
-        "labels": {
-            "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
-            "led": led, "off_line": off_line
-        },
-        "notes": notes,
-        "seconds": seconds,
-    })
-}
-
-/// The number of triangles drawn of the ground and of each kind of feature.
-fn triangles(scene: &SceneModel, list: &DrawList) -> BTreeMap<&'static str, usize> {
-    let mut counts = BTreeMap::new();
-    for item in &list.items {
-        let feature = item.feature.index().and_then(|index| scene.features.get(index));
-        *counts.entry(feature.map_or("ground", |feature| feature.kind.noun(2))).or_default() +=
-            item.triangles.len();
-    }
-    counts
 }
 
 /// A label on one line, cut where it is long.

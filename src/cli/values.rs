@@ -43,6 +43,12 @@ pub fn picture_size(text: &str) -> Result<PictureSize, &'static str> {
     }
 }
 
+/// Parses a pixel's column and row, such as `960,540`.
+pub fn pixel(text: &str) -> Result<[u32; 2], &'static str> {
+    let pair = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    pair.ok_or("write column and row as in 960,540")
+}
+
 /// Parses two finite numbers.
 pub fn number_pair(text: &str) -> Result<[f64; 2], &'static str> {
     let pair = numbers(text).and_then(|numbers| numbers.try_into().ok());

@@ -50,7 +50,9 @@ use crate::description::selection::Selection;
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::table::Table;
-use crate::description::words::{CameraProjection, HeightEncodingWord, LabelKind, TableTop};
+use crate::description::words::{
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, TableTop,
+};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -59,7 +61,8 @@ pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);
 table! {
     /// A whole scene file.
     struct Document {
-        with source: Arc<SourceText> = TableReader::source;
+        with source: Arc<SourceText> = TableReader::source, "The text that it was read from; messages point into it.";
+        with phase: Option<String> = TableReader::phase, "The phase that it was read for; `None` where it has none.";
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
         include: Option<Vec<String>> = key::text_list(), otherwise "none";
@@ -99,14 +102,19 @@ table! {
         /// Models strewn over areas.
         scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
         /// Names and heights on the picture.
-        labels as "label": Vec<LabelTable> = key::tables::<LabelTable>(), default [];
+        labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
+        /// What the scene shows one after the other: one picture each.
+        phases as "phase": Vec<PhaseTable> = key::tables::<PhaseTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
         /// What frames the picture.
         furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
     }
     check(reader) {
-        check_names(reader, cameras.as_deref().unwrap_or_default());
+        let cameras = cameras.iter().flatten().map(|camera: &CameraTable| &camera.name);
+        check_names(reader, "camera", cameras);
+        let phases = phases.iter().flatten().map(|phase: &PhaseTable| &phase.name);
+        check_names(reader, "phase", phases);
     }
 
     /// `[terrain]`: the elevation model.
@@ -238,6 +246,14 @@ table! {
         }
     }
 
+    /// `[[phase]]`: a time of which the scene has a picture. Every table of features may have the key `phases`.
+    struct PhaseTable {
+        /// Name for `--phase`; no two phases share one.
+        name: Stated<String> = key::filled_text(), required;
+        /// Second line under the picture's title.
+        title: Option<String> = key::text(), otherwise "the scene's `subtitle`";
+    }
+
     /// `[[camera]]`: an eye and what it looks at, or, without them, a view that fills the picture.
     struct CameraTable {
         /// Name for `--camera`; no two cameras share one.
@@ -292,7 +308,7 @@ table! {
     }
 
     /// `[furniture]`: what frames the picture.
-    #[derive(Copy, PartialEq, Eq)]
+    #[derive(PartialEq)]
     struct FurnitureTable {
         /// Whether the picture has its title and subtitle.
         title: bool = key::switch(), default true;
@@ -302,6 +318,37 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+        /// What stands on the picture, and what round it. The picture of a layout with a margin is as much smaller.
+        layout: SheetLayout = key::word::<SheetLayout>(), default "compact";
+        /// Whether there is a legend of the roads, waters, areas, buildings and models that the picture shows.
+        classes: Option<bool> = key::switch(), otherwise "in layouts with a margin";
+        /// The classification, above and below all else.
+        classification: Option<String> = key::filled_text(), otherwise "none";
+        /// The day of the information, such as "2026-06-21"; magnetic north is that of this day.
+        date: Option<Stated<String>> = key::filled_text(), otherwise "none, and no magnetic north";
+        /// Where the data come from, a line each, in a layout with a margin.
+        sources: Option<Vec<String>> = key::text_list(), otherwise "none";
+        /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
+        grid: GridName = key::word::<GridName>(), default "none";
+        /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
+        /// lines. One line in 10, 5 or 2 is drawn heavier.
+        grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
+            otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
+    }
+    check(reader) {
+        if grid.unwrap_or_default() == GridName::None {
+            let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
+            reader.without_effect(&["grid_interval"], "without a `grid`", help);
+        }
+        let layout = layout.unwrap_or_default();
+        if !matches!(layout, SheetLayout::Margin | SheetLayout::Military) {
+            let help = "set `layout` to margin or military, or remove it";
+            reader.without_effect(&["date", "sources"], "in a layout without a margin", help);
+        }
+        if layout != SheetLayout::Military {
+            let help = "set `layout = \"military\"`, or remove it";
+            reader.without_effect(&["classification"], "in another layout than military", help);
+        }
     }
 }
 
@@ -321,6 +368,12 @@ impl LabelTable {
 impl Document {
     /// The keys outside tables, and the tables with their keys.
     pub const DECLARATIONS: &'static [KeyDeclaration] = <Self as Table>::KEYS;
+
+    /// The title of the phase that the scene is read for.
+    pub fn phase_title(&self) -> Option<&str> {
+        let is_chosen = |phase: &&PhaseTable| Some(phase.name.as_str()) == self.phase.as_deref();
+        self.phases.iter().find(is_chosen)?.title.as_deref()
+    }
 
     /// An error about a value; `cause` is an error or a sentence.
     pub fn error<T>(&self, value: &Stated<T>, cause: impl Into<Box<dyn Error + Send + Sync>>) -> Diagnostic {
@@ -362,18 +415,22 @@ fn check_eye(reader: &mut TableReader<'_, '_>) {
     }
 }
 
-/// Reports cameras with the name of an earlier one.
-fn check_names(reader: &mut TableReader<'_, '_>, cameras: &[CameraTable]) {
+/// Reports things of one kind with the name of an earlier one.
+fn check_names<'a>(
+    reader: &mut TableReader<'_, '_>,
+    kind: &str,
+    names: impl IntoIterator<Item = &'a Stated<String>>,
+) {
     let (source, mut seen) = (reader.source(), BTreeMap::new());
-    for camera in cameras {
-        let span = camera.name.span().unwrap_or_default();
-        let first = *seen.entry(camera.name.as_str()).or_insert(span.start);
+    for name in names {
+        let span = name.span().unwrap_or_default();
+        let first = *seen.entry(name.as_str()).or_insert(span.start);
         if first == span.start {
             continue;
         }
         let (line, file) = (source.line_column(first).line, source.name_at(first));
         let other = if file == source.name_at(span.start) { String::new() } else { format!(" of {file}") };
-        let message = format!("the camera on line {line}{other} already has this name");
-        reader.error(span, message, "give each camera a name of its own");
+        let message = format!("the {kind} on line {line}{other} already has this name");
+        reader.error(span, message, format!("give each {kind} a name of its own"));
     }
 }

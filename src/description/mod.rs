@@ -14,6 +14,7 @@ pub mod features;
 pub mod include;
 mod key;
 pub mod parse;
+pub mod phases;
 mod reader;
 pub mod scalar;
 pub mod schema;

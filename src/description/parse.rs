@@ -9,6 +9,7 @@ use toml::de::DeTable;
 use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
 use crate::description::include::{LoadFile, gather, merged, moved};
+use crate::description::phases::Phases;
 use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
 use crate::description::styles::Styles;
@@ -39,6 +40,19 @@ pub fn parse_bytes(file_name: &str, bytes: &[u8]) -> Result<Document, Diagnostic
 /// # Errors
 /// As [`parse_bytes`], of all the files, and where one cannot be included.
 pub fn parse_including(file_name: &str, bytes: &[u8], load: LoadFile<'_>) -> Result<Document, Diagnostics> {
+    parse_in_phase(file_name, bytes, load, None)
+}
+
+/// As [`parse_including`], for the phase called `phase` in place of the first.
+///
+/// # Errors
+/// As [`parse_including`]. A phase that is not there is none: [`Document::phase`] then names it all the same.
+pub fn parse_in_phase(
+    file_name: &str,
+    bytes: &[u8],
+    load: LoadFile<'_>,
+    phase: Option<&str>,
+) -> Result<Document, Diagnostics> {
     if bytes.len() > MAX_BYTES {
         let message = format!("the scene file has {} bytes, more than the {MAX_BYTES} allowed", bytes.len());
         let help = "put long lists of points in GeoJSON files and name them with `file`";
@@ -63,7 +77,7 @@ pub fn parse_including(file_name: &str, bytes: &[u8], load: LoadFile<'_>) -> Res
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
-            let mut context = DecodeContext { report, styles };
+            let mut context = DecodeContext { report, styles, phases: Phases::read(root, phase) };
             (TableReader::read_root(&mut context, root), context.report)
         }
         None => (None, report),

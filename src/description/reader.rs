@@ -13,6 +13,7 @@ use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
 use crate::description::document::Document;
 use crate::description::key::{Group, Key, Styling};
+use crate::description::phases::{PHASES_KEY, PHASES_TYPE, Phases};
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
@@ -27,6 +28,7 @@ const MAX_TABLES: usize = 10_000;
 pub(super) struct DecodeContext<'t> {
     pub report: DiagnosticSink,
     pub styles: Styles<'t>,
+    pub phases: Phases<'t>,
 }
 
 /// The name of a table.
@@ -85,8 +87,24 @@ impl<'r, 't> TableReader<'r, 't> {
             reader.take_style();
         }
         let value = T::read(&mut reader);
+        let is_there = reader.is_in_phase();
         reader.finish();
-        value
+        value.filter(|_| is_there)
+    }
+
+    /// Whether the table is there in the phase that the scene is read for.
+    fn is_in_phase(&mut self) -> bool {
+        if self.styling == Styling::Plain {
+            return true;
+        }
+        let stated = self.stated(&PHASES_KEY, &PHASES_TYPE);
+        let DecodeContext { phases, report, .. } = &mut *self.context;
+        stated.is_none_or(|stated| phases.hold(&stated, report))
+    }
+
+    /// The phase that the scene is read for.
+    pub fn phase(&mut self) -> Option<String> {
+        self.context.phases.chosen()
     }
 
     pub fn source(&mut self) -> Arc<SourceText> {
@@ -221,8 +239,9 @@ impl<'r, 't> TableReader<'r, 't> {
     }
 
     fn known(&self) -> Vec<&'static str> {
-        let style = (self.styling == Styling::Styled).then_some(STYLE_KEY.name);
-        style.into_iter().chain(KeyDeclaration::flattened(self.keys).map(|key| key.name)).collect()
+        let common = [STYLE_KEY.name, PHASES_KEY.name];
+        let common = common.into_iter().filter(|_| self.styling == Styling::Styled);
+        common.chain(KeyDeclaration::flattened(self.keys).map(|key| key.name)).collect()
     }
 
     /// The keys of the table and of its style that are not declared.

@@ -78,7 +78,7 @@ macro_rules! table {
     ($(
         $(#[$attribute:meta])*
         struct $table:ident $([const $least:ident: usize])? {
-            $(with $extra:ident: $extra_type:ty = $extra_value:expr;)?
+            $(with $extra:ident: $extra_type:ty = $extra_value:expr, $extra_doc:literal;)*
             $(
                 $(#[doc = $doc:literal])+
                 $field:ident $(as $name:literal)?: $type:ty = $key:expr, $presence:ident $($otherwise:expr)?
@@ -91,9 +91,9 @@ macro_rules! table {
         #[derive(Clone, Debug)]
         pub struct $table {
             $(
-                /// The text that the table was read from; messages point into it.
+                #[doc = $extra_doc]
                 pub $extra: $extra_type,
-            )?
+            )*
             $(
                 $(#[doc = $doc])+
                 #[doc = concat!("\n\n`", stringify!($key), "`, ", stringify!($presence $($otherwise)?), ".")]
@@ -120,7 +120,7 @@ macro_rules! table {
                     let $check_reader = &mut *reader;
                     $check
                 })?
-                Some(Self { $($extra: ($extra_value)(reader),)? $($field: $field?),+ })
+                Some(Self { $($extra: ($extra_value)(reader),)* $($field: $field?),+ })
             }
         }
     )+};

@@ -193,6 +193,24 @@ pub enum GroundMapError {
 }
 
 impl GroundMap {
+    /// A map of level ground in one color, for lists whose colors nobody sees.
+    pub fn level() -> Self {
+        Self {
+            origin: Vec2::ZERO,
+            cell: Vec2::ONE,
+            columns: 1,
+            rows: 1,
+            posts: vec![GroundPost { sun_visibility: 1.0, sky_visibility: 1.0, ..GroundPost::default() }],
+            ramp: ColorRamp { stops: vec![(0.0, Vec3::ONE)] },
+            contours: None,
+            imagery: None,
+            cover: None,
+            form_level: 0,
+            z_factor: 1.0,
+            has_grain: false,
+        }
+    }
+
     /// Checks the invariants that renderers rely on: one entry per post, positive finite cells, a finite origin.
     ///
     /// # Errors

@@ -1,12 +1,12 @@
 //! The checks that a terrain mesh must pass: indices in range, upward triangles, no edge used twice in one direction,
-//! no T-junction, and the expected area.
+//! no T-junction, and the expected area; and those of a solid: closed, and its inside inside.
 //!
 //! At a T-junction a border edge, which belongs to a single triangle, has another border vertex inside it; so only the
 //! border needs to be searched.
 
 use std::collections::HashMap;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::mesh::sink::VertexId;
 use crate::mesh::trimesh::TriMesh;
@@ -36,6 +36,12 @@ pub enum Flaw {
     TJunction { vertex: usize, from: usize, to: usize },
     #[error("the triangles cover {found_m2} m² instead of {expected_m2} m²")]
     Area { found_m2: f64, expected_m2: f64 },
+    #[error("the edge from vertex {0} to vertex {1} belongs to one triangle only: the solid is open")]
+    Open(usize, usize),
+    #[error("triangle {0} has no area")]
+    Degenerate(usize),
+    #[error("the solid holds {0} cubic units; it must be positive")]
+    InsideOut(f64),
 }
 
 /// Checks that `mesh` is conforming and faces up.
@@ -61,6 +67,27 @@ pub fn check_with_area(mesh: &TriMesh, expected_m2: f64) -> Result<MeshSummary, 
         return Err(Flaw::Area { found_m2, expected_m2 });
     }
     Ok(summary)
+}
+
+/// Checks that `mesh` bounds a solid: every edge belongs to two triangles, one in either direction, no triangle is without
+/// area, and the normals point outward. Returns its volume in cubed units of the positions.
+///
+/// # Errors
+/// The first [`Flaw`] found.
+pub fn check_solid(mesh: &TriMesh) -> Result<f64, Flaw> {
+    check_indices(mesh)?;
+    let mut volume = 0.0;
+    for triangle in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(triangle).map(Vec3::as_dvec3);
+        if (b - a).cross(c - a) == DVec3::ZERO {
+            return Err(Flaw::Degenerate(triangle));
+        }
+        volume += a.dot(b.cross(c)) / 6.0;
+    }
+    if let Some(&(from, to)) = border_edges(mesh)?.first() {
+        return Err(Flaw::Open(from.index(), to.index()));
+    }
+    if volume > 0.0 { Ok(volume) } else { Err(Flaw::InsideOut(volume)) }
 }
 
 fn check_indices(mesh: &TriMesh) -> Result<(), Flaw> {
@@ -139,7 +166,6 @@ fn plan(mesh: &TriMesh, id: VertexId) -> DVec2 {
 mod tests {
     use super::*;
     use crate::mesh::sink::MeshSink;
-    use glam::Vec3;
 
     fn mesh(points: &[(f32, f32)], triangles: &[[u32; 3]]) -> TriMesh {
         let mut mesh = TriMesh::default();
@@ -177,5 +203,18 @@ mod tests {
     fn a_missing_piece_is_found_by_its_area() {
         let half = mesh(&SQUARE, &[[0, 1, 2]]);
         assert!(matches!(check_with_area(&half, 4.0), Err(Flaw::Area { .. })));
+    }
+
+    #[test]
+    fn a_tetrahedron_is_a_solid_and_an_open_or_an_everted_one_is_none() {
+        let mut solid =
+            mesh(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        solid.vertex(Vec3::Z);
+        assert!((check_solid(&solid).expect("closed") - 1.0 / 6.0).abs() < 1e-12);
+        let mut everted = solid.clone();
+        everted.triangles.iter_mut().for_each(|corners| corners.swap(0, 1));
+        assert!(matches!(check_solid(&everted), Err(Flaw::InsideOut(_))));
+        solid.triangles.pop();
+        assert!(matches!(check_solid(&solid), Err(Flaw::Open(..))));
     }
 }

@@ -1,8 +1,9 @@
-//! Triangle meshes: the value, the sink that generators write to, the checks that a terrain mesh must pass, and the
-//! writers of mesh files.
+//! Triangle meshes: the value, the sink that generators write to, the checks that a terrain mesh and a solid must pass,
+//! solids for printers, and the writers of mesh files.
 
 pub mod check;
 pub mod numbering;
 pub mod sink;
+pub mod solid;
 pub mod trimesh;
 pub mod write;

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::draw::list::{DrawList, FeatureId};
+use crate::draw::list::DrawList;
 use crate::export::{SceneExport, glb, obj, prepare};
 use crate::mesh::write::Remarks;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::scene::SceneModel;
 use crate::scene::picture;
-use crate::scene::{SceneFeature, SceneModel};
 
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ pub fn export(
     let list = prepare::prepare(list);
     progress("writing");
     let remarks = remarks(scene, max_error_m);
-    let name_of = |feature| feature_name(&scene.features, feature);
+    let name_of = |feature| scene.feature_name(feature);
     let export = SceneExport { list: &list, name_of: &name_of, remarks: &remarks };
     let mut written = vec![path.to_owned()];
     match format {
@@ -74,19 +74,6 @@ pub fn export(
         }
     }
     Ok(ExportedScene { files: written, list })
-}
-
-fn feature_name(features: &[SceneFeature], feature: FeatureId) -> String {
-    match feature {
-        FeatureId::GROUND => return "ground".into(),
-        FeatureId::PLINTH => return "plinth".into(),
-        _ => {}
-    }
-    let feature = feature.index().and_then(|index| features.get(index));
-    feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
-        "" => kind.noun(1).to_owned(),
-        name => format!("{} {name}", kind.noun(1)),
-    })
 }
 
 fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {

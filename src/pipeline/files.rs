@@ -191,6 +191,14 @@ pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result
     }
 }
 
+/// Makes a folder, and those that it lies in, where they are not there.
+///
+/// # Errors
+/// The system refuses.
+pub fn make_folder(folder: &Path) -> Result<(), WriteFileError> {
+    fs::create_dir_all(folder).map_err(|error| WriteFileError::new(folder, SystemError::from(error)))
+}
+
 /// Writes a picture, which must have pixels, as PNG, without alpha where it is opaque.
 ///
 /// # Errors

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::description::document::Document;
-use crate::description::parse::parse_including;
+use crate::description::parse::parse_in_phase;
+use crate::message::suggest::{quoted, remedy};
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
@@ -22,6 +23,17 @@ pub enum OpenSceneError {
     Parse(#[from] Diagnostics),
     #[error("the scene cannot be built")]
     Build(#[from] Diagnostic),
+    #[error("{}", no_phase(.name, .names))]
+    NoPhase { name: String, names: Vec<String> },
+}
+
+fn no_phase(name: &str, names: &[String]) -> String {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let remedy = match names[..] {
+        [] => "it has no [[phase]]".to_owned(),
+        _ => remedy(name, &names, "its phases are").replace(" or ", " and "),
+    };
+    format!("the scene has no phase '{}'; {remedy}", quoted(name))
 }
 
 /// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
@@ -35,8 +47,37 @@ pub fn open_scene(
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed)?;
+    let (document, assets) = open_document(path, allowed, None)?;
     Ok(build(&document, &assets, progress)?)
+}
+
+/// [`open_scene`] for the phase called `phase`.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_in_phase(
+    path: &Path,
+    allowed: &[PathBuf],
+    phase: &str,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
+    progress("reading the scene file");
+    let (document, assets) = open_document(path, allowed, Some(phase))?;
+    if document.phases.iter().any(|declared| declared.name.as_str() == phase) {
+        Ok(build(&document, &assets, progress)?)
+    } else {
+        let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
+        Err(OpenSceneError::NoPhase { name: phase.to_owned(), names })
+    }
+}
+
+/// The names of the phases of the scene file at `path`, in its order; of other files only those that it includes are read.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn phases(path: &Path, allowed: &[PathBuf]) -> Result<Vec<String>, OpenSceneError> {
+    let (document, _) = open_document(path, allowed, None)?;
+    Ok(document.phases.iter().map(|phase| phase.name.to_string()).collect())
 }
 
 /// Reads and parses the scene file at `path` and builds its ground: less work than [`open_scene`], and enough for
@@ -45,7 +86,7 @@ pub fn open_scene(
 /// # Errors
 /// See [`OpenSceneError`].
 pub fn open_scene_ground(path: &Path, allowed: &[PathBuf]) -> Result<SceneGround, OpenSceneError> {
-    let (document, assets) = open_document(path, allowed)?;
+    let (document, assets) = open_document(path, allowed, None)?;
     Ok(build_ground(&document, &assets)?)
 }
 
@@ -59,15 +100,19 @@ pub fn open_scene_true_to_scale(
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (mut document, assets) = open_document(path, allowed)?;
+    let (mut document, assets) = open_document(path, allowed, None)?;
     document.terrain.vertical_exaggeration = 1.0;
     Ok(build(&document, &assets, progress)?)
 }
 
-fn open_document(path: &Path, allowed: &[PathBuf]) -> Result<(Document, Assets), OpenSceneError> {
+fn open_document(
+    path: &Path,
+    allowed: &[PathBuf],
+    phase: Option<&str>,
+) -> Result<(Document, Assets), OpenSceneError> {
     let bytes = files::read(path)?;
     let assets = Assets::new(path, allowed)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
-    let document = parse_including(&path.to_string_lossy(), &bytes, &load)?;
+    let document = parse_in_phase(&path.to_string_lossy(), &bytes, &load, phase)?;
     Ok((document, assets))
 }

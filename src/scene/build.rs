@@ -102,7 +102,8 @@ pub fn build(
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     Ok(SceneModel {
         title: document.title.clone(),
-        subtitle: document.subtitle.clone(),
+        subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
+        phase: document.phase.clone(),
         heights,
         ramp: RampSource::new(document)?,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
@@ -133,7 +134,8 @@ pub fn build(
         labels,
         cameras,
         font: font::load(document, assets)?,
-        furniture: document.furniture,
+        furniture: document.furniture.clone(),
+        sheet_day: style::sheet_day(document)?,
         features: collected.features,
         notes: collected.notes,
         report: collected.report,

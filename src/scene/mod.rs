@@ -58,6 +58,7 @@ use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
+use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
@@ -86,6 +87,8 @@ pub struct SceneModel {
     pub title: Option<String>,
     /// A second line under it.
     pub subtitle: Option<String>,
+    /// The phase that it shows; `None` where it has none.
+    pub phase: Option<String>,
     /// The map coordinates' system.
     pub crs: Crs,
     /// The elevations of the ground, true to scale.
@@ -142,6 +145,8 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The day of its information.
+    pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
     /// Notes for the user: features off the model, missing textures, earth moved.
@@ -456,6 +461,20 @@ impl SceneModel {
             Some(name) => self.cameras.iter().find(|view| view.name == name),
             None => self.cameras.first(),
         }
+    }
+
+    /// What a feature is called: its kind and its name; empty for nothing.
+    pub fn feature_name(&self, feature: FeatureId) -> String {
+        match feature {
+            FeatureId::GROUND => return "ground".into(),
+            FeatureId::PLINTH => return "plinth".into(),
+            _ => {}
+        }
+        let feature = feature.index().and_then(|index| self.features.get(index));
+        feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+            "" => kind.noun(1).to_owned(),
+            name => format!("{} {name}", kind.noun(1)),
+        })
     }
 
     /// The number of features of each kind that is present, in the order of [`FeatureKind`].

@@ -4,6 +4,7 @@
 mod common;
 
 mod assets;
+mod buffers;
 mod clearance;
 mod detail;
 mod imagery;

@@ -10,6 +10,7 @@ use crate::description::bounds::Bounds;
 use crate::description::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::description::document::Document;
 use crate::description::expression::MAX_TEXT_BYTES;
+use crate::description::phases::PHASES_KEY;
 use crate::description::styles::STYLE_KEY;
 use crate::description::value::{COORDINATES, MAX_LIST, MAX_POINTS, MAX_TEXT};
 use crate::description::words::{RampName, WordDeclaration, declarations};
@@ -78,7 +79,9 @@ fn repeated_table(key: &KeyDeclaration) -> Option<Value> {
     let required = required_keys(key.inner());
     let mut table = match key.kind {
         KeyKind::Tables(keys) => object(KeyDeclaration::flattened(keys)),
-        KeyKind::StyledTables(keys) => object(KeyDeclaration::flattened(keys).chain([&STYLE_KEY])),
+        KeyKind::StyledTables(keys) => {
+            object(KeyDeclaration::flattened(keys).chain([&STYLE_KEY, &PHASES_KEY]))
+        }
         _ => return None,
     };
     match key.kind {

@@ -16,6 +16,7 @@ fn declared(keys: &'static [KeyDeclaration], table: &str) -> BTreeMap<String, &'
         all.append(&mut declared(key.inner(), &path));
         if matches!(key.kind, KeyKind::StyledTables(_)) {
             all.insert(format!("{path}.style"), &STYLE_KEY);
+            all.insert(format!("{path}.phases"), &PHASES_KEY);
         }
         all.insert(path, key);
     }

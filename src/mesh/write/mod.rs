@@ -1,4 +1,4 @@
-//! Writers of mesh files: OBJ, PLY, STL and binary glTF.
+//! Writers of mesh files: OBJ, PLY, STL, 3MF and binary glTF.
 //!
 //! Coordinates are written as the mesh has them: meters, X east, Y north, Z up; an f32 that is read back is the very
 //! same. No format has a field for the origin, so files state it in remarks.
@@ -7,6 +7,7 @@ pub mod glb;
 pub mod obj;
 pub mod ply;
 pub mod stl;
+pub mod three_mf;
 
 use std::borrow::Cow;
 use std::io::{self, Write};

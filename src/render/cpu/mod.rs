@@ -114,15 +114,31 @@ pub fn render(
 ) -> Result<Rendering, CpuRenderError> {
     list.check()?;
     let screen = Screen::new(camera);
-    let geometry = ScreenGeometry::new(list, &screen)
-        .ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))?;
+    let geometry = geometry(list, &screen)?;
     let shadows = Shadows::new(list, camera);
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
     Ok(match quality.samples {
-        SampleCount::One => draw(&screen, &geometry, &shader, &ONE),
-        SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR),
-        SampleCount::Eight => draw(&screen, &geometry, &shader, &EIGHT),
+        SampleCount::One => draw(&screen, &geometry, &shader, &ONE, true),
+        SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR, true),
+        SampleCount::Eight => draw(&screen, &geometry, &shader, &EIGHT, true),
     })
+}
+
+/// The depths and features of [`render`], to the bit, without light, shadows and colors: the pixels are white.
+///
+/// # Errors
+/// See [`CpuRenderError`].
+pub fn render_buffers(list: &DrawList, camera: &Camera) -> Result<Rendering, CpuRenderError> {
+    list.check()?;
+    let screen = Screen::new(camera);
+    let geometry = geometry(list, &screen)?;
+    let shadows = Shadows::default();
+    let shader = Shader::new(list, &screen, &shadows, RenderQuality::default().anisotropy);
+    Ok(draw(&screen, &geometry, &shader, &EIGHT, false))
+}
+
+fn geometry(list: &DrawList, screen: &Screen) -> Result<ScreenGeometry, CpuRenderError> {
+    ScreenGeometry::new(list, screen).ok_or_else(|| CpuRenderError::TooManyTriangles(list.triangle_count()))
 }
 
 fn draw<const N: usize>(
@@ -130,8 +146,9 @@ fn draw<const N: usize>(
     geometry: &ScreenGeometry,
     shader: &Shader,
     pattern: &SamplePattern<N>,
+    is_colored: bool,
 ) -> Rendering {
-    let frame = TileContext { screen, geometry, shader, pattern };
+    let frame = TileContext { screen, geometry, shader, pattern, is_colored };
     let [width, height] = screen.size;
     let (count, band) = (width as usize * height as usize, (width * TILE) as usize);
     let mut pixels = Pixels::filled(width, height, Srgba::WHITE);

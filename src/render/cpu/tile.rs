@@ -19,6 +19,8 @@ pub struct TileContext<'a, const N: usize> {
     pub geometry: &'a ScreenGeometry,
     pub shader: &'a Shader<'a>,
     pub pattern: &'a SamplePattern<N>,
+    /// Whether opaque surfaces are shaded; where not, only depths and features count.
+    pub is_colored: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +112,7 @@ fn resolve<const N: usize>(
     let faces = scratch.visibility.faces(x, y);
     let center = [x as f32 + 0.5, y as f32 + 0.5];
     let mut colors = [Vec3::ZERO; N];
-    let mut left = SamplePattern::<N>::FULL;
+    let mut left = if frame.is_colored { SamplePattern::<N>::FULL } else { 0 };
     while left != 0 {
         let first = left.trailing_zeros() as usize;
         let mask = left & samples_alike(frame, &scratch.visibility, (x, y), first);

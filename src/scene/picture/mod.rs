@@ -24,6 +24,7 @@ use std::sync::Arc;
 use glam::Mat4;
 
 use crate::description::words::TableTop;
+use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::geom::aabb::Aabb;
@@ -64,8 +65,16 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
     let displayed = Arc::new(display(scene, camera));
-    let (list, ground_triangles) = listed(scene, &displayed, Viewer::Camera(camera), progress);
+    let (list, ground_triangles) =
+        listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Picture, progress);
     ViewDraw { list, displayed, ground_triangles }
+}
+
+/// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
+pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).0
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
@@ -75,7 +84,16 @@ pub fn draw_list(
     displayed: &DisplayedTerrain,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    listed(scene, displayed, Viewer::Anyone, progress)
+    listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress)
+}
+
+/// What a draw list is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ListPurpose {
+    /// To be seen.
+    Picture,
+    /// To be measured: nobody asks how the ground is lit.
+    Shapes,
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -91,6 +109,7 @@ fn listed(
     scene: &SceneModel,
     displayed: &DisplayedTerrain,
     viewer: Viewer<'_>,
+    purpose: ListPurpose,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
     let camera = match viewer {
@@ -99,7 +118,10 @@ fn listed(
     };
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
-    let map = scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain"));
+    let map = match purpose {
+        ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
+        ListPurpose::Shapes => Arc::new(GroundMap::level()),
+    };
     let lighting = Lighting { to_sun, ..Lighting::default() };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use sandtable::description::declaration::{KeyDeclaration, KeyKind, Presence};
 use sandtable::description::document::Document;
+use sandtable::description::phases::PHASES_KEY;
 use sandtable::description::styles::STYLE_KEY;
 use sandtable::description::words::{RampName, WordDeclaration, declarations};
 
@@ -28,12 +29,12 @@ fn add_section(page: &mut String, title: &str, doc: &str, keys: &[&KeyDeclaratio
     keys.iter().for_each(|key| page.push_str(&row(key)));
     for key in keys.iter().filter(|key| !matches!(key.kind, KeyKind::Group(_)) && !key.inner().is_empty()) {
         let dotted = if dotted.is_empty() { key.name.to_owned() } else { format!("{dotted}.{}", key.name) };
-        let (title, style) = match key.kind {
-            KeyKind::Table(_) => (format!("`[{dotted}]`"), None),
-            KeyKind::StyledTables(_) => (format!("`[[{dotted}]]`"), Some(&STYLE_KEY)),
-            _ => (format!("`[[{dotted}]]`"), None),
+        let (title, common): (_, &[&KeyDeclaration]) = match key.kind {
+            KeyKind::Table(_) => (format!("`[{dotted}]`"), &[][..]),
+            KeyKind::StyledTables(_) => (format!("`[[{dotted}]]`"), &[&STYLE_KEY, &PHASES_KEY][..]),
+            _ => (format!("`[[{dotted}]]`"), &[][..]),
         };
-        let inner: Vec<&KeyDeclaration> = key.inner().iter().chain(style).collect();
+        let inner: Vec<&KeyDeclaration> = key.inner().iter().chain(common.iter().copied()).collect();
         add_section(page, &title, key.doc(), &inner, &dotted);
     }
 }

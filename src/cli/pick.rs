@@ -1,0 +1,88 @@
+//! `sandtable pick`: what a picture shows at a pixel, and where that is.
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::cli::error::CliError;
+use crate::cli::options::SceneArguments;
+use crate::cli::output::{print, print_lines, row};
+use crate::cli::progress::StepTimer;
+use crate::cli::render::find_camera;
+use crate::cli::values::{picture_size, pixel};
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::picture_buffers::{PickedPlace, pick};
+use crate::pipeline::scene_file::open_scene;
+use crate::scene::SceneModel;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Pixels count from the upper left corner, from 0. Heights are elevations, without exaggeration."
+)]
+pub struct PickArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The pixels, column and row each
+    #[arg(long, value_name = "X,Y", required = true, num_args = 1.., value_parser = pixel)]
+    pub pixel: Vec<[u32; 2]>,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = picture_size)]
+    pub size: PictureSize,
+    /// The camera of the scene that the picture is seen through [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
+    let PictureSize { width, height } = arguments.size;
+    if let Some([x, y]) = arguments.pixel.iter().find(|[x, y]| *x >= width || *y >= height) {
+        return Err(CliError::Usage(format!(
+            "the pixel {x},{y} is not on a picture of {width}x{height}; columns end at {}, rows at {}",
+            width - 1,
+            height - 1
+        )));
+    }
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
+    let view = find_camera(&scene, arguments.camera.as_deref())?;
+    let places = pick(&scene, view, arguments.size, &arguments.pixel, &progress)?;
+    steps.finish();
+    let picked = arguments.pixel.iter().zip(&places);
+    if arguments.json {
+        let places: Vec<Value> =
+            picked.map(|(pixel, place)| as_json(&scene, *pixel, place.as_ref())).collect();
+        return print(&format!("{:#}\n", Value::from(places)));
+    }
+    let lines: Vec<String> = picked.flat_map(|(pixel, place)| text(&scene, *pixel, place.as_ref())).collect();
+    print_lines(&lines)
+}
+
+fn text(scene: &SceneModel, [x, y]: [u32; 2], place: Option<&PickedPlace>) -> Vec<String> {
+    let Some(PickedPlace { at, elevation_m, distance_m, feature }) = place else {
+        return vec![format!("{x},{y}"), row(10, "shows", "nothing of the scene")];
+    };
+    vec![
+        format!("{x},{y}"),
+        row(10, "shows", scene.feature_name(*feature)),
+        row(10, "at", format!("{:.1}, {:.1} in {}", at.x, at.y, scene.crs.name())),
+        row(10, "elevation", format!("{elevation_m:.2} m")),
+        row(10, "distance", format!("{distance_m:.1} m")),
+    ]
+}
+
+fn as_json(scene: &SceneModel, pixel: [u32; 2], place: Option<&PickedPlace>) -> Value {
+    match place {
+        None => json!({ "pixel": pixel, "feature": null }),
+        Some(PickedPlace { at, elevation_m, distance_m, feature }) => json!({
+            "pixel": pixel,
+            "feature": scene.feature_name(*feature),
+            "at": [at.x, at.y],
+            "crs": scene.crs.name(),
+            "elevation_m": elevation_m,
+            "distance_m": distance_m,
+        }),
+    }
+}
