@@ -10,8 +10,9 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::label_style::LineStyle;
 use crate::annotate::line_label::{LetterTop, PreparedLine};
-use crate::annotate::pixel_box::PixelSegment;
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::place::{LabelPlacer, LabelRequest};
+use crate::annotate::report::SheetBox;
 use crate::description::words::LabelKind;
 use crate::draw::pixels::Pixels;
 
@@ -34,10 +35,15 @@ pub fn draw_contours(
     placer: &mut LabelPlacer<'_>,
     ground: &Pixels,
     composer: &mut Composer,
+    boxes: &mut Vec<SheetBox>,
 ) -> Drawing {
     let mut drawing = Drawing::default();
     let sheet = composer.sheet;
     for &[from, to] in &marks.ticks {
+        let area = PixelBox { min: from.min(to), max: from.max(to) }.grown(sheet.px(1.5));
+        if !placer.is_clear(&area) {
+            continue;
+        }
         drawing.line(PixelSegment { from, to }, sheet.px(1.2).max(1.0), marks.color);
     }
     let style = LineStyle::contour(marks.color, composer);
@@ -61,8 +67,10 @@ pub fn draw_contours(
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
             let candidates = line.request(occurrence).candidates;
             let candidates = order.iter().map(|(_, index)| candidates[*index].clone()).collect();
-            let choice = placer.place(&[LabelRequest { candidates, reserved: None }])[0];
-            if let Some(choice) = choice.map(|choice| order[choice].1) {
+            let request = LabelRequest { candidates, reserved: None };
+            if let Some(chosen) = placer.place(std::slice::from_ref(&request))[0] {
+                let choice = order[chosen].1;
+                boxes.extend(SheetBox::of(&contour.text, &request.candidates[chosen]));
                 line.draw_in_break(occurrence, choice, ground, &mut drawing);
                 placed.push(PlacedNumber { level: contour.level, top: tops[choice] });
             }
@@ -125,7 +133,6 @@ fn off_ladder(top: &LetterTop, level: i64, placed: &[PlacedNumber], reach: f32, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::pixel_box::PixelBox;
     use crate::annotate::place::LabelField;
     use crate::draw::color::Srgba;
 
@@ -146,7 +153,7 @@ mod tests {
         let ground = Pixels::filled(1920, 1080, Srgba::opaque(150, 180, 130));
         let bounds = PixelBox { min: Vec2::ZERO, max: Vec2::new(1920.0, 1080.0) };
         let field = LabelField { bounds, taken: Vec::new(), leader_gap: 5.0 };
-        draw_contours(marks, &mut LabelPlacer::new(&field), &ground, &mut composer)
+        draw_contours(marks, &mut LabelPlacer::new(&field), &ground, &mut composer, &mut Vec::new())
     }
 
     /// The boxes of the numbers: every second mark is a patch.

@@ -11,6 +11,8 @@ use crate::draw::pixels::Pixels;
 const LEAST_CONTRAST: f32 = 4.5;
 /// The share of the ground in the halo: more, and the halo no longer clears the ground's texture away.
 const MOST_TINT: f32 = 0.5;
+/// Its share in a patch that breaks a line: enough that the break is not seen, not so much that numbers sink.
+const PATCH_TINT: f32 = 0.85;
 const TINT_STEPS: usize = 10;
 /// Pixels looked at across and down a label.
 const SAMPLES: u32 = 12;
@@ -32,14 +34,14 @@ impl Halo {
 
     /// A patch of the ground's own tone under letters of `ink`, as far as they stay legible: it breaks what is drawn there.
     pub fn patch(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
-        let halo = Self::over(pixels, area, ink, reach_px);
-        let [red, green, blue, _] = halo.color.0;
-        Self { color: Srgba([red, green, blue, 0xf4]), ..halo }
+        let color = mean(pixels, area).map_or_else(|| paper(ink), |ground| tinted(ground, ink, PATCH_TINT));
+        let [red, green, blue, _] = color.0;
+        Self { reach_px, color: Srgba([red, green, blue, 0xf4]) }
     }
 
     /// The halo of letters of `ink` over `area` of the picture.
     pub fn over(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
-        let color = mean(pixels, area).map_or_else(|| paper(ink), |ground| tinted(ground, ink));
+        let color = mean(pixels, area).map_or_else(|| paper(ink), |ground| tinted(ground, ink, MOST_TINT));
         Self { reach_px, color }
     }
 }
@@ -54,10 +56,10 @@ fn paper(ink: Srgba) -> Srgba {
 }
 
 /// The most tinted color that leaves the contrast, whatever single pixel is below it; the paper's where none does.
-fn tinted(ground: Vec3, ink: Srgba) -> Srgba {
+fn tinted(ground: Vec3, ink: Srgba, most: f32) -> Srgba {
     let paper = paper(ink);
     let mixed = |step: usize| {
-        let share = MOST_TINT * step as f32 / TINT_STEPS as f32;
+        let share = most * step as f32 / TINT_STEPS as f32;
         let [red, green, blue, _] = Srgba::from_linear(paper.linear().lerp(ground, share)).0;
         Srgba([red, green, blue, paper.0[3]])
     };

@@ -12,7 +12,7 @@ use crate::annotate::line_label::PreparedLine;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::place::{LabelCandidate, LabelField, LabelPlacer, LabelRequest};
 use crate::annotate::point_label::PreparedLabel;
-use crate::annotate::report::{AnnotationReport, LabelMove, LabelOutcome};
+use crate::annotate::report::{AnnotationReport, LabelMove, LabelOutcome, SheetBox};
 use crate::annotate::sheet::Sheet;
 use crate::description::words::LabelKind;
 use crate::draw::pixels::Pixels;
@@ -53,11 +53,15 @@ pub fn draw_labels(
     sheet_names.place_first(&mut placer);
     sheet_names.place_repetitions(&mut placer);
     sheet_names.place_fallbacks(&mut placer, composer);
-    let numbers =
-        annotations.contours.as_ref().map(|marks| draw_contours(marks, &mut placer, ground, composer));
+    let numbers = annotations
+        .contours
+        .as_ref()
+        .map(|marks| draw_contours(marks, &mut placer, ground, composer, &mut report.boxes));
     let mut drawing = numbers.unwrap_or_default();
     drawing.append(sheet_names.draw(ground, &sheet));
     report.add_texts(&drawing.texts);
+    report.boxes.extend(furniture.iter().map(SheetBox::of_furniture));
+    report.boxes.extend(sheet_names.names.iter().flat_map(NumberedName::boxes));
     let texts = labels.iter().map(|label| &label.text).chain(lines.iter().map(|line| &line.text));
     texts.zip(&sheet_names.outcomes).for_each(|(text, outcome)| outcome.report(text, report));
     drawing
@@ -187,6 +191,17 @@ struct NumberedName<'a> {
 }
 
 impl NumberedName<'_> {
+    /// The boxes of what is drawn of it.
+    fn boxes(&self) -> Vec<SheetBox> {
+        let boxes = |drawn: &DrawnName| match &self.name {
+            PreparedName::Point(label) => SheetBox::of(&label.label.text, &label.positions[drawn.choice]),
+            PreparedName::Line(line) => {
+                SheetBox::of(&line.label.text, line.candidate(drawn.occurrence, drawn.choice))
+            }
+        };
+        self.drawn.iter().flat_map(boxes).collect()
+    }
+
     /// How what was drawn departs from what was wished.
     fn moved(&self) -> Option<LabelMove> {
         match &self.name {

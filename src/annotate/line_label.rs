@@ -99,13 +99,23 @@ impl<'a> PreparedLine<'a> {
         }
         let bounds = composer.sheet.bounds();
         let pieces = smooth_pieces(&label.path_px, &bounds, style.text.size_px);
-        let longest = pieces.first().map_or(0.0, Polyline::length) as f32;
-        if label.placement == LinePlacement::Spread && !letters.is_joined {
-            spread(&mut letters, longest, style.text.size_px);
+        let (space, interval) = (composer.sheet.px(1.0), composer.sheet.size.x * REPEAT_SHARE);
+        let is_spread = label.placement == LinePlacement::Spread && !letters.is_joined;
+        // Letters are spaced for one piece: the first along which they can stand.
+        let groups: Vec<&[Polyline]> = if is_spread { pieces.chunks(1).collect() } else { vec![&pieces[..]] };
+        let mut occurrences = Vec::new();
+        for group in groups {
+            let mut spaced = letters.clone();
+            if is_spread {
+                spread(&mut spaced, group[0].length() as f32, style.text.size_px);
+            }
+            let setter = LineSetter { label, style: &style, letters: &spaced, space };
+            occurrences = setter.occurrences(group, interval);
+            if !occurrences.is_empty() {
+                letters = spaced;
+                break;
+            }
         }
-        let setter = LineSetter { label, style: &style, letters: &letters, space: composer.sheet.px(1.0) };
-        let interval = composer.sheet.size.x * REPEAT_SHARE;
-        let occurrences = setter.occurrences(&pieces, interval);
         Some(Self { label, missing: letters.missing, style, letters, occurrences })
     }
 
@@ -126,6 +136,11 @@ impl<'a> PreparedLine<'a> {
     pub fn request(&self, occurrence: usize) -> LabelRequest {
         let candidates = self.occurrences[occurrence].iter().map(|one| one.boxes.clone()).collect();
         LabelRequest { candidates, reserved: None }
+    }
+
+    /// What an occurrence takes of the sheet.
+    pub fn candidate(&self, occurrence: usize, choice: usize) -> &LabelCandidate {
+        &self.occurrences[occurrence][choice].boxes
     }
 
     pub fn draw(&self, occurrence: usize, choice: usize, ground: &Pixels, drawing: &mut Drawing) {

@@ -101,6 +101,14 @@ impl<'a> LabelPlacer<'a> {
         requests.iter().enumerate().map(choose).collect()
     }
 
+    /// Whether nothing is placed in `area`.
+    pub fn is_clear(&self, area: &PixelBox) -> bool {
+        !self.placed.near(area).any(|mark| match &mark.shape {
+            OccupiedShape::Box(taken) => taken.overlaps(area),
+            OccupiedShape::Leader(leader) => area.meets(leader),
+        })
+    }
+
     fn keep(&mut self, candidate: &LabelCandidate) {
         candidate.boxes().for_each(|area| self.placed.add(OccupiedShape::Box(*area), 0));
         if let Some(leader) = candidate.leader {
@@ -134,7 +142,8 @@ impl LabelCandidate {
         whole.into_iter().chain(&self.letters)
     }
 
-    fn boxes(&self) -> impl Iterator<Item = &PixelBox> {
+    /// The boxes that it takes.
+    pub fn boxes(&self) -> impl Iterator<Item = &PixelBox> {
         self.text_boxes().chain(&self.symbol)
     }
 }

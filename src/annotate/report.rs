@@ -1,6 +1,10 @@
 //! The report of annotating a picture.
 
+use glam::Vec2;
+
 use crate::annotate::drawing::DrawnText;
+use crate::annotate::pixel_box::PixelBox;
+use crate::annotate::place::LabelCandidate;
 
 /// A piece of furniture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,10 +29,12 @@ pub enum FurnitureKind {
 
 /// The labels and pieces of furniture that were drawn, and the others by reason. Texts are as given, in the order of
 /// the annotations.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AnnotationReport {
     /// Labels drawn.
     pub placed: Vec<String>,
+    /// What the texts and symbols drawn on the picture take of it, with their halos.
+    pub boxes: Vec<SheetBox>,
     /// Labels drawn elsewhere than where they are wished, with the reason; they are among those placed.
     pub moved: Vec<MovedLabel>,
     /// Labels not drawn because terrain or something on it hides their place.
@@ -47,6 +53,29 @@ pub struct AnnotationReport {
     pub left_out: Vec<FurnitureKind>,
     /// Texts drawn with boxes in place of characters that the embedded fonts lack.
     pub missing_glyphs: Vec<MissingGlyphs>,
+}
+
+/// An upright box on the picture: pixels from its upper left corner, X right and Y down.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SheetBox {
+    /// The label whose text, letter or symbol it holds; `None` for furniture.
+    pub text: Option<String>,
+    /// Its upper left corner.
+    pub min: Vec2,
+    /// Its lower right corner.
+    pub max: Vec2,
+}
+
+impl SheetBox {
+    /// The boxes of a label's text, letters and symbol.
+    pub(in crate::annotate) fn of(text: &str, candidate: &LabelCandidate) -> Vec<Self> {
+        let one = |area: &PixelBox| Self { text: Some(text.to_owned()), min: area.min, max: area.max };
+        candidate.boxes().map(one).collect()
+    }
+
+    pub(in crate::annotate) fn of_furniture(area: &PixelBox) -> Self {
+        Self { text: None, min: area.min, max: area.max }
+    }
 }
 
 /// A label drawn elsewhere than where it is wished.

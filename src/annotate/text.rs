@@ -168,8 +168,8 @@ impl Drawing {
         self.write(line, at, color);
     }
 
-    /// Draws one halo under all of `lines`. Drawn before any line is
-    /// written, it covers no neighbor's letters, and has one even tone where lines are close.
+    /// Draws one halo under all of `lines`. Drawn before any line is written, it covers no neighbor's letters, and has one
+    /// even tone where lines are close.
     pub fn draw_halo(&mut self, lines: &[(&TypesetLine, Vec2)], halo: Halo) {
         let mut all = PathBuilder::new();
         for path in lines.iter().filter_map(|(line, at)| line.outline_at(*at)) {

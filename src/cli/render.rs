@@ -193,6 +193,8 @@ impl RenderedPicture {
             ("hidden", hidden),
             ("outside the picture", outside),
             ("without room", crowded_out),
+            ("led by a line", &led),
+            ("at a place, not along their line", &off_line),
             ("shortened", shortened),
         ];
         let labels = labels.into_iter().filter(|(_, labels)| !labels.is_empty()).map(|(why, labels)| {

@@ -5,6 +5,8 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::annotate::annotation::{LineLabel, LinePlacement, PictureLabel};
 use crate::draw::list::FeatureId;
 use crate::geom::axis::axis;
+use crate::geom::polygon::inner_point;
+use crate::geom::rect::Rect;
 use crate::render::picture::Rendering;
 use crate::scene::SceneLabel;
 use crate::scene::label_course::LabelCourse;
@@ -33,7 +35,7 @@ pub fn line_label(
             (pieces, LinePlacement::Repeated, half_width)
         }
         LabelCourse::Across(rings) => {
-            let axes = rings.iter().filter_map(|ring| area_axis(ring, camera, picture)).collect();
+            let axes = rings.iter().flat_map(|ring| area_axes(ring, camera, picture)).collect();
             (axes, LinePlacement::Spread, 0.0)
         }
     };
@@ -122,9 +124,12 @@ fn drawn_width_at(at: Vec2, across: Vec2, picture: &Rendering) -> f32 {
     (reach(1.0) + reach(-1.0) + 1) as f32
 }
 
-/// The axis of an area on the picture; `None` where less than most of it is seen.
-fn area_axis(ring: &[Vec3], camera: &Camera, picture: &Rendering) -> Option<Vec<Vec2>> {
-    let seen: Vec<Projected> = ring.iter().map(|&at| camera.project(at)).collect::<Option<_>>()?;
+/// The axis of an area on the picture and, for where that is too bent, its widest level span; none where less than most
+/// of it is seen.
+fn area_axes(ring: &[Vec3], camera: &Camera, picture: &Rendering) -> Vec<Vec<Vec2>> {
+    let Some(seen) = ring.iter().map(|&at| camera.project(at)).collect::<Option<Vec<Projected>>>() else {
+        return Vec::new();
+    };
     let size = DVec2::new(picture.pixels.width().into(), picture.pixels.height().into());
     let inside = seen.iter().map(|at| at.pixel.as_dvec2().clamp(DVec2::ZERO, size));
     let outline: Vec<DVec2> = inside.collect();
@@ -139,6 +144,13 @@ fn area_axis(ring: &[Vec3], camera: &Camera, picture: &Rendering) -> Option<Vec<
     let count = middles.iter().filter(|at| shown(at)).count();
     /// Less of an area seen is another hill's foreground.
     const LEAST_SEEN: f32 = 0.8;
-    (middles.len() >= 2 && count as f32 >= LEAST_SEEN * middles.len() as f32)
-        .then(|| middles.iter().map(|at| at.as_vec2()).collect())
+    if middles.len() < 2 || (count as f32) < LEAST_SEEN * middles.len() as f32 {
+        return Vec::new();
+    }
+    let picture_rect = Rect { min: DVec2::ZERO, max: size };
+    let span = inner_point([outline.as_slice()], &picture_rect).map(|(middle, width)| {
+        let half = Vec2::new(width as f32 * 0.5, 0.0);
+        vec![middle.as_vec2() - half, middle.as_vec2() + half]
+    });
+    std::iter::once(middles.iter().map(|at| at.as_vec2()).collect()).chain(span).collect()
 }

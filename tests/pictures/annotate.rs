@@ -5,7 +5,7 @@
 use glam::Vec2;
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
-use sandtable::annotate::annotation::{Annotations, PictureLabel};
+use sandtable::annotate::annotation::{Annotations, LineLabel, LinePlacement, PictureLabel};
 use sandtable::annotate::legend::Legend;
 use sandtable::annotate::north::NorthArrow;
 use sandtable::annotate::paint::annotate;
@@ -223,7 +223,7 @@ fn labels_left_out_leave_no_pixel_and_do_not_disturb_the_others() {
 fn a_good_sheet_is_drawn_whole() {
     let (pixels, report) = annotated(1920, 1080, &sheet(1920, 1080));
     assert_eq!(report.placed.len(), 14);
-    let whole = AnnotationReport { placed: vec![], moved: vec![], ..report };
+    let whole = AnnotationReport { placed: vec![], boxes: vec![], moved: vec![], ..report };
     assert_eq!(whole, AnnotationReport::default());
     assert!(pixels.data().iter().all(|color| color.0[3] == 255), "an opaque picture stays opaque");
 }
@@ -330,5 +330,48 @@ fn proof_sheets() {
         let path = format!("{}/annotate-trouble-{width}.png", env!("CARGO_TARGET_TMPDIR"));
         image::save_buffer(&path, pixels.bytes(), width, height, image::ExtendedColorType::Rgba8)
             .expect("the folder can be written");
+    }
+}
+
+#[test]
+#[ignore = "prints times, best of five"]
+fn a_thousand_labels() {
+    let names = ["Cross Mountain", "Caryville", "Cove Creek", "Pass road", "Old Mill"];
+    let kinds = [LabelKind::Summit, LabelKind::Place, LabelKind::Water, LabelKind::Road, LabelKind::Point];
+    let labels: Vec<PictureLabel> = (0..1000usize)
+        .map(|n| {
+            let (x, y) = ((n * 7919 % 1920) as f32, (n * 104_729 % 1080) as f32);
+            label(&format!("{} {n}", names[n % 5]), kinds[n % 5], x, y, n as f32)
+        })
+        .collect();
+    let lines: Vec<LineLabel> = (0..1000usize)
+        .map(|n| {
+            let start = Vec2::new((n * 7919 % 1920) as f32, (n * 104_729 % 1080) as f32);
+            let at = |step: usize| start + Vec2::new(step as f32 * 8.0, 30.0 * (step as f32 * 0.2).sin());
+            LineLabel {
+                text: format!("{} {n}", names[n % 5]),
+                path_px: vec![(0..50).map(at).collect()],
+                half_width_px: 2.0,
+                placement: LinePlacement::Repeated,
+                kind: kinds[n % 5],
+                ink: None,
+                rank: 0.0,
+                fallback: None,
+            }
+        })
+        .collect();
+    let annotations = [
+        ("at places", Annotations { labels, ..Annotations::default() }),
+        ("along lines", Annotations { line_labels: lines, ..Annotations::default() }),
+    ];
+    for (what, annotations) in annotations {
+        let run = || {
+            let mut pixels = grain(1920, 1080);
+            let start = std::time::Instant::now();
+            let report = annotate(&mut pixels, &annotations);
+            (start.elapsed(), report.placed.len())
+        };
+        let (took, placed) = (0..5).map(|_| run()).min().expect("five");
+        println!("1000 labels {what}: {placed} placed in {took:?}");
     }
 }

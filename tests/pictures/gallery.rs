@@ -178,3 +178,10 @@ fn left_over() -> Vec<String> {
     }
     left_over.iter().map(|path| format!("{} is of no view", path.display())).collect()
 }
+
+#[test]
+fn no_label_of_any_scene_covers_another_or_furniture() {
+    for Shown { name, finished, .. } in shown() {
+        assert_eq!(crate::overlaps::overlaps(&finished.annotations), [], "{name}");
+    }
+}

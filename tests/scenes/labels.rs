@@ -7,6 +7,7 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::scene::SceneModel;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
+use sandtable::scene::label_course::LabelCourse;
 
 /// A level grid of 1000 m by 1000 m at 50 m from (0, 0), and what is named on it and around it.
 const PLACES: &str = r#"{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:32616"}},
@@ -99,4 +100,74 @@ fn a_label_has_either_a_place_or_a_file() {
         let refused = scene("refused", &format!("[[label]]\n{keys}")).map(|_| ()).expect_err("it is refused");
         assert!(refused.contains(wanted), "{wanted} in\n{refused}");
     }
+}
+
+#[test]
+fn names_follow_lines_and_areas_and_pieces_of_one_name_are_one_line() {
+    let table =
+        "[[label]]\nfile = \"places.geojson\"\nwhere = \"has(kind)\"\ntext = \"name\"\nkind = \"water\"\n";
+    let built = scene("course", table).expect("sound");
+    let course = |name: &str| &built.labels.iter().find(|label| label.text == name).expect("named").course;
+    let LabelCourse::Along(lines) = course("Brook") else { panic!("a line") };
+    assert_eq!(lines.len(), 1, "two pieces that meet");
+    let ends = [lines[0][0].x, lines[0][lines[0].len() - 1].x];
+    assert_eq!((ends[0], ends[1]), (100.0, 1000.0), "up to the border of the ground");
+    assert!(matches!(course("Ring"), LabelCourse::Across(rings) if rings.len() == 1));
+    let led = scene("led", &format!("{table}height = 20\n")).expect("sound");
+    assert!(led.labels.iter().all(|label| label.course == LabelCourse::Place), "they are wished above");
+}
+
+#[test]
+fn a_font_is_read_and_what_is_none_is_refused_by_name() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("labels").join("font");
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::write(folder.join("han.ttf"), include_bytes!("../fonts/han.ttf")).expect("a file");
+    fs::write(folder.join("web.woff2"), b"wOF2\0\x01\0\0").expect("a file");
+    fs::write(folder.join("notes.ttf"), b"not a font").expect("a file");
+    let text = |font: &str| format!("[furniture]\n[[label]]\ntext = \"x\"\nat = [5, 5]\n#{font}");
+    assert!(scene("font", &text("")).expect("sound").font.is_none());
+    let with = |font: &str| {
+        let grid = "ncols 21\nnrows 21\nxllcenter 0\nyllcenter 0\ncellsize 50\n".to_owned();
+        fs::write(folder.join("level.asc"), grid + &"50 ".repeat(21 * 21)).expect("a file");
+        let text = format!("font = \"{font}\"\n[terrain]\ndem = \"level.asc\"\ncrs = \"EPSG:32616\"\n");
+        let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
+        let assets = Assets::new(&folder.join("scene.toml"), &[]).expect("the folder is there");
+        build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+    };
+    assert!(with("han.ttf").expect("sound").font.is_some());
+    for (font, cause) in [
+        ("web.woff2", "'web.woff2' is not used as a font: it is a web font"),
+        ("notes.ttf", "'notes.ttf' is not used as a font: it is no TrueType"),
+        ("gone.ttf", "there is no file"),
+    ] {
+        let error = with(font).expect_err("no font");
+        assert!(error.contains(cause), "{error}");
+    }
+}
+
+#[test]
+fn spot_heights_are_those_of_summits_saddles_and_lakes_without_a_label() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("labels").join("spots");
+    fs::create_dir_all(&folder).expect("a folder");
+    // Two hills of 200 m and 160 m with a saddle of 80 m between them.
+    let height = |n: usize| {
+        let (x, y) = ((n % 41) as f64, (n / 41) as f64);
+        let cone = |cx: f64, top: f64| top - 10.0 * (x - cx).hypot(y - 20.0);
+        cone(12.0, 200.0).max(cone(28.0, 160.0)).max(0.0)
+    };
+    let heights: Vec<String> = (0..41 * 41).map(|n| height(n).to_string()).collect();
+    let grid = "ncols 41\nnrows 41\nxllcenter 0\nyllcenter 0\ncellsize 50\n".to_owned();
+    fs::write(folder.join("hills.asc"), grid + &heights.join(" ")).expect("a file");
+    let built = |more: &str| {
+        let text = format!(
+            "[terrain]\ndem = \"hills.asc\"\ncrs = \"EPSG:32616\"\n[style]\nspot_heights = 9\n{more}"
+        );
+        let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
+        let assets = Assets::new(&folder.join("scene.toml"), &[]).expect("the folder is there");
+        build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+    };
+    let texts = |scene: &SceneModel| scene.labels.iter().map(|label| label.text.clone()).collect::<Vec<_>>();
+    assert_eq!(texts(&built("").expect("sound")), ["200", "160", "100"]);
+    let named = "[[label]]\ntext = \"Big Hill\"\nat = [600, 1000]\nkind = \"summit\"\n";
+    assert_eq!(texts(&built(named).expect("sound")), ["Big Hill", "160", "100"]);
 }
