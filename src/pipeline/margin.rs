@@ -84,7 +84,8 @@ fn system_name(crs: &Crs) -> String {
 fn sources(scene: &SceneModel) -> Vec<String> {
     let furniture = &scene.furniture;
     let date = furniture.date.as_ref().map(|date| format!("Information as of {}", date.as_str()));
-    furniture.sources.iter().flatten().cloned().chain(date).collect()
+    let lines = furniture.sources.iter().flatten().cloned().chain(date);
+    lines.chain(furniture.notes.iter().flatten().cloned()).collect()
 }
 
 /// The norths at the scene's middle; `None` where it has no place on Earth.
