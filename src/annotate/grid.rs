@@ -158,9 +158,14 @@ pub(in crate::annotate) fn draw_figures(
             for &end in line.runs.iter().flat_map(|run| [run.first(), run.last()]).flatten() {
                 let Some(side) = PictureSide::of(end, sheet.size) else { continue };
                 let is_first = !begun.contains(&(side, line.axis));
-                let figure = if is_first { &line.full } else { &line.figure };
-                if keep(number(figure, end, (side, place), composer), &mut drawn) && is_first {
-                    begun.push((side, line.axis));
+                let full = Some(&line.full).filter(|_| is_first);
+                for figure in full.into_iter().chain([&line.figure]) {
+                    if keep(number(figure, end, (side, place), composer), &mut drawn) {
+                        if *figure == line.full {
+                            begun.push((side, line.axis));
+                        }
+                        break;
+                    }
                 }
             }
         }
@@ -242,6 +247,16 @@ mod tests {
         assert_eq!(draw_figures(&grid, &[], FigurePlace::Inside, &mut composer).len(), 1);
         let panel = PixelBox::at(Vec2::new(300.0, 1000.0), Vec2::splat(200.0));
         assert!(draw_figures(&grid, &[panel], FigurePlace::Inside, &mut composer).is_empty());
+    }
+
+    #[test]
+    fn where_a_number_in_full_finds_no_place_its_digits_stand() {
+        let mut composer = Composer::new(1920, 1080);
+        let level = line(Vec2::new(0.0, 500.0), Vec2::new(900.0, 500.0), "40 18");
+        let grid = PictureGrid { lines: vec![level], ..PictureGrid::default() };
+        let drawn = draw_figures(&grid, &[], FigurePlace::Outside, &mut composer);
+        assert_eq!(drawn.len(), 1);
+        assert!(drawn[0].bounds().max.x < 0.0 && drawn[0].bounds().min.x > -BESIDE);
     }
 
     #[test]

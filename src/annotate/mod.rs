@@ -4,9 +4,10 @@
 //! a [`report::AnnotationReport`] of the annotations that were drawn and those that were left out.
 //!
 //! ```text
-//! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ──► canvas ──► Pixels
-//!             └─► labels ─┬► point_label ──► positions ─┬► place (two dimensions) ──► Drawing ──┘
-//!                         └► line_label ───────────────┘
+//! Annotations ──► furniture (title, north, scale_bar, legend, credit) ──► Drawing ─┬─► canvas ──► Pixels
+//!             ├─► margin, on a sheet_frame (the same, norths, locator) ─► Drawing ─┼─► pdf
+//!             ├─► rim, grid, figure ───────────────────────────────────► Drawing ─┼─► svg
+//!             └─► labels ──► positions ──► place (pure, two dimensions) ─► Drawing ─┘
 //! ```
 //!
 //! Every mark is a filled path, so that the box with which a thing is laid out is the box that it paints. Type is set

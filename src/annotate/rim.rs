@@ -88,6 +88,19 @@ mod tests {
     }
 
     #[test]
+    fn the_first_mark_on_an_edge_is_in_full_where_there_is_a_place_for_it() {
+        let mut composer = Composer::new(1920, 1080);
+        let numbered = |x: f32| RimMark {
+            figure: "45".to_owned().into(),
+            full: Some(("345 000 m E".to_owned().into(), 0)),
+            ..mark(x, 500.0, Vec2::Y)
+        };
+        let drawn = draw_marks(&[numbered(20.0), numbered(500.0), numbered(900.0)], &[], &mut composer);
+        let widths: Vec<f32> = drawn.iter().map(|drawing| drawing.bounds().size().x).collect();
+        assert!((widths[0] - widths[2]).abs() < 0.1 && widths[1] > 2.0 * widths[0], "{widths:?}");
+    }
+
+    #[test]
     fn marks_that_meet_furniture_each_other_or_the_border_are_left_out() {
         let mut composer = Composer::new(1920, 1080);
         let marks = [

@@ -27,8 +27,7 @@ const LONGEST_LABEL: usize = 60;
 pub struct RenderArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the picture to this file: .png, or .pdf or .svg with letters and lines as vectors [default: the scene's name
-    /// with .png, in the current folder]
+    /// Write the picture to this .png, .pdf or .svg file [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]

@@ -385,6 +385,8 @@ table! {
         date: Option<Stated<String>> = key::filled_text(), otherwise "none, and no magnetic north";
         /// Where the data come from, a line each, in a layout with a margin.
         sources: Option<Vec<String>> = key::text_list(), otherwise "none";
+        /// Lines of text under the sources.
+        notes: Option<Vec<String>> = key::text_list(), otherwise "none";
         /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
         grid: Option<GridName> = key::word::<GridName>(), otherwise "none; mgrs with `preset = \"military\"`";
         /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
@@ -400,7 +402,7 @@ table! {
         let layout = layout.unwrap_or_default();
         if !matches!(layout, SheetLayout::Margin | SheetLayout::Military) {
             let help = "set `layout` to margin or military, or remove it";
-            reader.without_effect(&["date", "sources"], "in a layout without a margin", help);
+            reader.without_effect(&["date", "sources", "notes"], "in a layout without a margin", help);
         }
         if layout != SheetLayout::Military {
             let help = "set `layout = \"military\"`, or remove it";

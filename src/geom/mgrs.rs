@@ -63,7 +63,7 @@ impl GridSquare {
 /// The grid reference of a longitude and latitude on WGS 84, degrees, with `digits` digits each, 0 to 5: `16SGF5012`
 /// with 2. `None` where they are out of range.
 pub fn reference(place: DVec2, digits: u8) -> Option<String> {
-    let precision = Precision::new(digits.min(5).into()).ok()?;
+    let precision = Precision::new(digits.min(5)).ok()?;
     Some(LatLon::new(place.y, place.x).ok()?.to_mgrs(precision).to_string())
 }
 

@@ -53,11 +53,8 @@ fn facts(scene: &SceneModel, grid: Option<&str>) -> Vec<String> {
         } else {
             format!("1/{}", format_trimmed(major_m / (major_m - minor_m), 3))
         };
-        facts.push(format!(
-            "Coordinates {}, ellipsoid {} m, {flattening}",
-            system_name(&scene.crs),
-            format_trimmed(major_m, 1)
-        ));
+        facts.push(system_name(&scene.crs));
+        facts.push(format!("Ellipsoid {} m, {flattening}", format_trimmed(major_m, 1)));
     }
     facts.extend(grid.map(str::to_owned));
     let datum = scene.heights.snapshot().source().vertical_datum.clone();
@@ -75,16 +72,17 @@ fn facts(scene: &SceneModel, grid: Option<&str>) -> Vec<String> {
 fn system_name(crs: &Crs) -> String {
     let name = crs.name();
     match crs.epsg() {
-        Some(code @ 32601..=32660) => format!("{name}, WGS 84 / UTM zone {} N", code - 32600),
-        Some(code @ 32701..=32760) => format!("{name}, WGS 84 / UTM zone {} S", code - 32700),
-        _ => name.to_owned(),
+        Some(code @ 32601..=32660) => format!("WGS 84 / UTM zone {} N ({name})", code - 32600),
+        Some(code @ 32701..=32760) => format!("WGS 84 / UTM zone {} S ({name})", code - 32700),
+        _ => format!("Coordinates {name}"),
     }
 }
 
 fn sources(scene: &SceneModel) -> Vec<String> {
     let furniture = &scene.furniture;
     let date = furniture.date.as_ref().map(|date| format!("Information as of {}", date.as_str()));
-    furniture.sources.iter().flatten().cloned().chain(date).collect()
+    let lines = furniture.sources.iter().flatten().cloned().chain(date);
+    lines.chain(furniture.notes.iter().flatten().cloned()).collect()
 }
 
 /// The norths at the scene's middle; `None` where it has no place on Earth.

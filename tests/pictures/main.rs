@@ -5,6 +5,7 @@ mod common;
 
 mod annotate;
 mod gallery;
+mod grid;
 mod overlaps;
 mod render_cpu;
 mod render_gpu;
