@@ -36,7 +36,7 @@ pub const LAYER: u8 = 200;
 const EM_PX: f64 = 14.0;
 
 /// The width of a line, and of the light casing on either side, in pixels of a picture 1080 lines high.
-const LINE_PX: f64 = 2.6;
+const LINE_PX: f64 = 3.0;
 const CASING_PX: f64 = 1.2;
 
 /// The casing's color: as light as paper, and seen through.
