@@ -10,7 +10,7 @@ const OBSTACLE: Srgba = Srgba::opaque(0, 104, 40);
 /// Tints of seen and of hidden ground. Relief shows through both.
 pub const SEEN: Srgba = Srgba([60, 200, 70, 96]);
 /// See [`SEEN`].
-pub const HIDDEN: Srgba = Srgba([24, 20, 52, 132]);
+pub const HIDDEN: Srgba = Srgba([24, 20, 52, 112]);
 
 /// Lines of sight over seen and over hidden ground.
 pub const SEEN_LINE: Srgba = Srgba::opaque(0, 130, 40);
@@ -19,11 +19,9 @@ pub const HIDDEN_LINE: Srgba = Srgba::opaque(200, 16, 24);
 
 /// The color of a graphic's lines: dark enough to be read on the lightest ground, light enough to be told from black.
 pub fn graphic_color(side: GraphicSide, tint: GraphicTint) -> Srgba {
-    match (tint, side) {
-        (GraphicTint::Obstacle, GraphicSide::Friend | GraphicSide::Neutral | GraphicSide::Unknown) => {
-            OBSTACLE
-        }
-        (_, side) => side_color(side),
+    match tint {
+        GraphicTint::Obstacle => OBSTACLE,
+        GraphicTint::Own => side_color(side),
     }
 }
 

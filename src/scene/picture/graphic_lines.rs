@@ -36,7 +36,7 @@ pub const LAYER: u8 = 200;
 const EM_PX: f64 = 14.0;
 
 /// The width of a line, and of the light casing on either side, in pixels of a picture 1080 lines high.
-const LINE_PX: f64 = 2.6;
+const LINE_PX: f64 = 3.0;
 const CASING_PX: f64 = 1.2;
 
 /// The casing's color: as light as paper, and seen through.
@@ -54,6 +54,12 @@ const LONGEST_PX: f64 = 40.0;
 
 /// How often a leg is halved at most: enough for one from here to the horizon.
 const MOST_HALVES: u32 = 14;
+
+/// How far to each side of a line the ground is looked at for its slope, in pixels.
+const PROBE_PX: f64 = 5.0;
+
+/// The most that a line grows on the ground because that is seen at a low angle.
+const MOST_GROWTH: f64 = 3.0;
 
 /// How far beside the picture a line is still drawn, in pixels.
 const MARGIN_PX: f64 = 12.0;
@@ -265,10 +271,8 @@ impl<'a> GraphicView<'a> {
         for pair in kept.windows(2) {
             self.divide([places[pair[0]], places[pair[1]]], 0, &mut |[from, to]| {
                 let along = (to - from).truncate().normalize_or_zero();
-                let [from, to] = [from, to].map(|at| LineVertex {
-                    at: at.truncate(),
-                    px_m: self.scale.px * self.scale.meters_per_px(at, along),
-                });
+                let [from, to] =
+                    [from, to].map(|at| LineVertex { at: at.truncate(), px_m: self.px_m(at, along) });
                 match runs.last_mut().filter(|_| end == Some(from.at)) {
                     Some(run) => run.push(to),
                     None => runs.push(vec![from, to]),
@@ -277,6 +281,31 @@ impl<'a> GraphicView<'a> {
             });
         }
         if is_dashed { runs.iter().flat_map(|run| dashes(run)).collect() } else { runs }
+    }
+
+    /// Meters of the ground as it is, across a line through `at` along `along`, in a pixel of a picture 1080 lines high
+    /// across the line. On a slope that faces the eye that is less than on level ground.
+    fn px_m(&self, at: DVec3, along: DVec2) -> f64 {
+        let square_m = self.scale.px * self.scale.meters_per_px_at(self.depth_m(at));
+        let reach_m = PROBE_PX * square_m;
+        let pixel = |way: DVec2| {
+            let place = at.truncate() + way * reach_m;
+            self.camera.project(self.on_ground(place)).map(|seen| seen.pixel.as_dvec2())
+        };
+        let across = along.perp();
+        let [Some(left), Some(right), Some(ahead), Some(behind)] =
+            [across, -across, along, -along].map(pixel)
+        else {
+            return self.scale.px * self.scale.meters_per_px(at, along);
+        };
+        let wide_px = (left - right).perp_dot((ahead - behind).normalize_or_zero()).abs();
+        let px_m = 2.0 * reach_m * self.scale.px / wide_px.max(f64::MIN_POSITIVE);
+        px_m.clamp(square_m, square_m * MOST_GROWTH)
+    }
+
+    /// How far a place is from the eye along the view.
+    fn depth_m(&self, at: DVec3) -> f64 {
+        (at - self.camera.eye().as_dvec3()).dot(self.camera.forward().as_dvec3())
     }
 
     /// Calls `visit` with the parts of a leg that may be in view, in order, each short on the picture.

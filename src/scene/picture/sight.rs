@@ -235,8 +235,8 @@ fn draw_range(
     let origin = scene.lattice.origin();
     let is_seen = |at: DVec2| {
         let target = SightEnd { at: at + origin, above_m: options.target_above_m };
-        let sight = line_of_sight(&scene.lattice, options.observer, target, options.curvature);
-        range.fill != RangeExtent::Seen || sight == Sight::Clear
+        range.fill != RangeExtent::Seen
+            || line_of_sight(&scene.lattice, options.observer, target, options.curvature) == Sight::Clear
     };
     let is_sector = range.sector.width_deg < 360.0;
     let middle = azimuths[azimuths.len() / 2];

@@ -13,11 +13,6 @@ const ARROW_EVERY: f64 = 6.0;
 /// Sides of an arrowhead of traffic, in text heights.
 const TRAFFIC_EM: [f64; 2] = [0.8, 0.5];
 
-/// A line without texts (LINE1).
-pub fn plain(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
-    drawing.line(input.points);
-}
-
 /// A line with its name at both ends (LINE2).
 pub fn end_labeled(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     drawing.line(input.points);
