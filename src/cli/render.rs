@@ -52,11 +52,15 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Write one sheet of small pictures, one for each camera, or for each phase with --all-phases
-    #[arg(long, conflicts_with_all = ["buffers", "json"])]
+    #[arg(long, conflicts_with_all = ["buffers", "json", "sidecar"])]
     pub sheet: bool,
     /// Also write what each pixel shows into this folder: depth.tif, elevation.tif, normal.png, feature.tif, features.csv
     #[arg(long, value_name = "DIR")]
     pub buffers: Option<PathBuf>,
+    /// Also describe the picture in a file beside it, OUT.json: the camera, the scene's hash and files, the boxes of labels and
+    /// features
+    #[arg(long)]
+    pub sidecar: bool,
     /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step
     #[arg(long)]
     pub json: bool,

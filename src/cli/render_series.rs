@@ -17,6 +17,7 @@ use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
 use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
 use crate::pipeline::sheet_file::write_sheet;
+use crate::pipeline::sidecar::SidecarDraft;
 use crate::scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
@@ -102,6 +103,10 @@ fn render_scene(
     for path in &paths {
         files::check_output(path, &scene.files)
             .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
+        if arguments.sidecar {
+            files::check_output(&sidecar_path(path), &scene.files)
+                .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
+        }
     }
     let mut pictures = Vec::new();
     for (view, path) in views.into_iter().zip(paths) {
@@ -130,13 +135,29 @@ fn render_picture(
         files::make_folder(&folder)?;
         PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
     }
+    let draft = if arguments.sidecar {
+        progress("describing the picture");
+        Some(SidecarDraft::new(scene, &arguments.scene.scene, camera, &drawn)?)
+    } else {
+        None
+    };
     let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, progress);
     let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
     let output = if small.is_some() {
         PictureOutput::Sheet(sheet.painted())
     } else {
         progress("writing the picture");
-        write_sheet(&path, sheet, camera.dpi(), scene.title.as_deref())?;
+        let description = format!(
+            "camera {}, coordinates {}, heights times {}",
+            camera.name,
+            scene.crs.name(),
+            scene.scale.0
+        );
+        write_sheet(&path, sheet, camera.dpi(), (scene.title.as_deref(), &description))?;
+        if let Some(draft) = draft {
+            let text = format!("{:#}\n", draft.finished(&annotations));
+            files::write(&sidecar_path(&path), text.as_bytes())?;
+        }
         PictureOutput::File(path)
     };
     let camera = camera.name.clone();
@@ -174,6 +195,11 @@ pub fn contact_sheet(arguments: &RenderArguments, scenes: &[RenderedScene]) -> R
     let title = first.and_then(|scene| scene.title.as_deref());
     let font = first.and_then(|scene| scene.font.as_ref());
     Ok(sheet_of(arguments, pictures.len())?.compose(title, &pictures, font))
+}
+
+/// The sidecar of a picture: its name with `.json` in place of the extension.
+fn sidecar_path(path: &Path) -> PathBuf {
+    path.with_extension("json")
 }
 
 /// A path for each of `names`: `path` with the name behind its own. Characters that are trouble in file names become

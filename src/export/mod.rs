@@ -52,20 +52,38 @@ impl SceneExport<'_> {
     }
 }
 
-/// [`encode_png`] with the resolution of its print, pixels per inch, for programs that print it at its size.
-pub fn encode_png_at(pixels: &Pixels, dpi: f64) -> Vec<u8> {
+/// What a PNG file says of its picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PngNotes {
+    /// Pixels per inch of its print, for programs that print it at its size.
+    pub dpi: Option<f64>,
+    /// Keywords, of 1 to 79 Latin letters, with their texts.
+    pub texts: Vec<(&'static str, String)>,
+}
+
+/// [`encode_png`] with notes in chunks `pHYs` and `iTXt` (PNG 3rd edition, sections 11.3.3 and 11.3.4).
+pub fn encode_png_with(pixels: &Pixels, notes: &PngNotes) -> Vec<u8> {
     /// The signature, and the chunk IHDR with its length, name and check.
     const HEAD: usize = 8 + 25;
     let mut png = encode_png(pixels);
-    let per_meter = libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32;
-    let mut chunk = b"pHYs".to_vec();
-    chunk.extend(per_meter.to_be_bytes().iter().chain(&per_meter.to_be_bytes()).chain(&[1]));
-    let mut check = flate2::Crc::new();
-    check.update(&chunk);
-    let length = (chunk.len() as u32 - 4).to_be_bytes();
-    let bytes = length.into_iter().chain(chunk).chain(check.sum().to_be_bytes());
-    png.splice(HEAD..HEAD, bytes);
+    let resolution = notes.dpi.map(|dpi| {
+        let per_meter = (libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32).to_be_bytes();
+        png_chunk(b"pHYs", &[&per_meter[..], &per_meter, &[1]].concat())
+    });
+    // Neither packed, nor in a language, nor with a keyword in one.
+    let text = |(key, text): &(&str, String)| {
+        png_chunk(b"iTXt", &[key.as_bytes(), &[0; 5], text.replace('\0', " ").as_bytes()].concat())
+    };
+    let chunks: Vec<u8> = resolution.into_iter().chain(notes.texts.iter().map(text)).flatten().collect();
+    png.splice(HEAD..HEAD, chunks);
     png
+}
+
+fn png_chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let mut check = flate2::Crc::new();
+    check.update(name);
+    check.update(data);
+    [&(data.len() as u32).to_be_bytes()[..], name, data, &check.sum().to_be_bytes()].concat()
 }
 
 /// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty.
@@ -90,12 +108,15 @@ mod tests {
     use crate::draw::color::Srgba;
 
     #[test]
-    fn a_picture_with_a_resolution_is_read_back_with_it() {
+    fn a_picture_is_read_back_with_its_resolution_and_its_texts() {
         let pixels = Pixels::filled(5, 3, Srgba::opaque(1, 2, 3));
-        let bytes = encode_png_at(&pixels, 300.0);
+        let texts = vec![("Title", "Höhe\0 1".to_owned())];
+        let bytes = encode_png_with(&pixels, &PngNotes { dpi: Some(300.0), texts });
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().expect("a sound head");
         let print = reader.info().pixel_dims.expect("a resolution");
         assert_eq!((print.xppu, print.yppu, print.unit), (11_811, 11_811, png::Unit::Meter));
+        let text = &reader.info().utf8_text[0];
+        assert_eq!((text.keyword.as_str(), text.get_text().expect("plain").as_str()), ("Title", "Höhe  1"));
         let mut data = vec![0; 5 * 3 * 3];
         reader.next_frame(&mut data).expect("sound");
         assert_eq!(data[..3], [1, 2, 3]);

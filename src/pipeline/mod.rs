@@ -48,6 +48,7 @@ pub mod rim;
 pub mod scene_file;
 pub mod service;
 pub mod sheet_file;
+pub mod sidecar;
 pub mod sight;
 pub mod viewshed;
 pub mod viewshed_map;

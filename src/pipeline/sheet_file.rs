@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::annotate::paint::ComposedSheet;
 use crate::annotate::pdf::PdfError;
-use crate::export::{encode_png, encode_png_at};
+use crate::export::{PngNotes, encode_png, encode_png_with};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, WriteFileError};
 
@@ -22,7 +22,7 @@ pub enum WriteSheetError {
 }
 
 /// Writes a sheet: with letters and lines as vectors where the name ends in `.pdf` or `.svg`, otherwise as PNG. `dpi` are
-/// the pixels per inch of its print, where it has one in mind.
+/// the pixels per inch of its print, where it has one in mind; a PNG holds `description` as well.
 ///
 /// # Errors
 /// See [`WriteSheetError`].
@@ -30,7 +30,7 @@ pub fn write_sheet(
     path: &Path,
     sheet: ComposedSheet,
     dpi: Option<f64>,
-    title: Option<&str>,
+    (title, description): (Option<&str>, &str),
 ) -> Result<(), WriteSheetError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let print_dpi = dpi.unwrap_or(SCREEN_DPI) as f32;
@@ -38,8 +38,10 @@ pub fn write_sheet(
         "pdf" => sheet.pdf(print_dpi, title).map_err(FileError::at(path))?,
         "svg" => sheet.svg(print_dpi, &encode_png(&sheet.pixels)).into_bytes(),
         _ => {
-            let pixels = sheet.painted();
-            dpi.map_or_else(|| encode_png(&pixels), |dpi| encode_png_at(&pixels, dpi))
+            let mut texts = vec![("Software", concat!("sandtable ", env!("CARGO_PKG_VERSION")).to_owned())];
+            texts.extend(title.map(|title| ("Title", title.to_owned())));
+            texts.push(("Description", description.to_owned()));
+            encode_png_with(&sheet.painted(), &PngNotes { dpi, texts })
         }
     };
     Ok(files::write(path, &bytes)?)

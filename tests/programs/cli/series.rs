@@ -108,3 +108,46 @@ fn a_sheet_has_a_picture_for_each_camera_or_phase() {
     let said = run_in(scratch.folder(), &["render", &scene, "--sheet", "--size", "24x24"]).failed(2);
     assert!(said.contains("state a larger --size"), "{said}");
 }
+
+#[test]
+fn a_sidecar_says_where_everything_is_and_of_what_the_picture_is() {
+    let scratch = Scratch::new();
+    let scene = project("scenes/labels.toml");
+    let render = ["render", &scene, "-o", "west.png", "--sidecar", "--size", "480x270"];
+    run_in(scratch.folder(), &render).ok();
+    assert_eq!(scratch.names(), ["west.json", "west.png"]);
+    let text = std::fs::read_to_string(scratch.at("west.json")).expect("written");
+    let sidecar: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(sidecar["scene"]["sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(sidecar["camera"]["projection"]["kind"], "perspective");
+    let labels = sidecar["labels"].as_array().expect("a list");
+    let placed: Vec<&Value> = labels.iter().filter(|label| label["state"] == "placed").collect();
+    assert!(placed.len() > 3 && placed.len() <= labels.len(), "{labels:?}");
+    for label in placed {
+        let boxes = label["boxes"].as_array().expect("a list");
+        assert!(!boxes.is_empty(), "{label}");
+        for corners in boxes {
+            let corners: Vec<f64> =
+                corners.as_array().expect("four").iter().filter_map(Value::as_f64).collect();
+            let [left, top, right, bottom] = corners[..] else { panic!("{label}") };
+            assert!(0.0 <= left && left < right && right <= 480.0, "{label}");
+            assert!(0.0 <= top && top < bottom && bottom <= 270.0, "{label}");
+        }
+    }
+    let features = sidecar["features"].as_array().expect("a list");
+    let share = |name: &str| {
+        let feature = features.iter().find(|feature| feature["name"] == name);
+        feature.unwrap_or_else(|| panic!("{name}: {features:?}"))["share"].as_f64().expect("a share")
+    };
+    assert!(share("ground") > 0.3 && share("lake Cove Lake") > 0.001);
+    let shares: f64 = features.iter().filter_map(|feature| feature["share"].as_f64()).sum();
+    assert!(shares <= 1.0 + 1e-9, "{shares}");
+    // The same scene has the same sidecar; the picture itself says what it is.
+    run_in(scratch.folder(), &render).ok();
+    assert_eq!(std::fs::read_to_string(scratch.at("west.json")).expect("written"), text);
+    let file = std::io::BufReader::new(std::fs::File::open(scratch.at("west.png")).expect("written"));
+    let reader = png::Decoder::new(file).read_info().expect("a picture");
+    let texts = &reader.info().utf8_text;
+    let keys: Vec<&str> = texts.iter().map(|text| text.keyword.as_str()).collect();
+    assert_eq!(keys, ["Software", "Title", "Description"]);
+}
