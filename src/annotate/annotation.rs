@@ -5,8 +5,11 @@
 
 use glam::Vec2;
 
+use crate::annotate::class_legend::LegendEntry;
 use crate::annotate::cover::SceneCover;
+use crate::annotate::grid::PictureGrid;
 use crate::annotate::legend::Legend;
+use crate::annotate::margin::MarginNotes;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::rim::RimMark;
 use crate::annotate::scale_bar::ScaleBar;
@@ -24,12 +27,16 @@ pub struct Annotations {
     pub labels: Vec<PictureLabel>,
     /// Names along lines, in any order.
     pub line_labels: Vec<LineLabel>,
+    /// Numbers and ticks of contour lines.
+    pub contours: Option<ContourMarks>,
     /// The font for characters that the embedded fonts lack.
     pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
     pub rim: Vec<RimMark>,
     /// Military symbols, placed before labels.
     pub symbols: Vec<PictureSymbol>,
+    /// The coordinate grid on the ground, under everything else.
+    pub grid: Option<PictureGrid>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.
@@ -40,8 +47,12 @@ pub struct Annotations {
     pub scale_bar: Option<ScaleBar>,
     /// The elevation legend, lower right or under the north arrow.
     pub legend: Option<Legend>,
+    /// The classes that the picture shows; with a margin, there.
+    pub classes: Vec<LegendEntry>,
     /// The source of the data, small along the lower border.
     pub credit: Option<String>,
+    /// What stands round the picture on a sheet with a margin; furniture is there then, and not on the picture.
+    pub margin: Option<MarginNotes>,
     /// Where the picture shows the scene; scale bar and legend leave their lower corners for the upper ones where they
     /// would cover it there and not here.
     pub cover: Option<SceneCover>,
@@ -81,6 +92,30 @@ pub enum LinePlacement {
     Ends,
     /// On the line, its letters spaced over most of it.
     Spread,
+    /// On the line, where it runs to the right, so that the tops of the letters point to its left.
+    Uphill,
+}
+
+/// What contour lines carry on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContourMarks {
+    /// Lines that may carry their number.
+    pub numbered: Vec<NumberedContour>,
+    /// Short strokes from lines round hollows, downhill, in pixels.
+    pub ticks: Vec<[Vec2; 2]>,
+    /// The color of the lines; numbers have it at full strength, darkened where that is needed to read them.
+    pub color: Srgba,
+}
+
+/// A contour line seen on the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberedContour {
+    /// The elevation.
+    pub text: String,
+    /// How many intervals of numbered lines it lies above 0.
+    pub level: i64,
+    /// In pixels, the higher ground to the left as one looks along it, X right and Y down.
+    pub path_px: Vec<Vec2>,
 }
 
 /// A name at a place on the picture.

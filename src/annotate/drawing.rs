@@ -6,8 +6,9 @@
 use glam::Vec2;
 use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Rect, Stroke, Transform};
 
+use crate::annotate::halo::Halo;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, HALO, PANEL, Sheet};
+use crate::annotate::sheet::{FRAME, PANEL, Sheet};
 use crate::draw::color::Srgba;
 
 /// Outlines of strokes are approximated to this fraction of a pixel: at 1 the round joins of small type are visible
@@ -88,8 +89,12 @@ impl Drawing {
         self.marks.extend(path.finish().map(|path| PaintedPath { path, color }));
     }
 
-    /// This drawing on a panel from the origin to `corner`: a light ground with a hairline around it.
+    /// This drawing on a panel from the origin to `corner`: a light ground with a hairline around it. On a sheet without
+    /// panels, this drawing.
     pub fn on_panel(self, corner: Vec2, sheet: &Sheet) -> Self {
+        if !sheet.has_panels {
+            return self;
+        }
         let area = PixelBox { min: Vec2::ZERO, max: corner };
         let mut panel = Self::default();
         panel.rect(area, PANEL);
@@ -103,9 +108,9 @@ impl Drawing {
         self.marks.extend(path.map(|path| PaintedPath { path, color }));
     }
 
-    /// Fills `path` on a halo reaching `reach` pixels around it.
-    pub fn fill_haloed(&mut self, path: Path, color: Srgba, reach: f32) {
-        self.stroke(&path, reach * 2.0, HALO);
+    /// Fills `path` on a halo.
+    pub fn fill_haloed(&mut self, path: Path, color: Srgba, halo: Halo) {
+        self.stroke(&path, halo.reach_px * 2.0, halo.color);
         self.fill(path, color);
     }
 

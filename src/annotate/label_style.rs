@@ -6,7 +6,8 @@ use crate::annotate::annotation::PictureLabel;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon};
 use crate::annotate::fonts::FontCut;
-use crate::annotate::sheet::{HALO, INK, PAPER, SOFT_INK, Sheet, WATER_INK};
+use crate::annotate::halo::{Halo, worst_contrast};
+use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet, WATER_INK};
 use crate::annotate::text::TextStyle;
 use crate::description::words::LabelKind;
 use crate::draw::color::Srgba;
@@ -64,16 +65,24 @@ impl LabelStyle {
         }
     }
 
-    pub fn draw_symbol(&self, label: &PictureLabel, at: Vec2, sheet: &Sheet, drawing: &mut Drawing) {
-        let (size, reach) = (self.symbol, self.halo * 0.8);
+    pub fn draw_symbol(
+        &self,
+        label: &PictureLabel,
+        at: Vec2,
+        halo: Halo,
+        sheet: &Sheet,
+        drawing: &mut Drawing,
+    ) {
+        let size = self.symbol;
+        let halo = Halo { reach_px: halo.reach_px * 0.8, ..halo };
         if label.kind == LabelKind::Summit {
             let corners = [(0.0, -1.0), (0.95, 0.72), (-0.95, 0.72)];
             if let Some(triangle) = polygon(&corners.map(|(x, y)| at + Vec2::new(x, y) * size)) {
-                drawing.fill_haloed(triangle, self.ink, reach);
+                drawing.fill_haloed(triangle, self.ink, halo);
             }
             return;
         }
-        drawing.disc(at, size + reach, HALO);
+        drawing.disc(at, size + halo.reach_px, halo.color);
         drawing.disc(at, size, self.ink);
         if label.kind == LabelKind::Place {
             drawing.disc(at, size - sheet.px(1.6).max(1.0), PAPER);
@@ -82,6 +91,12 @@ impl LabelStyle {
 }
 
 impl LineStyle {
+    /// Numbers on contour lines of a color.
+    pub fn contour(color: Srgba, composer: &Composer) -> Self {
+        let text = composer.style(13.5, FontCut::Condensed);
+        Self { text, ink: legible(color), halo: composer.sheet.px(2.6).max(1.6) }
+    }
+
     pub fn new(kind: LabelKind, ink: Option<Srgba>, composer: &Composer) -> Self {
         let (size, cut, tracking, usual) = match kind {
             LabelKind::Water => (17.0, FontCut::Italic, 0.08, WATER_INK),
@@ -93,4 +108,21 @@ impl LineStyle {
         let text = TextStyle { tracking, ..composer.style(size, cut) };
         Self { text, ink: ink.unwrap_or(usual), halo: halo_px(&composer.sheet) }
     }
+}
+
+/// `color` without transparency, darkened until it can be read on paper.
+fn legible(color: Srgba) -> Srgba {
+    /// Darker than the least contrast needs: halos are tinted.
+    const CONTRAST: f32 = 6.0;
+    let [red, green, blue, _] = color.0;
+    let darkened = |percent: u32| {
+        let dark = |channel: u8| (u32::from(channel) * percent / 100) as u8;
+        Srgba::opaque(dark(red), dark(green), dark(blue))
+    };
+    (0..=100)
+        .rev()
+        .step_by(5)
+        .map(darkened)
+        .find(|ink| worst_contrast(PAPER, *ink) >= CONTRAST)
+        .unwrap_or(INK)
 }

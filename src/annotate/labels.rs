@@ -1,30 +1,34 @@
 //! Labels: selection, order and drawing.
 //!
 //! Names at places and names along lines take their turns in one order of importance. Repetitions of a name along its
-//! line come after all names; a name that finds no place along its line is tried at a place last.
+//! line come after all names; a name that finds no place along its line is tried at a place then. The numbers of
+//! contour lines come last.
 
-use crate::annotate::annotation::{LineLabel, PictureLabel};
+use crate::annotate::annotation::{Annotations, LineLabel, PictureLabel};
 use crate::annotate::composer::Composer;
+use crate::annotate::contour_label::draw_contours;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::line_label::PreparedLine;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::place::{LabelCandidate, LabelField, LabelPlacer, LabelRequest};
 use crate::annotate::point_label::PreparedLabel;
-use crate::annotate::report::{AnnotationReport, LabelOutcome};
+use crate::annotate::report::{AnnotationReport, LabelMove, LabelOutcome};
 use crate::annotate::sheet::Sheet;
 use crate::description::words::LabelKind;
+use crate::draw::pixels::Pixels;
 
 /// More labels are not tried: no picture has room for them, and the time grows with their number.
 const MOST_LABELS: usize = 4096;
 
-/// Draws the labels that are visible and find a free place beside `furniture`; reports the outcome of each.
+/// Draws the labels that are visible and find a free place beside `furniture` on the picture `ground`; reports the outcome of each.
 pub fn draw_labels(
-    labels: &[PictureLabel],
-    lines: &[LineLabel],
+    annotations: &Annotations,
+    ground: &Pixels,
     furniture: &[PixelBox],
     composer: &mut Composer,
     report: &mut AnnotationReport,
 ) -> Drawing {
+    let (labels, lines) = (&annotations.labels, &annotations.line_labels);
     let sheet = composer.sheet;
     let field = field(furniture, &sheet);
     let mut placer = LabelPlacer::new(&field);
@@ -36,9 +40,12 @@ pub fn draw_labels(
     for turn in &turns {
         if sheet_names.names.len() < MOST_LABELS {
             match PreparedName::new(turn, composer) {
-                Ok(name) => {
-                    sheet_names.names.push(NumberedName { number: turn.number, name, drawn: Vec::new() })
-                }
+                Ok(name) => sheet_names.names.push(NumberedName {
+                    number: turn.number,
+                    name,
+                    drawn: Vec::new(),
+                    was_along: matches!(turn.source, LabelSource::Line(_)),
+                }),
                 Err(outcome) => sheet_names.outcomes[turn.number] = outcome,
             }
         }
@@ -46,7 +53,10 @@ pub fn draw_labels(
     sheet_names.place_first(&mut placer);
     sheet_names.place_repetitions(&mut placer);
     sheet_names.place_fallbacks(&mut placer, composer);
-    let drawing = sheet_names.draw(&sheet);
+    let numbers =
+        annotations.contours.as_ref().map(|marks| draw_contours(marks, &mut placer, ground, composer));
+    let mut drawing = numbers.unwrap_or_default();
+    drawing.append(sheet_names.draw(ground, &sheet));
     report.add_texts(&drawing.texts);
     let texts = labels.iter().map(|label| &label.text).chain(lines.iter().map(|line| &line.text));
     texts.zip(&sheet_names.outcomes).for_each(|(text, outcome)| outcome.report(text, report));
@@ -172,6 +182,22 @@ struct NumberedName<'a> {
     number: usize,
     name: PreparedName<'a>,
     drawn: Vec<DrawnName>,
+    /// Whether it was wished along a line.
+    was_along: bool,
+}
+
+impl NumberedName<'_> {
+    /// How what was drawn departs from what was wished.
+    fn moved(&self) -> Option<LabelMove> {
+        match &self.name {
+            PreparedName::Point(_) if self.was_along => Some(LabelMove::OffLine),
+            PreparedName::Point(label) => {
+                let position = &label.positions[self.drawn.first()?.choice];
+                (position.leader.is_some() && label.label.top_px.is_none()).then_some(LabelMove::Led)
+            }
+            PreparedName::Line(_) => None,
+        }
+    }
 }
 
 /// An occurrence of a name, and the candidate chosen for it.
@@ -225,7 +251,7 @@ impl<'a> SheetNames<'a> {
     }
 
     /// Symbols and leaders first, then names along lines, all other texts over them.
-    fn draw(&mut self, sheet: &Sheet) -> Drawing {
+    fn draw(&mut self, ground: &Pixels, sheet: &Sheet) -> Drawing {
         let mut drawing = Drawing::default();
         let points = |name: &'_ NumberedName<'a>| -> Option<LabelCandidate> {
             let PreparedName::Point(label) = &name.name else { return None };
@@ -233,17 +259,19 @@ impl<'a> SheetNames<'a> {
         };
         for name in &self.names {
             if let (PreparedName::Point(label), Some(position)) = (&name.name, points(name)) {
-                label.draw_symbol(&position, sheet, &mut drawing);
+                label.draw_symbol(&position, ground, sheet, &mut drawing);
             }
         }
         for name in &self.names {
             if let PreparedName::Line(line) = &name.name {
-                name.drawn.iter().for_each(|drawn| line.draw(drawn.occurrence, drawn.choice, &mut drawing));
+                name.drawn
+                    .iter()
+                    .for_each(|drawn| line.draw(drawn.occurrence, drawn.choice, ground, &mut drawing));
             }
         }
         for name in &self.names {
             if let (PreparedName::Point(label), Some(position)) = (&name.name, points(name)) {
-                label.draw_text(&position, &mut drawing);
+                label.draw_text(&position, ground, &mut drawing);
             }
         }
         // In the order of the input.
@@ -251,7 +279,7 @@ impl<'a> SheetNames<'a> {
             self.names.iter().filter(|name| !name.drawn.is_empty()).collect();
         in_order.sort_by_key(|name| name.number);
         for name in in_order {
-            self.outcomes[name.number] = LabelOutcome::Placed;
+            self.outcomes[name.number] = LabelOutcome::Placed(name.moved());
             match &name.name {
                 PreparedName::Point(label) => {
                     drawing.record_text(&label.label.text, label.block.missing(), label.block.shortened);
@@ -268,6 +296,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
+    use crate::draw::color::Srgba;
 
     fn label(text: &str, x: f32, y: f32) -> PictureLabel {
         let anchor_px = Vec2::new(x, y);
@@ -285,7 +314,10 @@ mod tests {
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
         let mut report = AnnotationReport::default();
-        let drawing = draw_labels(labels, &[], &[], &mut Composer::new(1920, 1080), &mut report);
+        let annotations = Annotations { labels: labels.to_vec(), ..Annotations::default() };
+        let ground = Pixels::filled(1920, 1080, Srgba::opaque(120, 150, 100));
+        let mut composer = Composer::new(1920, 1080);
+        let drawing = draw_labels(&annotations, &ground, &[], &mut composer, &mut report);
         (drawing, report)
     }
 

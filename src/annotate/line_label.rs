@@ -16,11 +16,13 @@ use tiny_skia::{PathBuilder, Transform};
 use crate::annotate::annotation::{LineLabel, LinePlacement};
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::halo::Halo;
 use crate::annotate::label_style::LineStyle;
 use crate::annotate::paragraph::written_lines;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::place::{LabelCandidate, LabelRequest, TextAlignment};
 use crate::annotate::text::{CAP_HEIGHT, DESCENT, TypesetLetters};
+use crate::draw::pixels::Pixels;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
 use crate::geom::smooth::smoothed;
@@ -67,6 +69,13 @@ struct LineCandidate {
     boxes: LabelCandidate,
 }
 
+/// A place of letters, and the direction of their tops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LetterTop {
+    pub at: Vec2,
+    pub up: Vec2,
+}
+
 /// A letter's place: the middle of its advance on the baseline, and the direction of the baseline there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SetLetter {
@@ -78,6 +87,11 @@ impl<'a> PreparedLine<'a> {
     /// The name with the places where it may stand; `None` where it has no letters.
     pub fn new(label: &'a LineLabel, composer: &mut Composer) -> Option<Self> {
         let style = LineStyle::new(label.kind, label.ink, composer);
+        Self::with_style(label, style, composer)
+    }
+
+    /// As [`PreparedLine::new`], in a style of its own.
+    pub fn with_style(label: &'a LineLabel, style: LineStyle, composer: &mut Composer) -> Option<Self> {
         let text = written_lines(&label.text, usize::MAX).0.join(" ");
         let mut letters = composer.letters(&text, style.text);
         if letters.letters.iter().all(|letter| letter.outline.is_none()) || !letters.advance.is_finite() {
@@ -86,7 +100,7 @@ impl<'a> PreparedLine<'a> {
         let bounds = composer.sheet.bounds();
         let pieces = smooth_pieces(&label.path_px, &bounds, style.text.size_px);
         let longest = pieces.first().map_or(0.0, Polyline::length) as f32;
-        if label.placement == LinePlacement::Spread {
+        if label.placement == LinePlacement::Spread && !letters.is_joined {
             spread(&mut letters, longest, style.text.size_px);
         }
         let setter = LineSetter { label, style: &style, letters: &letters, space: composer.sheet.px(1.0) };
@@ -100,16 +114,37 @@ impl<'a> PreparedLine<'a> {
         self.occurrences.len()
     }
 
+    /// The middles of the ways to set the occurrence of this number, and the directions of their letters' tops.
+    pub fn tops(&self, occurrence: usize) -> impl Iterator<Item = LetterTop> {
+        self.occurrences[occurrence].iter().map(|one| {
+            let middle = one.letters[one.letters.len() / 2];
+            LetterTop { at: middle.at, up: Vec2::new(middle.along.y, -middle.along.x) }
+        })
+    }
+
     /// The request for the occurrence of this number.
     pub fn request(&self, occurrence: usize) -> LabelRequest {
         let candidates = self.occurrences[occurrence].iter().map(|one| one.boxes.clone()).collect();
         LabelRequest { candidates, reserved: None }
     }
 
-    pub fn draw(&self, occurrence: usize, choice: usize, drawing: &mut Drawing) {
+    pub fn draw(&self, occurrence: usize, choice: usize, ground: &Pixels, drawing: &mut Drawing) {
+        let area = self.occurrences[occurrence][choice].boxes.text;
+        let halo = Halo::over(ground, &area, self.style.ink, self.style.halo);
+        self.draw_on(halo, occurrence, choice, drawing);
+    }
+
+    /// As [`PreparedLine::draw`], on a patch of the ground's tone that breaks the line.
+    pub fn draw_in_break(&self, occurrence: usize, choice: usize, ground: &Pixels, drawing: &mut Drawing) {
+        let area = self.occurrences[occurrence][choice].boxes.text;
+        let halo = Halo::patch(ground, &area, self.style.ink, self.style.halo);
+        self.draw_on(halo, occurrence, choice, drawing);
+    }
+
+    fn draw_on(&self, halo: Halo, occurrence: usize, choice: usize, drawing: &mut Drawing) {
         let mut outline = PathBuilder::new();
-        let places = &self.occurrences[occurrence][choice].letters;
-        for (letter, place) in self.letters.letters.iter().zip(places) {
+        let chosen = &self.occurrences[occurrence][choice];
+        for (letter, place) in self.letters.letters.iter().zip(&chosen.letters) {
             let (along, at) = (place.along, place.at);
             let turn = Transform::from_row(along.x, along.y, -along.y, along.x, at.x, at.y);
             if let Some(path) = letter.outline.clone().and_then(|path| path.transform(turn)) {
@@ -117,7 +152,7 @@ impl<'a> PreparedLine<'a> {
             }
         }
         if let Some(path) = outline.finish() {
-            drawing.fill_haloed(path, self.style.ink, self.style.halo);
+            drawing.fill_haloed(path, self.style.ink, halo);
         }
     }
 }
@@ -173,7 +208,7 @@ impl LineSetter<'_> {
                 }
                 let most = match self.label.placement {
                     LinePlacement::Once | LinePlacement::Spread => 1,
-                    LinePlacement::Repeated | LinePlacement::Ends => MOST_REPEATS,
+                    LinePlacement::Repeated | LinePlacement::Ends | LinePlacement::Uphill => MOST_REPEATS,
                 };
                 if occurrences.len() == most {
                     return occurrences;
@@ -202,7 +237,7 @@ impl LineSetter<'_> {
                 }
                 ends.into_iter().map(|station| WishedStation { station, slack }).collect()
             }
-            LinePlacement::Repeated => {
+            LinePlacement::Repeated | LinePlacement::Uphill => {
                 let count = ((length / interval) as usize).clamp(1, MOST_REPEATS);
                 let share = length / count as f32;
                 // A name keeps out of the outer fifths of its share, so that two never come close.
@@ -255,6 +290,9 @@ impl LineSetter<'_> {
         let chord = at(station + half) - at(station - half);
         let is_upright = chord.x.abs() < chord.y.abs() * 0.1;
         let is_reversed = if is_upright { chord.y > 0.0 } else { chord.x < 0.0 };
+        if is_reversed && self.label.placement == LinePlacement::Uphill {
+            return None;
+        }
         let side = if is_reversed { -1.0 } else { 1.0 };
         let mut letters: Vec<SetLetter> = Vec::with_capacity(self.letters.letters.len());
         let mut bend = 0.0;
@@ -303,6 +341,7 @@ impl LineSetter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::annotate::sheet::INK;
     use crate::description::words::LabelKind;
 
     fn label(path: Vec<Vec2>) -> LineLabel {
@@ -386,10 +425,11 @@ mod tests {
 
     #[test]
     fn a_spread_name_reaches_over_most_of_its_line_and_a_name_at_the_ends_stands_at_both() {
-        let path = vec![Vec2::new(300.0, 500.0), Vec2::new(900.0, 500.0)];
+        let path = vec![Vec2::new(300.0, 500.0), Vec2::new(680.0, 500.0)];
         let spread = LineLabel { placement: LinePlacement::Spread, ..label(path.clone()) };
         let width = prepared(&spread).occurrences[0][0].boxes.text.size().x;
-        assert!((width - 420.0).abs() < 40.0, "{width}");
+        assert!((width - 266.0).abs() < 30.0, "{width}");
+        let path = vec![Vec2::new(300.0, 500.0), Vec2::new(900.0, 500.0)];
         let ends = LineLabel { placement: LinePlacement::Ends, text: "PL RED".to_owned(), ..label(path) };
         let line = prepared(&ends);
         assert_eq!(line.count(), 2);
@@ -402,7 +442,7 @@ mod tests {
         let label = label(arc(Vec2::new(960.0, 540.0), 200.0, 200.0, 330.0));
         let line = prepared(&label);
         let mut drawing = Drawing::default();
-        line.draw(0, 0, &mut drawing);
+        line.draw(0, 0, &Pixels::filled(64, 64, INK), &mut drawing);
         let bounds = drawing.bounds();
         assert!(line.occurrences[0][0].boxes.text.holds(&bounds), "{bounds:?}");
     }

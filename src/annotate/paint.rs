@@ -7,37 +7,115 @@ use crate::annotate::canvas::paint;
 use crate::annotate::composer::Composer;
 use crate::annotate::cover::SceneCover;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::grid::FigurePlace;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::report::{AnnotationReport, FurnitureKind};
-use crate::annotate::sheet::Sheet;
+use crate::annotate::sheet::{PAPER, Sheet};
 use crate::annotate::symbols::draw_symbols;
-use crate::annotate::{credit, legend, north, rim, scale_bar, title};
+use crate::annotate::{class_legend, credit, grid, legend, margin, north, rim, scale_bar, title};
+use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
 const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
 
-/// Paints `annotations` on `pixels`; returns a report.
+/// A sheet laid out, before anything is painted.
+pub struct ComposedSheet {
+    /// The picture, on paper where the sheet has a margin.
+    pub pixels: Pixels,
+    /// What is painted on it, in order.
+    pub(in crate::annotate) drawings: Vec<Drawing>,
+}
+
+impl ComposedSheet {
+    /// The sheet with everything painted.
+    pub fn painted(self) -> Pixels {
+        let Self { mut pixels, drawings } = self;
+        paint(&mut pixels, &drawings);
+        pixels
+    }
+}
+
+/// Paints `annotations` on `pixels`; returns a report. With a margin the picture becomes the page.
 ///
-/// Nothing drawn overlaps anything else drawn, or leaves the picture. The same picture and annotations give the same
-/// bytes on every machine. Without annotations the picture is unchanged.
+/// Nothing drawn overlaps anything else drawn, or leaves the picture; only the grid lies under all. The same picture and
+/// annotations give the same bytes on every machine. Without annotations the picture is unchanged.
 pub fn annotate(pixels: &mut Pixels, annotations: &Annotations) -> AnnotationReport {
-    let mut composer = Composer::with_font(pixels.width(), pixels.height(), annotations.font.as_ref());
-    let furniture = Furniture::lay_out(annotations, &mut composer);
-    let mut boxes: Vec<PixelBox> = furniture.pieces().map(Drawing::bounds).collect();
-    let marks = rim::draw_marks(&annotations.rim, &boxes, &mut composer);
-    boxes.extend(marks.iter().map(Drawing::bounds));
-    let mut report = AnnotationReport::default();
-    furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
-    let symbols = draw_symbols(&annotations.symbols, &boxes, &mut composer, &mut report.symbols);
-    report.add_texts(&symbols.drawing.texts);
-    boxes.extend(&symbols.boxes);
-    let labels =
-        draw_labels(&annotations.labels, &annotations.line_labels, &boxes, &mut composer, &mut report);
-    paint(pixels, furniture.pieces().chain(&marks).chain([&symbols.drawing, &labels]));
-    report.left_out = furniture.left_out;
+    let picture = std::mem::replace(pixels, Pixels::filled(0, 0, PAPER));
+    let (sheet, report) = compose_sheet(picture, annotations);
+    *pixels = sheet.painted();
     report
+}
+
+/// Lays out `annotations` on and around a picture.
+pub fn compose_sheet(picture: Pixels, annotations: &Annotations) -> (ComposedSheet, AnnotationReport) {
+    let font = annotations.font.as_ref();
+    let mut composer = Composer::with_font(picture.width(), picture.height(), font);
+    let mut report = AnnotationReport::default();
+    let Some(margin) = &annotations.margin else {
+        let furniture = Furniture::lay_out(annotations, &mut composer);
+        furniture.pieces().for_each(|drawing| report.add_texts(&drawing.texts));
+        let Furniture { drawings, left_out, .. } = furniture;
+        let drawings = drawings.into_iter().map(|(_, drawing)| drawing).collect();
+        let place = FigurePlace::Inside;
+        let drawings = on_picture(annotations, (&picture, drawings), place, &mut composer, &mut report);
+        report.left_out = left_out;
+        return (ComposedSheet { pixels: picture, drawings }, report);
+    };
+    let page = margin.frame.page;
+    let mut page_composer = Composer::with_font(page.x, page.y, font);
+    // Type on the picture is as large as beside it.
+    composer.sheet.scale = page_composer.sheet.scale;
+    let place = FigurePlace::Outside;
+    let drawings = on_picture(annotations, (&picture, Vec::new()), place, &mut composer, &mut report);
+    let corner = margin.frame.picture.min;
+    let mut drawings: Vec<Drawing> = drawings.into_iter().map(|drawing| drawing.moved(corner)).collect();
+    let set = margin::compose(margin, annotations, &mut page_composer);
+    report.add_texts(&set.drawing.texts);
+    report.left_out = set.left_out;
+    drawings.push(set.drawing);
+    let mut pixels = Pixels::filled(page.x, page.y, WHITE);
+    paste(&mut pixels, &picture, corner);
+    set.inset.iter().for_each(|(inset, corner)| paste(&mut pixels, inset, *corner));
+    (ComposedSheet { pixels, drawings }, report)
+}
+
+/// The paper of a page.
+const WHITE: Srgba = Srgba::opaque(255, 255, 255);
+
+/// Grid, marks and labels on `picture`, round the pieces of `furniture` on it.
+fn on_picture(
+    annotations: &Annotations,
+    (picture, furniture): (&Pixels, Vec<Drawing>),
+    place: FigurePlace,
+    composer: &mut Composer,
+    report: &mut AnnotationReport,
+) -> Vec<Drawing> {
+    let mut boxes: Vec<PixelBox> = furniture.iter().map(Drawing::bounds).collect();
+    let marks = rim::draw_marks(&annotations.rim, &boxes, composer);
+    boxes.extend(marks.iter().map(Drawing::bounds));
+    let grid = annotations.grid.as_ref();
+    let lines = grid.map(|grid| grid::draw_lines(grid, composer));
+    let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
+    boxes.extend(figures.iter().map(Drawing::bounds));
+    let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
+    report.add_texts(&symbols.drawing.texts);
+    boxes.extend(symbols.boxes);
+    let labels = draw_labels(annotations, picture, &boxes, composer, report);
+    let drawings = lines.into_iter().chain(furniture).chain(marks).chain(figures);
+    drawings.chain([symbols.drawing, labels]).collect()
+}
+
+/// Copies a picture onto a page, as far as it lies on it.
+fn paste(page: &mut Pixels, picture: &Pixels, corner: Vec2) {
+    let (corner, stride) = (corner.as_uvec2(), page.width() as usize);
+    let width = picture.width().min(page.width().saturating_sub(corner.x)) as usize;
+    let rows = picture.height().min(page.height().saturating_sub(corner.y)) as usize;
+    for (row, from) in picture.data().chunks_exact(picture.width().max(1) as usize).take(rows).enumerate() {
+        let start = (corner.y as usize + row) * stride + corner.x as usize;
+        page.data_mut()[start..start + width].copy_from_slice(&from[..width]);
+    }
 }
 
 /// The space between pieces of furniture that stand under each other, design pixels.
@@ -59,13 +137,18 @@ impl Furniture {
         let (title, subtitle) = (annotations.title.as_deref(), annotations.subtitle.as_deref());
         let has_title = title.is_some() || subtitle.is_some();
         let (bar, arrow, legend) = (&annotations.scale_bar, &annotations.north, &annotations.legend);
+        let note = annotations.grid.as_ref().and_then(|grid| grid.note.as_deref());
         for (kind, piece) in [
             (FurnitureKind::Title, has_title.then(|| title::compose(title, subtitle, composer))),
-            (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, composer))),
+            (FurnitureKind::ScaleBar, bar.as_ref().map(|bar| scale_bar::compose(bar, note, composer))),
             (FurnitureKind::NorthArrow, arrow.as_ref().map(|arrow| north::compose(arrow, composer))),
             (FurnitureKind::Legend, legend.as_ref().map(|legend| legend::compose(legend, composer))),
         ] {
             piece.into_iter().for_each(|drawing| furniture.place(kind, drawing, annotations.cover.as_ref()));
+        }
+        if !annotations.classes.is_empty() {
+            let legend = class_legend::compose(&annotations.classes, composer);
+            furniture.place_emptiest(FurnitureKind::Classes, legend, annotations.cover.as_ref());
         }
         if let Some(text) = &annotations.credit {
             // Flush right in the lower margin, between scale bar and legend.
@@ -96,6 +179,33 @@ impl Furniture {
         self.keep(kind, moved);
     }
 
+    /// Keeps a piece where it covers least of the scene, of the places at the left and the right border that are free.
+    fn place_emptiest(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
+        /// Places that are tried along each border.
+        const TRIED: u16 = 24;
+        let inner = self.sheet.inner();
+        let gap = self.sheet.px(GAP);
+        let best = drawing.and_then(|drawing| {
+            let bounds = drawing.bounds();
+            let slack = inner.size() - bounds.size();
+            let places = (0..=TRIED).flat_map(|step| {
+                let y = slack.y * f32::from(step) / f32::from(TRIED);
+                [slack.x, 0.0].map(|x| Vec2::new(x, y))
+            });
+            let free = places.filter(|at| {
+                let area = PixelBox::at(inner.min + *at, bounds.size()).grown(gap * 0.5);
+                !self.pieces().any(|other| other.bounds().overlaps(&area))
+            });
+            let share = |at: &Vec2| {
+                let area = PixelBox::at(inner.min + *at, bounds.size());
+                cover.map_or(0.0, |cover| cover.share(&area))
+            };
+            let at = free.min_by(|a, b| share(a).total_cmp(&share(b)))?;
+            Some(drawing.moved((inner.min + at - bounds.min).round()))
+        });
+        self.keep(kind, best);
+    }
+
     /// A piece of a lower corner moved up, below what stands in the upper corner on its side; `None` for other pieces.
     fn below_upper(&self, kind: FurnitureKind, own: &Drawing) -> Option<Drawing> {
         let above = match kind {
@@ -124,7 +234,9 @@ impl Furniture {
             FurnitureKind::Title => to_min,
             FurnitureKind::NorthArrow => Vec2::new(to_max.x, to_min.y),
             FurnitureKind::ScaleBar => Vec2::new(to_min.x, to_max.y),
-            FurnitureKind::Legend | FurnitureKind::Credit => to_max,
+            FurnitureKind::Legend | FurnitureKind::Credit | FurnitureKind::Classes => to_max,
+            // They stand in the margins of a sheet only.
+            FurnitureKind::Norths | FurnitureKind::Locator => to_max,
         };
         drawing.moved(by.round())
     }

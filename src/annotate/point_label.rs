@@ -5,15 +5,17 @@ use glam::Vec2;
 use crate::annotate::annotation::PictureLabel;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::halo::Halo;
 use crate::annotate::label_style::LabelStyle;
 use crate::annotate::paragraph::{Paragraph, written_lines};
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::place::{LabelCandidate, LabelRequest, TextAlignment};
 use crate::annotate::positions::LabelMetrics;
 use crate::annotate::report::LabelOutcome;
-use crate::annotate::sheet::{HALO, Sheet};
+use crate::annotate::sheet::Sheet;
 use crate::annotate::text::{TextStyle, TypesetLine};
 use crate::description::words::LabelKind;
+use crate::draw::pixels::Pixels;
 
 /// Lines of a label that are drawn; more would hide what they name.
 const MOST_LINES: usize = 4;
@@ -55,24 +57,36 @@ impl<'a> PreparedLabel<'a> {
         LabelRequest { candidates: self.positions.clone(), reserved: Some(self.metrics.symbol_box()) }
     }
 
-    pub fn draw_symbol(&self, candidate: &LabelCandidate, sheet: &Sheet, drawing: &mut Drawing) {
+    pub fn draw_symbol(
+        &self,
+        candidate: &LabelCandidate,
+        ground: &Pixels,
+        sheet: &Sheet,
+        drawing: &mut Drawing,
+    ) {
+        let halo = self.halo(candidate, ground);
         if let Some(line) = candidate.leader {
             let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));
-            drawing.line(line, width + sheet.px(2.4).max(1.6), HALO);
+            drawing.line(line, width + sheet.px(2.4).max(1.6), halo.color);
             drawing.line(line, width, self.style.ink);
         }
         if candidate.symbol.is_some() {
-            self.style.draw_symbol(self.label, pixel_center(self.label.anchor_px), sheet, drawing);
+            self.style.draw_symbol(self.label, pixel_center(self.label.anchor_px), halo, sheet, drawing);
         }
     }
 
+    /// The halo of everything drawn of it.
+    fn halo(&self, candidate: &LabelCandidate, ground: &Pixels) -> Halo {
+        Halo::over(ground, &candidate.text, self.style.ink, self.style.halo)
+    }
+
     /// Writes the text: all halos first, for the name's must not cover the height below it.
-    pub fn draw_text(&self, position: &LabelCandidate, drawing: &mut Drawing) {
+    pub fn draw_text(&self, position: &LabelCandidate, ground: &Pixels, drawing: &mut Drawing) {
         let text = self.metrics.texts[position.alignment as usize];
         let by = (position.text.min - text.min).round();
         let mut lines = baselines(&self.block.lines, position.alignment);
         lines.iter_mut().for_each(|(_, at)| *at += by);
-        drawing.draw_halo(&lines, self.style.halo);
+        drawing.draw_halo(&lines, self.halo(position, ground));
         let inks = std::iter::once(self.style.ink).chain(std::iter::repeat(self.style.note_ink));
         lines.iter().zip(inks).for_each(|((line, at), ink)| drawing.write(line, *at, ink));
     }

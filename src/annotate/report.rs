@@ -15,6 +15,12 @@ pub enum FurnitureKind {
     Legend,
     /// The credit line.
     Credit,
+    /// The legend of classes.
+    Classes,
+    /// The diagram of the three norths.
+    Norths,
+    /// The whole model in plan.
+    Locator,
 }
 
 /// The labels and pieces of furniture that were drawn, and the others by reason. Texts are as given, in the order of
@@ -23,6 +29,8 @@ pub enum FurnitureKind {
 pub struct AnnotationReport {
     /// Labels drawn.
     pub placed: Vec<String>,
+    /// Labels drawn elsewhere than where they are wished, with the reason; they are among those placed.
+    pub moved: Vec<MovedLabel>,
     /// Labels not drawn because terrain or something on it hides their place.
     pub hidden: Vec<String>,
     /// Labels not drawn because their place is outside the picture, or too close to its border.
@@ -54,10 +62,28 @@ pub struct SymbolReport {
     pub crowded_out: Vec<String>,
 }
 
+/// A label drawn elsewhere than where it is wished.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MovedLabel {
+    /// The text as given.
+    pub text: String,
+    /// Where it is drawn, and why.
+    pub to: LabelMove,
+}
+
+/// Where a label is drawn in place of where it is wished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LabelMove {
+    /// At the end of a leader line: none of the eight positions beside its place is free.
+    Led,
+    /// At one place: its line, or its area, is too short, too bent or too crowded for the letters.
+    OffLine,
+}
+
 /// What becomes of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::annotate) enum LabelOutcome {
-    Placed,
+    Placed(Option<LabelMove>),
     Hidden,
     Outside,
     CrowdedOut,
@@ -67,7 +93,10 @@ pub(in crate::annotate) enum LabelOutcome {
 impl LabelOutcome {
     pub(in crate::annotate) fn report(self, text: &str, report: &mut AnnotationReport) {
         match self {
-            Self::Placed => report.placed.push(text.to_owned()),
+            Self::Placed(moved) => {
+                report.placed.push(text.to_owned());
+                report.moved.extend(moved.map(|to| MovedLabel { text: text.to_owned(), to }));
+            }
             Self::Hidden => report.hidden.push(text.to_owned()),
             Self::Outside => report.outside.push(text.to_owned()),
             Self::CrowdedOut => report.crowded_out.push(text.to_owned()),

@@ -4,12 +4,11 @@ use glam::Vec2;
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::figure::CoordinateFigure;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::INK;
-use crate::annotate::text::TextStyle;
 
-/// The size of the numbers, the length of a tick, and the gap between them, in design pixels.
-const SIZE: f32 = 14.0;
+/// The length of a tick, and the gap between it and the number, in design pixels.
 const TICK: f32 = 8.0;
 const GAP: f32 = 4.0;
 
@@ -21,7 +20,7 @@ pub struct RimMark {
     /// The direction away from the block; marks without one are left out.
     pub outward: Vec2,
     /// The coordinate.
-    pub text: String,
+    pub figure: CoordinateFigure,
 }
 
 /// Draws the marks that fit: inside the margin, off the furniture in `taken`, and off each other, the first before the
@@ -50,13 +49,13 @@ pub(in crate::annotate) fn draw_marks(
 fn draw(mark: &RimMark, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let outward = mark.outward.try_normalize().filter(|_| mark.at_px.is_finite())?;
-    let line = composer.line(&mark.text, composer.style(SIZE, TextStyle::REGULAR));
+    let figure = mark.figure.set(composer);
     let end = mark.at_px + outward * sheet.px(TICK);
-    let half = Vec2::new(line.advance, line.style.cap_px()) * 0.5;
+    let half = figure.size * 0.5;
     let center = end + outward * (outward.abs().dot(half) + sheet.px(GAP));
     let mut drawing = Drawing::default();
     drawing.line(PixelSegment { from: mark.at_px, to: end }, sheet.hairline(), INK);
-    drawing.write_haloed(&line, (center + Vec2::new(-half.x, half.y)).round(), sheet.px(1.5), INK);
+    figure.write_haloed((center + Vec2::new(-half.x, half.y)).round(), sheet.px(1.5), &mut drawing);
     Some(drawing)
 }
 
@@ -65,7 +64,7 @@ mod tests {
     use super::*;
 
     fn mark(x: f32, y: f32, outward: Vec2) -> RimMark {
-        RimMark { at_px: Vec2::new(x, y), outward, text: "345 000 E".into() }
+        RimMark { at_px: Vec2::new(x, y), outward, figure: "345 000 E".to_owned().into() }
     }
 
     #[test]

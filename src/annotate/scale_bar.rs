@@ -107,11 +107,18 @@ fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
     (is_sensible && length_px > 0.0).then_some(NiceBar { length, length_px })
 }
 
-/// The scale bar on its panel with the upper left corner at the origin; `None` where the scale is unusable.
-pub(in crate::annotate) fn compose(bar: &ScaleBar, composer: &mut Composer) -> Option<Drawing> {
+/// The scale bar on its panel with the upper left corner at the origin, and `grid` under its note; `None` where the scale
+/// is unusable.
+pub(in crate::annotate) fn compose(
+    bar: &ScaleBar,
+    grid: Option<&str>,
+    composer: &mut Composer,
+) -> Option<Drawing> {
     let measure = measure(bar, composer.sheet.px(LONGEST))?;
-    let note = composer.line(&bar.holds.note(), composer.style(14.0, TextStyle::REGULAR));
-    Some(lay_out(&measure, Some(&note), composer))
+    let style = composer.style(14.0, TextStyle::REGULAR);
+    let mut notes = vec![composer.line(&bar.holds.note(), style)];
+    notes.extend(grid.map(|grid| composer.line(grid, style)));
+    Some(lay_out(&measure, &notes, composer))
 }
 
 /// The scale bar of a map, which has one scale everywhere; otherwise as [`compose`], no longer than `longest_px`.
@@ -121,10 +128,10 @@ pub(in crate::annotate) fn compose_on_map(
     composer: &mut Composer,
 ) -> Option<Drawing> {
     let measure = measure(&ScaleBar { pixels_per_meter, holds: ScaleExtent::Distance(1.0) }, longest_px)?;
-    Some(lay_out(&measure, None, composer))
+    Some(lay_out(&measure, &[], composer))
 }
 
-fn lay_out(measure: &NiceBar, note: Option<&TypesetLine>, composer: &mut Composer) -> Drawing {
+fn lay_out(measure: &NiceBar, notes: &[TypesetLine], composer: &mut Composer) -> Drawing {
     let style = composer.style(16.0, TextStyle::REGULAR);
     let figures = figures(&measure.length).map(|text| composer.line(&text, style));
     let unit = composer.line(&format!(" {}", unit(&measure.length).0), style);
@@ -144,9 +151,10 @@ fn lay_out(measure: &NiceBar, note: Option<&TypesetLine>, composer: &mut Compose
         figures_right = x + figure.advance;
     }
     drawing.write(&unit, Vec2::new(figures_right, baseline), INK);
-    if let Some(note) = note {
+    for (number, note) in notes.iter().enumerate() {
         let size_px = note.style.size_px;
-        let at = Vec2::new(left, (bar.max.y + size_px * (CAP_HEIGHT + 0.55)).round());
+        let below = CAP_HEIGHT + 0.55 + 1.3 * number as f32;
+        let at = Vec2::new(left, (bar.max.y + size_px * below).round());
         drawing.write(note, at, SOFT_INK);
         let bottom = at.y + padding - (size_px * DESCENT * 0.3).round();
         corner = Vec2::new(corner.x.max(at.x + note.advance), bottom);
@@ -237,7 +245,7 @@ mod tests {
 
     #[test]
     fn the_black_of_the_bar_is_drawn_as_long_as_measured() {
-        let drawing = compose(&bar(0.0437), &mut Composer::new(1920, 1080)).expect("a bar");
+        let drawing = compose(&bar(0.0437), None, &mut Composer::new(1920, 1080)).expect("a bar");
         let expected = measure(&bar(0.0437), 260.0).expect("a scale").length_px;
         let black = drawing.marks.iter().find(|mark| mark.color == INK).expect("the bar comes first");
         assert_eq!(black.path.bounds().width(), expected);

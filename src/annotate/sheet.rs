@@ -38,6 +38,8 @@ pub struct Sheet {
     pub size: Vec2,
     /// Pixels per design pixel.
     pub scale: f32,
+    /// Whether pieces of furniture stand on panels; on paper they need none.
+    pub has_panels: bool,
 }
 
 impl Sheet {
@@ -45,7 +47,7 @@ impl Sheet {
         let size = Vec2::new(width as f32, height as f32);
         let share = size.y.min(size.x * DESIGN_ASPECT) / DESIGN_HEIGHT;
         let scale = if share < 1.0 { STEADY_SHARE + (1.0 - STEADY_SHARE) * share } else { share };
-        Self { size, scale }
+        Self { size, scale, has_panels: true }
     }
 
     /// A design length in pixels.

@@ -6,6 +6,7 @@ use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Stroke, StrokeDash};
 use crate::annotate::annotation::PictureSymbol;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::halo::Halo;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::sheet::{HALO, INK};
 use crate::annotate::text::{TextStyle, TypesetLine};
@@ -103,7 +104,7 @@ fn draw_texts(symbol: &PictureSymbol, unit_px: f32, composer: &mut Composer) -> 
         lines.push((line, at));
     }
     let outside: Vec<(&TypesetLine, Vec2)> = lines.iter().map(|(line, at)| (line, *at)).collect();
-    drawing.draw_halo(&outside, halo);
+    drawing.draw_halo(&outside, Halo::paper(halo));
     lines.iter().for_each(|(line, at)| drawing.write(line, *at, INK));
     drawing
 }

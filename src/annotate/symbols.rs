@@ -18,6 +18,7 @@ use tiny_skia::{Stroke, StrokeDash};
 use crate::annotate::annotation::PictureSymbol;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon, polyline};
+use crate::annotate::halo::Halo;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::report::SymbolReport;
 use crate::annotate::sheet::{HALO, Sheet};
@@ -242,7 +243,7 @@ fn draw_arrow(from: Vec2, reach: Vec2, sheet: &Sheet, drawing: &mut Drawing) {
     drawing.line(line, width + 2.0 * halo, HALO);
     if let Some(triangle) = polygon(&corners) {
         drawing.line(line, width, BLACK);
-        drawing.fill_haloed(triangle, BLACK, halo);
+        drawing.fill_haloed(triangle, BLACK, Halo::paper(halo));
         drawing.line(line, width, BLACK);
     }
 }

@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 use crate::cli::convert::ConvertArguments;
 use crate::cli::dem_info::DemInfoArguments;
 use crate::cli::export::ExportArguments;
+use crate::cli::fly::FlyArguments;
 use crate::cli::grid::GridArguments;
 use crate::cli::height::HeightQueryArguments;
 use crate::cli::lod::LodArguments;
@@ -35,6 +36,8 @@ pub enum Command {
     Render(RenderArguments),
     /// Say what a picture of a scene shows at a pixel: where it is, how high, and of which feature
     Pick(PickArguments),
+    /// Draw a flight through a scene, frame by frame
+    Fly(FlyArguments),
     /// Load and validate a scene file without rendering it
     Check(SceneArguments),
     /// Write a first scene file for an elevation file and vector files

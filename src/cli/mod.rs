@@ -7,6 +7,7 @@ mod convert;
 mod dem_info;
 mod error;
 mod export;
+mod fly;
 mod grid;
 mod height;
 mod lod;
@@ -22,6 +23,7 @@ mod pick;
 mod profile;
 mod progress;
 mod render;
+mod render_series;
 mod report;
 mod schema;
 mod serve;
@@ -55,6 +57,7 @@ fn run(arguments: &Arguments, serve: Option<ServeProgram>) -> Result<(), CliErro
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Pick(arguments) => pick::run(arguments),
+        Command::Fly(arguments) => fly::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema => schema::run(),

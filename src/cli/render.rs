@@ -1,25 +1,22 @@
 //! `sandtable render`: a scene file to an annotated PNG.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::annotate::report::{AnnotationReport, SymbolReport};
+use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
+use crate::cli::render_series::{RenderedPicture, RenderedScene, contact_sheet, render};
 use crate::cli::values::{choice, picture_size};
-use crate::draw::list::DrawList;
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
-use crate::pipeline::picture::{PictureSize, annotate_view, draw_view};
-use crate::pipeline::picture_buffers::PictureBuffers;
-use crate::pipeline::picture_statistics::{Lightness, PictureStatistics};
-use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::picture_statistics::Lightness;
 use crate::render::RenderBackend;
 use crate::scene::{SceneModel, SceneView};
 
@@ -54,12 +51,22 @@ pub struct RenderArguments {
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Write one sheet of small pictures, one for each camera, or for each phase with --all-phases
+    #[arg(long, conflicts_with_all = ["buffers", "json"])]
+    pub sheet: bool,
     /// Also write what each pixel shows into this folder: depth.tif, elevation.tif, normal.png, feature.tif, features.csv
     #[arg(long, value_name = "DIR")]
     pub buffers: Option<PathBuf>,
     /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step
     #[arg(long)]
     pub json: bool,
+}
+
+impl RenderArguments {
+    /// Whether every camera has a picture: on a sheet, unless it is one of phases.
+    pub fn shows_all_cameras(&self) -> bool {
+        self.all_cameras || (self.sheet && !self.all_phases && self.camera.is_none())
+    }
 }
 
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
@@ -71,6 +78,10 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         .map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let steps = StepTimer::default();
     let scenes = pool.install(|| render(arguments, &path, &steps))?;
+    if arguments.sheet {
+        steps.begin("writing the sheet");
+        files::write_picture(&path, &contact_sheet(arguments, &scenes)?)?;
+    }
     let times = steps.finish();
     let pictures = || scenes.iter().flat_map(|scene| &scene.pictures);
     if arguments.json {
@@ -80,7 +91,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
             all => print(&format!("{:#}\n", Value::from(all))),
         };
     }
-    let mut lines: Vec<String> = scenes.iter().flat_map(RenderedScene::lines).collect();
+    let mut lines: Vec<String> = arguments.sheet.then(|| path.display().to_string()).into_iter().collect();
+    lines.extend(scenes.iter().flat_map(RenderedScene::lines));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));
     print_lines(&lines)?;
@@ -90,125 +102,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     Ok(())
 }
 
-/// A scene in one phase, and the pictures of it that were written.
-struct RenderedScene {
-    scene: SceneModel,
-    pictures: Vec<RenderedPicture>,
-}
-
-/// A picture that was written, without its pixels.
-struct RenderedPicture {
-    path: PathBuf,
-    camera: String,
-    /// Triangles drawn of the ground and of each kind of feature.
-    triangles: BTreeMap<&'static str, usize>,
-    ground_triangles: usize,
-    annotations: AnnotationReport,
-    /// Measured where JSON is printed.
-    statistics: Option<PictureStatistics>,
-}
-
-fn render(
-    arguments: &RenderArguments,
-    path: &Path,
-    steps: &StepTimer,
-) -> Result<Vec<RenderedScene>, CliError> {
-    let progress = |step| steps.begin(step);
-    let SceneArguments { scene: file, access } = &arguments.scene;
-    if !arguments.all_phases {
-        let scene = match &arguments.phase {
-            Some(phase) => open_scene_in_phase(file, &access.allow, phase, &progress)?,
-            None => open_scene(file, &access.allow, &progress)?,
-        };
-        return Ok(vec![render_scene(arguments, scene, path, &progress)?]);
-    }
-    let names = phases(file, &access.allow)?;
-    if names.is_empty() {
-        let message = "--all-phases has no effect: the scene has no [[phase]]; remove it";
-        return Err(CliError::Usage(message.into()));
-    }
-    let paths = named_paths(path, &names);
-    let phases = names.iter().zip(paths);
-    let render = |(phase, path): (&String, PathBuf)| {
-        let scene = open_scene_in_phase(file, &access.allow, phase, &progress)?;
-        render_scene(arguments, scene, &path, &progress)
-    };
-    phases.map(render).collect()
-}
-
-fn render_scene(
-    arguments: &RenderArguments,
-    scene: SceneModel,
-    path: &Path,
-    progress: &dyn Fn(&'static str),
-) -> Result<RenderedScene, CliError> {
-    let views: Vec<&SceneView> = match arguments.all_cameras {
-        true => scene.cameras.iter().collect(),
-        false => vec![find_camera(&scene, arguments.camera.as_deref())?],
-    };
-    let names: Vec<String> = views.iter().map(|view| view.name.clone()).collect();
-    let paths = if arguments.all_cameras { named_paths(path, &names) } else { vec![path.to_owned()] };
-    for path in &paths {
-        files::check_output(path, &scene.files)
-            .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
-    }
-    let mut pictures = Vec::new();
-    for (view, path) in views.into_iter().zip(paths) {
-        pictures.push(render_picture(arguments, &scene, view, path, progress)?);
-    }
-    Ok(RenderedScene { scene, pictures })
-}
-
-fn render_picture(
-    arguments: &RenderArguments,
-    scene: &SceneModel,
-    camera: &SceneView,
-    path: PathBuf,
-    progress: &dyn Fn(&'static str),
-) -> Result<RenderedPicture, CliError> {
-    let drawn = draw_view(scene, camera, arguments.size, arguments.backend, progress)?;
-    let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
-    if let Some(folder) = &arguments.buffers {
-        progress("writing buffers");
-        // The buffers of several pictures lie in folders named as the pictures are.
-        let is_one = !arguments.all_cameras && !arguments.all_phases;
-        let folder = if is_one { folder.clone() } else { folder.join(files::file_stem(&path)) };
-        files::make_folder(&folder)?;
-        PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
-    }
-    let view = annotate_view(scene, drawn, progress);
-    progress("writing the picture");
-    files::write_picture(&path, &view.pixels)?;
-    Ok(RenderedPicture {
-        path,
-        camera: camera.name.clone(),
-        triangles: triangles(scene, &view.drawn.list),
-        ground_triangles: view.drawn.ground_triangles,
-        annotations: view.annotations,
-        statistics,
-    })
-}
-
-/// A path for each of `names`: `path` with the name behind its own. Characters that are trouble in file names become
-/// hyphens; what then has the name of an earlier one gets its number.
-fn named_paths(path: &Path, names: &[String]) -> Vec<PathBuf> {
-    let is_plain = |letter: char| letter.is_alphanumeric() || ['_', '.'].contains(&letter);
-    let plain = |name: &String| name.replace(|letter| !is_plain(letter), "-");
-    let mut taken = BTreeSet::new();
-    let named = |(number, name): (usize, &String)| {
-        let mut name = plain(name);
-        if !taken.insert(name.clone()) {
-            name = format!("{name}-{number}");
-            taken.insert(name.clone());
-        }
-        let stem = files::file_stem(path);
-        path.with_file_name(format!("{stem}-{name}.png"))
-    };
-    (1..).zip(names).map(named).collect()
-}
-
 /// The error with `reason` and the option to change, where the picture would replace an input.
-fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
+pub fn named_by_option(error: WriteFileError, reason: &str) -> CliError {
     match error.cause {
         WriteFileCause::Input => CliError::input(format!("{error}: {reason}; name another with -o")),
         _ => error.into(),
@@ -238,7 +133,8 @@ fn default_output(scene: &Path) -> PathBuf {
 impl RenderedScene {
     /// What the pictures show, in lines.
     fn lines(&self) -> Vec<String> {
-        let paths = self.pictures.iter().map(|picture| picture.path.display().to_string());
+        let paths =
+            self.pictures.iter().filter_map(|picture| picture.path()).map(|path| path.display().to_string());
         let notes = self.scene.inferred_notes();
         let notes = notes.iter().map(|note| row(9, "note", note));
         let summaries = self.pictures.iter().flat_map(RenderedPicture::summary);
@@ -252,11 +148,12 @@ impl RenderedScene {
         let seconds: Map<String, Value> =
             times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
         let object = |picture: &RenderedPicture| {
-            let RenderedPicture { path, camera, triangles, annotations, statistics, .. } = picture;
+            let RenderedPicture { camera, triangles, annotations, statistics, .. } = picture;
             let lightness = statistics.and_then(|statistics| statistics.ground_lightness);
             let AnnotationReport { hidden, outside, crowded_out, shortened, symbols, .. } = annotations;
+            let [led, off_line] = moved(annotations);
             json!({
-                "picture": path.display().to_string(),
+                "picture": picture.path().map(|path| path.display().to_string()),
                 "camera": camera,
                 "phase": self.scene.phase,
                 "filled_fraction": statistics.map(|statistics| statistics.filled),
@@ -266,7 +163,8 @@ impl RenderedScene {
                 }),
                 "triangles": triangles,
                 "labels": {
-                    "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened
+                    "hidden": hidden, "outside": outside, "without_room": crowded_out, "shortened": shortened,
+                    "led": led, "off_line": off_line
                 },
                 "symbols": {
                     "placed": symbols.placed, "hidden": symbols.hidden, "outside": symbols.outside,
@@ -287,7 +185,10 @@ impl RenderedPicture {
         let ground = self.ground_triangles;
         let camera = format!("{}: {all} triangles, {ground} of them ground", self.camera);
         let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &self.annotations;
+        let [led, off_line] = moved(&self.annotations);
         let labels = [
+            ("led by a line", &led),
+            ("at a place, not along their line", &off_line),
             ("hidden", hidden),
             ("outside the picture", outside),
             ("without room", crowded_out),
@@ -317,15 +218,11 @@ impl RenderedPicture {
     }
 }
 
-/// The number of triangles drawn of the ground and of each kind of feature.
-fn triangles(scene: &SceneModel, list: &DrawList) -> BTreeMap<&'static str, usize> {
-    let mut counts = BTreeMap::new();
-    for item in &list.items {
-        let feature = item.feature.index().and_then(|index| scene.features.get(index));
-        *counts.entry(feature.map_or("ground", |feature| feature.kind.noun(2))).or_default() +=
-            item.triangles.len();
-    }
-    counts
+/// The labels drawn at the end of a leader line for want of room, and those not drawn along their line.
+fn moved(report: &AnnotationReport) -> [Vec<String>; 2] {
+    [LabelMove::Led, LabelMove::OffLine].map(|to| {
+        report.moved.iter().filter(|moved| moved.to == to).map(|moved| moved.text.clone()).collect()
+    })
 }
 
 /// A label on one line, cut where it is long.

@@ -51,7 +51,9 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::description::table::Table;
-use crate::description::words::{CameraProjection, HeightEncodingWord, LabelKind, TableTop};
+use crate::description::words::{
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, TableTop,
+};
 use crate::geom::crs::Crs;
 
 /// Compass directions in degrees.
@@ -108,6 +110,8 @@ table! {
         symbols as "symbol": Vec<SymbolTable> = key::styled_tables::<SymbolTable>(), default [];
         /// Views; the first is the default. Without any, one is fitted to the whole ground.
         cameras as "camera": Vec<CameraTable> = key::tables::<CameraTable>(), default [];
+        /// Paths through the scene that `sandtable fly` follows.
+        flights as "flight": Vec<FlightTable> = key::tables::<FlightTable>(), default [];
         /// What frames the picture.
         furniture: FurnitureTable = key::table::<FurnitureTable>(), default {};
     }
@@ -116,6 +120,8 @@ table! {
         check_names(reader, "camera", cameras);
         let phases = phases.iter().flatten().map(|phase: &PhaseTable| &phase.name);
         check_names(reader, "phase", phases);
+        let flights = flights.iter().flatten().map(|flight: &FlightTable| &flight.name);
+        check_names(reader, "flight", flights);
     }
 
     /// `[terrain]`: the elevation model.
@@ -158,6 +164,8 @@ table! {
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
+        /// How many summits, saddles and lakes without a label show their elevation, the most prominent first.
+        spot_heights: u32 = key::integer(0, 1000), default 0;
         /// A picture of the ground over the colors by height, such as an aerial photograph.
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
@@ -245,6 +253,29 @@ table! {
         }
     }
 
+    /// `[[flight]]`: a path through the scene that `sandtable fly` follows, a picture for each frame.
+    struct FlightTable {
+        /// Name for `--flight`; no two flights share one.
+        name: Stated<String> = key::filled_text(), required;
+        /// The path; of a file's lines the longest.
+        source: FeatureSource = key::source::<2>(), inline;
+        /// Height of the eye above the highest ground around it. Bends are rounded over twice as much.
+        height: f64 = key::number(Above(0.0, 1e6), "m"), default 300;
+        /// How fast the eye moves.
+        speed: Option<f64> = key::number(Above(0.0, 1e6), "m/s"), otherwise "as fast as takes 20 seconds";
+        /// How far the eye looks down from the horizon.
+        pitch: f64 = key::number(Within(-60.0, 89.0), "°"), default 20;
+        /// Place on the ground that the eye looks at all the way.
+        look_at: Option<Stated<[f64; 2]>> = key::point(), otherwise "ahead, along the path";
+        /// Vertical field of view.
+        field_of_view: f64 = key::number(Within(1.0, 170.0), "°"), default 45;
+    }
+    check(reader) {
+        if reader.key_span("look_at").is_some() {
+            reader.without_effect(&["pitch"], "on a flight with `look_at`", "remove one of the two");
+        }
+    }
+
     /// `[[phase]]`: a time of which the scene has a picture. Every table of features may have the key `phases`.
     struct PhaseTable {
         /// Name for `--phase`; no two phases share one.
@@ -307,7 +338,7 @@ table! {
     }
 
     /// `[furniture]`: what frames the picture.
-    #[derive(Copy, PartialEq, Eq)]
+    #[derive(PartialEq)]
     struct FurnitureTable {
         /// Whether the picture has its title and subtitle.
         title: bool = key::switch(), default true;
@@ -317,6 +348,37 @@ table! {
         scale_bar: bool = key::switch(), default true;
         /// Whether the picture has the elevation legend.
         legend: bool = key::switch(), default true;
+        /// What stands on the picture, and what round it. The picture of a layout with a margin is as much smaller.
+        layout: SheetLayout = key::word::<SheetLayout>(), default "compact";
+        /// Whether there is a legend of the roads, waters, areas, buildings and models that the picture shows.
+        classes: Option<bool> = key::switch(), otherwise "in layouts with a margin";
+        /// The classification, above and below all else.
+        classification: Option<String> = key::filled_text(), otherwise "none";
+        /// The day of the information, such as "2026-06-21"; magnetic north is that of this day.
+        date: Option<Stated<String>> = key::filled_text(), otherwise "none, and no magnetic north";
+        /// Where the data come from, a line each, in a layout with a margin.
+        sources: Option<Vec<String>> = key::text_list(), otherwise "none";
+        /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
+        grid: GridName = key::word::<GridName>(), default "none";
+        /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
+        /// lines. One line in 10, 5 or 2 is drawn heavier.
+        grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
+            otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
+    }
+    check(reader) {
+        if grid.unwrap_or_default() == GridName::None {
+            let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
+            reader.without_effect(&["grid_interval"], "without a `grid`", help);
+        }
+        let layout = layout.unwrap_or_default();
+        if !matches!(layout, SheetLayout::Margin | SheetLayout::Military) {
+            let help = "set `layout` to margin or military, or remove it";
+            reader.without_effect(&["date", "sources"], "in a layout without a margin", help);
+        }
+        if layout != SheetLayout::Military {
+            let help = "set `layout = \"military\"`, or remove it";
+            reader.without_effect(&["classification"], "in another layout than military", help);
+        }
     }
 }
 

@@ -93,6 +93,23 @@ words! {
         None = "none": "nothing; no coordinates are written along its edge",
     }
 
+    /// What stands on the picture, and what round it.
+    enum SheetLayout {
+        Compact = "compact": "furniture in the corners of the picture",
+        None = "none": "nothing but labels and the grid",
+        Margin = "margin": "the picture in a frame, furniture on the white margin, with a locator",
+        Military = "military": "the same with the classification and the three norths",
+    }
+
+    /// The lines of a coordinate grid on the ground.
+    enum GridName {
+        None = "none": "no lines; the block's edge has coordinates of the scene's system",
+        Metric = "metric": "the scene's own coordinate system",
+        Utm = "utm": "UTM on WGS 84, zone by zone, and UPS round the poles",
+        Mgrs = "mgrs": "the same lines, with the letters of the 100 km squares of the military grid",
+        Geographic = "geographic": "longitude and latitude on WGS 84",
+    }
+
     /// How the colors of a PNG encode heights.
     enum HeightEncodingWord {
         TerrainRgb = "terrain-rgb": "Mapbox Terrain-RGB",

@@ -68,10 +68,10 @@ mod tests {
             (&b"wOF2\0\x01\0\0"[..], FontFileError::Web),
             (b"", FontFileError::NoFont),
             (b"\x89PNG\r\n\x1a\n", FontFileError::NoFont),
-            (&FONT[..100], FontFileError::NoFont),
         ] {
             assert_eq!(FontFile::new(bytes.to_vec()), Err(error));
         }
+        assert!(FontFile::new(FONT[..100].to_vec()).is_err());
     }
 
     #[test]

@@ -58,6 +58,17 @@ impl GroundImagery {
         DrapedColor { color: color.linear(), share: color.alpha() }
     }
 
+    /// Whether it hides all ground between two corners, looked at in places that are close to one another.
+    pub fn covers(&self, min: Vec2, max: Vec2) -> bool {
+        /// Places along each side: what they miss is too small to tell the ramp's colors in.
+        const PLACES: u16 = 256;
+        let at = |column: u16, row: u16| {
+            let share = Vec2::new(f32::from(column), f32::from(row)) + 0.5;
+            min + (max - min) * share / f32::from(PLACES)
+        };
+        (0..PLACES).all(|row| (0..PLACES).all(|column| self.at(at(column, row)).share >= 1.0))
+    }
+
     /// Whether renderers can read it: pixels, a finite place and a positive size.
     pub fn is_sound(&self) -> bool {
         let is_placed = self.origin.is_finite() && self.size.is_finite() && self.size.min_element() > 0.0;
@@ -78,6 +89,9 @@ mod tests {
     fn a_place_has_the_color_of_the_pixel_there_and_none_beyond_the_picture() {
         let pixels = Pixels::from_fn(4, 2, |x, y| Srgba([x as u8, y as u8, 0, 128]));
         let (origin, size) = (Vec2::new(100.0, 50.0), Vec2::new(40.0, 20.0));
+        let opaque = Pixels::filled(4, 2, Srgba::WHITE);
+        let whole = GroundImagery { origin, size, pixels: opaque, is_shaded: true };
+        assert!(whole.covers(origin, origin + size) && !whole.covers(origin - 5.0, origin + size));
         let imagery = GroundImagery { origin, size, pixels, is_shaded: true };
         assert!(imagery.is_sound());
         let north_west = imagery.at(Vec2::new(101.0, 69.0));

@@ -87,9 +87,9 @@ impl ModelDetail {
         self.impostor.get()?.as_ref()
     }
 
-    /// The simplest form within the tolerance.
-    pub fn form(&self, size: &ApparentSize) -> DetailForm {
-        if size.is_small() && self.impostor().is_some() {
+    /// The simplest form within the tolerance; a picture on a quad only where `may_be_pictured`.
+    pub fn form(&self, size: &ApparentSize, may_be_pictured: bool) -> DetailForm {
+        if may_be_pictured && size.is_small() && self.impostor().is_some() {
             return DetailForm::Impostor(ImpostorDirection::nearest(size.toward_eye));
         }
         let fits = |level: &DetailLevel| level.error * size.px_per_unit <= TOLERANCE_PX;
@@ -112,8 +112,8 @@ mod tests {
 
     #[test]
     fn the_coarsest_level_within_half_a_pixel_is_taken() {
-        assert_eq!(detail().form(&seen(100.0)), DetailForm::Full);
-        assert_eq!(detail().form(&seen(40.0)), DetailForm::Level(0));
-        assert_eq!(detail().form(&seen(4.0)), DetailForm::Level(1));
+        assert_eq!(detail().form(&seen(100.0), true), DetailForm::Full);
+        assert_eq!(detail().form(&seen(40.0), true), DetailForm::Level(0));
+        assert_eq!(detail().form(&seen(4.0), true), DetailForm::Level(1));
     }
 }

@@ -5,9 +5,15 @@ use crate::annotate::cover::SceneCover;
 use crate::annotate::legend::Legend;
 use crate::annotate::north::NorthArrow;
 use crate::annotate::scale_bar::ScaleBar;
+use crate::annotate::sheet_frame::SheetFrame;
+use crate::description::words::SheetLayout;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
+use crate::pipeline::contour_marks::contour_marks;
+use crate::pipeline::grid::{grid_over, picture_grid};
+use crate::pipeline::legend::legend_entries;
 use crate::pipeline::line_labels::{is_seen, line_label};
+use crate::pipeline::margin::margin_notes;
 use crate::pipeline::military::picture_symbols;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
@@ -15,9 +21,18 @@ use crate::scene::label_course::LabelCourse;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
 
-/// The annotations of a picture: labels with their positions on it, and furniture.
-pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Annotations {
-    let furniture = scene.furniture;
+/// The annotations of a picture: labels with their positions on it, and furniture, round it where `frame` says so.
+pub fn annotations(
+    scene: &SceneModel,
+    camera: &Camera,
+    picture: &Rendering,
+    frame: Option<&SheetFrame>,
+) -> Annotations {
+    let furniture = &scene.furniture;
+    let is_bare = furniture.layout == SheetLayout::None;
+    let shows = |is_wanted: bool| is_wanted && !is_bare;
+    let has_classes = shows(furniture.classes.unwrap_or(frame.is_some()));
+    let grid = grid_over(scene, camera, picture);
     let (mut labels, mut line_labels) = (Vec::new(), Vec::new());
     for label in &scene.labels {
         let at_place = project(label, camera, picture);
@@ -29,17 +44,28 @@ pub fn annotations(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> 
     Annotations {
         labels,
         line_labels,
+        contours: contour_marks(scene, camera, picture),
         font: scene.font.clone(),
         symbols: picture_symbols(scene, camera, picture),
-        rim: rim_marks(scene, camera),
-        title: scene.title.clone().filter(|_| furniture.title),
-        subtitle: scene.subtitle.clone().filter(|_| furniture.title),
-        north: furniture.north_arrow.then(|| NorthArrow::from_camera(camera)),
-        scale_bar: if furniture.scale_bar { scale_bar(camera, picture) } else { None },
-        legend: furniture.legend.then(|| legend(scene)),
+        rim: rim_marks(scene, camera, grid.as_ref()),
+        margin: frame
+            .map(|frame| margin_notes(scene, camera, frame, grid.as_ref().map(|grid| grid.note.as_str()))),
+        grid: grid.map(|grid| picture_grid(&grid, scene, camera, picture)),
+        title: scene.title.clone().filter(|_| shows(furniture.title)),
+        subtitle: scene.subtitle.clone().filter(|_| shows(furniture.title)),
+        north: shows(furniture.north_arrow).then(|| NorthArrow::from_camera(camera)),
+        scale_bar: if shows(furniture.scale_bar) { scale_bar(camera, picture) } else { None },
+        legend: (shows(furniture.legend) && !is_all_imagery(scene)).then(|| legend(scene)),
+        classes: if has_classes { legend_entries(scene, picture) } else { Vec::new() },
         cover: Some(cover(picture)),
         ..Annotations::default()
     }
+}
+
+/// Whether a picture of the ground hides all colors by height, so that a legend of them would say nothing.
+fn is_all_imagery(scene: &SceneModel) -> bool {
+    let (min, max) = scene.bounds;
+    scene.imagery.as_ref().is_some_and(|imagery| imagery.covers(min.truncate(), max.truncate()))
 }
 
 /// Where the picture shows the scene and not its background.

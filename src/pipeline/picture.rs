@@ -1,7 +1,8 @@
 //! Renders a view of a scene to an annotated picture in memory.
 
-use crate::annotate::paint::annotate;
+use crate::annotate::paint::{ComposedSheet, compose_sheet};
 use crate::annotate::report::AnnotationReport;
+use crate::annotate::sheet_frame::SheetFrame;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
@@ -35,6 +36,8 @@ pub struct DrawnView {
     pub picture: Rendering,
     /// What was drawn.
     pub drawn: ViewDraw,
+    /// The page that it is part of; `None` where it is the page.
+    pub frame: Option<SheetFrame>,
 }
 
 /// An annotated picture and its draw list.
@@ -73,7 +76,7 @@ pub fn render_view(
     Ok(annotate_view(scene, draw_view(scene, view, size, backend, progress)?, progress))
 }
 
-/// The first half of [`render_view`]: the picture without annotations.
+/// The first half of [`render_view`]: the picture without annotations, as large as the margin of a page of `size` leaves it.
 ///
 /// # Errors
 /// See [`PictureError`].
@@ -84,18 +87,38 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
-    let camera = camera(scene, view, (size.width, size.height))?;
+    let furniture = &scene.furniture;
+    let has_title = furniture.title && (scene.title.is_some() || scene.subtitle.is_some());
+    let page = (size.width, size.height);
+    let frame = SheetFrame::new(furniture.layout, page, has_title, furniture.classification.is_some());
+    let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
     let picture = render(&drawn.list, &camera, backend)?;
-    Ok(DrawnView { camera, picture, drawn })
+    Ok(DrawnView { camera, picture, drawn, frame })
 }
 
 /// The second half of [`render_view`]: paints the annotations.
 pub fn annotate_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> RenderedView {
+    let ComposedView { sheet, drawn, annotations } = compose_view(scene, view, progress);
+    RenderedView { pixels: sheet.painted(), drawn, annotations }
+}
+
+/// A picture with its annotations laid out and not yet painted.
+pub struct ComposedView {
+    /// The page.
+    pub sheet: ComposedSheet,
+    /// The draw list.
+    pub drawn: ViewDraw,
+    /// Which annotations were placed and which were not.
+    pub annotations: AnnotationReport,
+}
+
+/// As [`annotate_view`], for formats that keep letters and lines as such.
+pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
-    let DrawnView { camera, mut picture, drawn } = view;
-    let annotations = labels::annotations(scene, &camera, &picture);
-    let annotations = annotate(&mut picture.pixels, &annotations);
-    RenderedView { pixels: picture.pixels, drawn, annotations }
+    let DrawnView { camera, picture, drawn, frame } = view;
+    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref());
+    let (sheet, annotations) = compose_sheet(picture.pixels, &annotations);
+    ComposedView { sheet, drawn, annotations }
 }

@@ -1,10 +1,14 @@
-//! Coordinates along the two near edges of the block, where a picture shows it as a block on a table.
+//! Coordinates along the two near edges of the block, where a picture shows it as a block on a table; of a grid on a plan,
+//! along all four.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
+use crate::annotate::figure::CoordinateFigure;
 use crate::annotate::nice::{Ticks, format_number, grouped};
 use crate::annotate::rim::RimMark;
+use crate::pipeline::grid::lines::{GroundGrid, GroundLine};
 use crate::scene::SceneModel;
+use crate::scene::picture::setting::PictureSetting;
 use crate::scene::picture::shows_table;
 use crate::scene::plinth::base_z;
 use crate::terrain::full_resolution::FullResolution;
@@ -30,52 +34,107 @@ struct BlockEdge {
     outward: Vec3,
 }
 
-/// The coordinates along the near edges; none where the block is not on a table.
+/// A coordinate on an edge.
+struct RimTick {
+    /// World X or Y along the edge.
+    along: f32,
+    figure: CoordinateFigure,
+}
+
+/// The coordinates along the near edges: where the lines of `grid` meet them or, without one, those of the scene's own
+/// system. In plan those of a grid along all edges. None where the block is not on a table.
 ///
 /// At the foot of an edge that faces the eye; at the ground above an edge that does not.
-pub fn rim_marks(scene: &SceneModel, camera: &Camera) -> Vec<RimMark> {
-    if !shows_table(scene, camera) {
+pub fn rim_marks(scene: &SceneModel, camera: &Camera, grid: Option<&GroundGrid>) -> Vec<RimMark> {
+    let is_plan = PictureSetting::new(camera, scene.bounds) == PictureSetting::Plan;
+    let edges: Vec<BlockEdge> = if shows_table(scene, camera) {
+        near_edges(scene, camera).into()
+    } else if is_plan && grid.is_some() {
+        [(0, false), (0, true), (1, false), (1, true)]
+            .map(|(axis, is_at_max)| BlockEdge::new(scene, axis, is_at_max))
+            .into()
+    } else {
         return Vec::new();
+    };
+    let marks = edges.iter().flat_map(|edge| {
+        let ticks = match grid {
+            Some(grid) => grid_ticks(edge, scene, grid),
+            None => own_ticks(edge, scene),
+        };
+        ticks.into_iter().filter_map(|tick| mark(edge, tick, scene, camera)).collect::<Vec<_>>()
+    });
+    marks.collect()
+}
+
+impl BlockEdge {
+    fn new(scene: &SceneModel, axis: usize, is_at_max: bool) -> Self {
+        let ((min, max), across) = (scene.bounds, 1 - axis);
+        let mut outward = Vec3::ZERO;
+        outward[across] = if is_at_max { 1.0 } else { -1.0 };
+        Self { axis, at: if is_at_max { max[across] } else { min[across] }, outward }
     }
-    near_edges(scene, camera).iter().flat_map(|edge| edge_marks(edge, scene, camera)).collect()
 }
 
 /// The edge across the view and the one along it that are nearer to the eye; of two equally near, the western.
 fn near_edges(scene: &SceneModel, camera: &Camera) -> [BlockEdge; 2] {
-    let (min, max) = scene.bounds;
     let ahead = camera.forward();
     let is_at_max = [ahead.x < -1e-3, ahead.y < 0.0];
-    [(0, 1), (1, 0)].map(|(axis, across)| {
-        let sign = if is_at_max[across] { 1.0 } else { -1.0 };
-        let mut outward = Vec3::ZERO;
-        outward[across] = sign;
-        BlockEdge { axis, at: if is_at_max[across] { max[across] } else { min[across] }, outward }
-    })
+    [0, 1].map(|axis| BlockEdge::new(scene, axis, is_at_max[1 - axis]))
 }
 
-fn edge_marks(edge: &BlockEdge, scene: &SceneModel, camera: &Camera) -> Vec<RimMark> {
+/// Round coordinates of the scene's own system.
+fn own_ticks(edge: &BlockEdge, scene: &SceneModel) -> Vec<RimTick> {
     let (min, max) = scene.bounds;
     let origin = scene.lattice.origin()[edge.axis];
     let (low, high) = (origin + f64::from(min[edge.axis]), origin + f64::from(max[edge.axis]));
     let ticks = Ticks::new(low, high, MOST_MARKS);
+    let tick = |&value: &f64| RimTick {
+        along: (value - origin) as f32,
+        figure: coordinate(value, ticks.decimals, ["E", "N"][edge.axis]).into(),
+    };
+    ticks.values.iter().map(tick).collect()
+}
+
+/// Where the lines of a grid meet the edge: the first in full, then those of index lines, so that they stay where there is
+/// no place for all.
+fn grid_ticks(edge: &BlockEdge, scene: &SceneModel, grid: &GroundGrid) -> Vec<RimTick> {
+    let (min, max) = scene.bounds;
+    let near = 1e-4 * (max - min).truncate().max_element();
+    let meets = |line: &GroundLine| {
+        let ends = line.parts.iter().flat_map(|part| [part.first(), part.last()]).flatten();
+        let on_edge = |end: &&DVec2| (end[1 - edge.axis] as f32 - edge.at).abs() < near;
+        ends.filter(on_edge).map(|end| end[edge.axis] as f32).next()
+    };
+    let of_axis = grid.lines.iter().filter(|line| line.axis as usize == edge.axis);
+    let mut met: Vec<(f32, &GroundLine)> = of_axis.filter_map(|line| Some((meets(line)?, line))).collect();
+    met.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let order = |index: usize| (index > 0, index > 0 && !met[index].1.is_index);
+    let mut indices: Vec<usize> = (0..met.len()).collect();
+    indices.sort_by_key(|&index| order(index));
+    let tick = |index: usize| {
+        let (along, line) = met[index];
+        RimTick { along, figure: if index == 0 { line.full.clone() } else { line.figure.clone() } }
+    };
+    indices.into_iter().map(tick).collect()
+}
+
+fn mark(edge: &BlockEdge, tick: RimTick, scene: &SceneModel, camera: &Camera) -> Option<RimMark> {
+    let (min, max) = scene.bounds;
     let side_m = (max - min).truncate().max_element();
     let ground = FullResolution { lattice: scene.ground().lattice() };
-    let mark = |&value: &f64| {
-        let mut border = Vec3::splat(edge.at);
-        border[edge.axis] = (value - origin) as f32;
-        let inward = |step: u16| border - edge.outward * (side_m * (f32::from(step) * INWARD_STEP + 1e-5));
-        let (at, ground_z) = (0..MOST_INWARD)
-            .map(inward)
-            .find_map(|at| Some((at, ground.displayed_z(at.truncate().as_dvec2())? as f32)))?;
-        let foot = at.with_z(base_z(scene.bounds));
-        let faces_eye = edge.outward.dot(camera.toward_eye(foot)) > 0.0;
-        let at = if faces_eye { foot } else { at.with_z(ground_z) };
-        let step = edge.outward * side_m * 0.01;
-        let [here, beyond] = [at, at + step].map(|point| camera.project(point).map(|seen| seen.pixel));
-        let (at_px, outward): (Vec2, Vec2) = (here?, beyond? - here?);
-        Some(RimMark { at_px, outward, text: coordinate(value, ticks.decimals, ["E", "N"][edge.axis]) })
-    };
-    ticks.values.iter().filter_map(mark).collect()
+    let mut border = Vec3::splat(edge.at);
+    border[edge.axis] = tick.along;
+    let inward = |step: u16| border - edge.outward * (side_m * (f32::from(step) * INWARD_STEP + 1e-5));
+    let (at, ground_z) = (0..MOST_INWARD)
+        .map(inward)
+        .find_map(|at| Some((at, ground.displayed_z(at.truncate().as_dvec2())? as f32)))?;
+    let foot = at.with_z(base_z(scene.bounds));
+    let faces_eye = edge.outward.dot(camera.toward_eye(foot)) > 0.0;
+    let at = if faces_eye { foot } else { at.with_z(ground_z) };
+    let step = edge.outward * side_m * 0.01;
+    let [here, beyond] = [at, at + step].map(|point| camera.project(point).map(|seen| seen.pixel));
+    let (at_px, outward): (Vec2, Vec2) = (here?, beyond? - here?);
+    Some(RimMark { at_px, outward, figure: tick.figure })
 }
 
 /// A coordinate with its thousands apart, such as `4 650 000 N`.

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
-use crate::description::document::Document;
+use crate::description::document::{Document, FlightTable};
 use crate::description::parse::parse_in_phase;
 use crate::message::suggest::{quoted, remedy};
 use crate::pipeline::files::{self, ReadFileError};
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
+use crate::scene::flights::{SceneFlight, flight};
+use crate::scene::picture::camera;
 use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
@@ -25,6 +27,8 @@ pub enum OpenSceneError {
     Build(#[from] Diagnostic),
     #[error("{}", no_phase(.name, .names))]
     NoPhase { name: String, names: Vec<String> },
+    #[error("{}", no_flight(.name.as_deref(), .names))]
+    NoFlight { name: Option<String>, names: Vec<String> },
 }
 
 fn no_phase(name: &str, names: &[String]) -> String {
@@ -34,6 +38,17 @@ fn no_phase(name: &str, names: &[String]) -> String {
         _ => remedy(name, &names, "its phases are").replace(" or ", " and "),
     };
     format!("the scene has no phase '{}'; {remedy}", quoted(name))
+}
+
+fn no_flight(name: Option<&str>, names: &[String]) -> String {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    match (name, &names[..]) {
+        (Some(name), [_, ..]) => {
+            let remedy = remedy(name, &names, "its flights are").replace(" or ", " and ");
+            format!("the scene has no flight '{}'; {remedy}", quoted(name))
+        }
+        _ => "the scene has no [[flight]]; add one with a name and `points`".to_owned(),
+    }
 }
 
 /// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
@@ -69,6 +84,34 @@ pub fn open_scene_in_phase(
         let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
         Err(OpenSceneError::NoPhase { name: phase.to_owned(), names })
     }
+}
+
+/// [`open_scene`] with its flight called `name`, or its first.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_with_flight(
+    path: &Path,
+    allowed: &[PathBuf],
+    name: Option<&str>,
+    progress: &dyn Fn(&'static str),
+) -> Result<(SceneModel, SceneFlight), OpenSceneError> {
+    progress("reading the scene file");
+    let (document, assets) = open_document(path, allowed, None)?;
+    let is_meant = |table: &&FlightTable| name.is_none_or(|name| table.name.as_str() == name);
+    let Some(table) = document.flights.iter().find(is_meant) else {
+        let names = document.flights.iter().map(|flight| flight.name.to_string()).collect();
+        return Err(OpenSceneError::NoFlight { name: name.map(str::to_owned), names });
+    };
+    let mut scene = build(&document, &assets, progress)?;
+    // A scale bar for the distance of each frame's ground would jump from frame to frame.
+    scene.furniture.scale_bar = false;
+    let flight = flight(&document, table, &assets, &scene)?;
+    // A camera that sees nothing is reported when its frame is drawn.
+    if let Ok(start) = camera(&scene, &flight.view(0.0), (1280, 720)) {
+        SceneFlight::hold_light(&mut scene, &start);
+    }
+    Ok((scene, flight))
 }
 
 /// The names of the phases of the scene file at `path`, in its order; of other files only those that it includes are read.

@@ -31,6 +31,7 @@ use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
 use crate::scene::sources::Sources;
+use crate::scene::spot_heights::spot_heights;
 use crate::scene::style::{self, RampSource};
 use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
@@ -93,7 +94,9 @@ pub fn build(
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let labels = views::labels(&sources, &lattice, &mut collected.notes)?;
+    let mut labels = views::labels(&sources, &lattice, &mut collected.notes)?;
+    let most = document.style.spot_heights as usize;
+    labels.extend(spot_heights(most, &labels, &collected.lakes, &frame, &lattice));
     let military = military::symbols(&sources, &lattice, &mut collected.notes)?;
     let cameras = views::cameras(&frame, &lattice)?;
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
@@ -134,7 +137,8 @@ pub fn build(
         military,
         cameras,
         font: font::load(document, assets)?,
-        furniture: document.furniture,
+        furniture: document.furniture.clone(),
+        sheet_day: style::sheet_day(document)?,
         features: collected.features,
         notes: collected.notes,
         report: collected.report,

@@ -8,6 +8,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::DefaultCounts;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::spot_heights::LakeSurface;
 use crate::scene::symbols::LineSymbol;
 use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
 use crate::terrain::triangle_surface::SurfaceTriangle;
@@ -27,6 +28,8 @@ pub struct SceneBuilder {
     pub uprights: Vec<FeatureSolid>,
     /// Decks above the ground for height queries: triangles in world space, true heights in meters.
     pub decks: Vec<SurfaceTriangle>,
+    /// Lakes with their levels.
+    pub lakes: Vec<LakeSurface>,
     /// Notes for the user.
     pub notes: Vec<String>,
     /// The number of expressions without a value, by key and default.

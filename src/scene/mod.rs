@@ -16,6 +16,7 @@ pub mod buildings;
 mod facade;
 pub mod feature_labels;
 pub mod fences;
+pub mod flights;
 mod font;
 pub mod footprint;
 pub mod ground;
@@ -34,6 +35,7 @@ pub mod report;
 pub mod roads;
 pub mod scatter;
 pub mod sources;
+mod spot_heights;
 pub mod style;
 pub mod sunlight;
 pub mod symbols;
@@ -58,6 +60,7 @@ use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
 use crate::geom::crs::Crs;
+use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
@@ -147,6 +150,8 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The day of its information.
+    pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
     /// Notes for the user: features off the model, missing textures, earth moved.

@@ -6,6 +6,8 @@ use crate::description::document::Document;
 use crate::description::words::RampName;
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours};
+use crate::geom::declination::CalendarDay;
+use crate::message::suggest::quoted;
 use crate::scene::ramps::{TintedGround, named};
 
 /// Where the colors of the ground come from.
@@ -52,4 +54,17 @@ pub fn contours(document: &Document) -> Option<Contours> {
         color: contours.color.map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.0)),
         width_px: 1.0,
     })
+}
+
+/// The day that the document's furniture names.
+///
+/// # Errors
+/// The text is not a day.
+pub fn sheet_day(document: &Document) -> Result<Option<CalendarDay>, Diagnostic> {
+    let day = document.furniture.date.as_ref().map(|date| {
+        let message = format!("'{}' is not a day", quoted(date));
+        CalendarDay::parse(date)
+            .ok_or_else(|| document.error(date, message).with_help("write it as in \"2026-06-21\""))
+    });
+    day.transpose()
 }

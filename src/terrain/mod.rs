@@ -8,6 +8,7 @@ pub mod lattice;
 pub mod light;
 pub mod post_rect;
 pub mod profile;
+pub mod prominence;
 pub mod pyramid;
 pub mod query;
 pub mod sight;

@@ -105,6 +105,9 @@ fn sheet(width: u32, height: u32) -> Annotations {
     ];
     let stops = stops.map(|(at, [r, g, b])| (at, Srgba::opaque(r, g, b))).to_vec();
     Annotations {
+        grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels: labels(w, h),
         title: Some("Cross Mountain and the Coal Creek Valley".to_owned()),
@@ -153,6 +156,9 @@ fn trouble(width: u32, height: u32) -> Annotations {
     labels.push(label("富士山\n3776 m", LabelKind::Summit, 0.5 * w, 0.3 * h, 1.0));
     labels.push(label("Эльбрус · Ἐρύμανθος\nהר חרמון", LabelKind::Summit, 0.3 * w, 0.3 * h, 1.0));
     Annotations {
+        grid: None,
+        classes: Vec::new(),
+        margin: None,
         rim: Vec::new(),
         labels,
         title: Some("Great Smoky Mountains ".repeat(9)),
@@ -217,7 +223,7 @@ fn labels_left_out_leave_no_pixel_and_do_not_disturb_the_others() {
 fn a_good_sheet_is_drawn_whole() {
     let (pixels, report) = annotated(1920, 1080, &sheet(1920, 1080));
     assert_eq!(report.placed.len(), 14);
-    let whole = AnnotationReport { placed: vec![], ..report };
+    let whole = AnnotationReport { placed: vec![], moved: vec![], ..report };
     assert_eq!(whole, AnnotationReport::default());
     assert!(pixels.data().iter().all(|color| color.0[3] == 255), "an opaque picture stays opaque");
 }

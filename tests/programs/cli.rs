@@ -2,6 +2,7 @@
 
 mod convert;
 mod export;
+mod fly;
 mod grid;
 mod heights;
 mod info;

@@ -7,6 +7,7 @@ mod assets;
 mod buffers;
 mod clearance;
 mod detail;
+mod flights;
 mod imagery;
 mod instances;
 mod labels;

@@ -5,7 +5,7 @@
 //! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
 //! [`DrawList::runs`].
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
@@ -127,24 +127,26 @@ fn forms(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) -
     if total <= FULL_TRIANGLES {
         return vec![DetailForm::Full; in_view.len()];
     }
-    prepare(scene, in_view, sizes);
+    let pictured = prepare(scene, in_view, sizes);
     let form = |(stand, size): (&&PlacedModel, &ApparentSize)| {
-        scene.details[stand.model].get().map_or(DetailForm::Full, |detail| detail.form(size))
+        let is_pictured = pictured.contains(&stand.model);
+        scene.details[stand.model].get().map_or(DetailForm::Full, |detail| detail.form(size, is_pictured))
     };
     in_view.par_iter().zip(sizes).map(form).collect()
 }
 
-/// Makes the simpler forms of the models in view that this picture needs, where they are not yet made.
+/// Makes the simpler forms of the models in view that this picture needs, where they are not yet made, and returns the
+/// models that it shows as pictures on quads where they are small: what other pictures made is not asked.
 ///
 /// Not by `get_or_init`: making them runs on several threads, and one that helps another picture meanwhile could wait for
 /// itself.
-fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) {
+fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize]) -> BTreeSet<usize> {
     let mut wanted: BTreeMap<usize, usize> = BTreeMap::new();
     for (stand, size) in in_view.iter().zip(sizes) {
         *wanted.entry(stand.model).or_default() +=
             usize::from(size.is_small()) * scene.models[stand.model].triangle_count();
     }
-    wanted.into_par_iter().for_each(|(model, small)| {
+    wanted.par_iter().for_each(|(&model, &small)| {
         let (detail, model) = (&scene.details[model], &scene.models[model]);
         if detail.get().is_none() {
             // Another picture may have set the same value first.
@@ -154,6 +156,7 @@ fn prepare(scene: &SceneModel, in_view: &[&PlacedModel], sizes: &[ApparentSize])
             detail.make_impostor(model);
         }
     });
+    wanted.into_iter().filter(|(_, small)| *small >= PICTURED_TRIANGLES).map(|(model, _)| model).collect()
 }
 
 impl BoundingSphere {

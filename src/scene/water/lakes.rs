@@ -19,6 +19,7 @@ use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::near::Clipped;
 use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
+use crate::scene::spot_heights::LakeSurface;
 use crate::scene::symbols::LineSymbol;
 use crate::terrain::densify;
 use crate::terrain::lattice::Lattice;
@@ -148,6 +149,7 @@ impl Lake {
             cut: volumes.cut_m3,
             fill: volumes.fill_m3,
         });
+        collected.lakes.push(LakeSurface { outline: self.shape.exterior.clone(), level_m });
         collected.add(FeatureKind::Lake, self.name.clone())
     }
 }

@@ -81,3 +81,30 @@ fn buffers_lie_in_the_folder_that_is_named() {
         assert!(scratch.at("out/buffers").join(name).is_file(), "{name}");
     }
 }
+
+#[test]
+fn a_sheet_has_a_picture_for_each_camera_or_phase() {
+    let scratch = Scratch::new();
+    let small = |picture: image::RgbImage, [left, top]: [u32; 2]| {
+        image::imageops::crop_imm(&picture, left, top, 300, 150).to_image().into_raw()
+    };
+    let sheet = |scene: &str, more: &[&str]| {
+        let arguments =
+            [&["render", scene, "--sheet", "-o", "sheet.png", "--size", "960x540"], more].concat();
+        let out = run_in(scratch.folder(), &arguments).ok();
+        assert!(out.starts_with("sheet.png\n"), "{out}");
+        let picture = image::open(scratch.at("sheet.png")).expect("a picture").into_rgb8();
+        assert_eq!((picture.width(), picture.height()), (960, 540));
+        picture
+    };
+    let cameras = sheet(&project("scenes/areas.toml"), &[]);
+    let [left, right] = [[60, 150], [560, 150]].map(|at| small(cameras.clone(), at));
+    assert!(left != right);
+    let phases = sheet(&project("scenes/phases.toml"), &["--all-phases"]);
+    assert_eq!(scratch.names(), ["sheet.png"], "no picture of its own for any");
+    let [first, second] = [[130, 70], [530, 70]].map(|at| small(phases.clone(), at));
+    assert!(first != second);
+    let scene = project("scenes/areas.toml");
+    let said = run_in(scratch.folder(), &["render", &scene, "--sheet", "--size", "24x24"]).failed(2);
+    assert!(said.contains("state a larger --size"), "{said}");
+}

@@ -1,0 +1,176 @@
+//! The legend of classes: what the picture shows besides heights, each with its look there.
+
+use glam::Vec2;
+
+use crate::annotate::composer::Composer;
+use crate::annotate::drawing::{Drawing, polygon, polyline};
+use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::annotate::sheet::{FRAME, INK, Sheet};
+use crate::annotate::text::TextStyle;
+use crate::draw::color::Srgba;
+
+/// The size of a swatch, the gap to its text, and the distance of baselines, in design pixels.
+const SWATCH: Vec2 = Vec2::new(34.0, 16.0);
+const GAP: f32 = 11.0;
+const LEAD: f32 = 24.0;
+/// The widest name, in ems: longer ones are cut.
+const WIDEST_EM: f32 = 15.0;
+/// More classes are not listed: a legend that is longer than what it explains is not read.
+const MOST: usize = 16;
+
+/// A class of what a picture shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LegendEntry {
+    /// Its name.
+    pub name: String,
+    /// Its look.
+    pub swatch: LegendSwatch,
+}
+
+/// The look of a class.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LegendSwatch {
+    /// A line across the swatch.
+    Line {
+        /// The color of its fill.
+        fill: Srgba,
+        /// The color of its edges, where it has any.
+        casing: Option<Srgba>,
+        /// Its width with its edges, in design pixels.
+        width: f32,
+    },
+    /// A stretch of ground or water.
+    Area {
+        /// Its mean color.
+        fill: Srgba,
+        /// The color of the line around it.
+        edge: Srgba,
+    },
+    /// What stands on the ground, as a block of its mean color.
+    Block(Srgba),
+    /// Paths, in order, such as those of a symbol.
+    Paths(Vec<SwatchPath>),
+}
+
+/// A path of a swatch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SwatchPath {
+    /// Points in the swatch, X right and Y down: -1 to 1 spans its height, from its middle.
+    pub points: Vec<Vec2>,
+    /// The color.
+    pub color: Srgba,
+    /// The width of the line in design pixels; 0 fills the path.
+    pub width: f32,
+}
+
+/// The legend with its upper left corner at the origin; `None` without classes.
+pub(in crate::annotate) fn compose(entries: &[LegendEntry], composer: &mut Composer) -> Option<Drawing> {
+    if entries.is_empty() {
+        return None;
+    }
+    let sheet = composer.sheet;
+    let (head_style, style) =
+        (composer.style(16.0, TextStyle::MEDIUM), composer.style(15.0, TextStyle::REGULAR));
+    let head = composer.line("Legend", head_style);
+    let padding = sheet.padding();
+    let mut drawing = Drawing::default();
+    let mut baseline = (padding + head_style.cap_px()).round();
+    drawing.write(&head, Vec2::new(padding, baseline), INK);
+    let swatch = SWATCH * sheet.scale;
+    let (mut width, lead) = (head.advance, sheet.px(LEAD).max(style.size_px * 1.25));
+    for entry in entries.iter().take(MOST) {
+        let Some(line) = composer.fitted(&entry.name, style, style.size_px * WIDEST_EM) else { continue };
+        baseline = (baseline + lead).round();
+        let middle = baseline - style.cap_px() * 0.5;
+        let area = PixelBox::around(Vec2::new(padding + swatch.x * 0.5, middle).round(), swatch * 0.5);
+        draw_swatch(&entry.swatch, area, &sheet, &mut drawing);
+        let x = padding + swatch.x + sheet.px(GAP);
+        drawing.record_text(&entry.name, line.missing, line.shortened);
+        drawing.write(&line, Vec2::new(x.round(), baseline), INK);
+        width = width.max(x - padding + line.advance);
+    }
+    let corner = Vec2::new((width + padding * 2.0).ceil(), (baseline + padding).ceil());
+    Some(drawing.on_panel(corner, &sheet))
+}
+
+fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, sheet: &Sheet, drawing: &mut Drawing) {
+    match swatch {
+        LegendSwatch::Line { fill, casing, width } => {
+            let (middle, width) = (area.center().y, sheet.px(*width).max(1.0));
+            let line = PixelSegment {
+                from: Vec2::new(area.min.x + width * 0.5, middle),
+                to: Vec2::new(area.max.x - width * 0.5, middle),
+            };
+            let inner = match casing {
+                Some(casing) => {
+                    drawing.line(line, width, *casing);
+                    (width - sheet.px(1.8).max(1.4)).max(1.0)
+                }
+                None => width,
+            };
+            drawing.line(line, inner, *fill);
+        }
+        LegendSwatch::Area { fill, edge } => {
+            drawing.rect(area, *fill);
+            drawing.frame(area, sheet.hairline().round(), *edge);
+        }
+        LegendSwatch::Block(fill) => {
+            let block = PixelBox::around(area.center(), Vec2::splat(area.size().y * 0.42)).grown(0.5);
+            drawing.rect(block, *fill);
+            drawing.frame(block, sheet.hairline().round(), FRAME);
+        }
+        LegendSwatch::Paths(paths) => {
+            for path in paths {
+                let points: Vec<Vec2> =
+                    path.points.iter().map(|at| area.center() + *at * area.size().y * 0.5).collect();
+                match path.width > 0.0 {
+                    true => polyline(&points)
+                        .into_iter()
+                        .for_each(|line| drawing.stroke(&line, sheet.px(path.width).max(0.8), path.color)),
+                    false => {
+                        polygon(&points).into_iter().for_each(|area| drawing.fill(area, path.color));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(name: &str) -> LegendEntry {
+        let fill = Srgba::opaque(200, 120, 40);
+        LegendEntry { name: name.into(), swatch: LegendSwatch::Line { fill, casing: Some(INK), width: 6.0 } }
+    }
+
+    #[test]
+    fn each_class_has_a_line_of_its_own() {
+        let mut composer = Composer::new(1920, 1080);
+        assert!(compose(&[], &mut composer).is_none());
+        let height = |count: usize, composer: &mut Composer| {
+            let entries: Vec<LegendEntry> = (0..count).map(|_| entry("Main road")).collect();
+            compose(&entries, composer).expect("classes").bounds().size().y
+        };
+        let step = height(3, &mut composer) - height(2, &mut composer);
+        assert!((step - LEAD).abs() < 1.5, "{step}");
+        assert_eq!(height(MOST, &mut composer), height(MOST + 50, &mut composer));
+    }
+
+    #[test]
+    fn the_panel_holds_every_kind_of_swatch_and_cuts_long_names() {
+        let fill = Srgba::opaque(90, 140, 90);
+        let path = SwatchPath { points: vec![Vec2::NEG_ONE, Vec2::ONE, Vec2::NEG_X], color: INK, width: 0.0 };
+        let entries = [
+            entry(&"Main road ".repeat(20)),
+            LegendEntry { name: "Forest".into(), swatch: LegendSwatch::Area { fill, edge: INK } },
+            LegendEntry { name: "Tower".into(), swatch: LegendSwatch::Block(fill) },
+            LegendEntry { name: "Symbol".into(), swatch: LegendSwatch::Paths(vec![path]) },
+        ];
+        let drawing = compose(&entries, &mut Composer::new(1920, 1080)).expect("classes");
+        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        assert_eq!(panel, Some(drawing.bounds()));
+        assert!(drawing.texts[0].shortened);
+    }
+}

@@ -1,0 +1,88 @@
+//! `sandtable fly`: a flight through a scene as numbered pictures or an animated one.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::cli::error::CliError;
+use crate::cli::options::SceneArguments;
+use crate::cli::output::{print_lines, row};
+use crate::cli::progress::StepTimer;
+use crate::cli::values::{choice, number, picture_size};
+use crate::pipeline::fly::{FlyOptions, fly_to_file, fly_to_folder};
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::scene_file::open_scene_with_flight;
+use crate::render::RenderBackend;
+
+/// The most frames of a flight: an hour.
+const MOST_FRAMES: f64 = 90_000.0;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The flight is a [[flight]] of the scene. Into a folder each frame is written as a picture of its own, and a run\n\
+                  that was ended goes on where it stopped; for a video: ffmpeg -framerate 25 -i DIR/frame-%05d.png out.mp4"
+)]
+pub struct FlyArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Write frames into this folder, or into one animated picture where the name ends in .png
+    #[arg(short, long, value_name = "DIR|OUT.png")]
+    pub output: PathBuf,
+    /// The flight of the scene [default: its first]
+    #[arg(long, value_name = "NAME")]
+    pub flight: Option<String>,
+    /// Size of a frame in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = picture_size)]
+    pub size: PictureSize,
+    /// Frames in a second
+    #[arg(long, value_name = "N", default_value = "25", value_parser = clap::value_parser!(u16).range(1..=240))]
+    pub fps: u16,
+    /// How long the flight takes [default: by its `speed`]
+    #[arg(long, value_name = "SECONDS", value_parser = number::<f64>(0.01..=3600.0, "write seconds as a number from 0.01 to 3600"))]
+    pub seconds: Option<f64>,
+    /// What draws: the processor, the same on every machine, or a graphics adapter
+    #[arg(long, default_value = "cpu", value_parser = choice::<RenderBackend>())]
+    pub backend: RenderBackend,
+}
+
+pub fn run(arguments: &FlyArguments) -> Result<(), CliError> {
+    let SceneArguments { scene: file, access } = &arguments.scene;
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let (scene, flight) =
+        open_scene_with_flight(file, &access.allow, arguments.flight.as_deref(), &progress)?;
+    steps.finish();
+    let seconds = arguments.seconds.unwrap_or(flight.seconds);
+    let frames = (seconds * f64::from(arguments.fps)).round().max(1.0);
+    if frames > MOST_FRAMES {
+        return Err(CliError::Usage(format!(
+            "{frames:.0} frames are more than the {MOST_FRAMES} that are drawn; state fewer --seconds or a smaller --fps"
+        )));
+    }
+    let options = FlyOptions {
+        size: arguments.size,
+        frames: frames as u32,
+        fps: arguments.fps,
+        backend: arguments.backend,
+    };
+    let bar = ProgressBar::new(u64::from(options.frames));
+    let style = ProgressStyle::with_template("{bar:30} frame {pos} of {len} [{elapsed} of about {duration}]");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let done = |number: u32| bar.set_position(u64::from(number));
+    let is_file = arguments.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let count = if is_file {
+        fly_to_file(&scene, &flight, &options, &arguments.output, &done)?;
+        format!("{} in one animated picture", options.frames)
+    } else {
+        let count = fly_to_folder((&scene, file), &flight, &options, &arguments.output, &done)?;
+        format!("{}, {} of them there before", options.frames, count.kept)
+    };
+    bar.finish_and_clear();
+    let length = format!("{:.2} km in {seconds:.1} s", flight.length_m() / 1000.0);
+    print_lines(&[
+        arguments.output.display().to_string(),
+        row(9, "flight", format!("{}: {length}", flight.name)),
+        row(9, "frames", count),
+    ])
+}

@@ -1,0 +1,201 @@
+//! The pictures of `sandtable render`: of one camera or all, in one phase or all, in files or on a sheet.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use crate::annotate::contact_sheet::{ContactPicture, ContactSheet};
+use crate::annotate::report::AnnotationReport;
+use crate::cli::error::CliError;
+use crate::cli::options::SceneArguments;
+use crate::cli::progress::StepTimer;
+use crate::cli::render::{RenderArguments, find_camera, named_by_option};
+use crate::draw::list::DrawList;
+use crate::draw::pixels::Pixels;
+use crate::pipeline::files;
+use crate::pipeline::picture::{PictureSize, annotate_view, draw_view};
+use crate::pipeline::picture_buffers::PictureBuffers;
+use crate::pipeline::picture_statistics::PictureStatistics;
+use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
+use crate::scene::{SceneModel, SceneView};
+
+/// A scene in one phase, and the pictures of it.
+pub struct RenderedScene {
+    pub scene: SceneModel,
+    pub pictures: Vec<RenderedPicture>,
+}
+
+/// A picture, and what it shows.
+pub struct RenderedPicture {
+    pub output: PictureOutput,
+    pub camera: String,
+    /// Triangles drawn of the ground and of each kind of feature.
+    pub triangles: BTreeMap<&'static str, usize>,
+    pub ground_triangles: usize,
+    pub annotations: AnnotationReport,
+    /// Measured where JSON is printed.
+    pub statistics: Option<PictureStatistics>,
+}
+
+/// Where a picture went.
+pub enum PictureOutput {
+    File(PathBuf),
+    /// To a sheet: its pixels, which are few.
+    Sheet(Pixels),
+}
+
+impl RenderedPicture {
+    /// The file that it was written to.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.output {
+            PictureOutput::File(path) => Some(path),
+            PictureOutput::Sheet(_) => None,
+        }
+    }
+}
+
+/// Renders the pictures that the arguments ask for, and writes those that are files of their own.
+pub fn render(
+    arguments: &RenderArguments,
+    path: &Path,
+    steps: &StepTimer,
+) -> Result<Vec<RenderedScene>, CliError> {
+    let progress = |step| steps.begin(step);
+    let SceneArguments { scene: file, access } = &arguments.scene;
+    if !arguments.all_phases {
+        let scene = match &arguments.phase {
+            Some(phase) => open_scene_in_phase(file, &access.allow, phase, &progress)?,
+            None => open_scene(file, &access.allow, &progress)?,
+        };
+        return Ok(vec![render_scene(arguments, scene, path, 1, &progress)?]);
+    }
+    let names = phases(file, &access.allow)?;
+    if names.is_empty() {
+        let message = "--all-phases has no effect: the scene has no [[phase]]; remove it";
+        return Err(CliError::Usage(message.into()));
+    }
+    let paths = named_paths(path, &names);
+    let phases = names.iter().zip(paths);
+    let render = |(phase, path): (&String, PathBuf)| {
+        let scene = open_scene_in_phase(file, &access.allow, phase, &progress)?;
+        render_scene(arguments, scene, &path, names.len(), &progress)
+    };
+    phases.map(render).collect()
+}
+
+fn render_scene(
+    arguments: &RenderArguments,
+    scene: SceneModel,
+    path: &Path,
+    scenes: usize,
+    progress: &dyn Fn(&'static str),
+) -> Result<RenderedScene, CliError> {
+    let views: Vec<&SceneView> = match arguments.shows_all_cameras() {
+        true => scene.cameras.iter().collect(),
+        false => vec![find_camera(&scene, arguments.camera.as_deref())?],
+    };
+    let small = if arguments.sheet { Some(sheet_of(arguments, views.len() * scenes)?) } else { None };
+    let small = small.map(|sheet| sheet.picture_size());
+    let names: Vec<String> = views.iter().map(|view| view.name.clone()).collect();
+    let paths =
+        if arguments.all_cameras { named_paths(path, &names) } else { vec![path.to_owned(); views.len()] };
+    for path in &paths {
+        files::check_output(path, &scene.files)
+            .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
+    }
+    let mut pictures = Vec::new();
+    for (view, path) in views.into_iter().zip(paths) {
+        pictures.push(render_picture(arguments, &scene, view, (path, small), progress)?);
+    }
+    Ok(RenderedScene { scene, pictures })
+}
+
+/// Renders a picture to a file, or of the size `small` for a sheet.
+fn render_picture(
+    arguments: &RenderArguments,
+    scene: &SceneModel,
+    camera: &SceneView,
+    (path, small): (PathBuf, Option<[u32; 2]>),
+    progress: &dyn Fn(&'static str),
+) -> Result<RenderedPicture, CliError> {
+    let size = small.map_or(arguments.size, |[width, height]| PictureSize { width, height });
+    let drawn = draw_view(scene, camera, size, arguments.backend, progress)?;
+    let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
+    if let Some(folder) = &arguments.buffers {
+        progress("writing buffers");
+        // The buffers of several pictures lie in folders named as the pictures are.
+        let is_one = !arguments.all_cameras && !arguments.all_phases;
+        let folder = if is_one { folder.clone() } else { folder.join(files::file_stem(&path)) };
+        files::make_folder(&folder)?;
+        PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
+    }
+    let view = annotate_view(scene, drawn, progress);
+    let (triangles, ground_triangles) = (triangles(scene, &view.drawn.list), view.drawn.ground_triangles);
+    let output = if small.is_some() {
+        PictureOutput::Sheet(view.pixels)
+    } else {
+        progress("writing the picture");
+        files::write_picture(&path, &view.pixels)?;
+        PictureOutput::File(path)
+    };
+    let (camera, annotations) = (camera.name.clone(), view.annotations);
+    Ok(RenderedPicture { output, camera, triangles, ground_triangles, annotations, statistics })
+}
+
+fn sheet_of(arguments: &RenderArguments, pictures: usize) -> Result<ContactSheet, CliError> {
+    let PictureSize { width, height } = arguments.size;
+    let sheet = u32::try_from(pictures).ok().and_then(|pictures| ContactSheet::new(width, height, pictures));
+    sheet.ok_or_else(|| {
+        CliError::Usage(format!(
+            "{pictures} pictures have no room on a sheet of {width}x{height}; state a larger --size"
+        ))
+    })
+}
+
+/// The pictures of all scenes on one sheet.
+pub fn contact_sheet(arguments: &RenderArguments, scenes: &[RenderedScene]) -> Result<Pixels, CliError> {
+    let picture = |(scene, picture): (&SceneModel, &RenderedPicture)| {
+        let PictureOutput::Sheet(pixels) = &picture.output else { return None };
+        let phase = scene.phase.as_ref().filter(|_| arguments.all_phases);
+        let caption = match (phase, arguments.shows_all_cameras()) {
+            (Some(phase), true) => format!("{phase}: {}", picture.camera),
+            (Some(phase), false) => phase.clone(),
+            (None, _) => picture.camera.clone(),
+        };
+        Some(ContactPicture { caption, pixels: pixels.clone() })
+    };
+    let all = scenes.iter().flat_map(|scene| scene.pictures.iter().map(|picture| (&scene.scene, picture)));
+    let pictures: Vec<ContactPicture> = all.filter_map(picture).collect();
+    let first = scenes.first().map(|scene| &scene.scene);
+    let title = first.and_then(|scene| scene.title.as_deref());
+    let font = first.and_then(|scene| scene.font.as_ref());
+    Ok(sheet_of(arguments, pictures.len())?.compose(title, &pictures, font))
+}
+
+/// A path for each of `names`: `path` with the name behind its own. Characters that are trouble in file names become
+/// hyphens; what then has the name of an earlier one gets its number.
+fn named_paths(path: &Path, names: &[String]) -> Vec<PathBuf> {
+    let is_plain = |letter: char| letter.is_alphanumeric() || ['_', '.'].contains(&letter);
+    let plain = |name: &String| name.replace(|letter| !is_plain(letter), "-");
+    let mut taken = BTreeSet::new();
+    let named = |(number, name): (usize, &String)| {
+        let mut name = plain(name);
+        if !taken.insert(name.clone()) {
+            name = format!("{name}-{number}");
+            taken.insert(name.clone());
+        }
+        let stem = files::file_stem(path);
+        path.with_file_name(format!("{stem}-{name}.png"))
+    };
+    (1..).zip(names).map(named).collect()
+}
+
+/// The number of triangles drawn of the ground and of each kind of feature.
+fn triangles(scene: &SceneModel, list: &DrawList) -> BTreeMap<&'static str, usize> {
+    let mut counts = BTreeMap::new();
+    for item in &list.items {
+        let feature = item.feature.index().and_then(|index| scene.features.get(index));
+        *counts.entry(feature.map_or("ground", |feature| feature.kind.noun(2))).or_default() +=
+            item.triangles.len();
+    }
+    counts
+}

@@ -1,0 +1,126 @@
+//! Magnetic declination and grid convergence: the angles between the three norths; the one user of
+//! `world_magnetic_model`.
+
+use glam::DVec2;
+use world_magnetic_model::GeomagneticField;
+use world_magnetic_model::time::{Date, Month};
+use world_magnetic_model::uom::si::angle::degree;
+use world_magnetic_model::uom::si::f32::{Angle, Length};
+use world_magnetic_model::uom::si::length::meter;
+
+use crate::geom::crs::Crs;
+
+/// A day of the calendar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct CalendarDay {
+    year: i32,
+    month: u8,
+    day: u8,
+}
+
+/// The direction of a compass needle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Declination {
+    /// From true north, clockwise, degrees.
+    pub east_deg: f64,
+    /// Its standard error, degrees.
+    pub error_deg: f64,
+}
+
+impl CalendarDay {
+    /// The day that `text` names as `2026-06-21`; `None` where it names none.
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut parts = text.split('-');
+        let [year, month, day] = [parts.next()?, parts.next()?, parts.next()?];
+        let is_whole = parts.next().is_none() && [year.len(), month.len(), day.len()] == [4, 2, 2];
+        let day = Self { year: year.parse().ok()?, month: month.parse().ok()?, day: day.parse().ok()? };
+        day.date().filter(|_| is_whole).map(|_| day)
+    }
+
+    fn date(self) -> Option<Date> {
+        Date::from_calendar_date(self.year, Month::try_from(self.month).ok()?, self.day).ok()
+    }
+}
+
+/// The declination at a longitude and latitude on WGS 84 (degrees) and a height in meters, by the World Magnetic Model
+/// (NOAA and BGS 2020, 2025). `None` outside the years 2020 to 2029 and beyond the model's heights.
+pub fn declination(place: DVec2, height_m: f64, day: CalendarDay) -> Option<Declination> {
+    let field = GeomagneticField::new(
+        Length::new::<meter>(height_m as f32),
+        Angle::new::<degree>(place.y as f32),
+        Angle::new::<degree>(place.x as f32),
+        day.date()?,
+    );
+    let field = field.ok()?;
+    let declination = Declination {
+        east_deg: field.declination().get::<degree>().into(),
+        error_deg: field.declination_uncertainty().get::<degree>().into(),
+    };
+    declination.east_deg.is_finite().then_some(declination)
+}
+
+/// The direction in which northings of `crs` grow at a longitude and latitude (degrees): from true north, clockwise,
+/// degrees. `None` where the place is outside the system.
+pub fn convergence_deg(crs: &Crs, place: DVec2) -> Option<f64> {
+    /// Far enough for the numbers' precision, near enough for a straight line.
+    const STEP_DEG: f64 = 1e-4;
+    let wgs84 = Crs::wgs84();
+    let [south, north] = [-STEP_DEG, STEP_DEG].map(|step| wgs84.transform(crs, place + DVec2::Y * step).ok());
+    let true_north = north? - south?;
+    (!crs.is_geographic()).then(|| -libm::atan2(true_north.x, true_north.y).to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn east_deg(year: i32, height_m: f64, latitude: f64, longitude: f64) -> f64 {
+        let day = CalendarDay { year, month: 1, day: 1 };
+        declination(DVec2::new(longitude, latitude), height_m, day).expect("covered").east_deg
+    }
+
+    #[test]
+    fn declinations_are_the_test_values_that_the_models_were_published_with() {
+        // Chulliat et al. 2020 and 2025, tables of test values; degrees with two decimals.
+        for (year, height_m, latitude, longitude, expected) in [
+            (2020, 0.0, 80.0, 0.0, -1.28),
+            (2020, 0.0, 0.0, 120.0, 0.16),
+            (2020, 0.0, -80.0, -120.0, 69.36),
+            (2025, 0.0, 80.0, 0.0, 1.28),
+            (2025, 0.0, 0.0, 120.0, -0.16),
+            (2025, 0.0, -80.0, -120.0, 68.78),
+        ] {
+            let found = east_deg(year, height_m, latitude, longitude);
+            assert!(
+                (found - expected).abs() < 0.0101,
+                "{year} {latitude} {longitude}: {found}, not {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn beyond_the_model_there_is_no_declination() {
+        let at = |year| declination(DVec2::new(-84.0, 36.0), 300.0, CalendarDay { year, month: 6, day: 1 });
+        assert!(at(2026).is_some() && at(2019).is_none() && at(2031).is_none());
+    }
+
+    #[test]
+    fn a_day_is_written_with_year_month_and_day() {
+        assert_eq!(CalendarDay::parse("2026-02-28"), Some(CalendarDay { year: 2026, month: 2, day: 28 }));
+        for wrong in ["2026-02-30", "2026-2-3", "26-02-03", "2026-02-03T", "", "2026-02-03-01", "2026-aa-01"]
+        {
+            assert_eq!(CalendarDay::parse(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn grid_north_turns_east_of_true_north_east_of_the_central_meridian() {
+        let utm = Crs::from_epsg(32616).expect("in the table");
+        let at = |longitude: f64| convergence_deg(&utm, DVec2::new(longitude, 36.3)).expect("covered");
+        assert!(at(-87.0).abs() < 1e-6);
+        // The first term of the series: difference in longitude times the sine of the latitude.
+        assert!((at(-84.2) - 2.8 * libm::sin(36.3f64.to_radians())).abs() < 0.01);
+        assert!(at(-88.0) < 0.0);
+        assert_eq!(convergence_deg(&Crs::wgs84(), DVec2::ZERO), None);
+    }
+}
