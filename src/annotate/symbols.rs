@@ -282,3 +282,97 @@ impl SymbolField {
         stack.boxes(position).all(free) && position.staff.is_none_or(passes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::annotate::annotation::SymbolHeight;
+    use crate::symbology::code::SymbolCode;
+    use crate::symbology::symbol::MilitarySymbol;
+    use crate::symbology::texts::{PlacedText, TextPlace};
+
+    fn symbol(name: &str, code: &str, x: f32, y: f32) -> PictureSymbol {
+        let code = SymbolCode::parse(code).expect(code);
+        PictureSymbol {
+            symbol: MilitarySymbol::new(&code).expect("a frame"),
+            texts: vec![PlacedText { text: name.to_owned(), place: TextPlace::Left(3) }],
+            name: name.to_owned(),
+            anchor_px: Vec2::new(x, y),
+            direction_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            is_on_map: false,
+            rank: 0.0,
+            height: SymbolHeight::Design(38.0),
+        }
+    }
+
+    const BATTALION: &str = "10031000161211000000";
+    const HEADQUARTERS: &str = "10031002181211000000";
+
+    fn draw(symbols: &[PictureSymbol]) -> (DrawnSymbols, SymbolReport) {
+        let mut report = SymbolReport::default();
+        let drawn = draw_symbols(symbols, &[], &mut Composer::new(1920, 1080), &mut report);
+        (drawn, report)
+    }
+
+    #[test]
+    fn every_symbol_ends_in_one_list_and_hidden_ones_are_drawn() {
+        let symbols = [
+            symbol("seen", BATTALION, 400.0, 500.0),
+            PictureSymbol { visible: false, ..symbol("behind the ridge", BATTALION, 800.0, 500.0) },
+            symbol("off the sheet", BATTALION, -10.0, 500.0),
+            symbol("nowhere", BATTALION, f32::NAN, 500.0),
+        ];
+        let (_, report) = draw(&symbols);
+        assert_eq!(report.placed, ["behind the ridge", "seen"]);
+        assert_eq!(report.hidden, ["behind the ridge"]);
+        assert_eq!(report.outside, ["off the sheet", "nowhere"]);
+        assert!(report.crowded_out.is_empty());
+    }
+
+    #[test]
+    fn forty_symbols_close_together_overlap_nowhere_and_stay_inside() {
+        let names: Vec<String> = (0..40).map(|n| format!("{n}-77")).collect();
+        let place = |n: usize| Vec2::new(700.0 + 47.0 * (n % 9) as f32, 450.0 + 31.0 * (n / 9) as f32);
+        let symbols: Vec<PictureSymbol> = (0..40)
+            .map(|n| {
+                symbol(&names[n], if n % 7 == 0 { HEADQUARTERS } else { BATTALION }, place(n).x, place(n).y)
+            })
+            .collect();
+        let (drawn, report) = draw(&symbols);
+        assert_eq!(report.placed.len() + report.crowded_out.len(), 40);
+        assert!(report.placed.len() >= 30, "{:?}", report.crowded_out);
+        let sheet = Composer::new(1920, 1080).sheet;
+        let faces: Vec<&PixelBox> =
+            drawn.boxes.iter().filter(|area| area.size().min_element() > 20.0).collect();
+        assert!(faces.iter().all(|area| sheet.bounds().holds(area)));
+        for (number, area) in faces.iter().enumerate() {
+            assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{area:?}");
+        }
+    }
+
+    #[test]
+    fn symbols_at_one_place_are_stacked_over_a_headquarters() {
+        let symbols = [
+            symbol("a", BATTALION, 900.0, 600.0),
+            symbol("b", BATTALION, 901.0, 600.0),
+            symbol("hq", HEADQUARTERS, 900.0, 601.0),
+        ];
+        let (drawn, report) = draw(&symbols);
+        assert_eq!(report.placed, ["hq", "a", "b"]);
+        let [hq, a, b] = [0, 1, 2].map(|index: usize| drawn.boxes[index]);
+        assert!(b.max.y <= a.min.y && a.max.y <= hq.min.y, "{hq:?} {a:?} {b:?}");
+        let foot = Vec2::new(900.0, 601.0);
+        assert!((hq.max.y - foot.y).abs() < 6.0, "its staff ends at its place");
+    }
+
+    #[test]
+    fn the_order_of_the_input_does_not_matter() {
+        let mut symbols: Vec<PictureSymbol> =
+            (0..12).map(|n| symbol(&format!("{n}"), BATTALION, 300.0 + 19.0 * n as f32, 500.0)).collect();
+        let forth = draw(&symbols).0.drawing.marks;
+        symbols.reverse();
+        assert_eq!(draw(&symbols).0.drawing.marks, forth);
+    }
+}

@@ -11,6 +11,7 @@ mod flights;
 mod imagery;
 mod instances;
 mod labels;
+mod military;
 mod models;
 mod odd_scenes;
 mod own_models;
