@@ -71,7 +71,7 @@ fn picture(scene: &SceneModel, view: &str, name: &str, size: (u32, u32)) -> Pict
     };
     let pixels = scene.census().into_iter().map(|(kind, _)| of_kind(kind)).collect();
     let ground_pixels = showing(&|id| id == FeatureId::GROUND.0);
-    let annotations = annotations(scene, &camera, &picture);
+    let annotations = annotations(scene, &camera, &picture, None, &shot.graphic_texts);
     annotate(&mut picture.pixels, &annotations);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("real_{name}.png"));
     image::save_buffer(&path, picture.pixels.bytes(), size.0, size.1, image::ColorType::Rgba8)

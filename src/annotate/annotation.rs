@@ -29,14 +29,16 @@ pub struct Annotations {
     pub line_labels: Vec<LineLabel>,
     /// Numbers and ticks of contour lines.
     pub contours: Option<ContourMarks>,
+    /// Texts of graphics, the more important first.
+    pub fixed_texts: Vec<FixedText>,
     /// The font for characters that the embedded fonts lack.
     pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
     pub rim: Vec<RimMark>,
-    /// Military symbols, placed before labels.
-    pub symbols: Vec<PictureSymbol>,
     /// The coordinate grid on the ground, under everything else.
     pub grid: Option<PictureGrid>,
+    /// Military symbols, placed before labels.
+    pub symbols: Vec<PictureSymbol>,
     /// The title, upper left.
     pub title: Option<String>,
     /// A second line under the title.
@@ -79,6 +81,21 @@ pub struct LineLabel {
     pub rank: f64,
     /// The label drawn instead where the name finds no place along the line.
     pub fallback: Option<PictureLabel>,
+}
+
+/// A text that belongs to something drawn on the ground, level, in bold type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FixedText {
+    /// What it says, on one line or several.
+    pub text: String,
+    /// The place that it belongs to, in pixels.
+    pub at_px: Vec2,
+    /// On which side of that place it is, of any length; zero for a text centered on it.
+    pub toward_px: Vec2,
+    /// The color of the letters; `None` for black.
+    pub ink: Option<Srgba>,
+    /// Whether the place is seen.
+    pub visible: bool,
 }
 
 /// Where along its line a name stands.

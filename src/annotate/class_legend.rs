@@ -1,6 +1,6 @@
 //! The legend of classes: what the picture shows besides heights, each with its look there.
 
-use glam::Vec2;
+use glam::{UVec2, Vec2};
 
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::{Drawing, polygon, polyline};
@@ -8,6 +8,7 @@ use crate::annotate::pixel_box::{PixelBox, PixelSegment};
 use crate::annotate::sheet::{FRAME, INK, Sheet};
 use crate::annotate::text::TextStyle;
 use crate::draw::color::Srgba;
+use crate::draw::print_pattern::PrintPattern;
 
 /// The size of a swatch, the gap to its text, and the distance of baselines, in design pixels.
 const SWATCH: Vec2 = Vec2::new(34.0, 16.0);
@@ -15,6 +16,7 @@ const GAP: f32 = 11.0;
 const LEAD: f32 = 24.0;
 /// The widest name, in ems: longer ones are cut.
 const WIDEST_EM: f32 = 15.0;
+const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 /// More classes are not listed: a legend that is longer than what it explains is not read.
 const MOST: usize = 16;
 
@@ -46,6 +48,8 @@ pub enum LegendSwatch {
         /// The color of the line around it.
         edge: Srgba,
     },
+    /// A black pattern in a black outline.
+    Pattern(PrintPattern),
     /// What stands on the ground, as a block of its mean color.
     Block(Srgba),
     /// Paths, in order, such as those of a symbol.
@@ -113,6 +117,17 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, sheet: &Sheet, drawing: &m
         LegendSwatch::Area { fill, edge } => {
             drawing.rect(area, *fill);
             drawing.frame(area, sheet.hairline().round(), *edge);
+        }
+        LegendSwatch::Pattern(pattern) => {
+            let (corner, size) = (area.min.as_uvec2(), area.size().as_uvec2());
+            let unit = PrintPattern::unit_px(sheet.size.y as u32);
+            for (x, y) in (0..size.y).flat_map(|y| (0..size.x).map(move |x| (x, y))) {
+                if pattern.is_black(x, y, unit) {
+                    let at = (corner + UVec2::new(x, y)).as_vec2();
+                    drawing.rect(PixelBox::at(at, Vec2::ONE), BLACK);
+                }
+            }
+            drawing.frame(area, sheet.hairline().round(), BLACK);
         }
         LegendSwatch::Block(fill) => {
             let block = PixelBox::around(area.center(), Vec2::splat(area.size().y * 0.42)).grown(0.5);

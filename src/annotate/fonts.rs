@@ -39,7 +39,8 @@ impl FontCut {
         }
     }
 
-    const fn bytes(self) -> &'static [u8] {
+    /// The bytes of its file.
+    pub const fn bytes(self) -> &'static [u8] {
         match self {
             Self::Regular => include_bytes!("../../assets/fonts/NotoSans-Regular.ttf"),
             Self::Medium => include_bytes!("../../assets/fonts/NotoSans-Medium.ttf"),

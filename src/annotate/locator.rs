@@ -10,7 +10,7 @@ use crate::draw::color::Srgba;
 use crate::draw::pixels::Pixels;
 
 /// What the picture shows, on the relief.
-const SEEN: Srgba = Srgba([0xc8, 0x1e, 0x2a, 0x46]);
+const SEEN: Srgba = Srgba([0xc8, 0x1e, 0x2a, 0x2c]);
 const SEEN_EDGE: Srgba = Srgba([0xc8, 0x1e, 0x2a, 0xff]);
 
 /// The model in plan, north up.
@@ -34,7 +34,7 @@ pub(in crate::annotate) fn compose(locator: &LocatorMap, composer: &Composer) ->
         drawing.fill(path.clone(), SEEN);
         drawing.stroke(&path, sheet.px(1.4).max(1.0), SEEN_EDGE);
     }
-    if let Some(eye) = locator.eye.filter(|eye| area.contains(*eye)) {
+    if let Some(eye) = locator.eye.filter(|eye| area.grown(-sheet.px(5.0)).contains(*eye)) {
         drawing.disc(eye, sheet.px(5.0).max(3.0), HALO);
         drawing.disc(eye, sheet.px(3.4).max(2.0), SEEN_EDGE);
     }

@@ -22,7 +22,7 @@ use crate::draw::pixels::Pixels;
 /// Lines of facts and of sources at most.
 const MOST_LINES: usize = 4;
 /// The space between pieces of a column, in design pixels.
-const GAP: f32 = 10.0;
+const GAP: f32 = 16.0;
 /// The least foreshortening of the arrow: in lower views it would be a line.
 const LEAST_TILT: f32 = 0.5;
 

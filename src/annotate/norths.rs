@@ -13,7 +13,7 @@ use crate::annotate::sheet::{INK, SOFT_INK};
 use crate::annotate::text::TextStyle;
 
 /// The length of a line, in design pixels.
-const LENGTH: f32 = 74.0;
+const LENGTH: f32 = 64.0;
 /// The least and the most lean of a line, degrees.
 const LEANS: [f32; 2] = [9.0, 32.0];
 
@@ -35,11 +35,8 @@ pub(in crate::annotate) fn compose(norths: &ThreeNorths, composer: &mut Composer
     let foot = Vec2::new(length * 0.75, length + sheet.px(26.0));
     let mut drawing = Drawing::default();
     let letters = composer.style(13.0, TextStyle::MEDIUM);
-    let lines = [
-        ("★", Some(0.0)),
-        ("GN", norths.grid_deg.filter(|_| true)),
-        ("MN", norths.magnetic_deg.map(|(east, _)| east)),
-    ];
+    let lines =
+        [("★", Some(0.0)), ("GN", norths.grid_deg), ("MN", norths.magnetic_deg.map(|(east, _)| east))];
     let apart = lines[1].1.zip(lines[2].1).map_or(180.0, |(grid, magnetic)| (grid - magnetic).abs());
     for (number, (name, angle)) in lines.into_iter().enumerate() {
         let Some(angle) = angle else { continue };
@@ -70,7 +67,7 @@ pub(in crate::annotate) fn compose(norths: &ThreeNorths, composer: &mut Composer
         }
     }
     let style = composer.style(13.0, TextStyle::REGULAR);
-    let x = length * 1.5 + sheet.px(8.0);
+    let x = length * 1.45;
     let mut baseline = foot.y - length * 0.82;
     for text in notes(norths) {
         let line = composer.line(&text, style);
@@ -92,15 +89,14 @@ fn star(center: Vec2, radius: f32) -> Option<tiny_skia::Path> {
 }
 
 fn notes(norths: &ThreeNorths) -> Vec<String> {
-    let grid = norths.grid_deg.map(|grid| format!("Grid convergence {}", signed(grid)));
-    let magnetic = norths
-        .magnetic_deg
-        .map(|(east, error)| format!("Declination {} ±{}°", signed(east), format_number(error, 1)));
+    let grid = norths.grid_deg.map(|grid| format!("GN {}", signed(grid)));
+    let magnetic =
+        norths.magnetic_deg.map(|(east, error)| format!("MN {} ±{}°", signed(east), format_number(error, 1)));
     let both = norths
         .grid_deg
         .zip(norths.magnetic_deg)
-        .map(|(grid, (east, _))| format!("Grid to magnetic {}", signed(east - grid)));
-    let drawn = "Lines not at true angles".to_owned();
+        .map(|(grid, (east, _))| format!("GN to MN {}", signed(east - grid)));
+    let drawn = "Angles not to scale".to_owned();
     let note = Some(norths.magnetic_note.clone()).filter(|note| !note.is_empty());
     grid.into_iter().chain(magnetic).chain(both).chain(note).chain([drawn]).collect()
 }
@@ -134,7 +130,7 @@ mod tests {
             magnetic_deg: Some((-6.0, 0.36)),
             magnetic_note: "WMM2025, 2026-06-21".into(),
         };
-        assert!(notes(&norths).contains(&"Grid to magnetic 7°30′ W".to_owned()));
+        assert!(notes(&norths).contains(&"GN to MN 7°30′ W".to_owned()));
         let marks = |norths: &ThreeNorths| compose(norths, &mut Composer::new(1920, 1080)).marks.len();
         let all = marks(&norths);
         norths.magnetic_deg = None;

@@ -7,6 +7,7 @@ use crate::annotate::canvas::paint;
 use crate::annotate::composer::Composer;
 use crate::annotate::cover::SceneCover;
 use crate::annotate::drawing::Drawing;
+use crate::annotate::fixed_text::draw_fixed;
 use crate::annotate::grid::FigurePlace;
 use crate::annotate::labels::draw_labels;
 use crate::annotate::pixel_box::PixelBox;
@@ -29,6 +30,16 @@ pub struct ComposedSheet {
 }
 
 impl ComposedSheet {
+    /// Gives what is drawn, and the paper round the picture, other colors; the picture itself keeps its own.
+    pub fn recolor(&mut self, color: &dyn Fn(Srgba) -> Srgba) {
+        for mark in self.drawings.iter_mut().flat_map(|drawing| &mut drawing.marks) {
+            mark.color = color(mark.color);
+        }
+        for pixel in self.pixels.data_mut().iter_mut().filter(|pixel| **pixel == WHITE) {
+            *pixel = color(WHITE);
+        }
+    }
+
     /// The sheet with everything painted.
     pub fn painted(self) -> Pixels {
         let Self { mut pixels, drawings } = self;
@@ -99,12 +110,18 @@ fn on_picture(
     let lines = grid.map(|grid| grid::draw_lines(grid, composer));
     let figures = grid.map(|grid| grid::draw_figures(grid, &boxes, place, composer)).unwrap_or_default();
     boxes.extend(figures.iter().map(Drawing::bounds));
+    let fixed = draw_fixed(&annotations.fixed_texts, &mut boxes, composer, report);
     let symbols = draw_symbols(&annotations.symbols, &boxes, composer, &mut report.symbols);
     report.add_texts(&symbols.drawing.texts);
-    boxes.extend(symbols.boxes);
+    boxes.extend(&symbols.boxes);
     let labels = draw_labels(annotations, picture, &boxes, composer, report);
-    let drawings = lines.into_iter().chain(furniture).chain(marks).chain(figures);
-    drawings.chain([symbols.drawing, labels]).collect()
+    lines
+        .into_iter()
+        .chain(furniture)
+        .chain(marks)
+        .chain(figures)
+        .chain([fixed, symbols.drawing, labels])
+        .collect()
 }
 
 /// Copies a picture onto a page, as far as it lies on it.

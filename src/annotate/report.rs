@@ -49,19 +49,6 @@ pub struct AnnotationReport {
     pub missing_glyphs: Vec<MissingGlyphs>,
 }
 
-/// What becomes of military symbols, by their names.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SymbolReport {
-    /// Drawn.
-    pub placed: Vec<String>,
-    /// Drawn with a dashed staff and a hollow foot, because terrain hides their place.
-    pub hidden: Vec<String>,
-    /// Not drawn because their place is outside the picture.
-    pub outside: Vec<String>,
-    /// Not drawn because no position near their place was free.
-    pub crowded_out: Vec<String>,
-}
-
 /// A label drawn elsewhere than where it is wished.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MovedLabel {
@@ -78,6 +65,19 @@ pub enum LabelMove {
     Led,
     /// At one place: its line, or its area, is too short, too bent or too crowded for the letters.
     OffLine,
+}
+
+/// What becomes of military symbols, by their names.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SymbolReport {
+    /// Drawn.
+    pub placed: Vec<String>,
+    /// Drawn with a dashed staff and a hollow foot, because terrain hides their place.
+    pub hidden: Vec<String>,
+    /// Not drawn because their place is outside the picture.
+    pub outside: Vec<String>,
+    /// Not drawn because no position near their place was free.
+    pub crowded_out: Vec<String>,
 }
 
 /// What becomes of a label.

@@ -21,6 +21,8 @@ pub struct RimMark {
     pub outward: Vec2,
     /// The coordinate.
     pub figure: CoordinateFigure,
+    /// The coordinate in full, and the edge that it stands along: the first on an edge that finds a place for it has it.
+    pub full: Option<(CoordinateFigure, usize)>,
 }
 
 /// Draws the marks that fit: inside the margin, off the furniture in `taken`, and off each other, the first before the
@@ -33,23 +35,31 @@ pub(in crate::annotate) fn draw_marks(
     let mut drawn: Vec<Drawing> = Vec::new();
     let sheet = composer.sheet;
     let within = sheet.bounds().grown(-sheet.px(3.0));
+    let mut begun: Vec<usize> = Vec::new();
     for mark in marks {
-        let Some(drawing) = draw(mark, composer) else { continue };
-        let bounds = drawing.bounds();
-        let spaced = bounds.grown(sheet.px(6.0));
-        let is_free = !taken.iter().any(|other| other.overlaps(&spaced))
-            && !drawn.iter().any(|other| other.bounds().overlaps(&spaced));
-        if within.holds(&bounds) && is_free {
-            drawn.push(drawing);
+        let full = mark.full.as_ref().filter(|(_, edge)| !begun.contains(edge));
+        let figures =
+            full.map(|(figure, edge)| (figure, Some(*edge))).into_iter().chain([(&mark.figure, None)]);
+        for (figure, edge) in figures {
+            let Some(drawing) = draw(mark, figure, composer) else { continue };
+            let bounds = drawing.bounds();
+            let spaced = bounds.grown(sheet.px(6.0));
+            let is_free = !taken.iter().any(|other| other.overlaps(&spaced))
+                && !drawn.iter().any(|other| other.bounds().overlaps(&spaced));
+            if within.holds(&bounds) && is_free {
+                drawn.push(drawing);
+                begun.extend(edge);
+                break;
+            }
         }
     }
     drawn
 }
 
-fn draw(mark: &RimMark, composer: &mut Composer) -> Option<Drawing> {
+fn draw(mark: &RimMark, figure: &CoordinateFigure, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let outward = mark.outward.try_normalize().filter(|_| mark.at_px.is_finite())?;
-    let figure = mark.figure.set(composer);
+    let figure = figure.set(composer);
     let end = mark.at_px + outward * sheet.px(TICK);
     let half = figure.size * 0.5;
     let center = end + outward * (outward.abs().dot(half) + sheet.px(GAP));
@@ -64,7 +74,7 @@ mod tests {
     use super::*;
 
     fn mark(x: f32, y: f32, outward: Vec2) -> RimMark {
-        RimMark { at_px: Vec2::new(x, y), outward, figure: "345 000 E".to_owned().into() }
+        RimMark { at_px: Vec2::new(x, y), outward, figure: "345 000 E".to_owned().into(), full: None }
     }
 
     #[test]

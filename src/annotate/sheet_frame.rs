@@ -25,7 +25,7 @@ use crate::description::words::SheetLayout;
 /// the line of facts; the width of a column; the height of columns under the picture.
 const EDGE: f32 = 20.0;
 const BANNER: f32 = 34.0;
-const HEAD: f32 = 76.0;
+const HEAD: f32 = 66.0;
 const NUMBERS: f32 = 30.0;
 const FOOT: f32 = 92.0;
 const COLUMN: f32 = 286.0;
@@ -102,6 +102,12 @@ impl SheetFrame {
     /// Width and height of the page in pixels.
     pub fn page_size(&self) -> (u32, u32) {
         (self.page.x, self.page.y)
+    }
+
+    /// The column and row of the picture's upper left pixel.
+    pub fn picture_corner(&self) -> (u32, u32) {
+        let corner = self.picture.min.as_uvec2();
+        (corner.x, corner.y)
     }
 
     /// Width and height of the picture in pixels.

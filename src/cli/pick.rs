@@ -24,9 +24,9 @@ pub struct PickArguments {
     /// The pixels, column and row each
     #[arg(long, value_name = "X,Y", required = true, num_args = 1.., value_parser = pixel)]
     pub pixel: Vec<[u32; 2]>,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = picture_size)]
-    pub size: PictureSize,
+    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<PictureSize>,
     /// The camera of the scene that the picture is seen through [default: its first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -36,7 +36,12 @@ pub struct PickArguments {
 }
 
 pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
-    let PictureSize { width, height } = arguments.size;
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
+    let view = find_camera(&scene, arguments.camera.as_deref())?;
+    let size = arguments.size.unwrap_or_else(|| PictureSize::of(view));
+    let PictureSize { width, height } = size;
     if let Some([x, y]) = arguments.pixel.iter().find(|[x, y]| *x >= width || *y >= height) {
         return Err(CliError::Usage(format!(
             "the pixel {x},{y} is not on a picture of {width}x{height}; columns end at {}, rows at {}",
@@ -44,11 +49,7 @@ pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
             height - 1
         )));
     }
-    let steps = StepTimer::default();
-    let progress = |step| steps.begin(step);
-    let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
-    let view = find_camera(&scene, arguments.camera.as_deref())?;
-    let places = pick(&scene, view, arguments.size, &arguments.pixel, &progress)?;
+    let places = pick(&scene, view, size, &arguments.pixel, &progress)?;
     steps.finish();
     let picked = arguments.pixel.iter().zip(&places);
     if arguments.json {

@@ -27,12 +27,13 @@ const LONGEST_LABEL: usize = 60;
 pub struct RenderArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the picture to this file [default: the scene's name with .png, in the current folder]
-    #[arg(short, long, value_name = "OUT.png")]
+    /// Write the picture to this file: .png, or .pdf or .svg with letters and lines as vectors [default: the scene's name
+    /// with .png, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = picture_size)]
-    pub size: PictureSize,
+    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]
+    #[arg(long, value_name = "WxH", value_parser = picture_size)]
+    pub size: Option<PictureSize>,
     /// The camera of the scene to look through [default: its first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -74,8 +75,8 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
         rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
     let scene_file = &arguments.scene.scene;
     let path = arguments.output.clone().unwrap_or_else(|| default_output(scene_file));
-    files::check_picture_output(&path, &[scene_file])
-        .map_err(|error| named_by_option(error, "this is the scene file itself"))?;
+    let check = if arguments.sheet { files::check_picture_output } else { files::check_sheet_output };
+    check(&path, &[scene_file]).map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let steps = StepTimer::default();
     let scenes = pool.install(|| render(arguments, &path, &steps))?;
     if arguments.sheet {

@@ -12,10 +12,11 @@ use crate::cli::render::{RenderArguments, find_camera, named_by_option};
 use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::files;
-use crate::pipeline::picture::{PictureSize, annotate_view, draw_view};
+use crate::pipeline::picture::{ComposedView, PictureSize, compose_view, draw_view};
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
 use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
+use crate::pipeline::sheet_file::write_sheet;
 use crate::scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
@@ -117,7 +118,8 @@ fn render_picture(
     (path, small): (PathBuf, Option<[u32; 2]>),
     progress: &dyn Fn(&'static str),
 ) -> Result<RenderedPicture, CliError> {
-    let size = small.map_or(arguments.size, |[width, height]| PictureSize { width, height });
+    let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(camera));
+    let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
     let drawn = draw_view(scene, camera, size, arguments.backend, progress)?;
     let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
     if let Some(folder) = &arguments.buffers {
@@ -128,21 +130,24 @@ fn render_picture(
         files::make_folder(&folder)?;
         PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
     }
-    let view = annotate_view(scene, drawn, progress);
-    let (triangles, ground_triangles) = (triangles(scene, &view.drawn.list), view.drawn.ground_triangles);
+    let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, progress);
+    let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
     let output = if small.is_some() {
-        PictureOutput::Sheet(view.pixels)
+        PictureOutput::Sheet(sheet.painted())
     } else {
         progress("writing the picture");
-        files::write_picture(&path, &view.pixels)?;
+        write_sheet(&path, sheet, camera.dpi(), scene.title.as_deref())?;
         PictureOutput::File(path)
     };
-    let (camera, annotations) = (camera.name.clone(), view.annotations);
+    let camera = camera.name.clone();
     Ok(RenderedPicture { output, camera, triangles, ground_triangles, annotations, statistics })
 }
 
+/// The size of a contact sheet where none is stated.
+const SHEET: PictureSize = PictureSize { width: 1920, height: 1080 };
+
 fn sheet_of(arguments: &RenderArguments, pictures: usize) -> Result<ContactSheet, CliError> {
-    let PictureSize { width, height } = arguments.size;
+    let PictureSize { width, height } = arguments.size.unwrap_or(SHEET);
     let sheet = u32::try_from(pictures).ok().and_then(|pictures| ContactSheet::new(width, height, pictures));
     sheet.ok_or_else(|| {
         CliError::Usage(format!(
@@ -184,7 +189,8 @@ fn named_paths(path: &Path, names: &[String]) -> Vec<PathBuf> {
             taken.insert(name.clone());
         }
         let stem = files::file_stem(path);
-        path.with_file_name(format!("{stem}-{name}.png"))
+        let extension = path.extension().unwrap_or("png".as_ref()).to_string_lossy();
+        path.with_file_name(format!("{stem}-{name}.{extension}"))
     };
     (1..).zip(names).map(named).collect()
 }

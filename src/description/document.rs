@@ -44,6 +44,7 @@ use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
     RoadTable, ScatterTable,
 };
+use crate::description::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::description::key;
 use crate::description::reader::TableReader;
 use crate::description::selection::Selection;
@@ -52,7 +53,7 @@ use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::description::table::Table;
 use crate::description::words::{
-    CameraProjection, GridName, HeightEncodingWord, LabelKind, SheetLayout, TableTop,
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
 use crate::geom::crs::Crs;
 
@@ -102,6 +103,14 @@ table! {
         models as "model": Vec<ModelPlacement> = key::styled_tables::<ModelPlacement>(), default [];
         /// Models strewn over areas.
         scatters as "scatter": Vec<ScatterTable> = key::styled_tables::<ScatterTable>(), default [];
+        /// Tactical graphics, laid over everything else on the ground.
+        graphics as "graphic": Vec<GraphicTable> = key::styled_tables::<GraphicTable>(), default [];
+        /// What observers see, as a tint of the ground.
+        viewsheds as "viewshed": Vec<ViewshedTable> = key::styled_tables::<ViewshedTable>(), default [];
+        /// Lines of sight.
+        sights as "sight": Vec<SightTable> = key::styled_tables::<SightTable>(), default [];
+        /// Rings and fans of range.
+        ranges as "range": Vec<RangeTable> = key::styled_tables::<RangeTable>(), default [];
         /// Names and heights on the picture.
         labels as "label": Vec<LabelTable> = key::styled_tables::<LabelTable>(), default [];
         /// What the scene shows one after the other: one picture each.
@@ -160,6 +169,8 @@ table! {
 
     /// `[style]`: how the ground looks.
     struct StyleTable {
+        /// A look in one word: other keys of this table, and `grid`, have its defaults where they are not stated.
+        preset: Option<StylePreset> = key::word::<StylePreset>(), otherwise "none: the defaults below";
         /// Colors by height: the name of a ramp, or from 2 to 256 stops `[[height, "#rrggbb"], ...]`.
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
@@ -170,7 +181,7 @@ table! {
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
         /// the tree line and the snow line are those of the latitude.
-        land_cover: bool = key::switch(), default false;
+        land_cover: Stated<bool> = key::switch(), default false;
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted
@@ -179,7 +190,7 @@ table! {
             otherwise "fitted to the view";
         /// What the block stands on, with its shadow and coordinates along its near edges, in a picture that shows its
         /// edge from outside and no horizon.
-        table: TableTop = key::word::<TableTop>(), default "paper";
+        table: Stated<TableTop> = key::word::<TableTop>(), default "paper";
     }
 
     /// `[style.contours]`.
@@ -294,8 +305,12 @@ table! {
         /// picture's middle.
         scale: Option<f64> = key::number(Within(1.0, 1e9), ""),
             otherwise "as large as what it shows fits the picture, `n` rounded up to two figures";
-        /// Pixels per inch of the print on which `scale` is true; 96 is that of screens.
-        dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96";
+        /// Pixels per inch of the print on which `scale` is true, and of `paper`; 96 is that of screens.
+        dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96, and 150 on `paper`";
+        /// The paper that the picture fills at `dpi`, unless the command line states a size in pixels.
+        paper: Option<PaperName> = key::word::<PaperName>(), otherwise "none";
+        /// Whether the paper stands upright.
+        portrait: bool = key::switch(), default false;
         /// Place of the eye.
         eye: Option<Stated<[f64; 2]>> = key::point(), otherwise "where the ground fills the picture";
         /// Height of the eye above the ground.
@@ -322,7 +337,10 @@ table! {
         let projection = projection.unwrap_or_default();
         if projection == CameraProjection::Perspective {
             let help = "set `projection` to plan, orthographic or oblique, or remove it";
-            reader.without_effect(&["scale", "dpi"], "in perspective, which has no single scale", help);
+            reader.without_effect(&["scale"], "in perspective, which has no single scale", help);
+            if reader.key_span("paper").is_none() {
+                reader.without_effect(&["dpi"], "in perspective without `paper`", help);
+            }
         } else {
             let keys = ["eye", "eye_height", "eye_elevation", "look_at", "look_at_height", "field_of_view"];
             let help = "state what it `shows`, or set `projection = \"perspective\"`";
@@ -331,6 +349,15 @@ table! {
                 let help = "set `projection = \"orthographic\"`, or remove it";
                 reader.without_effect(&["pitch"], "on a plan or an oblique picture", help);
             }
+        }
+        if reader.key_span("paper").is_none() {
+            reader.without_effect(&["portrait"], "without `paper`", "set `paper`, or remove it");
+        }
+        let sides_mm = paper.flatten().map(paper_mm).unwrap_or_default();
+        let longest_px = sides_mm[0] / 25.4 * dpi.flatten().unwrap_or(PAPER_DPI);
+        if let Some(span) = reader.key_span("dpi").filter(|_| longest_px > 16_384.0) {
+            let message = format!("the picture would be {longest_px:.0} pixels long, and may be 16384");
+            reader.error(span, message, "lower `dpi`, or take smaller `paper`");
         }
         if projection == CameraProjection::Perspective {
             check_eye(reader);
@@ -359,14 +386,14 @@ table! {
         /// Where the data come from, a line each, in a layout with a margin.
         sources: Option<Vec<String>> = key::text_list(), otherwise "none";
         /// The coordinate grid: lines on the ground, numbered where they leave the picture and along the block's edge.
-        grid: GridName = key::word::<GridName>(), default "none";
+        grid: Option<GridName> = key::word::<GridName>(), otherwise "none; mgrs with `preset = \"military\"`";
         /// Distance between its lines: meters, or minutes of arc of a geographic grid; more where that would be above 400
         /// lines. One line in 10, 5 or 2 is drawn heavier.
         grid_interval: Option<f64> = key::number(Above(0.0, 1e7), ""),
             otherwise "a round one, for lines about 100 px apart in the middle of a picture 1080 px high";
     }
     check(reader) {
-        if grid.unwrap_or_default() == GridName::None {
+        if grid.flatten() == Some(GridName::None) {
             let help = "set `grid` to metric, utm, mgrs or geographic, or remove it";
             reader.without_effect(&["grid_interval"], "without a `grid`", help);
         }
@@ -379,6 +406,20 @@ table! {
             let help = "set `layout = \"military\"`, or remove it";
             reader.without_effect(&["classification"], "in another layout than military", help);
         }
+    }
+}
+
+/// Pixels per inch on paper where none are stated: fine enough for its lines, and a page is drawn in a second.
+pub const PAPER_DPI: f64 = 150.0;
+
+/// The longer and the shorter side of a paper in millimeters.
+pub fn paper_mm(paper: PaperName) -> [f64; 2] {
+    match paper {
+        PaperName::A4 => [297.0, 210.0],
+        PaperName::A3 => [420.0, 297.0],
+        PaperName::A2 => [594.0, 420.0],
+        PaperName::A1 => [841.0, 594.0],
+        PaperName::A0 => [1189.0, 841.0],
     }
 }
 

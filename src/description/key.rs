@@ -59,6 +59,8 @@ keys! {
     feature_number(range: Bounds; unit) -> FeatureValue<f64> = KeyKind::FeatureNumber(range);
     /// Two numbers within `range`, the second not less than the first.
     number_range(range: Bounds; unit) -> [f64; 2] = KeyKind::NumberRange(range);
+    /// Two directions within `range`, in any order.
+    directions(range: Bounds; unit) -> [f64; 2] = KeyKind::NumberRange(range);
     /// A list of numbers within `range`, at most as many as points.
     numbers(range: Bounds; unit) -> Vec<f64> = KeyKind::Numbers(range);
     /// `true` or `false`.

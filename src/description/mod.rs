@@ -11,6 +11,7 @@ pub mod document;
 pub mod expression;
 pub mod feature_value;
 pub mod features;
+pub mod graphics;
 pub mod include;
 mod key;
 pub mod parse;

@@ -169,6 +169,15 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
+    pub fn directions(mut self, range: Bounds) -> Option<[f64; 2]> {
+        let help = "write [first, second]";
+        let DeValue::Array(list) = self.value.get_ref() else { return self.wrong_type("two numbers", help) };
+        match self.each(list, |number| number.number(range))?[..] {
+            [first, second] => Some([first, second]),
+            _ => self.wrong(format!("`{}` holds {} numbers", self.key, list.len()), help),
+        }
+    }
+
     pub fn numbers(mut self, range: Bounds) -> Option<Vec<f64>> {
         match self.value.get_ref() {
             DeValue::Array(list) if list.len() <= MAX_POINTS => {

@@ -93,12 +93,31 @@ words! {
         None = "none": "nothing; no coordinates are written along its edge",
     }
 
+    /// A look in one word: defaults of other keys, and for print and night a look of the finished picture.
+    enum StylePreset {
+        Topographic = "topographic": "tints by height, contour lines, clear air",
+        Relief = "relief": "shaded relief in grays, without lines",
+        Satellite = "satellite": "the ground's natural cover, or `imagery`, without lines",
+        Military = "military": "pale tints, contour lines, the military grid, clear air",
+        Print = "print": "black on white, patterns in place of colors",
+        Night = "night": "red light",
+    }
+
     /// What stands on the picture, and what round it.
     enum SheetLayout {
         Compact = "compact": "furniture in the corners of the picture",
         None = "none": "nothing but labels and the grid",
         Margin = "margin": "the picture in a frame, furniture on the white margin, with a locator",
         Military = "military": "the same with the classification and the three norths",
+    }
+
+    /// A size of paper (ISO 216).
+    enum PaperName {
+        A4 = "A4": "297 × 210 mm",
+        A3 = "A3": "420 × 297 mm",
+        A2 = "A2": "594 × 420 mm",
+        A1 = "A1": "841 × 594 mm",
+        A0 = "A0": "1189 × 841 mm",
     }
 
     /// The lines of a coordinate grid on the ground.
@@ -212,5 +231,33 @@ words! {
         None = "none": "nothing",
         Plinth = "plinth": "a block down to the ground",
         Pad = "pad": "the ground is leveled",
+    }
+
+    /// Whose a tactical graphic is.
+    enum GraphicSide {
+        Friend = "friend": "one's own, in blue",
+        Hostile = "hostile": "the enemy's, in red",
+        Neutral = "neutral": "a third side's, in green",
+        Unknown = "unknown": "nobody knows, in yellow",
+    }
+
+    /// Whether a tactical graphic is there.
+    enum GraphicStatus {
+        Present = "present": "there, in solid lines",
+        Planned = "planned": "planned, anticipated or suspected, in dashes",
+    }
+
+    /// Which ground a viewshed tints.
+    enum ViewshedTint {
+        Both = "both": "seen ground green, hidden ground dark",
+        Seen = "seen": "seen ground alone, green",
+        Hidden = "hidden": "hidden ground alone, dark",
+    }
+
+    /// Which ground within a range is filled.
+    enum RangeExtent {
+        None = "none": "none",
+        All = "all": "all of it",
+        Seen = "seen": "what is in sight",
     }
 }

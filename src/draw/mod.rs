@@ -15,5 +15,6 @@ pub mod lighting;
 pub mod list;
 pub mod material;
 pub mod pixels;
+pub mod print_pattern;
 pub mod undergrowth;
 pub mod water;

@@ -52,6 +52,22 @@ impl SceneExport<'_> {
     }
 }
 
+/// [`encode_png`] with the resolution of its print, pixels per inch, for programs that print it at its size.
+pub fn encode_png_at(pixels: &Pixels, dpi: f64) -> Vec<u8> {
+    /// The signature, and the chunk IHDR with its length, name and check.
+    const HEAD: usize = 8 + 25;
+    let mut png = encode_png(pixels);
+    let per_meter = libm::round(dpi / 0.0254).clamp(1.0, 2e9) as u32;
+    let mut chunk = b"pHYs".to_vec();
+    chunk.extend(per_meter.to_be_bytes().iter().chain(&per_meter.to_be_bytes()).chain(&[1]));
+    let mut check = flate2::Crc::new();
+    check.update(&chunk);
+    let length = (chunk.len() as u32 - 4).to_be_bytes();
+    let bytes = length.into_iter().chain(chunk).chain(check.sum().to_be_bytes());
+    png.splice(HEAD..HEAD, bytes);
+    png
+}
+
 /// The bytes of a PNG file, without alpha where all pixels are opaque. `pixels` must not be empty.
 pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
     let mut png = Vec::new();
@@ -66,4 +82,22 @@ pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
     };
     written.expect("memory takes all bytes, and there are as many as the size says");
     png
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::color::Srgba;
+
+    #[test]
+    fn a_picture_with_a_resolution_is_read_back_with_it() {
+        let pixels = Pixels::filled(5, 3, Srgba::opaque(1, 2, 3));
+        let bytes = encode_png_at(&pixels, 300.0);
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().expect("a sound head");
+        let print = reader.info().pixel_dims.expect("a resolution");
+        assert_eq!((print.xppu, print.yppu, print.unit), (11_811, 11_811, png::Unit::Meter));
+        let mut data = vec![0; 5 * 3 * 3];
+        reader.next_frame(&mut data).expect("sound");
+        assert_eq!(data[..3], [1, 2, 3]);
+    }
 }

@@ -52,6 +52,9 @@ pub enum WriteFileCause {
     /// The name has another extension than `.png`.
     #[error("pictures are written as PNG; name one that ends in .png")]
     NotPng,
+    /// The name of a sheet has another extension.
+    #[error("pictures are written as PNG, PDF or SVG; name one that ends in .png, .pdf or .svg")]
+    NotSheet,
     #[error(transparent)]
     System(#[from] SystemError),
 }
@@ -186,6 +189,22 @@ pub fn check_picture_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result
     match path.extension() {
         Some(extension) if !extension.eq_ignore_ascii_case("png") => {
             Err(WriteFileError::new(path, WriteFileCause::NotPng))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// [`check_output`] for a sheet: the name must end in `.png`, `.pdf` or `.svg`, or have no extension.
+///
+/// # Errors
+/// As [`check_output`], and another extension.
+pub fn check_sheet_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
+    check_output(path, inputs)?;
+    match path.extension() {
+        Some(extension)
+            if !["png", "pdf", "svg"].iter().any(|known| extension.eq_ignore_ascii_case(known)) =>
+        {
+            Err(WriteFileError::new(path, WriteFileCause::NotSheet))
         }
         _ => Ok(()),
     }

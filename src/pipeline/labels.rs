@@ -10,14 +10,17 @@ use crate::description::words::SheetLayout;
 use crate::draw::bathymetry::with_bathymetry;
 use crate::draw::list::FeatureId;
 use crate::pipeline::contour_marks::contour_marks;
+use crate::pipeline::graphic_texts::{GraphicTexts, graphic_texts};
 use crate::pipeline::grid::{grid_over, picture_grid};
 use crate::pipeline::legend::legend_entries;
+use crate::pipeline::legend_overlay::overlay_entries;
 use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::margin::margin_notes;
 use crate::pipeline::military::picture_symbols;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::label_course::LabelCourse;
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
 
@@ -27,6 +30,7 @@ pub fn annotations(
     camera: &Camera,
     picture: &Rendering,
     frame: Option<&SheetFrame>,
+    graphics: &[PlacedText],
 ) -> Annotations {
     let furniture = &scene.furniture;
     let is_bare = furniture.layout == SheetLayout::None;
@@ -41,10 +45,13 @@ pub fn annotations(
             _ => line_labels.extend(line_label(label, at_place, camera, picture)),
         }
     }
+    let GraphicTexts { fixed, along } = graphic_texts(graphics, camera, picture);
+    line_labels.extend(along);
     Annotations {
         labels,
         line_labels,
         contours: contour_marks(scene, camera, picture),
+        fixed_texts: fixed,
         font: scene.font.clone(),
         symbols: picture_symbols(scene, camera, picture),
         rim: rim_marks(scene, camera, grid.as_ref()),
@@ -56,7 +63,12 @@ pub fn annotations(
         north: shows(furniture.north_arrow).then(|| NorthArrow::from_camera(camera)),
         scale_bar: if shows(furniture.scale_bar) { scale_bar(camera, picture) } else { None },
         legend: (shows(furniture.legend) && !is_all_imagery(scene)).then(|| legend(scene)),
-        classes: if has_classes { legend_entries(scene, picture) } else { Vec::new() },
+        classes: if has_classes {
+            let overlay = overlay_entries(scene, picture);
+            legend_entries(scene, picture).into_iter().chain(overlay).collect()
+        } else {
+            Vec::new()
+        },
         cover: Some(cover(picture)),
         ..Annotations::default()
     }

@@ -8,9 +8,11 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use crate::annotate::class_legend::{LegendEntry, LegendSwatch};
-use crate::description::words::Cover;
+use crate::description::words::{Cover, StylePreset};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
+use crate::draw::print_pattern::PrintPattern;
+use crate::pipeline::print_ink::PrintInk;
 use crate::render::picture::Rendering;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::{FeatureKind, SceneModel};
@@ -77,7 +79,13 @@ pub fn legend_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEntr
         }
     }
     let shown = ids.into_iter().zip(sums).filter(|(_, sum)| sum.count >= LEAST_PIXELS);
-    shown.map(|(class, sum)| class.entry(sum.mean())).collect()
+    let is_print = scene.preset == Some(StylePreset::Print);
+    shown
+        .map(|(class, sum)| match class.ink().filter(|_| is_print) {
+            Some(ink) => class.printed_entry(ink),
+            None => class.entry(sum.mean()),
+        })
+        .collect()
 }
 
 impl PixelSum {
@@ -132,9 +140,15 @@ fn classes(scene: &SceneModel) -> Vec<Option<ShownClass>> {
                 false => ShownClass::OtherModels,
             },
             FeatureKind::Scattered => ShownClass::Trees,
+            FeatureKind::Graphic | FeatureKind::Sight => return None,
         })
     };
     scene.features.iter().enumerate().map(class).collect()
+}
+
+/// How each feature is printed in black.
+pub fn feature_inks(scene: &SceneModel) -> Vec<Option<PrintInk>> {
+    classes(scene).into_iter().map(|class| class.and_then(|class| class.ink())).collect()
 }
 
 /// What the ribbon of each feature is made of, leaving out what lies beside it.
@@ -181,6 +195,26 @@ fn model_names(scene: &SceneModel) -> Vec<String> {
 }
 
 impl ShownClass {
+    fn ink(&self) -> Option<PrintInk> {
+        Some(match self {
+            Self::Paved(_) | Self::Gravel | Self::Bridge => PrintInk::Cased,
+            Self::Track | Self::Trench | Self::Line | Self::Boundary => PrintInk::Black,
+            Self::River | Self::Lake => PrintInk::Outlined(PrintPattern::Lines),
+            Self::Cover(cover) => PrintInk::Pattern(match cover {
+                Cover::Forest => PrintPattern::Dots,
+                Cover::Scrub | Cover::Sand => PrintPattern::Stipple,
+                Cover::Field => PrintPattern::Furrows,
+                Cover::Orchard => PrintPattern::Crosses,
+                Cover::Wetland => PrintPattern::Dashes,
+                Cover::BuiltUp => PrintPattern::Hatching,
+                Cover::Industry | Cover::Restricted => PrintPattern::CrossHatching,
+                Cover::Meadow | Cover::Rock => return None,
+            }),
+            Self::Building | Self::Model(_) | Self::OtherModels => PrintInk::Solid,
+            Self::Trees => return None,
+        })
+    }
+
     fn entry(self, color: Srgba) -> LegendEntry {
         let dark = |share: f32| Srgba::from_linear(color.linear() * share);
         let line = |width: f32, cased: bool| LegendSwatch::Line {
@@ -210,6 +244,28 @@ impl ShownClass {
             Self::Trees => ("Scattered models".to_owned(), block),
         };
         LegendEntry { name, swatch }
+    }
+}
+
+impl ShownClass {
+    /// The entry on a sheet in black.
+    fn printed_entry(self, ink: PrintInk) -> LegendEntry {
+        let black = Srgba::opaque(0, 0, 0);
+        let entry = self.entry(Srgba::WHITE);
+        let swatch = match (entry.swatch, ink) {
+            (LegendSwatch::Area { .. }, PrintInk::Pattern(pattern) | PrintInk::Outlined(pattern)) => {
+                LegendSwatch::Pattern(pattern)
+            }
+            (LegendSwatch::Line { width, .. }, PrintInk::Black | PrintInk::Outlined(_)) => {
+                LegendSwatch::Line { fill: black, casing: None, width: width * 0.6 }
+            }
+            (LegendSwatch::Line { width, .. }, _) => {
+                LegendSwatch::Line { fill: Srgba::WHITE, casing: Some(black), width }
+            }
+            (LegendSwatch::Block(_), _) => LegendSwatch::Block(Srgba::opaque(120, 120, 120)),
+            (swatch, _) => swatch,
+        };
+        LegendEntry { name: entry.name, swatch }
     }
 }
 

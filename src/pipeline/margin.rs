@@ -68,11 +68,6 @@ fn facts(scene: &SceneModel, grid: Option<&str>) -> Vec<String> {
         false => format!("drawn ×{}", format_trimmed(exaggeration.into(), 2)),
     };
     facts.push(format!("Heights in meters{datum}, {stretched}"));
-    facts.extend(
-        scene
-            .contours
-            .map(|contours| format!("Contour interval {} m", format_trimmed(contours.interval_m.into(), 2))),
-    );
     facts
 }
 
@@ -96,7 +91,7 @@ fn sources(scene: &SceneModel) -> Vec<String> {
 fn norths(scene: &SceneModel) -> Option<ThreeNorths> {
     let middle = scene.lattice.map_extent().center();
     let place = scene.crs.transform(&Crs::wgs84(), middle).ok()?;
-    let grid = match scene.furniture.grid {
+    let grid = match scene.grid {
         GridName::Utm | GridName::Mgrs => GridZone::at(place)?.crs()?,
         _ => scene.crs.clone(),
     };
@@ -106,9 +101,9 @@ fn norths(scene: &SceneModel) -> Option<ThreeNorths> {
     let needle = day.and_then(|day| declination(place, height_m, day));
     let stated = scene.furniture.date.as_ref().map(|date| date.to_string()).unwrap_or_default();
     let magnetic_note = match (day, needle) {
-        (None, _) => "Magnetic north: no date".to_owned(),
-        (_, None) => format!("Magnetic north: no model of {stated}"),
-        _ => format!("World Magnetic Model, {stated}"),
+        (None, _) => "MN: no date stated".to_owned(),
+        (_, None) => format!("MN: no model of {stated}"),
+        _ => format!("WMM, {stated}"),
     };
     Some(ThreeNorths {
         grid_deg: convergence_deg(&grid, place),

@@ -3,9 +3,11 @@
 use crate::annotate::paint::{ComposedSheet, compose_sheet};
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet_frame::SheetFrame;
+use crate::description::words::StylePreset;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
+use crate::pipeline::look::{apply_look, red_light};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -19,6 +21,14 @@ pub struct PictureSize {
     pub width: u32,
     /// Pixels down, 16 to 16384.
     pub height: u32,
+}
+
+impl PictureSize {
+    /// The size of a view's paper, or 1920 × 1080.
+    pub fn of(view: &SceneView) -> Self {
+        let (width, height) = view.paper.map_or((1920, 1080), |paper| paper.size_px());
+        Self { width, height }
+    }
 }
 
 impl Choice for RenderBackend {
@@ -87,15 +97,22 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
-    let furniture = &scene.furniture;
-    let has_title = furniture.title && (scene.title.is_some() || scene.subtitle.is_some());
+    let frame = page_frame(scene, size);
     let page = (size.width, size.height);
-    let frame = SheetFrame::new(furniture.layout, page, has_title, furniture.classification.is_some());
     let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
-    let picture = render(&drawn.list, &camera, backend)?;
+    let mut picture = render(&drawn.list, &camera, backend)?;
+    apply_look(scene, &mut picture);
     Ok(DrawnView { camera, picture, drawn, frame })
+}
+
+/// The frame of a page of `size`; `None` where the picture is the page.
+pub fn page_frame(scene: &SceneModel, size: PictureSize) -> Option<SheetFrame> {
+    let furniture = &scene.furniture;
+    let has_title = furniture.title && (scene.title.is_some() || scene.subtitle.is_some());
+    let page = (size.width, size.height);
+    SheetFrame::new(furniture.layout, page, has_title, furniture.classification.is_some())
 }
 
 /// The second half of [`render_view`]: paints the annotations.
@@ -118,7 +135,10 @@ pub struct ComposedView {
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
     let DrawnView { camera, picture, drawn, frame } = view;
-    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref());
-    let (sheet, annotations) = compose_sheet(picture.pixels, &annotations);
+    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
+    let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
+    if scene.preset == Some(StylePreset::Night) {
+        sheet.recolor(&red_light);
+    }
     ComposedView { sheet, drawn, annotations }
 }

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use glam::{DAffine2, DMat2, DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::annotate::sheet_frame::SheetFrame;
 use crate::dem::formats::DemFormat;
 use crate::dem::raster::{Raster, Samples};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::files::{self, WriteFileError};
-use crate::pipeline::picture::{PictureError, PictureSize};
+use crate::pipeline::picture::{PictureError, PictureSize, page_frame};
 use crate::pipeline::raster_file::{self, WriteRasterError};
 use crate::render::cpu::render_buffers;
 use crate::render::picture::Rendering;
@@ -55,12 +56,17 @@ pub fn pick(
     pixels: &[[u32; 2]],
     progress: &dyn Fn(&'static str),
 ) -> Result<Vec<Option<PickedPlace>>, PictureError> {
-    let camera = camera(scene, view, (size.width, size.height))?;
+    let frame = page_frame(scene, size);
+    let page = (size.width, size.height);
+    let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
+    let (left, top) = frame.as_ref().map_or((0, 0), SheetFrame::picture_corner);
     let list = build_shapes(scene, &camera, progress);
     progress("drawing");
     let rendering = render_buffers(&list, &camera).map_err(crate::render::RenderError::from)?;
     let buffers = PictureBuffers { scene, camera: &camera, rendering: &rendering };
-    Ok(pixels.iter().map(|&[column, row]| buffers.place(column, row)).collect())
+    // In the margin of a page is nothing of the scene.
+    let place = |&[column, row]: &[u32; 2]| buffers.place(column.checked_sub(left)?, row.checked_sub(top)?);
+    Ok(pixels.iter().map(place).collect())
 }
 
 impl PictureBuffers<'_> {

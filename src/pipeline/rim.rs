@@ -39,6 +39,7 @@ struct RimTick {
     /// World X or Y along the edge.
     along: f32,
     figure: CoordinateFigure,
+    full: Option<CoordinateFigure>,
 }
 
 /// The coordinates along the near edges: where the lines of `grid` meet them or, without one, those of the scene's own
@@ -56,12 +57,12 @@ pub fn rim_marks(scene: &SceneModel, camera: &Camera, grid: Option<&GroundGrid>)
     } else {
         return Vec::new();
     };
-    let marks = edges.iter().flat_map(|edge| {
+    let marks = edges.iter().enumerate().flat_map(|(number, edge)| {
         let ticks = match grid {
             Some(grid) => grid_ticks(edge, scene, grid),
             None => own_ticks(edge, scene),
         };
-        ticks.into_iter().filter_map(|tick| mark(edge, tick, scene, camera)).collect::<Vec<_>>()
+        ticks.into_iter().filter_map(|tick| mark((number, edge), tick, scene, camera)).collect::<Vec<_>>()
     });
     marks.collect()
 }
@@ -91,11 +92,12 @@ fn own_ticks(edge: &BlockEdge, scene: &SceneModel) -> Vec<RimTick> {
     let tick = |&value: &f64| RimTick {
         along: (value - origin) as f32,
         figure: coordinate(value, ticks.decimals, ["E", "N"][edge.axis]).into(),
+        full: None,
     };
     ticks.values.iter().map(tick).collect()
 }
 
-/// Where the lines of a grid meet the edge: the first in full, then those of index lines, so that they stay where there is
+/// Where the lines of a grid meet the edge: the first, then those of index lines, so that they stay where there is
 /// no place for all.
 fn grid_ticks(edge: &BlockEdge, scene: &SceneModel, grid: &GroundGrid) -> Vec<RimTick> {
     let (min, max) = scene.bounds;
@@ -113,12 +115,17 @@ fn grid_ticks(edge: &BlockEdge, scene: &SceneModel, grid: &GroundGrid) -> Vec<Ri
     indices.sort_by_key(|&index| order(index));
     let tick = |index: usize| {
         let (along, line) = met[index];
-        RimTick { along, figure: if index == 0 { line.full.clone() } else { line.figure.clone() } }
+        RimTick { along, figure: line.figure.clone(), full: Some(line.full.clone()) }
     };
     indices.into_iter().map(tick).collect()
 }
 
-fn mark(edge: &BlockEdge, tick: RimTick, scene: &SceneModel, camera: &Camera) -> Option<RimMark> {
+fn mark(
+    (number, edge): (usize, &BlockEdge),
+    tick: RimTick,
+    scene: &SceneModel,
+    camera: &Camera,
+) -> Option<RimMark> {
     let (min, max) = scene.bounds;
     let side_m = (max - min).truncate().max_element();
     let ground = FullResolution { lattice: scene.ground().lattice() };
@@ -134,7 +141,7 @@ fn mark(edge: &BlockEdge, tick: RimTick, scene: &SceneModel, camera: &Camera) ->
     let step = edge.outward * side_m * 0.01;
     let [here, beyond] = [at, at + step].map(|point| camera.project(point).map(|seen| seen.pixel));
     let (at_px, outward): (Vec2, Vec2) = (here?, beyond? - here?);
-    Some(RimMark { at_px, outward, figure: tick.figure })
+    Some(RimMark { at_px, outward, figure: tick.figure, full: tick.full.map(|full| (full, number)) })
 }
 
 /// A coordinate with its thousands apart, such as `4 650 000 N`.

@@ -24,15 +24,17 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
+use crate::scene::graphics;
 use crate::scene::ground;
 use crate::scene::imagery;
 use crate::scene::military;
 use crate::scene::models;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
+use crate::scene::sight_layers;
 use crate::scene::sources::Sources;
 use crate::scene::spot_heights::spot_heights;
-use crate::scene::style::{self, RampSource};
+use crate::scene::style::{self, RampSource, Surroundings};
 use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
@@ -90,6 +92,9 @@ pub fn build(
     let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
     collected.notes.extend(defaulted);
 
+    graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
+    let sight = sight_layers::lay(&frame, &lattice, &mut collected)?;
+
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
@@ -102,6 +107,7 @@ pub fn build(
     collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
+    let surroundings = Surroundings::new(document);
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
@@ -109,12 +115,14 @@ pub fn build(
         heights,
         ramp: RampSource::new(document)?,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
-        land_cover: document.style.land_cover,
+        land_cover: surroundings.land_cover,
         imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
-        contours: style::contours(document),
+        contours: style::contours(document, height_range_m),
+        preset: document.style.preset,
+        grid: style::grid(document),
         sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,
-        haze_m: document.style.haze.map(|distance_m| distance_m as f32),
-        table: document.style.table,
+        haze_m: surroundings.haze_m,
+        table: surroundings.table,
         maps: Default::default(),
         infers_water: document.terrain.infer_water,
         water: OnceLock::new(),
@@ -128,6 +136,8 @@ pub fn build(
         ground: OnceLock::new(),
         ribbons: collected.ribbons,
         symbols: collected.symbols,
+        graphics: collected.graphics,
+        sight,
         solids: collected.solids,
         uprights: collected.uprights,
         details: models.iter().map(|_| OnceLock::new()).collect(),

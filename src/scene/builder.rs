@@ -6,6 +6,7 @@ use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::DefaultCounts;
+use crate::scene::graphics::SceneGraphic;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::spot_heights::LakeSurface;
@@ -20,6 +21,8 @@ pub struct SceneBuilder {
     pub ribbons: Vec<Ribbon>,
     /// Roads and rivers as lines.
     pub symbols: Vec<LineSymbol>,
+    /// Tactical graphics.
+    pub graphics: Vec<SceneGraphic>,
     /// Every feature so far; ids count from 2.
     pub features: Vec<SceneFeature>,
     /// Solids with fixed heights.

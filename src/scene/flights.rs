@@ -153,7 +153,12 @@ impl SceneFlight {
             let (sin, cos) = (libm::sin(self.pitch_rad), libm::cos(self.pitch_rad));
             eye + (forward * cos).extend(-sin).as_vec3() * self.ahead_m as f32
         });
-        SceneView { name: self.name.clone(), aim: ViewAim::At { eye, target }, fov_y_rad: self.fov_y_rad }
+        SceneView {
+            name: self.name.clone(),
+            aim: ViewAim::At { eye, target },
+            fov_y_rad: self.fov_y_rad,
+            paper: None,
+        }
     }
 
     /// Toward the path ahead; near its end, along it.

@@ -19,6 +19,7 @@ pub mod fences;
 pub mod flights;
 mod font;
 pub mod footprint;
+pub mod graphics;
 pub mod ground;
 pub mod ground_map;
 pub mod imagery;
@@ -34,6 +35,7 @@ pub mod ramps;
 pub mod report;
 pub mod roads;
 pub mod scatter;
+pub mod sight_layers;
 pub mod sources;
 mod spot_heights;
 pub mod style;
@@ -52,7 +54,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
-use crate::description::words::{Anchor, Clamp, Footing, LabelKind, TableTop};
+use crate::description::words::{Anchor, Clamp, Footing, GridName, LabelKind, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
 use crate::draw::ground::{ColorRamp, Contours, GroundMap};
@@ -68,6 +70,7 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
+use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
@@ -75,6 +78,7 @@ use crate::scene::military::SceneSymbol;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::sight_layers::SightLayers;
 use crate::scene::style::RampSource;
 use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
@@ -130,6 +134,10 @@ pub struct SceneModel {
     pub ribbons: Vec<Ribbon>,
     /// Roads and rivers, as lines for pictures in which their ribbons are too narrow.
     pub symbols: Vec<LineSymbol>,
+    /// Tactical graphics, in drawing order.
+    pub graphics: Vec<SceneGraphic>,
+    /// Viewsheds, lines of sight and ranges.
+    pub sight: SightLayers,
     /// Solids with fixed heights: buildings, bridges.
     pub solids: Vec<Solid>,
     /// Solids that each picture sets on its displayed ground: walls, fences, lines, footings.
@@ -150,6 +158,10 @@ pub struct SceneModel {
     pub font: Option<FontFile>,
     /// Legend, scale bar and the like.
     pub furniture: FurnitureTable,
+    /// The look in one word that its pictures have.
+    pub preset: Option<StylePreset>,
+    /// The coordinate grid on the ground.
+    pub grid: GridName,
     /// The day of its information.
     pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
@@ -195,10 +207,14 @@ pub enum FeatureKind {
     Model,
     /// Models scattered over areas: one feature per table.
     Scattered,
+    /// A tactical graphic.
+    Graphic,
+    /// A viewshed, lines of sight or a range.
+    Sight,
 }
 
 /// The noun of each kind for one feature and for several, in the order of summaries.
-const FEATURE_NOUNS: [(FeatureKind, &str, &str); 10] = [
+const FEATURE_NOUNS: [(FeatureKind, &str, &str); 12] = [
     (FeatureKind::Lake, "lake", "lakes"),
     (FeatureKind::River, "river", "rivers"),
     (FeatureKind::Road, "road", "roads"),
@@ -209,6 +225,8 @@ const FEATURE_NOUNS: [(FeatureKind, &str, &str); 10] = [
     (FeatureKind::Fence, "line", "lines"),
     (FeatureKind::Model, "model", "models"),
     (FeatureKind::Scattered, "scatter of models", "scatters of models"),
+    (FeatureKind::Graphic, "tactical graphic", "tactical graphics"),
+    (FeatureKind::Sight, "layer of sight", "layers of sight"),
 ];
 
 impl FeatureKind {
@@ -337,6 +355,35 @@ pub struct SceneView {
     pub aim: ViewAim,
     /// Vertical field of view in radians; without effect on parallel rays.
     pub fov_y_rad: f32,
+    /// The paper that it fills, where it is meant for print.
+    pub paper: Option<PaperSheet>,
+}
+
+/// A sheet of paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperSheet {
+    /// Width and height in millimeters.
+    pub size_mm: [f64; 2],
+    /// Pixels per inch.
+    pub dpi: f64,
+}
+
+impl PaperSheet {
+    /// Width and height in pixels.
+    pub fn size_px(&self) -> (u32, u32) {
+        let [width, height] = self.size_mm.map(|side| libm::round(side / 25.4 * self.dpi) as u32);
+        (width.clamp(16, 16_384), height.clamp(16, 16_384))
+    }
+}
+
+impl SceneView {
+    /// Pixels per inch of its print; `None` where it has no print in mind.
+    pub fn dpi(&self) -> Option<f64> {
+        match self.aim {
+            ViewAim::Parallel(ParallelView { dpi, .. }) => Some(dpi),
+            _ => self.paper.map(|paper| paper.dpi),
+        }
+    }
 }
 
 /// From where a view looks, and whereto.

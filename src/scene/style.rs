@@ -1,20 +1,27 @@
 //! How the ground looks: ramp and contours.
 
+use glam::Vec3;
+
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::words::RampName;
+use crate::description::words::{GridName, RampName, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours};
 use crate::geom::declination::CalendarDay;
 use crate::message::suggest::quoted;
 use crate::scene::ramps::{TintedGround, named};
 
+/// A translucent brown.
+const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);
+
 /// Where the colors of the ground come from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RampSource {
     /// A built-in ramp, which spans the heights of the ground.
     Named(RampName),
+    /// The same, halfway to white: what is drawn over it stands out.
+    Pale(RampName),
     /// A ramp with heights of its own.
     Own(ColorRamp),
 }
@@ -27,7 +34,10 @@ impl RampSource {
     pub fn new(document: &Document) -> Result<Self, Diagnostic> {
         let choice = &document.style.ramp;
         match &**choice {
-            RampChoice::Named(name) => Ok(Self::Named(*name)),
+            RampChoice::Named(name) => {
+                let preset = document.style.preset.filter(|_| choice.stated().is_none());
+                Ok(preset.map_or(Self::Named(*name), preset_ramp))
+            }
             RampChoice::Stops(stops) => {
                 let stop = |&(height, Color(channels)): &(f64, Color)| (height as f32, Srgba(channels));
                 let ramp = ColorRamp::new(stops.iter().map(stop).collect());
@@ -41,19 +51,91 @@ impl RampSource {
     pub fn over(&self, ground: &TintedGround) -> ColorRamp {
         match self {
             Self::Named(name) => named(*name, ground),
+            Self::Pale(name) => paler(&named(*name, ground)),
             Self::Own(ramp) => ramp.clone(),
         }
     }
 }
 
-/// The document's contour lines.
-pub fn contours(document: &Document) -> Option<Contours> {
+/// A ramp halfway to white.
+fn paler(ramp: &ColorRamp) -> ColorRamp {
+    let pale = |&(height, light): &(f32, Vec3)| (height, Srgba::from_linear(light.lerp(Vec3::ONE, 0.5)));
+    ColorRamp::new(ramp.stops().iter().map(pale).collect()).unwrap_or_else(|| ramp.clone())
+}
+
+/// The tints of a preset.
+fn preset_ramp(preset: StylePreset) -> RampSource {
+    match preset {
+        StylePreset::Military => RampSource::Pale(RampName::Atlas),
+        StylePreset::Relief | StylePreset::Print => RampSource::Named(RampName::Gray),
+        _ => RampSource::Named(RampName::Atlas),
+    }
+}
+
+/// Contour lines between the lowest and the highest ground where a preset draws them.
+const PRESET_LINES: f64 = 16.0;
+
+/// The document's contour lines, or those of its preset on ground of these heights.
+pub fn contours(document: &Document, (low_m, high_m): (f32, f32)) -> Option<Contours> {
+    let has_lines = matches!(
+        document.style.preset,
+        Some(StylePreset::Topographic | StylePreset::Military | StylePreset::Print)
+    );
+    if document.style.contours.is_none() && has_lines {
+        let interval_m = round_interval(f64::from(high_m - low_m) / PRESET_LINES)?;
+        let color = match document.style.preset {
+            Some(StylePreset::Print) => Srgba([0, 0, 0, 150]),
+            _ => CONTOUR_COLOR,
+        };
+        return Some(Contours { interval_m, major_every: 5, color, width_px: 1.0 });
+    }
     document.style.contours.as_ref().map(|contours| Contours {
         interval_m: contours.interval as f32,
         major_every: contours.major_every,
-        color: contours.color.map_or(Srgba([112, 74, 40, 150]), |color| Srgba(color.0)),
+        color: contours.color.map_or(CONTOUR_COLOR, |color| Srgba(color.0)),
         width_px: 1.0,
     })
+}
+
+/// The least of 1, 2 and 5 times a power of ten that is not below `least`; `None` where there is none.
+fn round_interval(least: f64) -> Option<f32> {
+    let power = libm::pow(10.0, libm::floor(libm::log10(least)));
+    let found =
+        [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * power).find(|value| *value >= least * 0.999)?;
+    (0.01..=100_000.0).contains(&found).then_some(found as f32)
+}
+
+/// Distance of haze, what the block stands on, and whether the ground's natural cover shows, as stated or by the preset.
+pub struct Surroundings {
+    /// Meters, 0 for clear air; `None` fits it to the view.
+    pub haze_m: Option<f32>,
+    /// What the block stands on.
+    pub table: TableTop,
+    /// Whether the ground's natural cover shows.
+    pub land_cover: bool,
+}
+
+impl Surroundings {
+    /// Those of a document.
+    pub fn new(document: &Document) -> Self {
+        let style = &document.style;
+        let is_clear = matches!(
+            style.preset,
+            Some(StylePreset::Topographic | StylePreset::Military | StylePreset::Print | StylePreset::Night)
+        );
+        let is_natural = style.preset == Some(StylePreset::Satellite);
+        Self {
+            haze_m: style.haze.map(|distance_m| distance_m as f32).or(is_clear.then_some(0.0)),
+            table: *style.table,
+            land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
+        }
+    }
+}
+
+/// The grid of a document, as stated or by its preset.
+pub fn grid(document: &Document) -> GridName {
+    let is_military = document.style.preset == Some(StylePreset::Military);
+    document.furniture.grid.unwrap_or(if is_military { GridName::Mgrs } else { GridName::None })
 }
 
 /// The day that the document's furniture names.
@@ -67,4 +149,16 @@ pub fn sheet_day(document: &Document) -> Result<Option<CalendarDay>, Diagnostic>
             .ok_or_else(|| document.error(date, message).with_help("write it as in \"2026-06-21\""))
     });
     day.transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_of_presets_are_round() {
+        let round = |least: f64| round_interval(least);
+        assert_eq!([43.0, 50.0, 0.7, 101.0].map(round), [Some(50.0), Some(50.0), Some(1.0), Some(200.0)]);
+        assert_eq!([0.0, f64::NAN, 1e9].map(round), [None, None, None]);
+    }
 }

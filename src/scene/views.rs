@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use glam::{DVec2, Vec3};
 
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{CameraTable, LabelTable};
+use crate::description::document::{CameraTable, LabelTable, PAPER_DPI, paper_mm};
 use crate::description::stated::Stated;
 use crate::description::words::CameraProjection;
 use crate::geom::rect::Rect;
@@ -15,7 +15,7 @@ use crate::scene::label_course::LabelCourse;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
+use crate::scene::{FittedView, PaperSheet, ParallelView, SceneLabel, SceneView, ViewAim};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
@@ -88,7 +88,7 @@ fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Res
         _ => (ViewAim::Fitted(fitted(table, frame, lattice)?), FITTED_FOV_DEG),
     };
     let fov_y_rad = (table.field_of_view.unwrap_or(fov_deg) as f32).to_radians();
-    Ok(SceneView { name: table.name.to_string(), aim, fov_y_rad })
+    Ok(SceneView { name: table.name.to_string(), aim, fov_y_rad, paper: paper(table) })
 }
 
 fn aimed(
@@ -128,6 +128,13 @@ fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Res
     })
 }
 
+/// The paper of a camera.
+fn paper(table: &CameraTable) -> Option<PaperSheet> {
+    let [longer, shorter] = paper_mm(table.paper?);
+    let size_mm = if table.portrait { [shorter, longer] } else { [longer, shorter] };
+    Some(PaperSheet { size_mm, dpi: table.dpi.unwrap_or(PAPER_DPI) })
+}
+
 /// The dots per inch of a screen, by convention.
 const SCREEN_DPI: f64 = 96.0;
 
@@ -150,7 +157,7 @@ fn parallel(
         pitch_rad,
         stretch,
         scale: table.scale,
-        dpi: table.dpi.unwrap_or(SCREEN_DPI),
+        dpi: table.dpi.unwrap_or(if table.paper.is_some() { PAPER_DPI } else { SCREEN_DPI }),
         shown: shown(table, frame, lattice)?,
     })
 }
@@ -194,7 +201,7 @@ pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
 fn overview() -> SceneView {
     let view = FittedView { azimuth_rad: None, pitch_rad: None, shown: None };
     let fov_y_rad = (FITTED_FOV_DEG as f32).to_radians();
-    SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad }
+    SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad, paper: None }
 }
 
 #[cfg(test)]

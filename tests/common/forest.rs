@@ -88,6 +88,7 @@ pub fn seen_from(scene: &SceneModel, eye: Vec3, target: Vec3, size: (u32, u32)) 
         name: String::new(),
         aim: sandtable::scene::ViewAim::At { eye, target },
         fov_y_rad: 0.7,
+        paper: None,
     };
     picture::camera(scene, &view, size).expect("sound")
 }

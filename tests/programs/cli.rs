@@ -18,6 +18,7 @@ mod report;
 mod schema;
 mod series;
 mod serve;
+mod sheets;
 mod viewshed;
 mod wrong_scenes;
 

@@ -28,7 +28,7 @@ fn open(name: &str) -> SceneModel {
 fn plan(azimuth_rad: f32) -> SceneView {
     let pitch_rad = std::f32::consts::FRAC_PI_2;
     let aim = ParallelView { azimuth_rad, pitch_rad, stretch: 1.0, scale: None, dpi: 96.0, shown: None };
-    SceneView { name: "plan".into(), aim: ViewAim::Parallel(aim), fov_y_rad: 0.5 }
+    SceneView { name: "plan".into(), aim: ViewAim::Parallel(aim), fov_y_rad: 0.5, paper: None }
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod buffers;
 mod clearance;
 mod detail;
 mod flights;
+mod graphics;
 mod imagery;
 mod instances;
 mod labels;

@@ -127,7 +127,7 @@ fn shots(mut scene: SceneModel, mut check: impl FnMut(&SceneModel, &ViewDraw)) {
         let eye = Vec3::new(1000.0 + 2600.0 * turn.cos(), 1000.0 + 2600.0 * turn.sin(), 1500.0);
         let target = Vec3::new(1000.0, 1000.0, 450.0);
         let aim = ViewAim::At { eye, target };
-        let view = SceneView { name: String::new(), aim, fov_y_rad: 0.8 };
+        let view = SceneView { name: String::new(), aim, fov_y_rad: 0.8, paper: None };
         let camera = camera(&scene, &view, (640, 360)).expect("sound");
         check(&scene, &build_draw_list(&scene, &camera, &|_| ()));
     }

@@ -71,14 +71,15 @@ impl Scene {
         self.model.cameras.iter().map(|view| view.name.as_str())
     }
 
-    /// The view called `name`, 1920 by 1080 pixels.
+    /// The view called `name`, as large as its paper, or 1920 by 1080 pixels.
     ///
     /// # Errors
     /// [`Error::NoView`].
     pub fn view(&self, name: &str) -> Result<View, Error> {
         let no_view = || Error::NoView(name.to_owned(), self.view_names().collect::<Vec<_>>().join(", "));
         let view = self.model.view(Some(name)).ok_or_else(no_view)?.clone();
-        Ok(View { view, size: PictureSize { width: 1920, height: 1080 }, backend: RenderBackend::Cpu })
+        let size = PictureSize::of(&view);
+        Ok(View { view, size, backend: RenderBackend::Cpu })
     }
 
     /// Answers heights of the ground and the decks over it, in map coordinates.

@@ -65,7 +65,7 @@ struct GridFrame {
 /// The scene's grid, its lines no nearer than `wanted_m` where no interval is stated; `None` where it has none, or its
 /// system has no place on Earth.
 pub fn ground_grid(scene: &SceneModel, wanted_m: f64) -> Option<GroundGrid> {
-    let name = scene.furniture.grid;
+    let name = scene.grid;
     if name == GridName::None {
         return None;
     }

@@ -31,7 +31,7 @@ const APART_PX: f64 = 100.0;
 /// The lines of the scene's grid over its ground, as dense as suits `camera`; `None` where it has no grid, or its
 /// system has no place on Earth.
 pub fn grid_over(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Option<GroundGrid> {
-    if scene.furniture.grid == GridName::None {
+    if scene.grid == GridName::None {
         return None;
     }
     let (width, height) = camera.size();

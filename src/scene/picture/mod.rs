@@ -1,18 +1,25 @@
 //! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
+mod airspace;
 mod detail;
 mod drapes;
 mod fit;
 mod fitted_view;
+pub mod graphic_colors;
+mod graphic_lines;
+mod graphics;
 mod ground;
 mod haze;
 mod lake_tint;
 mod line_scale;
 mod markings;
 mod models;
+mod overlay;
 mod parallel_view;
+pub mod placed_text;
 pub mod recut;
 pub mod setting;
+mod sight;
 mod solids;
 mod symbols;
 mod table;
@@ -33,6 +40,7 @@ use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
 use crate::scene::picture::parallel_view::parallel_camera;
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::setting::PictureSetting;
 use crate::scene::{SceneModel, SceneView, ViewAim};
 use crate::view::camera::{Camera, CameraError, far_m};
@@ -45,6 +53,8 @@ pub struct ViewDraw {
     pub displayed: Arc<DisplayedTerrain>,
     /// Triangles of the ground among those drawn.
     pub ground_triangles: usize,
+    /// The texts of tactical graphics.
+    pub graphic_texts: Vec<PlacedText>,
 }
 
 /// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
@@ -65,16 +75,16 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
     progress("refining terrain");
     let displayed = Arc::new(display(scene, camera));
-    let (list, ground_triangles) =
+    let ListedScene { list, ground_triangles, graphic_texts } =
         listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Picture, progress);
-    ViewDraw { list, displayed, ground_triangles }
+    ViewDraw { list, displayed, ground_triangles, graphic_texts }
 }
 
 /// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
 pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
     progress("refining terrain");
     let displayed = display(scene, camera);
-    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).0
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
 }
 
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
@@ -84,7 +94,15 @@ pub fn draw_list(
     displayed: &DisplayedTerrain,
     progress: &dyn Fn(&'static str),
 ) -> (DrawList, usize) {
-    listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress)
+    let listed = listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress);
+    (listed.list, listed.ground_triangles)
+}
+
+/// A draw list with what else a picture needs.
+struct ListedScene {
+    list: DrawList,
+    ground_triangles: usize,
+    graphic_texts: Vec<PlacedText>,
 }
 
 /// What a draw list is made for.
@@ -111,7 +129,7 @@ fn listed(
     viewer: Viewer<'_>,
     purpose: ListPurpose,
     progress: &dyn Fn(&'static str),
-) -> (DrawList, usize) {
+) -> ListedScene {
     let camera = match viewer {
         Viewer::Camera(camera) => Some(camera),
         Viewer::Anyone => None,
@@ -135,6 +153,7 @@ fn listed(
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
+    let graphic_texts = camera.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
     if setting.is_some_and(|setting| has_table(scene, setting)) {
@@ -146,7 +165,10 @@ fn listed(
     }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
-    (list, ground_triangles)
+    if camera.is_some() {
+        airspace::add(&mut list, scene);
+    }
+    ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
 }
 
 /// The ground as `camera` shows it, off by at most the scene's own tolerance.

@@ -486,7 +486,7 @@ fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
 
 /// Half a disc about a line's end, `lengths` of the texture along it, on the side of `outward`, which is as long as its
 /// radius.
-fn cap(center: DVec2, outward: DVec2, lengths: f64, plan: &mut PlanMesh) {
+pub(super) fn cap(center: DVec2, outward: DVec2, lengths: f64, plan: &mut PlanMesh) {
     let uv = Vec2::new(0.0, lengths as f32);
     let mut vertex = |at: DVec2| plan.vertex(PlanVertex { at, uv });
     let middle = vertex(center);

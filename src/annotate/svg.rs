@@ -1,0 +1,120 @@
+//! A sheet as SVG: the picture as an embedded image, letters and lines over it as paths.
+
+use std::fmt::Write;
+
+use tiny_skia::PathSegment;
+
+use crate::annotate::drawing::PaintedPath;
+use crate::annotate::paint::ComposedSheet;
+
+/// Millimeters per inch.
+const INCH_MM: f32 = 25.4;
+
+impl ComposedSheet {
+    /// The text of an SVG file, as large in print as `dpi` pixels per inch make it; `png` is the picture's file.
+    pub fn svg(&self, dpi: f32, png: &[u8]) -> String {
+        let (width, height) = (self.pixels.width(), self.pixels.height());
+        let mm = |pixels: u32| pixels as f32 / dpi * INCH_MM;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}mm\" height=\"{:.3}mm\" \
+             viewBox=\"0 0 {width} {height}\">\n<image width=\"{width}\" height=\"{height}\" \
+             href=\"data:image/png;base64,",
+            mm(width),
+            mm(height)
+        );
+        encode_base64(png, &mut svg);
+        svg.push_str("\"/>\n");
+        for drawing in &self.drawings {
+            svg.push_str("<g>\n");
+            for text in &drawing.texts {
+                svg.push_str("<desc>");
+                escape(&text.text, &mut svg);
+                svg.push_str("</desc>\n");
+            }
+            drawing.marks.iter().for_each(|mark| write_path(mark, &mut svg));
+            svg.push_str("</g>\n");
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+}
+
+/// Text with the characters that mark up SVG written as entities, and without those that XML does not hold.
+fn escape(text: &str, svg: &mut String) {
+    for character in text.chars() {
+        match character {
+            '&' => svg.push_str("&amp;"),
+            '<' => svg.push_str("&lt;"),
+            '>' => svg.push_str("&gt;"),
+            '\n' | '\t' => svg.push(' '),
+            character if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => {}
+            character => svg.push(character),
+        }
+    }
+}
+
+fn write_path(mark: &PaintedPath, svg: &mut String) {
+    let [red, green, blue, alpha] = mark.color.0;
+    svg.push_str("<path d=\"");
+    // Writing to a string never fails.
+    for segment in mark.path.segments() {
+        let _ = match segment {
+            PathSegment::MoveTo(to) => write!(svg, "M{:.2} {:.2}", to.x, to.y),
+            PathSegment::LineTo(to) => write!(svg, "L{:.2} {:.2}", to.x, to.y),
+            PathSegment::QuadTo(by, to) => write!(svg, "Q{:.2} {:.2} {:.2} {:.2}", by.x, by.y, to.x, to.y),
+            PathSegment::CubicTo(by, then, to) => {
+                write!(svg, "C{:.2} {:.2} {:.2} {:.2} {:.2} {:.2}", by.x, by.y, then.x, then.y, to.x, to.y)
+            }
+            PathSegment::Close => write!(svg, "Z"),
+        };
+    }
+    let _ = write!(svg, "\" fill=\"#{red:02x}{green:02x}{blue:02x}\"");
+    if alpha < 255 {
+        let _ = write!(svg, " fill-opacity=\"{:.3}\"", f32::from(alpha) / 255.0);
+    }
+    svg.push_str("/>\n");
+}
+
+/// Appends `bytes` in base 64 (RFC 4648).
+fn encode_base64(bytes: &[u8], text: &mut String) {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    text.reserve(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let [first, second, third] = [0, 1, 2].map(|at| u32::from(group.get(at).copied().unwrap_or(0)));
+        let bits = first << 16 | second << 8 | third;
+        for digit in 0..4 {
+            let is_there = digit <= group.len();
+            let value = (bits >> (18 - 6 * digit) & 63) as usize;
+            text.push(if is_there { char::from(DIGITS[value]) } else { '=' });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::annotate::annotation::Annotations;
+    use crate::annotate::paint::compose_sheet;
+    use crate::draw::color::Srgba;
+    use crate::draw::pixels::Pixels;
+
+    #[test]
+    fn bytes_in_base_64_are_those_of_the_standard() {
+        for (bytes, expected) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
+            let mut text = String::new();
+            encode_base64(bytes.as_bytes(), &mut text);
+            assert_eq!(text, expected);
+        }
+    }
+
+    #[test]
+    fn texts_that_look_like_markup_are_escaped_and_sizes_are_those_of_the_print() {
+        let annotations = Annotations { title: Some("A <b> & \"c\"\u{1}".into()), ..Annotations::default() };
+        let (sheet, _) = compose_sheet(Pixels::filled(960, 540, Srgba::WHITE), &annotations);
+        let svg = sheet.svg(96.0, b"png");
+        assert!(svg.contains("<desc>A &lt;b&gt; &amp; \"c\"</desc>"), "{svg}");
+        assert!(svg.contains("width=\"254.000mm\"") && svg.matches("<path").count() > 2);
+    }
+}

@@ -1,0 +1,46 @@
+//! Writes a sheet as PNG, PDF or SVG, by its file's name.
+
+use std::path::Path;
+
+use crate::annotate::paint::ComposedSheet;
+use crate::annotate::pdf::PdfError;
+use crate::export::{encode_png, encode_png_at};
+use crate::pipeline::error::FileError;
+use crate::pipeline::files::{self, WriteFileError};
+
+/// Pixels per inch where a view has no print in mind.
+const SCREEN_DPI: f64 = 96.0;
+
+/// A sheet that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum WriteSheetError {
+    #[error(transparent)]
+    File(#[from] WriteFileError),
+    #[error(transparent)]
+    Pdf(#[from] FileError<PdfError>),
+}
+
+/// Writes a sheet: with letters and lines as vectors where the name ends in `.pdf` or `.svg`, otherwise as PNG. `dpi` are
+/// the pixels per inch of its print, where it has one in mind.
+///
+/// # Errors
+/// See [`WriteSheetError`].
+pub fn write_sheet(
+    path: &Path,
+    sheet: ComposedSheet,
+    dpi: Option<f64>,
+    title: Option<&str>,
+) -> Result<(), WriteSheetError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let print_dpi = dpi.unwrap_or(SCREEN_DPI) as f32;
+    let bytes = match extension.as_str() {
+        "pdf" => sheet.pdf(print_dpi, title).map_err(FileError::at(path))?,
+        "svg" => sheet.svg(print_dpi, &encode_png(&sheet.pixels)).into_bytes(),
+        _ => {
+            let pixels = sheet.painted();
+            dpi.map_or_else(|| encode_png(&pixels), |dpi| encode_png_at(&pixels, dpi))
+        }
+    };
+    Ok(files::write(path, &bytes)?)
+}

@@ -1,0 +1,231 @@
+//! Tactical graphics: from the tables of a scene file to points in world space, checked against their draw rules.
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::graphics::GraphicTable;
+use crate::description::scalar::Scalar;
+use crate::description::stated::Stated;
+use crate::description::words::{GraphicSide, GraphicStatus};
+use crate::draw::list::FeatureId;
+use crate::geom::rect::Rect;
+use crate::message::suggest::{nearest, quoted};
+use crate::scene::FeatureKind;
+use crate::scene::attributes::Attributes;
+use crate::scene::builder::SceneBuilder;
+use crate::scene::sources::Sources;
+use crate::symbology::code::SymbolCode;
+use crate::symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
+use crate::symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};
+use crate::symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
+use crate::symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
+use crate::vector::feature::Geometry;
+
+/// More graphics hide the ground that they lie on.
+const MOST_GRAPHICS: usize = 4096;
+
+/// A tactical graphic in its place.
+#[derive(Clone, Debug)]
+pub struct SceneGraphic {
+    /// What it is.
+    pub kind: &'static GraphicKind,
+    /// Its points, world X and Y; of an area without repeating the first.
+    pub points: Vec<DVec2>,
+    /// The stated width in meters.
+    pub width_m: Option<f64>,
+    /// Its texts and numbers.
+    pub fields: GraphicFields,
+    /// Whose it is.
+    pub side: GraphicSide,
+    /// Whether it is there.
+    pub status: GraphicStatus,
+    /// The lowest and the highest elevation of airspace, meters.
+    pub elevations_m: Option<[f64; 2]>,
+    /// The feature it is.
+    pub feature: FeatureId,
+}
+
+/// Adds the document's graphics to `collected`; those of files that lie off the ground are left out with a note.
+///
+/// # Errors
+/// A source cannot be had, or a graphic does not fit its draw rule.
+pub fn lay(
+    document: &Document,
+    sources: &Sources<'_>,
+    extent: &Rect,
+    collected: &mut SceneBuilder,
+) -> Result<(), Diagnostic> {
+    for table in &document.graphics {
+        let mut off = 0;
+        for (attributes, points) in placed(table, sources)? {
+            let Some(graphic) = graphic(table, &attributes, points, document)? else { continue };
+            let reach_m = graphic.fields.distances_m.iter().copied().fold(0.0, f64::max);
+            if !Rect::around(graphic.points.iter().copied()).grown(reach_m).meets(extent) {
+                off += 1;
+                continue;
+            }
+            if collected.graphics.len() == MOST_GRAPHICS {
+                let message = format!("the scene has more than {MOST_GRAPHICS} graphics");
+                let help = "select fewer of them with `where`";
+                return Err(document.error_at(table.source.span(), message).with_help(help));
+            }
+            let feature = collected.add(FeatureKind::Graphic, attributes.name(table.name.as_deref()));
+            collected.graphics.push(SceneGraphic { feature, ..graphic });
+        }
+        collected.note_left_out(off, FeatureKind::Graphic, table.name.as_deref(), "off the elevation model");
+    }
+    Ok(())
+}
+
+/// The points of every graphic of a table, in world space, with the properties of its feature.
+fn placed(table: &GraphicTable, sources: &Sources<'_>) -> Result<Vec<(Attributes, Vec<DVec2>)>, Diagnostic> {
+    if table.source.points.is_some() {
+        let lines = sources.lines(&table.source)?;
+        return Ok(lines.into_iter().map(|line| (line.attributes, line.shape)).collect());
+    }
+    let (crs, features) = sources.features(&table.source)?;
+    let frame = sources.frame;
+    let mut placed = Vec::new();
+    for attributes in features {
+        let shapes: Vec<Vec<DVec2>> = match attributes.geometry() {
+            Some(Geometry::Points(points)) => points.iter().map(|&point| vec![point]).collect(),
+            Some(Geometry::Lines(lines)) => lines.clone(),
+            Some(Geometry::Polygons(polygons)) => {
+                polygons.iter().map(|polygon| polygon.exterior.clone()).collect()
+            }
+            None => Vec::new(),
+        };
+        for shape in shapes {
+            let world: Result<Vec<DVec2>, _> = shape.into_iter().map(|at| frame.world(&crs, at)).collect();
+            let world = world.map_err(|error| frame.document.error_at(table.source.span(), error))?;
+            placed.push((attributes.clone(), world));
+        }
+    }
+    Ok(placed)
+}
+
+/// One graphic, without its feature; `None` for a feature of a file whose properties name no kind.
+fn graphic(
+    table: &GraphicTable,
+    attributes: &Attributes,
+    mut points: Vec<DVec2>,
+    document: &Document,
+) -> Result<Option<SceneGraphic>, Diagnostic> {
+    let property = |key: &str| match attributes.get(key) {
+        Some(Scalar::Text(text)) => Some(text),
+        Some(Scalar::Number(number)) => Some(number.to_string()),
+        _ => None,
+    };
+    let text =
+        |stated: &Option<String>, key: &str| stated.clone().or_else(|| property(key)).unwrap_or_default();
+    let stated_or = |stated: &Option<Stated<String>>, rival: bool, key: &str| {
+        stated.as_ref().map(|word| word.to_string()).or_else(|| property(key).filter(|_| !rival))
+    };
+    let sidc = stated_or(&table.sidc, table.kind.is_some(), "sidc");
+    let word = stated_or(&table.kind, table.sidc.is_some(), "kind");
+    let span = [&table.sidc, &table.kind].into_iter().flatten().find_map(Stated::span);
+    let span = span.unwrap_or_else(|| table.source.span());
+    let failed = |message: String, help: String| document.error_at(span.clone(), message).with_help(help);
+    let code = match &sidc {
+        Some(sidc) => Some(SymbolCode::parse(sidc).map_err(|error| document.error_at(span.clone(), error))?),
+        None => None,
+    };
+    let kind = match (&code, &word) {
+        (Some(code), _) => kind_of_code(code).map_err(|(message, help)| failed(message, help))?,
+        (None, Some(word)) => kind_of_word(word).map_err(|(message, help)| failed(message, help))?,
+        (None, None) => return Ok(None),
+    };
+    let echelon = text(&table.echelon, "echelon");
+    let echelon =
+        if echelon.is_empty() { code.map(|code| echelon_of(&code)).unwrap_or_default() } else { echelon };
+    let heights = table.elevations.map(|range| range.map(|meters| format!("{meters:.0} m")));
+    let fields = GraphicFields {
+        designation: text(&table.designation, "designation"),
+        designation_2: text(&table.designation_2, "designation_2"),
+        echelon: echelon_mark(&echelon).to_owned(),
+        country: text(&table.country, "country"),
+        hostile: text(&table.hostile, "hostile"),
+        further: text(&table.further, "further"),
+        target: text(&table.target, "target"),
+        from: text(&table.from, "from"),
+        until: text(&table.until, "until"),
+        heights: heights.map(Vec::from).unwrap_or_default(),
+        distances_m: numbers(&table.distances, document)?,
+        azimuths_deg: table.azimuths.as_deref().cloned().unwrap_or_default(),
+    };
+    if kind.is_area() && points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    let placed = PlacedGraphic { points: &points, width_m: table.width, fields: &fields };
+    check(kind, &placed).map_err(|error| {
+        let place =
+            if matches!(error, GraphicError::Missing { .. }) { span.clone() } else { table.source.span() };
+        let help = error.help();
+        document.error_at(place, error).with_help(help)
+    })?;
+    let side = table.side.or_else(|| code.map(|code| side_of(code.identity))).unwrap_or_default();
+    let planned = code.is_some_and(|code| code.status == SymbolStatus::Planned);
+    let status = if planned { GraphicStatus::Planned } else { GraphicStatus::Present };
+    Ok(Some(SceneGraphic {
+        kind,
+        points,
+        width_m: table.width,
+        fields,
+        side,
+        status: table.status.unwrap_or(status),
+        elevations_m: table.elevations,
+        feature: FeatureId::NONE,
+    }))
+}
+
+/// The stated distances, as many as a graphic may have.
+fn numbers(stated: &Option<Stated<Vec<f64>>>, document: &Document) -> Result<Vec<f64>, Diagnostic> {
+    let Some(distances) = stated else { return Ok(Vec::new()) };
+    if distances.len() > MOST_RANGES {
+        let message = format!("{} distances are more than the {MOST_RANGES} allowed", distances.len());
+        return Err(document.error(distances, message).with_help("leave some of them out"));
+    }
+    Ok(distances.to_vec())
+}
+
+fn kind_of_word(word: &str) -> Result<&'static GraphicKind, (String, String)> {
+    if let Some(kind) = GraphicKind::of_word(word).or_else(|| GraphicKind::of_code(word)) {
+        return Ok(kind);
+    }
+    let near = nearest(word, GRAPHIC_KINDS.iter().map(|kind| kind.word));
+    let help = near.map_or_else(
+        || "scenes/SYMBOLS.md lists the words and codes".to_owned(),
+        |near| format!("did you mean `{near}`?"),
+    );
+    Err((format!("no graphic is called '{}'", quoted(word)), help))
+}
+
+fn kind_of_code(code: &SymbolCode) -> Result<&'static GraphicKind, (String, String)> {
+    let help = "scenes/SYMBOLS.md lists the codes of graphics".to_owned();
+    if code.set != SymbolSet::ControlMeasure {
+        let message =
+            format!("the code is of symbol set {:02}, and graphics are of set 25", code.set.number());
+        return Err((message, "use `[[symbol]]` for it".to_owned()));
+    }
+    let digits = format!("{:06}", code.entity);
+    GraphicKind::of_code(&digits)
+        .ok_or_else(|| (format!("the graphic {digits} of symbol set 25 is not drawn yet"), help))
+}
+
+/// The word of a code's echelon; empty where it has none.
+fn echelon_of(code: &SymbolCode) -> String {
+    /// The numbers of [`ECHELONS`] in a code.
+    const NUMBERS: [u8; 14] = [11, 12, 13, 14, 15, 16, 17, 18, 21, 22, 23, 24, 25, 26];
+    let place = NUMBERS.iter().position(|&number| number == code.amplifier.number());
+    place.map_or_else(String::new, |place| ECHELONS[place].0.to_owned())
+}
+
+fn side_of(identity: SymbolIdentity) -> GraphicSide {
+    match identity {
+        SymbolIdentity::Friend | SymbolIdentity::AssumedFriend => GraphicSide::Friend,
+        SymbolIdentity::Suspect | SymbolIdentity::Hostile => GraphicSide::Hostile,
+        SymbolIdentity::Neutral => GraphicSide::Neutral,
+        _ => GraphicSide::Unknown,
+    }
+}

@@ -1,0 +1,348 @@
+//! Layers of sight on a picture: tints of seen and hidden ground, lines of sight, ranges.
+//!
+//! A viewshed is a value a post. Its tint is a texture with a texel a post (of large ground a texel a square of posts),
+//! laid over the ground as one quad that is cut to the displayed triangles like every ribbon. So no renderer knows of it,
+//! and its border is as smooth as the texture's filter makes it.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, UVec2, Vec2, Vec4};
+
+use crate::description::words::{RangeExtent, ViewshedTint};
+use crate::draw::color::Srgba;
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId};
+use crate::draw::material::{AlphaMode, Material, NormalSource};
+use crate::draw::pixels::Pixels;
+use crate::mesh::sink::MeshSink;
+use crate::ribbon::drape::drape;
+use crate::ribbon::plan::{PlanMesh, PlanVertex};
+use crate::scene::SceneModel;
+use crate::scene::picture::add_mesh;
+use crate::scene::picture::graphic_colors::{self, HIDDEN, SEEN, side_color};
+use crate::scene::picture::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
+use crate::scene::picture::placed_text::{PlacedCourse, PlacedText};
+use crate::scene::sight_layers::{SceneRange, SceneSight, SceneViewshed};
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::profile::profile;
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::sight::Curvature;
+use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use crate::terrain::sight::outlook::visible_stretches;
+use crate::terrain::sight::viewshed::PostVisibility;
+use crate::terrain::triangle_surface::TriangleSurface;
+
+/// Tints lie under lines.
+const TINT_LAYER: u8 = LAYER - 1;
+
+/// Lines of sight to seen and to hidden ground.
+const SEEN_LINE: LineLook = LineLook { color: graphic_colors::SEEN_LINE, is_dashed: false };
+const HIDDEN_LINE: LineLook = LineLook { color: graphic_colors::HIDDEN_LINE, is_dashed: false };
+
+/// The marks of observers.
+const OBSERVER_LINE: LineLook = LineLook { color: Srgba::opaque(10, 10, 10), is_dashed: false };
+
+/// The share of light that the fill of a range stops.
+const FILL_ALPHA: u8 = 84;
+
+/// The most texels of a tint along either side: finer than any picture shows at once.
+const MOST_TEXELS: u32 = 2048;
+
+/// Pieces of a whole ring whose sight is tried one by one.
+const RING_PIECES: f64 = 180.0;
+
+/// The radius of the ring about a target and an observer, in text heights.
+const MARK_EM: f64 = 0.6;
+
+/// Adds the tints of sight that a picture shows, draws its lines and notes their texts.
+pub(super) fn add(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    pen: &mut GraphicPen,
+    texts: &mut Vec<PlacedText>,
+) {
+    let displayed = view.displayed;
+    let layers = &scene.sight;
+    let lattice = &*scene.lattice;
+    for layer in &layers.viewsheds {
+        let colors = match layer.tint {
+            ViewshedTint::Both => [Some(SEEN), Some(HIDDEN)],
+            ViewshedTint::Seen => [Some(SEEN), None],
+            ViewshedTint::Hidden => [None, Some(HIDDEN)],
+        };
+        lay_tint(list, layer, lattice, colors, displayed);
+    }
+    for range in &layers.ranges {
+        let Srgba([red, green, blue, _]) = side_color(range.side);
+        let fill = Srgba([red, green, blue, FILL_ALPHA]);
+        if range.fill == RangeExtent::Seen {
+            lay_tint(list, &range.sight, lattice, [Some(fill), None], displayed);
+        } else if range.fill == RangeExtent::All {
+            let plan = sector_plan(range);
+            let mut mesh = DrawMesh::default();
+            drape(&plan, displayed, &mut mesh);
+            add_tint(list, mesh, fill, None, range.feature);
+        }
+        draw_range(range, scene, view, pen, texts);
+    }
+    for sight in &layers.sights {
+        draw_sight(sight, scene, view, pen);
+    }
+    for layer in &layers.viewsheds {
+        for observer in &layer.observers {
+            mark_observer(observer.observer, scene, view, layer.feature, pen);
+        }
+    }
+}
+
+/// Lays seen and hidden posts over the ground in two colors.
+fn lay_tint(
+    list: &mut DrawList,
+    layer: &SceneViewshed,
+    lattice: &Lattice,
+    colors: [Option<Srgba>; 2],
+    displayed: &dyn TriangleSurface,
+) {
+    let Some(seen) = layer.seen(lattice) else { return };
+    // Only the posts that somebody looked at.
+    let columns = seen.columns as usize;
+    let is_looked_at =
+        |post: &PostVisibility| matches!(post, PostVisibility::Visible | PostVisibility::Hidden);
+    let mut corners: Option<[UVec2; 2]> = None;
+    for (row, posts) in seen.posts.chunks_exact(columns).enumerate() {
+        let Some(first) = posts.iter().position(is_looked_at) else { continue };
+        let last = posts.iter().rposition(is_looked_at).unwrap_or(first);
+        let (low, high) = (UVec2::new(first as u32, row as u32), UVec2::new(last as u32, row as u32));
+        corners = Some(corners.map_or([low, high], |[min, max]| [min.min(low), max.max(high)]));
+    }
+    let Some([min, max]) = corners else { return };
+    let size = max - min + 1;
+    let stride = size.max_element().div_ceil(MOST_TEXELS).max(1);
+    let texels = size.map(|side| side.div_ceil(stride));
+    let post = |column: u32, row: u32| seen.posts[row as usize * columns + column as usize];
+    let pixels = Pixels::from_fn(texels.x, texels.y, |x, y| {
+        // V runs downward, rows upward.
+        let from = min + UVec2::new(x, texels.y - 1 - y) * stride;
+        let to = (from + stride - 1).min(max);
+        let (mut sum, mut count) = (Vec4::ZERO, 0.0f32);
+        for row in from.y..=to.y {
+            for column in from.x..=to.x {
+                let color = match post(column, row) {
+                    PostVisibility::Visible => colors[0],
+                    PostVisibility::Hidden => colors[1],
+                    PostVisibility::Beyond | PostVisibility::NoData => None,
+                };
+                count += 1.0;
+                if let Some(Srgba([red, green, blue, alpha])) = color {
+                    let share = f32::from(alpha);
+                    sum += Vec4::new(
+                        f32::from(red) * share,
+                        f32::from(green) * share,
+                        f32::from(blue) * share,
+                        share,
+                    );
+                }
+            }
+        }
+        blended(sum, count, colors)
+    });
+    let first = lattice.map_position(Post { column: min.x, row: min.y }) - lattice.origin();
+    let texel_m = lattice.cell() * f64::from(stride);
+    // A post is in the middle of its texel; the tint ends half a texel from the border, where the texture would repeat.
+    let posts_m = lattice.cell() * (size - 1).as_dvec2();
+    let offset = lattice.cell() * f64::from(stride - 1) / 2.0;
+    let corner = |share: DVec2| {
+        let at = first + posts_m * share;
+        let texel = (at - first - offset) / texel_m + 0.5;
+        let uv = DVec2::new(texel.x, f64::from(texels.y) - texel.y) / texels.as_dvec2();
+        PlanVertex { at, uv: uv.as_vec2() }
+    };
+    let mut plan = PlanMesh::default();
+    let ids = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| plan.vertex(corner(share)));
+    plan.triangle([ids[0], ids[1], ids[2]]);
+    plan.triangle([ids[0], ids[2], ids[3]]);
+    let mut mesh = DrawMesh::default();
+    drape(&plan, displayed, &mut mesh);
+    add_tint(list, mesh, Srgba::WHITE, Some(pixels), layer.feature);
+}
+
+/// The mean of colors weighted by their alpha; where there is none, a color of the tint that nothing shows of, so that a
+/// border does not blend toward black.
+fn blended(sum: Vec4, count: f32, colors: [Option<Srgba>; 2]) -> Srgba {
+    let byte = |value: f32| (value + 0.5).clamp(0.0, 255.0) as u8;
+    if sum.w > 0.0 {
+        let color = sum / sum.w;
+        return Srgba([byte(color.x), byte(color.y), byte(color.z), byte(sum.w / count)]);
+    }
+    let Srgba([red, green, blue, _]) = colors.into_iter().flatten().next().unwrap_or(Srgba::WHITE);
+    Srgba([red, green, blue, 0])
+}
+
+fn add_tint(list: &mut DrawList, mesh: DrawMesh, color: Srgba, texture: Option<Pixels>, feature: FeatureId) {
+    if mesh.triangles.is_empty() {
+        return;
+    }
+    let texture = texture.map(|pixels| list.add_texture(pixels));
+    let material = list.add_material(Material {
+        name: "sight".into(),
+        base_color: color,
+        texture,
+        alpha: AlphaMode::Blend,
+        normals: NormalSource::Ground,
+        ..Material::default()
+    });
+    add_mesh(list, mesh, material, DepthLayer::Draped(TINT_LAYER), feature);
+}
+
+/// The direction of an azimuth.
+fn heading(azimuth_deg: f64) -> DVec2 {
+    let angle = azimuth_deg.to_radians();
+    DVec2::new(libm::sin(angle), libm::cos(angle))
+}
+
+/// The azimuths of places round a sector, its borders among them.
+fn azimuths_deg(range: &SceneRange) -> Vec<f64> {
+    let steps = (RING_PIECES * range.sector.width_deg / 360.0).ceil().max(1.0);
+    let step_deg = range.sector.width_deg / steps;
+    (0..=steps as u32).map(|step| range.sector.from_deg + f64::from(step) * step_deg).collect()
+}
+
+/// The sector as a fan of triangles.
+fn sector_plan(range: &SceneRange) -> PlanMesh {
+    let mut plan = PlanMesh::default();
+    let Some(&radius_m) = range.distances_m.last() else { return plan };
+    let center = plan.vertex(PlanVertex { at: range.at, uv: Vec2::ZERO });
+    let rim: Vec<_> = azimuths_deg(range)
+        .into_iter()
+        .map(|azimuth| plan.vertex(PlanVertex { at: range.at + heading(azimuth) * radius_m, uv: Vec2::ZERO }))
+        .collect();
+    // Azimuths turn clockwise.
+    rim.windows(2).for_each(|pair| plan.triangle([center, pair[1], pair[0]]));
+    plan
+}
+
+/// Rings and sides of a range; where sight counts, dashed where the ground there is hidden.
+fn draw_range(
+    range: &SceneRange,
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    pen: &mut GraphicPen,
+    texts: &mut Vec<PlacedText>,
+) {
+    let color = side_color(range.side);
+    let azimuths = azimuths_deg(range);
+    let Some(options) = range.sight.observers.first() else { return };
+    let origin = scene.lattice.origin();
+    let is_seen = |at: DVec2| {
+        let target = SightEnd { at: at + origin, above_m: options.target_above_m };
+        let sight = line_of_sight(&scene.lattice, options.observer, target, options.curvature);
+        range.fill != RangeExtent::Seen || sight == Sight::Clear
+    };
+    let is_sector = range.sector.width_deg < 360.0;
+    let middle = azimuths[azimuths.len() / 2];
+    for &radius_m in &range.distances_m {
+        let places: Vec<DVec2> =
+            azimuths.iter().map(|&azimuth| range.at + heading(azimuth) * radius_m).collect();
+        let mut piece: Vec<DVec2> = vec![places[0]];
+        let mut was_seen = None;
+        for pair in places.windows(2) {
+            let seen = is_seen(pair[0].midpoint(pair[1]));
+            if was_seen.is_some_and(|was| was != seen) {
+                view.draw(pen, &piece, LineLook { color, is_dashed: was_seen == Some(false) }, range.feature);
+                piece = vec![pair[0]];
+            }
+            piece.push(pair[1]);
+            was_seen = Some(seen);
+        }
+        view.draw(pen, &piece, LineLook { color, is_dashed: was_seen == Some(false) }, range.feature);
+        let text = distance_text(radius_m);
+        let azimuth = if is_sector { middle } else { view.up_azimuth_deg(range.at) };
+        texts.push(level_text(view, range.at + heading(azimuth) * radius_m, text, color, range.feature));
+    }
+    if let (true, Some(&farthest_m)) = (is_sector, range.distances_m.last()) {
+        for side in [range.sector.from_deg, range.sector.from_deg + range.sector.width_deg] {
+            let side = [range.at, range.at + heading(side) * farthest_m];
+            view.draw(pen, &side, LineLook { color, is_dashed: false }, range.feature);
+        }
+    }
+    let mark = circle(range.at, MARK_EM * view.em_at(range.at));
+    view.draw(pen, &mark, LineLook { color, is_dashed: false }, range.feature);
+    if !range.name.is_empty() {
+        let mut name = level_text(view, range.at, range.name.clone(), color, range.feature);
+        name.toward =
+            view.on_ground(range.at - heading(view.up_azimuth_deg(range.at)) * view.em_at(range.at));
+        texts.push(name);
+    }
+}
+
+fn level_text(
+    view: &GraphicView<'_>,
+    at: DVec2,
+    text: String,
+    color: Srgba,
+    feature: FeatureId,
+) -> PlacedText {
+    let at = view.on_ground(at);
+    PlacedText { text, at, toward: at, course: PlacedCourse::Level, color, feature }
+}
+
+fn distance_text(radius_m: f64) -> String {
+    if radius_m >= 1000.0 {
+        format!("{} km", (radius_m / 10.0).round() / 100.0)
+    } else {
+        format!("{radius_m:.0} m")
+    }
+}
+
+/// Lines of sight: green over ground that is seen, red over hidden ground; each target ringed by whether it is seen itself.
+fn draw_sight(sight: &SceneSight, scene: &SceneModel, view: &GraphicView<'_>, pen: &mut GraphicPen) {
+    let lattice = &*scene.lattice;
+    let (origin, curvature) = (lattice.origin(), Curvature::default());
+    let observer = sight.observer;
+    let Some(foot_m) = ground_height(lattice, Interpolation::Planar, observer.at).height_m() else { return };
+    for target in &sight.targets {
+        let length_m = observer.at.distance(target.at);
+        let stations = profile(lattice, &[observer.at, target.at]);
+        let seen = visible_stretches(&stations, foot_m + observer.above_m, curvature);
+        let at = |station_m: f64| observer.at.lerp(target.at, station_m / length_m) - origin;
+        let mut from_m = 0.0;
+        for stretch in &seen {
+            if stretch.from_m > from_m {
+                view.draw(pen, &[at(from_m), at(stretch.from_m)], HIDDEN_LINE, sight.feature);
+            }
+            view.draw(pen, &[at(stretch.from_m), at(stretch.to_m)], SEEN_LINE, sight.feature);
+            from_m = stretch.to_m;
+        }
+        if from_m < length_m {
+            view.draw(pen, &[at(from_m), at(length_m)], HIDDEN_LINE, sight.feature);
+        }
+        let is_clear = line_of_sight(lattice, observer, *target, curvature) == Sight::Clear;
+        let look = if is_clear { SEEN_LINE } else { HIDDEN_LINE };
+        let place = target.at - origin;
+        view.draw(pen, &circle(place, MARK_EM * view.em_at(place)), look, sight.feature);
+    }
+    mark_observer(observer, scene, view, sight.feature, pen);
+}
+
+/// The mark of an observer: a triangle about the place.
+fn mark_observer(
+    observer: SightEnd,
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    feature: FeatureId,
+    pen: &mut GraphicPen,
+) {
+    let at = observer.at - scene.lattice.origin();
+    let radius_m = 1.3 * MARK_EM * view.em_at(at);
+    let up_deg = view.up_azimuth_deg(at);
+    let corner = |turn: u32| at + heading(up_deg + 120.0 * f64::from(turn)) * radius_m;
+    view.draw(pen, &[0, 1, 2, 3].map(corner), OBSERVER_LINE, feature);
+}
+
+fn circle(center: DVec2, radius_m: f64) -> Vec<DVec2> {
+    let corner = |step: u32| {
+        let angle = TAU * f64::from(step) / 24.0;
+        center + DVec2::new(libm::cos(angle), libm::sin(angle)) * radius_m
+    };
+    (0..=24).map(corner).collect()
+}

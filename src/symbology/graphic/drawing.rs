@@ -1,0 +1,149 @@
+//! What a graphic is drawn with.
+
+use glam::DVec2;
+
+use crate::symbology::graphic::fields::GraphicFields;
+
+/// What a graphic is drawn from.
+#[derive(Clone, Copy, Debug)]
+pub struct GraphicInput<'a> {
+    /// Its points in meters, in the order of its draw rule, checked by [`crate::symbology::graphic::check::check`].
+    pub points: &'a [DVec2],
+    /// The height of a text in meters, above 0: teeth, dashes and arrowheads are multiples of it.
+    pub em_m: f64,
+    /// Upward on the picture, in the plane; its length says how many times as tall as wide an upright figure is drawn, so
+    /// that it is not flat where the ground is seen at a low angle.
+    pub up: DVec2,
+    /// The width of a corridor or of an axis in meters, where it is stated.
+    pub width_m: Option<f64>,
+    /// Its texts and numbers.
+    pub fields: &'a GraphicFields,
+}
+
+/// A graphic in the plane, in meters.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GraphicDrawing {
+    /// Lines of one width.
+    pub strokes: Vec<GraphicStroke>,
+    /// Rings to fill, without repeating the first point.
+    pub fills: Vec<Vec<DVec2>>,
+    /// Texts.
+    pub texts: Vec<GraphicText>,
+}
+
+/// A line of a graphic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraphicStroke {
+    /// At least two points; of a closed line the first is repeated.
+    pub points: Vec<DVec2>,
+    /// Its pattern.
+    pub dash: StrokeDash,
+    /// Whose line it is.
+    pub side: StrokeSide,
+}
+
+/// Whether the draw rule itself dashes a line; planned graphics are dashed besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrokeDash {
+    /// As the graphic's status says.
+    Status,
+    /// Dashed whatever the status is.
+    Dashed,
+}
+
+/// Whose line it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrokeSide {
+    /// The side that the graphic belongs to.
+    Own,
+    /// The other side, as in the line of contact.
+    Opposing,
+}
+
+/// A text of a graphic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraphicText {
+    /// What it says; lines are separated by line feeds.
+    pub text: String,
+    /// The point it belongs to.
+    pub at: DVec2,
+    /// On which side of that point it is, of length 1; zero for a text centered on it.
+    pub toward: DVec2,
+    /// Whether it is there, or where a line leaves it a place.
+    pub course: TextCourse,
+}
+
+/// Where a text is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TextCourse {
+    /// At its point, level on the picture.
+    Level,
+    /// On this line at both of its ends.
+    Ends(Vec<DVec2>),
+    /// Beside this line, once.
+    Once(Vec<DVec2>),
+    /// Beside this line, again and again.
+    Repeated(Vec<DVec2>),
+}
+
+impl GraphicDrawing {
+    /// Adds a line; nothing for less than two points.
+    pub(super) fn line(&mut self, points: impl Into<Vec<DVec2>>) {
+        self.stroke(points.into(), StrokeDash::Status, StrokeSide::Own);
+    }
+
+    /// Adds a line that is dashed whatever the status.
+    pub(super) fn dashed(&mut self, points: impl Into<Vec<DVec2>>) {
+        self.stroke(points.into(), StrokeDash::Dashed, StrokeSide::Own);
+    }
+
+    /// Adds a line of the other side.
+    pub(super) fn opposing(&mut self, points: impl Into<Vec<DVec2>>) {
+        self.stroke(points.into(), StrokeDash::Status, StrokeSide::Opposing);
+    }
+
+    /// Adds a closed line.
+    pub(super) fn ring(&mut self, points: impl Into<Vec<DVec2>>) {
+        let mut points = points.into();
+        points.extend(points.first().copied());
+        self.line(points);
+    }
+
+    /// Adds a closed line and fills it.
+    pub(super) fn filled(&mut self, points: impl Into<Vec<DVec2>>) {
+        let points = points.into();
+        self.fills.push(points.clone());
+        self.ring(points);
+    }
+
+    /// Adds a text centered on a point; nothing for an empty one.
+    pub(super) fn text(&mut self, text: impl Into<String>, at: DVec2) {
+        self.text_beside(text, at, DVec2::ZERO);
+    }
+
+    /// Adds a text on a side of a point.
+    pub(super) fn text_beside(&mut self, text: impl Into<String>, at: DVec2, toward: DVec2) {
+        let text = text.into();
+        if !text.is_empty() {
+            self.texts.push(GraphicText { text, at, toward, course: TextCourse::Level });
+        }
+    }
+
+    /// Adds a text that a line leaves a place.
+    pub(super) fn text_on(&mut self, text: impl Into<String>, course: TextCourse) {
+        let text = text.into();
+        let at = match &course {
+            TextCourse::Level => None,
+            TextCourse::Ends(line) | TextCourse::Once(line) | TextCourse::Repeated(line) => line.first(),
+        };
+        if let Some(&at) = at.filter(|_| !text.is_empty()) {
+            self.texts.push(GraphicText { text, at, toward: DVec2::ZERO, course });
+        }
+    }
+
+    fn stroke(&mut self, points: Vec<DVec2>, dash: StrokeDash, side: StrokeSide) {
+        if points.len() > 1 {
+            self.strokes.push(GraphicStroke { points, dash, side });
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! Tactical graphics: control measures of symbol set 25 of MIL-STD-2525D (2014), appendix H, drawn in the plane.
+//!
+//! A [`kind`] names the draw rule of a graphic, how many points it has and which texts. Its draw function turns points in
+//! meters, the height of a text and the texts into a [`drawing::GraphicDrawing`]: lines, filled rings and texts in the same
+//! plane. What the standard leaves to the display - teeth, dashes, arrowheads that no point sizes - is measured in text
+//! heights, so that a graphic looks the same on a sheet of any scale.
+//!
+//! ```text
+//! kind ─► check ─► lines, teeth, wire, axis, area, fires, task, crossing, corridor, point ─► drawing
+//!                                             └── plane ──┘
+//! ```
+
+mod area;
+mod axis;
+pub mod check;
+mod corridor;
+mod crossing;
+pub mod drawing;
+pub mod fields;
+mod fires;
+pub mod kind;
+mod lines;
+#[cfg(test)]
+mod oracle;
+mod plane;
+mod point;
+mod task;
+mod teeth;
+mod wire;

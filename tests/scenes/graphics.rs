@@ -1,0 +1,253 @@
+//! Tactical graphics and layers of sight in scenes.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::{DVec2, Vec3};
+use sandtable::description::parse::parse_bytes;
+use sandtable::draw::list::{DepthLayer, FeatureId};
+use sandtable::ribbon::drape::check_clearance;
+use sandtable::scene::SceneModel;
+use sandtable::scene::assets::Assets;
+use sandtable::scene::build::build;
+use sandtable::scene::picture::{ViewDraw, build_draw_list};
+use sandtable::symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
+use sandtable::terrain::sight::viewshed::{PostVisibility, viewshed};
+
+use crate::common::forest::seen_from;
+use crate::common::golden::is_blessing;
+use crate::common::scratch::Scratch;
+
+/// What is draped is off the displayed triangles by no more than rounding, meters.
+const CLEARANCE_M: f64 = 0.01;
+
+/// Rolling ground of 20 km by 20 km with the tables of `text` on it.
+fn scene(text: &str) -> Result<SceneModel, String> {
+    let folder = Scratch::new();
+    let mut grid = "ncols 101\nnrows 101\nxllcenter 0\nyllcenter 0\ncellsize 200\n".to_owned();
+    for row in 0..101 {
+        for column in 0..101 {
+            let height =
+                300.0 + 90.0 * libm::sin(f64::from(column) * 0.21) * libm::cos(f64::from(row) * 0.17);
+            let _ = write!(grid, "{height:.1} ");
+        }
+        grid.push('\n');
+    }
+    folder.write("ground.asc", &grid);
+    let text = format!("[terrain]\ndem = \"ground.asc\"\n{text}");
+    let path = folder.write("scene.toml", &text);
+    let document = parse_bytes("scene.toml", text.as_bytes()).map_err(|error| error.to_string())?;
+    let assets = Assets::new(&path, &[]).expect("the folder is there");
+    build(&document, &assets, &|_| ()).map_err(|error| error.to_string())
+}
+
+fn drawn(scene: &SceneModel) -> ViewDraw {
+    let camera = seen_from(scene, Vec3::new(10e3, -9e3, 12e3), Vec3::new(10e3, 9e3, 300.0), (1280, 720));
+    build_draw_list(scene, &camera, &|_| ())
+}
+
+/// Points in a cell of 1.4 km that fit a kind.
+fn points_of(kind: &GraphicKind, corner: DVec2) -> String {
+    let ring: &[[f64; 2]] = &[[0.0, 0.0], [1.2, 0.0], [1.2, 1.0], [0.0, 1.1]];
+    let axis: &[[f64; 2]] = &[[1.3, 0.6], [0.6, 0.4], [0.0, 0.6], [1.1, 0.9]];
+    let line: &[[f64; 2]] = &[[0.0, 0.2], [0.6, 0.6], [1.3, 0.5]];
+    let figure: &[[f64; 2]] = &[[0.0, 1.0], [0.0, 0.2], [1.2, 0.7], [1.3, 0.1]];
+    let points = match kind.shape {
+        GraphicShape::Area => ring,
+        GraphicShape::Axis | GraphicShape::Wide => axis,
+        GraphicShape::Line | GraphicShape::Corridor => line,
+        _ => &figure[..kind.points[0]],
+    };
+    let places = points.iter().map(|&at| corner + DVec2::from(at) * 1000.0);
+    let places: Vec<String> = places.map(|at| format!("[{:.0}, {:.0}]", at.x, at.y)).collect();
+    format!("[{}]", places.join(", "))
+}
+
+#[test]
+fn every_graphic_lies_in_the_displayed_triangles_and_shows() {
+    let mut text = String::new();
+    for (index, kind) in GRAPHIC_KINDS.iter().enumerate() {
+        let corner = DVec2::new((index % 13) as f64, (index / 13) as f64) * 1500.0 + 250.0;
+        let points = points_of(kind, corner);
+        let _ =
+            writeln!(text, "[[graphic]]\nkind = \"{}\"\npoints = {points}\ndesignation = \"A\"", kind.word);
+        let numbers = match kind.shape {
+            GraphicShape::Corridor => "width = 300",
+            GraphicShape::Circle => "distances = [300, 500]",
+            GraphicShape::Sector => "distances = [300, 500]\nazimuths = [10, 80, 20, 70]",
+            _ => "",
+        };
+        let _ = writeln!(text, "{numbers}");
+    }
+    let scene = scene(&text).expect("a scene with every graphic");
+    assert_eq!(scene.graphics.len(), GRAPHIC_KINDS.len());
+    let shot = drawn(&scene);
+    shot.list.check().expect("a sound draw list");
+    for graphic in &scene.graphics {
+        let mut items = shot.list.items.iter().filter(|item| item.feature == graphic.feature);
+        assert!(items.any(|item| !item.triangles.is_empty()), "{} does not show", graphic.kind.word);
+    }
+    for item in shot.list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_))) {
+        let mesh = &shot.list.meshes[item.mesh.0 as usize];
+        let clearance_m = check_clearance(mesh, &*shot.displayed);
+        assert!(clearance_m < CLEARANCE_M, "{clearance_m}");
+    }
+}
+
+#[test]
+fn a_graphic_that_does_not_fit_its_draw_rule_is_refused_with_the_place_and_a_remedy() {
+    let cases = [
+        ("kind = \"block\"\npoints = [[0, 0], [900, 0]]", "block has 2 points and needs 3"),
+        ("kind = \"phase_lin\"\npoints = [[0, 0], [900, 0]]", "did you mean `phase_line`?"),
+        ("kind = \"phase_line\"\npoints = [[0, 0], [0.2, 0]]", "points 1 and 2"),
+        (
+            "kind = \"objective\"\npoints = [[0, 0], [900, 900], [900, 0], [0, 900]]",
+            "crosses itself between points 1 and 2, and 3 and 4",
+        ),
+        ("kind = \"circular_target\"\npoints = [[900, 900]]", "has no `distances`"),
+        ("kind = \"air_corridor\"\npoints = [[0, 0], [900, 900]]", "has no `width`"),
+        ("sidc = \"10031000001211000000\"\npoints = [[900, 900]]", "use `[[symbol]]` for it"),
+        ("sidc = \"10032500009999990000\"\npoints = [[900, 900]]", "999999"),
+        ("points = [[900, 900]]", "neither `kind` nor `sidc`"),
+    ];
+    for (table, expected) in cases {
+        let error = scene(&format!("[[graphic]]\n{table}\n")).map(|_| ()).expect_err(table);
+        assert!(error.contains(expected), "{table}: {error}");
+        assert!(error.contains("scene.toml:"), "{error}");
+    }
+    let many: Vec<String> = (0..=MOST_POINTS).map(|index| format!("[{index}, 0]")).collect();
+    let table = format!("[[graphic]]\nkind = \"phase_line\"\npoints = [{}]\n", many.join(", "));
+    assert!(scene(&table).is_err(), "more points than are checked for crossings");
+}
+
+#[test]
+fn a_code_gives_the_kind_the_side_the_status_and_the_echelon() {
+    let text = "[[graphic]]\nsidc = \"10062510181101000000\"\npoints = [[1000, 1000], [9000, 1200]]\n";
+    let scene = scene(text).expect("a boundary");
+    let graphic = &scene.graphics[0];
+    assert_eq!((graphic.kind.word, graphic.fields.echelon.as_str()), ("boundary", "X"));
+    let words = (format!("{:?}", graphic.side), format!("{:?}", graphic.status));
+    assert_eq!(words, ("Hostile".to_owned(), "Planned".to_owned()));
+}
+
+#[test]
+fn a_line_is_as_wide_on_the_picture_near_as_far() {
+    let text = "[[graphic]]\nkind = \"light_line\"\npoints = [[10000, 200], [10000, 19000]]\n";
+    let scene = scene(text).expect("a line");
+    let camera = seen_from(&scene, Vec3::new(10e3, -9e3, 12e3), Vec3::new(10e3, 9e3, 300.0), (1280, 720));
+    let picture = sandtable::render::cpu::render(
+        &build_draw_list(&scene, &camera, &|_| ()).list,
+        &camera,
+        &sandtable::render::cpu::RenderQuality::default(),
+    )
+    .expect("a picture");
+    let line = scene.graphics[0].feature;
+    let width = picture.pixels.width() as usize;
+    let widths: Vec<usize> = picture
+        .features
+        .chunks_exact(width)
+        .map(|row| row.iter().filter(|feature| **feature == line).count())
+        .filter(|&count| count > 0)
+        .collect();
+    assert!(widths.len() > 150, "{}", widths.len());
+    // 5 pixels of a picture 1080 lines high are 3.3 of this one.
+    let usual = widths.iter().filter(|&&count| (2..=5).contains(&count)).count();
+    assert!(usual * 20 > widths.len() * 19, "{widths:?}");
+}
+
+#[test]
+fn a_viewshed_of_two_observers_is_what_either_sees() {
+    let text =
+        "[[viewshed]]\nobservers = [[5000, 5000], [14000, 12000]]\nobserver_height = 5\nrange = 6000\n";
+    let scene = scene(text).expect("a viewshed");
+    let layer = &scene.sight.viewsheds[0];
+    let seen = layer.seen(&scene.lattice).expect("observers on the ground");
+    let alone: Vec<_> = layer
+        .observers
+        .iter()
+        .map(|options| viewshed(&scene.lattice, options).expect("an observer on the ground"))
+        .collect();
+    for (index, post) in seen.posts.iter().enumerate() {
+        let either = alone.iter().any(|one| one.posts[index] == PostVisibility::Visible);
+        assert_eq!(*post == PostVisibility::Visible, either, "post {index}");
+    }
+    let shot = drawn(&scene);
+    shot.list.check().expect("a sound draw list");
+    let tint =
+        shot.list.items.iter().find(|item| shot.list.materials[item.material.0 as usize].name == "sight");
+    let mesh = &shot.list.meshes[tint.expect("a tint").mesh.0 as usize];
+    assert!(check_clearance(mesh, &*shot.displayed) < CLEARANCE_M);
+    assert_eq!(tint.map(|item| item.feature), Some(FeatureId(2)));
+}
+
+#[test]
+fn layers_of_sight_off_the_ground_are_refused_by_their_place() {
+    for table in [
+        "[[viewshed]]\nobservers = [[5000, 5000], [99000, 0]]",
+        "[[sight]]\nobserver = [5000, 5000]\ntargets = [[-9000, 5000]]",
+        "[[range]]\nat = [99000, 5000]\ndistances = [100]",
+    ] {
+        let error = scene(&format!("{table}\n")).map(|_| ()).expect_err(table);
+        assert!(error.contains("lies off the elevation model"), "{error}");
+    }
+    let error =
+        scene("[[range]]\nat = [9000, 5000]\ndistances = [200, 100]\n").map(|_| ()).expect_err("falls");
+    assert!(error.contains("100 follows 200"), "{error}");
+}
+
+/// The part of `scenes/SYMBOLS.md` on graphics.
+fn graphics_page() -> String {
+    let mut page = String::from(
+        "<!-- graphics -->\n\n## Tactical graphics\n\nWhat `[[graphic]]` draws of symbol set 25 (control measures). `kind` takes \
+         the word or the code. The draw rule is that of\nMIL-STD-2525D (2014), appendix H, which is the source of every row: it \
+         says where the points go, in which order. Fields: T\n`designation`, T1 `designation_2`, B `echelon`, AS `country`, N \
+         `hostile`, H `further`, AP `target`, W `from`, W1 `until`, X\n`elevations`, AM `distances`, AN `azimuths`.\n\n| code | \
+         kind | name | rule | points | fields |\n|---|---|---|---|---|---|\n",
+    );
+    for kind in GRAPHIC_KINDS {
+        let points = match kind.points {
+            [least, most] if least == most => least.to_string(),
+            [least, MOST_POINTS] => format!("{least} or more"),
+            [least, most] => format!("{least} to {most}"),
+        };
+        let GraphicKind { word, code, name, rule, fields, .. } = kind;
+        let _ = writeln!(
+            page,
+            "| {code} | `{word}` | {name} | {rule} | {points} | {} |",
+            fields.replace(' ', ", ")
+        );
+    }
+    let set = include_str!("../symbology/set_25.txt");
+    let rows = set.lines().filter_map(|line| line.split_once(' ')).filter(|(code, _)| *code != "#");
+    let missing: Vec<String> = rows
+        .filter(|(code, _)| GraphicKind::of_code(code).is_none())
+        .map(|(code, name)| format!("{code} {name}"))
+        .collect();
+    let _ = write!(
+        page,
+        "\n{} kinds are drawn. Of symbol set 25 these {} are not: {}.\n\nNot drawn of what is: texts on both sides of a line's \
+         ends, `ENY` at the borders of hostile areas, labels on every segment of a\nboundary.\n\n<!-- end of graphics -->\n",
+        GRAPHIC_KINDS.len(),
+        missing.len(),
+        missing.join("; ")
+    );
+    page
+}
+
+#[test]
+fn the_page_of_symbols_lists_every_graphic() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/SYMBOLS.md");
+    let page = std::fs::read_to_string(&path).unwrap_or_else(|_| "# Symbols and graphics\n\n".to_owned());
+    let wanted = graphics_page();
+    let (head, rest) = page.split_once("<!-- graphics -->").unwrap_or((&page, ""));
+    let tail = rest.split_once("<!-- end of graphics -->\n").map_or("", |(_, tail)| tail);
+    let made = format!("{head}{wanted}{tail}");
+    if is_blessing() {
+        std::fs::write(&path, made).expect("the page is writable");
+    } else {
+        assert!(
+            made == page,
+            "SANDTABLE_BLESS=1 cargo test --test scenes page_of_symbols makes the page anew"
+        );
+    }
+}
