@@ -103,6 +103,8 @@ pub struct SymbolReport {
     pub placed: Vec<String>,
     /// Drawn with a dashed staff and a hollow foot, because terrain hides their place.
     pub hidden: Vec<String>,
+    /// Drawn without their text, because there was no room for it.
+    pub without_text: Vec<String>,
     /// Not drawn because their place is outside the picture.
     pub outside: Vec<String>,
     /// Not drawn because no position near their place was free.

@@ -43,7 +43,8 @@ pub struct SymbolBlock {
 }
 
 impl SymbolBlock {
-    pub fn new(symbol: &PictureSymbol, composer: &mut Composer) -> Self {
+    /// `texts` are the lines of text that are drawn.
+    pub fn new(symbol: &PictureSymbol, texts: &[PlacedText], composer: &mut Composer) -> Self {
         let unit_px = symbol.height.pixels(&composer.sheet) / 100.0;
         let pixels = |at: Vec2| (at - Vec2::splat(100.0)) * unit_px;
         let halo = composer.sheet.px(HALO_REACH).max(1.0);
@@ -71,7 +72,7 @@ impl SymbolBlock {
         }
         let area = PixelBox { min: pixels(symbol.symbol.bounds.min), max: pixels(symbol.symbol.bounds.max) };
         let around = area.grown(halo + 2.0 * unit_px);
-        let texts = draw_texts(symbol, unit_px, composer);
+        let texts = draw_texts(symbol, texts, unit_px, composer);
         let bounds = around.union(texts.bounds());
         drawing.append(texts);
         Self { drawing, bounds, symbol: around, anchor: pixels(symbol.symbol.anchor), unit_px }
@@ -79,7 +80,12 @@ impl SymbolBlock {
 }
 
 /// The lines of text round the frame.
-fn draw_texts(symbol: &PictureSymbol, unit_px: f32, composer: &mut Composer) -> Drawing {
+fn draw_texts(
+    symbol: &PictureSymbol,
+    texts: &[PlacedText],
+    unit_px: f32,
+    composer: &mut Composer,
+) -> Drawing {
     let frame = symbol.symbol.frame;
     let style = TextStyle::new((TEXT_SIZE * unit_px).max(composer.sheet.type_px(10.0)), TextStyle::BOLD);
     let (gap, halo) = (TEXT_GAP * unit_px, composer.sheet.px(2.0).max(1.4));
@@ -89,7 +95,7 @@ fn draw_texts(symbol: &PictureSymbol, unit_px: f32, composer: &mut Composer) -> 
     let row_y = |row: u8| middle + (f32::from(row) - 2.0) * pitch + style.cap_px() * 0.5;
     let mut lines: Vec<(TypesetLine, Vec2)> = Vec::new();
     let mut drawing = Drawing::default();
-    for PlacedText { text, place } in &symbol.texts {
+    for PlacedText { text, place } in texts {
         let Some(line) = composer.fitted(text, style, WIDEST_TEXT * unit_px) else { continue };
         let at = match place {
             TextPlace::Left(row) => Vec2::new(left - line.advance, row_y(*row)),

@@ -28,7 +28,7 @@ use crate::draw::color::Srgba;
 /// The staff's length, in heights of a friendly unit's frame, in the order of preference.
 const STAFF_LENGTHS: [f32; 7] = [0.45, 1.1, 1.9, 2.8, 3.8, 5.0, 6.5];
 /// How far aside of its place a symbol may stand, in widths of its block.
-const ASIDE: [f32; 7] = [0.0, 0.55, -0.55, 1.1, -1.1, 1.7, -1.7];
+const ASIDE: [f32; 11] = [0.0, 0.55, -0.55, 1.1, -1.1, 1.7, -1.7, 2.4, -2.4, 3.2, -3.2];
 /// Symbols whose places are nearer than this share of a frame's height stand at one place.
 const STACK_SHARE: f32 = 0.35;
 /// Symbols over each other; more would hide too much ground.
@@ -56,12 +56,20 @@ pub fn draw_symbols(
 ) -> DrawnSymbols {
     let sheet = composer.sheet;
     let bounds = sheet.bounds().grown(-(sheet.margin() * 0.4).round());
-    let mut field = SymbolField { bounds, taken: furniture.to_vec(), staffs: Vec::new(), gap: sheet.px(3.0) };
+    let mut field = SymbolField { bounds, taken: furniture.to_vec(), lines: Vec::new(), gap: sheet.px(3.0) };
     let mut drawn = DrawnSymbols::default();
     let (mut staffs, mut faces) = (Drawing::default(), Drawing::default());
-    for stack in stacks(symbols, &sheet, report) {
-        let stack = PreparedStack::new(&stack, composer);
-        let Some(position) = stack.positions().find(|position| field.is_free(&stack, position)) else {
+    for symbols in stacks(symbols, &sheet, report) {
+        let mut stack = PreparedStack::new(&symbols, true, composer);
+        let mut position = field.position(&stack);
+        if position.is_none() {
+            // A unit without its name is better than none.
+            stack = PreparedStack::new(&symbols, false, composer);
+            position = field.position(&stack);
+            let texts = symbols.iter().filter(|symbol| position.is_some() && !symbol.texts.is_empty());
+            report.without_text.extend(texts.map(|symbol| symbol.name.clone()));
+        }
+        let Some(position) = position else {
             report.crowded_out.extend(stack.names());
             continue;
         };
@@ -73,9 +81,9 @@ pub fn draw_symbols(
         }
         field.taken.extend(stack.boxes(&position));
         drawn.boxes.extend(stack.boxes(&position));
-        if let Some(staff) = position.staff {
-            drawn.boxes.push(box_around(staff, sheet.px(2.0)));
-            field.staffs.push(staff);
+        for line in position.staff.into_iter().chain(stack.arrows()) {
+            drawn.boxes.push(box_around(line, sheet.px(2.0)));
+            field.lines.push(line);
         }
     }
     drawn.drawing.append(staffs);
@@ -144,10 +152,11 @@ struct StackPosition {
 }
 
 impl<'a> PreparedStack<'a> {
-    fn new(symbols: &[&'a PictureSymbol], composer: &mut Composer) -> Self {
+    fn new(symbols: &[&'a PictureSymbol], has_texts: bool, composer: &mut Composer) -> Self {
         let mut blocks: Vec<(SymbolBlock, Vec2)> = Vec::new();
         for symbol in symbols {
-            let block = SymbolBlock::new(symbol, composer);
+            let texts = if has_texts { symbol.texts.as_slice() } else { &[] };
+            let block = SymbolBlock::new(symbol, texts, composer);
             let at = match blocks.last() {
                 Some((below, at)) => {
                     let top = at.y + below.bounds.min.y - STACK_GAP * block.unit_px;
@@ -194,6 +203,14 @@ impl<'a> PreparedStack<'a> {
         first.into_iter().chain(aside)
     }
 
+    /// From the place to where the symbols move.
+    fn arrows(&self) -> impl Iterator<Item = PixelSegment> {
+        let reach = self.frame_px * ARROW_LENGTH;
+        let directions = self.symbols.iter().filter_map(|symbol| symbol.direction_px);
+        directions
+            .map(move |direction| PixelSegment { from: self.anchor, to: self.anchor + direction * reach })
+    }
+
     fn boxes(&self, position: &StackPosition) -> impl Iterator<Item = PixelBox> {
         let foot = position.foot;
         self.blocks.iter().map(move |(block, at)| block.bounds.moved(foot + *at))
@@ -209,9 +226,7 @@ impl<'a> PreparedStack<'a> {
     fn draw_staff(&self, position: &StackPosition, sheet: &Sheet, drawing: &mut Drawing) {
         let width = sheet.px(1.6).max(1.1);
         let halo = width + sheet.px(2.4).max(1.6);
-        for direction in self.symbols.iter().filter_map(|symbol| symbol.direction_px) {
-            draw_arrow(self.anchor, direction * self.frame_px * ARROW_LENGTH, sheet, drawing);
-        }
+        self.arrows().for_each(|arrow| draw_arrow(arrow, sheet, drawing));
         if let Some(staff) = position.staff {
             drawing.line(staff, halo, HALO);
             if self.is_visible {
@@ -232,9 +247,11 @@ impl<'a> PreparedStack<'a> {
     }
 }
 
-/// An arrow from a place.
-fn draw_arrow(from: Vec2, reach: Vec2, sheet: &Sheet, drawing: &mut Drawing) {
-    let (to, along) = (from + reach, reach.normalize_or_zero());
+/// An arrow along a line, with its head at the line's end.
+fn draw_arrow(arrow: PixelSegment, sheet: &Sheet, drawing: &mut Drawing) {
+    let PixelSegment { from, to } = arrow;
+    let reach = to - from;
+    let along = reach.normalize_or_zero();
     let (head, width) = (reach.length() * 0.32, sheet.px(2.2).max(1.4));
     let line = PixelSegment { from, to: to - along * head };
     let corners =
@@ -266,19 +283,123 @@ fn box_around(line: PixelSegment, reach: f32) -> PixelBox {
 struct SymbolField {
     bounds: PixelBox,
     taken: Vec<PixelBox>,
-    staffs: Vec<PixelSegment>,
+    /// Staffs and arrows.
+    lines: Vec<PixelSegment>,
     gap: f32,
 }
 
 impl SymbolField {
+    /// The first free position of a stack, if there is one off its own arrows.
+    fn position(&self, stack: &PreparedStack<'_>) -> Option<StackPosition> {
+        let free = || stack.positions().filter(|position| self.is_free(stack, position));
+        let is_clear = |position: &StackPosition| {
+            stack.boxes(position).all(|area| !stack.arrows().any(|arrow| area.meets(&arrow)))
+        };
+        free().find(is_clear).or_else(|| free().next())
+    }
+
     fn is_free(&self, stack: &PreparedStack<'_>, position: &StackPosition) -> bool {
         let free = |area: PixelBox| {
             let spaced = area.grown(self.gap);
             self.bounds.holds(&area)
                 && !self.taken.iter().any(|taken| taken.overlaps(&spaced))
-                && !self.staffs.iter().any(|staff| area.meets(staff))
+                && !self.lines.iter().any(|line| area.meets(line))
         };
         let passes = |staff: PixelSegment| !self.taken.iter().any(|taken| taken.meets(&staff));
         stack.boxes(position).all(free) && position.staff.is_none_or(passes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::annotate::annotation::SymbolHeight;
+    use crate::symbology::code::SymbolCode;
+    use crate::symbology::symbol::MilitarySymbol;
+    use crate::symbology::texts::{PlacedText, TextPlace};
+
+    fn symbol(name: &str, code: &str, x: f32, y: f32) -> PictureSymbol {
+        let code = SymbolCode::parse(code).expect(code);
+        PictureSymbol {
+            symbol: MilitarySymbol::new(&code).expect("a frame"),
+            texts: vec![PlacedText { text: name.to_owned(), place: TextPlace::Left(3) }],
+            name: name.to_owned(),
+            anchor_px: Vec2::new(x, y),
+            direction_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            is_on_map: false,
+            rank: 0.0,
+            height: SymbolHeight::Design(38.0),
+        }
+    }
+
+    const BATTALION: &str = "10031000161211000000";
+    const HEADQUARTERS: &str = "10031002181211000000";
+
+    fn draw(symbols: &[PictureSymbol]) -> (DrawnSymbols, SymbolReport) {
+        let mut report = SymbolReport::default();
+        let drawn = draw_symbols(symbols, &[], &mut Composer::new(1920, 1080), &mut report);
+        (drawn, report)
+    }
+
+    #[test]
+    fn every_symbol_ends_in_one_list_and_hidden_ones_are_drawn() {
+        let symbols = [
+            symbol("seen", BATTALION, 400.0, 500.0),
+            PictureSymbol { visible: false, ..symbol("behind the ridge", BATTALION, 800.0, 500.0) },
+            symbol("off the sheet", BATTALION, -10.0, 500.0),
+            symbol("nowhere", BATTALION, f32::NAN, 500.0),
+        ];
+        let (_, report) = draw(&symbols);
+        assert_eq!(report.placed, ["behind the ridge", "seen"]);
+        assert_eq!(report.hidden, ["behind the ridge"]);
+        assert_eq!(report.outside, ["off the sheet", "nowhere"]);
+        assert!(report.crowded_out.is_empty());
+    }
+
+    #[test]
+    fn forty_symbols_close_together_overlap_nowhere_and_stay_inside() {
+        let names: Vec<String> = (0..40).map(|n| format!("{n}-77")).collect();
+        let place = |n: usize| Vec2::new(700.0 + 47.0 * (n % 9) as f32, 450.0 + 31.0 * (n / 9) as f32);
+        let symbols: Vec<PictureSymbol> = (0..40)
+            .map(|n| {
+                symbol(&names[n], if n % 7 == 0 { HEADQUARTERS } else { BATTALION }, place(n).x, place(n).y)
+            })
+            .collect();
+        let (drawn, report) = draw(&symbols);
+        assert_eq!(report.placed.len() + report.crowded_out.len(), 40);
+        assert!(report.placed.len() >= 30, "{:?}", report.crowded_out);
+        let sheet = Composer::new(1920, 1080).sheet;
+        let faces: Vec<&PixelBox> =
+            drawn.boxes.iter().filter(|area| area.size().min_element() > 20.0).collect();
+        assert!(faces.iter().all(|area| sheet.bounds().holds(area)));
+        for (number, area) in faces.iter().enumerate() {
+            assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{area:?}");
+        }
+    }
+
+    #[test]
+    fn symbols_at_one_place_are_stacked_over_a_headquarters() {
+        let symbols = [
+            symbol("a", BATTALION, 900.0, 600.0),
+            symbol("b", BATTALION, 901.0, 600.0),
+            symbol("hq", HEADQUARTERS, 900.0, 601.0),
+        ];
+        let (drawn, report) = draw(&symbols);
+        assert_eq!(report.placed, ["hq", "a", "b"]);
+        let [hq, a, b] = [0, 1, 2].map(|index: usize| drawn.boxes[index]);
+        assert!(b.max.y <= a.min.y && a.max.y <= hq.min.y, "{hq:?} {a:?} {b:?}");
+        let foot = Vec2::new(900.0, 601.0);
+        assert!((hq.max.y - foot.y).abs() < 6.0, "its staff ends at its place");
+    }
+
+    #[test]
+    fn the_order_of_the_input_does_not_matter() {
+        let mut symbols: Vec<PictureSymbol> =
+            (0..12).map(|n| symbol(&format!("{n}"), BATTALION, 300.0 + 19.0 * n as f32, 500.0)).collect();
+        let forth = draw(&symbols).0.drawing.marks;
+        symbols.reverse();
+        assert_eq!(draw(&symbols).0.drawing.marks, forth);
     }
 }

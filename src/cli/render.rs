@@ -172,7 +172,7 @@ impl RenderedScene {
                 },
                 "symbols": {
                     "placed": symbols.placed, "hidden": symbols.hidden, "outside": symbols.outside,
-                    "without_room": symbols.crowded_out
+                    "without_room": symbols.crowded_out, "without_text": symbols.without_text
                 },
                 "notes": notes,
                 "seconds": seconds,
@@ -211,9 +211,10 @@ impl RenderedPicture {
 impl RenderedPicture {
     /// The military symbols that are not drawn, or not where they can be seen, in lines.
     fn symbols(&self) -> impl Iterator<Item = String> {
-        let SymbolReport { hidden, outside, crowded_out, .. } = &self.annotations.symbols;
+        let SymbolReport { hidden, without_text, outside, crowded_out, .. } = &self.annotations.symbols;
         let reasons = [
             ("over hidden places (dashed staffs)", hidden),
+            ("without their text", without_text),
             ("outside the picture", outside),
             ("without room", crowded_out),
         ];

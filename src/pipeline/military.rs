@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::annotate::annotation::{PictureSymbol, SymbolHeight};
+use crate::description::words::StylePreset;
 use crate::pipeline::line_labels::is_seen;
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
@@ -16,7 +17,15 @@ const STEP_SHARE: f32 = 0.01;
 
 /// The symbols in front of the camera, with their places on the picture.
 pub fn picture_symbols(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Vec<PictureSymbol> {
-    scene.military.iter().filter_map(|symbol| picture_symbol(symbol, camera, picture)).collect()
+    let symbols = scene.military.iter().filter_map(|symbol| picture_symbol(symbol, camera, picture));
+    match scene.preset {
+        Some(StylePreset::Print) => symbols.map(in_black_and_white).collect(),
+        _ => symbols.collect(),
+    }
+}
+
+fn in_black_and_white(symbol: PictureSymbol) -> PictureSymbol {
+    PictureSymbol { symbol: symbol.symbol.in_black_and_white(), ..symbol }
 }
 
 fn picture_symbol(symbol: &SceneSymbol, camera: &Camera, picture: &Rendering) -> Option<PictureSymbol> {

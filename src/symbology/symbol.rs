@@ -84,6 +84,20 @@ impl MilitarySymbol {
     }
 }
 
+impl MilitarySymbol {
+    /// The symbol in black on white: frames tell friend from foe without their colors.
+    pub fn in_black_and_white(mut self) -> Self {
+        for mark in &mut self.marks {
+            if let SymbolMark::Shape { fill: Some(fill), .. } = mark
+                && *fill != BLACK
+            {
+                *fill = WHITE;
+            }
+        }
+        self
+    }
+}
+
 /// The icon and its modifiers; what is missing is noted.
 fn icon(code: &SymbolCode, shape: FrameShape, notes: &mut Vec<String>) -> Vec<SymbolMark> {
     let mut drawings = Vec::new();

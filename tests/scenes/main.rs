@@ -12,6 +12,7 @@ mod graphics;
 mod imagery;
 mod instances;
 mod labels;
+mod military;
 mod models;
 mod odd_scenes;
 mod own_models;
