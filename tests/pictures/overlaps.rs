@@ -82,7 +82,8 @@ fn no_label_covers_another_from_two_hundred_cameras() {
         let (eye, target) = (inside(), inside());
         let eye = eye + Vec3::Z * (300.0 + 3000.0 * number());
         let aim = ViewAim::At { eye, target: target.with_z(low.z) };
-        let view = SceneView { name: format!("random {camera}"), aim, fov_y_rad: 0.4 + 0.6 * number() };
+        let view =
+            SceneView { name: format!("random {camera}"), aim, fov_y_rad: 0.4 + 0.6 * number(), paper: None };
         let size = PictureSize { width: 320, height: 180 };
         let Ok(picture) = render_view(&scene, &view, size, RenderBackend::Cpu, &|_| {}) else { continue };
         let found = overlaps(&picture.annotations);
