@@ -142,7 +142,7 @@ fn by_importance<'a>(labels: &'a [PictureLabel], lines: &'a [LineLabel]) -> Vec<
 
 /// A label with its text set.
 enum PreparedName<'a> {
-    Point(PreparedLabel<'a>),
+    Point(Box<PreparedLabel<'a>>),
     Line(PreparedLine<'a>),
 }
 
@@ -169,7 +169,7 @@ impl<'a> PreparedName<'a> {
         if !label.visible {
             return Err(LabelOutcome::Hidden);
         }
-        PreparedLabel::new(label, composer).map(Self::Point)
+        PreparedLabel::new(label, composer).map(|label| Self::Point(Box::new(label)))
     }
 
     fn first_request(&self) -> LabelRequest {

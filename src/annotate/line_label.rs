@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_turn_with_the_line_and_are_never_upside_down_in_whatever_direction_it_runs() {
+    fn letters_turn_with_the_line_and_are_never_upside_down() {
         for turn in 0..36 {
             let turn = turn as f32 * 10.0;
             for path in [
@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spread_name_reaches_over_most_of_its_line_and_a_name_at_the_ends_stands_at_both() {
+    fn a_spread_name_fills_its_line_and_a_name_at_the_ends_stands_at_both() {
         let path = vec![Vec2::new(300.0, 500.0), Vec2::new(680.0, 500.0)];
         let spread = LineLabel { placement: LinePlacement::Spread, ..label(path.clone()) };
         let width = prepared(&spread).occurrences[0][0].boxes.text.size().x;

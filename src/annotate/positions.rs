@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_label_stands_at_the_upper_right_first_and_has_a_leader_only_after_eight_positions() {
+    fn a_label_stands_at_the_upper_right_first_and_has_a_leader_last() {
         let positions = LabelMetrics { leads_first: false, ..metrics() }.positions();
         let away = positions[0].text.center() - metrics().anchor;
         assert!(away.x > 40.0 && away.y < -5.0, "{away}");

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn intermediate_lines_are_gone_before_their_spacing_is_three_pixels_and_numbered_ones_are_not() {
+    fn intermediate_lines_are_gone_at_three_pixels_and_numbered_ones_are_not() {
         let contours = Contours {
             interval_m: 10.0,
             major_every: 5,

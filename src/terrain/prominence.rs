@@ -35,7 +35,7 @@ pub struct SaddlePoint {
 
 /// All summits of `lattice` that are not on its border, the most prominent first.
 pub fn summits(lattice: &Lattice) -> Vec<ProminentSummit> {
-    let blocks = BlockHeights::new(lattice);
+    let blocks = PostBlocks::new(lattice);
     let mut order: Vec<u32> = (0..blocks.heights.len() as u32)
         .filter(|&block| blocks.heights[block as usize].is_finite())
         .collect();
@@ -72,7 +72,7 @@ pub fn summits(lattice: &Lattice) -> Vec<ProminentSummit> {
 }
 
 /// The highest posts of square blocks.
-struct BlockHeights<'a> {
+struct PostBlocks<'a> {
     lattice: &'a Lattice,
     columns: u32,
     rows: u32,
@@ -81,7 +81,7 @@ struct BlockHeights<'a> {
     posts: Vec<u32>,
 }
 
-impl<'a> BlockHeights<'a> {
+impl<'a> PostBlocks<'a> {
     fn new(lattice: &'a Lattice) -> Self {
         let side = lattice.columns().max(lattice.rows()).div_ceil(MOST_BLOCKS);
         let (columns, rows) = (lattice.columns().div_ceil(side), lattice.rows().div_ceil(side));
@@ -92,7 +92,7 @@ impl<'a> BlockHeights<'a> {
             let first = (row as u32 / side) as usize * columns as usize;
             for (column, &height) in line.iter().enumerate() {
                 let block = first + column / side as usize;
-                if !(height <= heights[block]) && height.is_finite() {
+                if height.is_finite() && (heights[block].is_nan() || height > heights[block]) {
                     heights[block] = height;
                     posts[block] = (row * width + column) as u32;
                 }
