@@ -28,7 +28,7 @@ pub fn head_m(points: &[DVec2], width_m: Option<f64>) -> [f64; 2] {
 }
 
 /// The points of the center line: all but the last, where that gives the width.
-pub fn center_line<'a>(points: &'a [DVec2], width_m: Option<f64>) -> &'a [DVec2] {
+pub fn center_line(points: &[DVec2], width_m: Option<f64>) -> &[DVec2] {
     if width_m.is_some() { points } else { &points[..points.len() - 1] }
 }
 
@@ -92,7 +92,7 @@ pub fn fix(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDr
     const HALF: f64 = 2.0 / 45.0;
     const CORNERS: u32 = 19;
     let corner = |step: u32| {
-        let side = if step % 2 == 0 { -LEAD } else { LEAD };
+        let side = if step.is_multiple_of(2) { -LEAD } else { LEAD };
         at(LEAD + HALF * (f64::from(step) + 0.5), side)
     };
     let mut line = vec![rear, at(LEAD, 0.0)];

@@ -45,7 +45,7 @@ pub fn ford(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicD
         let middle = from.midpoint(to);
         let count = (aside.length() / (0.53 * input.em_m)).floor().clamp(2.0, 200.0);
         let corner = |step: u32| {
-            let half = if step % 2 == 0 { 0.83 } else { -0.83 };
+            let half = if step.is_multiple_of(2) { 0.83 } else { -0.83 };
             middle + aside * (f64::from(step) / count) + along * (half * input.em_m)
         };
         drawing.line((0..=count as u32).map(corner).collect::<Vec<_>>());

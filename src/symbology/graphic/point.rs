@@ -66,7 +66,7 @@ pub fn contact_point(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut Gr
 pub fn decision(_: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {
     let paper = PointPaper::new(input);
     let corner = |step: u32| {
-        let radius = if step % 2 == 0 { 2.2 } else { 1.1 };
+        let radius = if step.is_multiple_of(2) { 2.2 } else { 1.1 };
         let way = turned(DVec2::Y, f64::from(step) * std::f64::consts::PI / 5.0) * radius;
         paper.place([way.x, way.y])
     };

@@ -157,7 +157,7 @@ pub fn circle_task(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut G
         const TOOTH: f64 = 0.2;
         let at = |part: u32| turned(radius, (open - 2.0 * PI) * f64::from(part) / f64::from(PARTS));
         for part in 1..PARTS - 1 {
-            if kind.code == "341500" && part % 3 == 0 {
+            if kind.code == "341500" && part.is_multiple_of(3) {
                 let apex = center + at(part) * (1.0 - TOOTH);
                 drawing.line([center + at(part - 1), apex, center + at(part + 1)]);
             } else if kind.code == "151205" {
