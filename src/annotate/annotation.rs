@@ -18,7 +18,7 @@ use crate::description::words::LabelKind;
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
 use crate::symbology::symbol::MilitarySymbol;
-use crate::symbology::texts::PlacedText;
+use crate::symbology::texts::SymbolNote;
 
 /// Everything to paint on one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Annotations {
     /// Numbers and ticks of contour lines.
     pub contours: Option<ContourMarks>,
     /// Texts of graphics, the more important first.
-    pub fixed_texts: Vec<FixedText>,
+    pub fixed_texts: Vec<OverlayText>,
     /// The font for characters that the embedded fonts lack.
     pub font: Option<FontFile>,
     /// Coordinates along the edge of the block; those that come first are drawn first.
@@ -85,7 +85,7 @@ pub struct LineLabel {
 
 /// A text that belongs to something drawn on the ground, level, in bold type.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FixedText {
+pub struct OverlayText {
     /// What it says, on one line or several.
     pub text: String,
     /// The place that it belongs to, in pixels.
@@ -160,7 +160,7 @@ pub struct PictureSymbol {
     /// The drawing.
     pub symbol: MilitarySymbol,
     /// The lines of text round it.
-    pub texts: Vec<PlacedText>,
+    pub texts: Vec<SymbolNote>,
     /// What the report calls it.
     pub name: String,
     /// The place on the ground, pixels.

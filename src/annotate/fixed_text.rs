@@ -6,7 +6,7 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::FixedText;
+use crate::annotate::annotation::OverlayText;
 use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::fonts::FontCut;
@@ -34,7 +34,7 @@ const TRIED: [f32; 5] = [0.0, 0.55, -0.55, 1.1, -1.1];
 
 /// Draws texts that are visible and free of `taken`, which their boxes are added to; reports the outcome of each.
 pub fn draw_fixed(
-    texts: &[FixedText],
+    texts: &[OverlayText],
     taken: &mut Vec<PixelBox>,
     composer: &mut Composer,
     report: &mut AnnotationReport,
@@ -63,7 +63,7 @@ struct FixedBlock {
 
 impl FixedBlock {
     /// `None` for a text without letters.
-    fn new(text: &FixedText, composer: &mut Composer) -> Option<Self> {
+    fn new(text: &OverlayText, composer: &mut Composer) -> Option<Self> {
         let sheet = composer.sheet;
         let style = composer.style(TYPE_PX, FontCut::Bold);
         let halo = sheet.px(HALO_PX).max(1.3);
@@ -90,7 +90,7 @@ impl FixedBlock {
 
     fn place(
         &self,
-        text: &FixedText,
+        text: &OverlayText,
         taken: &mut Vec<PixelBox>,
         composer: &Composer,
         drawing: &mut Drawing,
@@ -134,9 +134,9 @@ impl FixedBlock {
 mod tests {
     use super::*;
 
-    fn text(x: f32, y: f32, toward: Vec2) -> FixedText {
+    fn text(x: f32, y: f32, toward: Vec2) -> OverlayText {
         let at_px = Vec2::new(x, y);
-        FixedText { text: "PL RED".into(), at_px, toward_px: toward, ink: None, visible: true }
+        OverlayText { text: "PL RED".into(), at_px, toward_px: toward, ink: None, visible: true }
     }
 
     #[test]
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn texts_never_overlap_and_what_finds_no_place_is_reported() {
         let mut composer = Composer::new(640, 360);
-        let crowd: Vec<FixedText> = (0..9).map(|_| text(300.0, 180.0, Vec2::ZERO)).collect();
+        let crowd: Vec<OverlayText> = (0..9).map(|_| text(300.0, 180.0, Vec2::ZERO)).collect();
         let (mut taken, mut report) = (Vec::new(), AnnotationReport::default());
         draw_fixed(&crowd, &mut taken, &mut composer, &mut report);
         assert_eq!(report.placed.len() + report.crowded_out.len(), 9);

@@ -12,7 +12,7 @@ use crate::annotate::sheet::{HALO, INK};
 use crate::annotate::text::{TextStyle, TypesetLine};
 use crate::draw::color::Srgba;
 use crate::symbology::drawing::{PathStep, SymbolMark, SymbolPen};
-use crate::symbology::texts::{PlacedText, TextPlace};
+use crate::symbology::texts::{SymbolNote, TextPlace};
 
 /// Outlines of strokes are approximated to this fraction of a pixel.
 const STROKE_PRECISION: f32 = 4.0;
@@ -44,7 +44,7 @@ pub struct SymbolBlock {
 
 impl SymbolBlock {
     /// `texts` are the lines of text that are drawn.
-    pub fn new(symbol: &PictureSymbol, texts: &[PlacedText], composer: &mut Composer) -> Self {
+    pub fn new(symbol: &PictureSymbol, texts: &[SymbolNote], composer: &mut Composer) -> Self {
         let unit_px = symbol.height.pixels(&composer.sheet) / 100.0;
         let pixels = |at: Vec2| (at - Vec2::splat(100.0)) * unit_px;
         let halo = composer.sheet.px(HALO_REACH).max(1.0);
@@ -82,7 +82,7 @@ impl SymbolBlock {
 /// The lines of text round the frame.
 fn draw_texts(
     symbol: &PictureSymbol,
-    texts: &[PlacedText],
+    texts: &[SymbolNote],
     unit_px: f32,
     composer: &mut Composer,
 ) -> Drawing {
@@ -95,7 +95,7 @@ fn draw_texts(
     let row_y = |row: u8| middle + (f32::from(row) - 2.0) * pitch + style.cap_px() * 0.5;
     let mut lines: Vec<(TypesetLine, Vec2)> = Vec::new();
     let mut drawing = Drawing::default();
-    for PlacedText { text, place } in texts {
+    for SymbolNote { text, place } in texts {
         let Some(line) = composer.fitted(text, style, WIDEST_TEXT * unit_px) else { continue };
         let at = match place {
             TextPlace::Left(row) => Vec2::new(left - line.advance, row_y(*row)),

@@ -316,13 +316,13 @@ mod tests {
     use crate::annotate::annotation::SymbolHeight;
     use crate::symbology::code::SymbolCode;
     use crate::symbology::symbol::MilitarySymbol;
-    use crate::symbology::texts::{PlacedText, TextPlace};
+    use crate::symbology::texts::{SymbolNote, TextPlace};
 
     fn symbol(name: &str, code: &str, x: f32, y: f32) -> PictureSymbol {
         let code = SymbolCode::parse(code).expect(code);
         PictureSymbol {
             symbol: MilitarySymbol::new(&code).expect("a frame"),
-            texts: vec![PlacedText { text: name.to_owned(), place: TextPlace::Left(3) }],
+            texts: vec![SymbolNote { text: name.to_owned(), place: TextPlace::Left(3) }],
             name: name.to_owned(),
             anchor_px: Vec2::new(x, y),
             direction_px: None,

@@ -79,7 +79,7 @@ mod tests {
     use crate::description::parse::{parse, parse_in_phase};
 
     const SCENE: &str = "[terrain]\ndem = \"a.tif\"\n[[phase]]\nname = \"one\"\n[[phase]]\nname = \"two\"\ntitle = \"Two\"\n\
-        [[area]]\npoints = [[0, 0], [1, 0], [1, 1]]\nphases = [\"one\"]\n[[area]]\npoints = [[0, 0], [2, 0], [1, 1]]\n";
+        [[area]]\npoints = [[0, 0], [1, 0], [1, 1]]\ncover = \"forest\"\nphases = [\"one\"]\n[[area]]\npoints = [[0, 0], [2, 0], [1, 1]]\ncover = \"forest\"\n";
 
     fn read(phase: Option<&str>) -> Document {
         let unread = |_: &str| Err("other files are not read here".into());
@@ -100,8 +100,7 @@ mod tests {
         let wrong = SCENE.replace("phases = [\"one\"]", "phases = [\"on\"]");
         let errors = parse("scene.toml", &wrong).expect_err("wrong").to_string();
         assert!(errors.contains("there is no phase \"on\"") && errors.contains("did you mean"), "{errors}");
-        let without =
-            "[terrain]\ndem = \"a.tif\"\n[[area]]\npoints = [[0, 0], [1, 0], [1, 1]]\nphases = \"x\"\n";
+        let without = "[terrain]\ndem = \"a.tif\"\n[[area]]\npoints = [[0, 0], [1, 0], [1, 1]]\ncover = \"forest\"\nphases = \"x\"\n";
         let errors = parse("scene.toml", without).expect_err("wrong").to_string();
         assert!(errors.contains("add a table [[phase]]"), "{errors}");
     }

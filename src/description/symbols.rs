@@ -42,15 +42,15 @@ table! {
         quantity: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field F: `(+)`, `(-)` or `(±)`.
         reinforced: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field G.
+        /// Field G: comments of the staff, right.
         staff_comments: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field H.
+        /// Field H: what else is to be said, right.
         additional_information: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field M: the number or title of the higher formation, lower right.
         higher_formation: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field J: reliability and credibility, such as `B2`.
         evaluation_rating: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field K.
+        /// Field K: how fit for combat it is, right.
         combat_effectiveness: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field P: identification modes.
         iff: Option<Stated<String>> = key::filled_text(), otherwise "none";
@@ -60,11 +60,11 @@ table! {
         kind as "type": Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field W: date and time.
         dtg: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field X.
+        /// Field X: altitude or depth, left.
         altitude: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field Y.
+        /// Field Y: where it is, in words or a grid reference, left.
         location: Option<Stated<String>> = key::filled_text(), otherwise "none";
-        /// Field Z.
+        /// Field Z: how fast it moves, left.
         speed: Option<Stated<String>> = key::filled_text(), otherwise "none";
         /// Field AA: the name of a special headquarters, in the frame.
         special_headquarters: Option<Stated<String>> = key::filled_text(), otherwise "none";

@@ -57,10 +57,10 @@ pub fn solid_block(relief: &TriMesh, joints: [Joint; 4]) -> TriMesh {
     let min = positions().fold(Vec2::INFINITY, Vec2::min);
     let max = positions().fold(Vec2::NEG_INFINITY, Vec2::max);
     let walls = [
-        Wall { axis: 0, aside: min.y, ends: [min.x, max.x], outward: Vec2::NEG_Y },
-        Wall { axis: 1, aside: max.x, ends: [min.y, max.y], outward: Vec2::X },
-        Wall { axis: 0, aside: max.y, ends: [max.x, min.x], outward: Vec2::Y },
-        Wall { axis: 1, aside: min.x, ends: [max.y, min.y], outward: Vec2::NEG_X },
+        BlockSide { axis: 0, aside: min.y, ends: [min.x, max.x], outward: Vec2::NEG_Y },
+        BlockSide { axis: 1, aside: max.x, ends: [min.y, max.y], outward: Vec2::X },
+        BlockSide { axis: 0, aside: max.y, ends: [max.x, min.x], outward: Vec2::Y },
+        BlockSide { axis: 1, aside: min.x, ends: [max.y, min.y], outward: Vec2::NEG_X },
     ];
     for (wall, joint) in walls.iter().zip(joints) {
         let is_short = (wall.ends[1] - wall.ends[0]).abs() < LEAST_JOINED_MM;
@@ -74,7 +74,7 @@ pub fn solid_block(relief: &TriMesh, joints: [Joint; 4]) -> TriMesh {
 
 /// A side of a block. Its places are named by their coordinate along it, the same number in every vertex above another.
 #[derive(Clone, Copy, Debug)]
-struct Wall {
+struct BlockSide {
     /// 0 where it runs along X, 1 where it runs along Y.
     axis: usize,
     /// Its coordinate on the other axis.
@@ -84,7 +84,7 @@ struct Wall {
     outward: Vec2,
 }
 
-impl Wall {
+impl BlockSide {
     fn at(&self, along: f32, z_mm: f32) -> Vec3 {
         let mut at = Vec3::new(self.aside, self.aside, z_mm);
         at[self.axis] = along;
@@ -135,7 +135,7 @@ impl BlockBuilder {
         self.mesh.triangle([a, c, d]);
     }
 
-    fn wall(&mut self, wall: &Wall, relief: &TriMesh, joint: Joint) {
+    fn wall(&mut self, wall: &BlockSide, relief: &TriMesh, joint: Joint) {
         let is_over = |at: &&Vec3| at[1 - wall.axis] == wall.aside;
         let mut border: Vec<Vec3> = relief.positions.iter().filter(is_over).copied().collect();
         border.sort_by(|a, b| (a[wall.axis] * wall.sign()).total_cmp(&(b[wall.axis] * wall.sign())));
@@ -192,7 +192,7 @@ impl BlockBuilder {
     }
 
     /// The triangles between two level lines of a wall, each with its vertices from left to right.
-    fn strip(&mut self, wall: &Wall, (lower, low): (&[f32], f32), (upper, high): (&[f32], f32)) {
+    fn strip(&mut self, wall: &BlockSide, (lower, low): (&[f32], f32), (upper, high): (&[f32], f32)) {
         let (mut left, mut above) = (0, 0);
         while left + 1 < lower.len() || above + 1 < upper.len() {
             let is_lower = match (lower.get(left + 1), upper.get(above + 1)) {

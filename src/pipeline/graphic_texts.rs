@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::annotate::annotation::{FixedText, LineLabel, LinePlacement};
+use crate::annotate::annotation::{LineLabel, LinePlacement, OverlayText};
 use crate::description::words::LabelKind;
 use crate::pipeline::line_labels::{is_seen, visible_pieces};
 use crate::render::picture::Rendering;
@@ -18,7 +18,7 @@ const RANK: f64 = -1.0;
 /// Texts at their places, and texts along lines.
 pub struct GraphicTexts {
     /// At their places.
-    pub fixed: Vec<FixedText>,
+    pub fixed: Vec<OverlayText>,
     /// Along lines.
     pub along: Vec<LineLabel>,
 }
@@ -43,10 +43,10 @@ pub fn graphic_texts(texts: &[PlacedText], camera: &Camera, picture: &Rendering)
     found
 }
 
-fn fixed(text: &PlacedText, camera: &Camera, picture: &Rendering) -> Option<FixedText> {
+fn fixed(text: &PlacedText, camera: &Camera, picture: &Rendering) -> Option<OverlayText> {
     let at = camera.project(text.at)?;
     let toward = camera.project(text.toward).map_or(at.pixel, |toward| toward.pixel);
-    Some(FixedText {
+    Some(OverlayText {
         text: text.text.clone(),
         at_px: at.pixel,
         toward_px: toward - at.pixel,

@@ -64,8 +64,10 @@ pub fn labels(
         };
         // The pieces that a river or a road consists of in a file carry its name together.
         if let Some(&label) = lines.get(&text).filter(|_| is_line) {
-            let NamedFeature { lines, .. }: &mut NamedFeature = &mut named[label];
-            lines.extend(world_lines(shape, &crs, frame));
+            if follows(table) {
+                let NamedFeature { lines, .. }: &mut NamedFeature = &mut named[label];
+                lines.extend(world_lines(shape, &crs, frame));
+            }
             continue;
         }
         if named.len() == most {

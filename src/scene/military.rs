@@ -13,7 +13,7 @@ use crate::scene::sources::Sources;
 use crate::scene::world_frame::WorldFrame;
 use crate::symbology::code::SymbolCode;
 use crate::symbology::symbol::MilitarySymbol;
-use crate::symbology::texts::{PlacedText, SymbolText, TEXT_FIELDS, placed};
+use crate::symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
 use crate::terrain::lattice::Lattice;
 
 /// More symbols are not read: no picture has room for them.
@@ -25,7 +25,7 @@ pub struct SceneSymbol {
     /// The drawing.
     pub symbol: MilitarySymbol,
     /// The lines of text round it.
-    pub texts: Vec<PlacedText>,
+    pub texts: Vec<SymbolNote>,
     /// What reports call it: its designation, else its code.
     pub name: String,
     /// The position on the ground, world space, displayed height.
@@ -165,7 +165,7 @@ fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String 
 /// A symbol before the keys that any feature may compute.
 struct FoundSymbol {
     symbol: MilitarySymbol,
-    texts: Vec<PlacedText>,
+    texts: Vec<SymbolNote>,
     name: String,
     ground: Vec3,
 }

@@ -100,7 +100,7 @@ const fn row(
 
 /// A line of text at a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PlacedText {
+pub struct SymbolNote {
     /// What is written; fields of one row with spaces between.
     pub text: String,
     /// Where.
@@ -108,8 +108,8 @@ pub struct PlacedText {
 }
 
 /// Sorts the texts of fields into lines; empty texts are left out.
-pub fn placed<'a>(text: impl Fn(SymbolText) -> Option<&'a str>) -> Vec<PlacedText> {
-    let mut lines: Vec<PlacedText> = Vec::new();
+pub fn placed<'a>(text: impl Fn(SymbolText) -> Option<&'a str>) -> Vec<SymbolNote> {
+    let mut lines: Vec<SymbolNote> = Vec::new();
     for row in &TEXT_FIELDS {
         let Some(text) = text(row.field).map(str::trim).filter(|text| !text.is_empty()) else { continue };
         match lines.iter_mut().find(|line| line.place == row.place) {
@@ -117,7 +117,7 @@ pub fn placed<'a>(text: impl Fn(SymbolText) -> Option<&'a str>) -> Vec<PlacedTex
                 line.text.push(' ');
                 line.text.push_str(text);
             }
-            None => lines.push(PlacedText { text: text.to_owned(), place: row.place }),
+            None => lines.push(SymbolNote { text: text.to_owned(), place: row.place }),
         }
     }
     lines
@@ -135,7 +135,7 @@ mod tests {
             SymbolText::Speed => Some(" "),
             _ => None,
         });
-        let expected = PlacedText { text: "120 m 16S GD 1 2".to_owned(), place: TextPlace::Left(1) };
+        let expected = SymbolNote { text: "120 m 16S GD 1 2".to_owned(), place: TextPlace::Left(1) };
         assert_eq!(lines, [expected]);
     }
 }

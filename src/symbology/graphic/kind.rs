@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn every_graphic_is_drawn_finite_and_near_its_points_however_it_is_turned_and_scaled() {
+    fn every_graphic_is_finite_and_near_its_points_however_turned_and_scaled() {
         let fields = GraphicFields {
             designation: "RED".into(),
             distances_m: vec![500.0, 1000.0],
