@@ -44,6 +44,7 @@ const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 #[derive(Default)]
 pub struct DrawnSymbols {
     pub drawing: Drawing,
+    /// Of the symbols, then of their staffs and arrows.
     pub boxes: Vec<PixelBox>,
 }
 
@@ -82,10 +83,10 @@ pub fn draw_symbols(
         field.taken.extend(stack.boxes(&position));
         drawn.boxes.extend(stack.boxes(&position));
         for line in position.staff.into_iter().chain(stack.arrows()) {
-            drawn.boxes.push(box_around(line, sheet.px(2.0)));
             field.lines.push(line);
         }
     }
+    drawn.boxes.extend(field.lines.iter().map(|line| box_around(*line, sheet.px(2.0))));
     drawn.drawing.append(staffs);
     drawn.drawing.append(faces);
     drawn
@@ -358,25 +359,33 @@ mod tests {
         assert!(report.crowded_out.is_empty());
     }
 
+    /// Forty symbols in rows of nine, with their places `pitch` apart.
+    fn forty(pitch: Vec2) -> (DrawnSymbols, SymbolReport) {
+        let one = |n: usize| {
+            let at = Vec2::new(250.0, 300.0) + pitch * Vec2::new((n % 9) as f32, (n / 9) as f32);
+            symbol(&format!("{n}-77"), if n.is_multiple_of(7) { HEADQUARTERS } else { BATTALION }, at.x, at.y)
+        };
+        draw(&(0..40).map(one).collect::<Vec<_>>())
+    }
+
     #[test]
-    fn forty_symbols_close_together_overlap_nowhere_and_stay_inside() {
-        let names: Vec<String> = (0..40).map(|n| format!("{n}-77")).collect();
-        let place = |n: usize| Vec2::new(700.0 + 47.0 * (n % 9) as f32, 450.0 + 31.0 * (n / 9) as f32);
-        let symbols: Vec<PictureSymbol> = (0..40)
-            .map(|n| {
-                symbol(&names[n], if n % 7 == 0 { HEADQUARTERS } else { BATTALION }, place(n).x, place(n).y)
-            })
-            .collect();
-        let (drawn, report) = draw(&symbols);
-        assert_eq!(report.placed.len() + report.crowded_out.len(), 40);
-        assert!(report.placed.len() >= 30, "{:?}", report.crowded_out);
-        let sheet = Composer::new(1920, 1080).sheet;
-        let faces: Vec<&PixelBox> =
-            drawn.boxes.iter().filter(|area| area.size().min_element() > 20.0).collect();
-        assert!(faces.iter().all(|area| sheet.bounds().holds(area)));
-        for (number, area) in faces.iter().enumerate() {
-            assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{area:?}");
+    fn forty_symbols_overlap_nowhere_and_stay_inside_however_close() {
+        for pitch in [Vec2::new(150.0, 120.0), Vec2::new(90.0, 70.0), Vec2::new(47.0, 31.0)] {
+            let (drawn, report) = forty(pitch);
+            assert_eq!(report.placed.len() + report.crowded_out.len(), 40);
+            let sheet = Composer::new(1920, 1080).sheet;
+            let faces = &drawn.boxes[..report.placed.len()];
+            for (number, area) in faces.iter().enumerate() {
+                assert!(!faces[..number].iter().any(|other| other.overlaps(area)), "{pitch}: {area:?}");
+            }
+            assert!(faces.iter().all(|area| sheet.bounds().holds(area)), "{pitch}");
         }
+    }
+
+    #[test]
+    fn forty_symbols_with_room_are_all_drawn_with_their_text() {
+        let (_, report) = forty(Vec2::new(150.0, 120.0));
+        assert!(report.crowded_out.is_empty() && report.without_text.is_empty(), "{report:?}");
     }
 
     #[test]
