@@ -57,8 +57,7 @@ pub struct RenderArguments {
     /// Also write what each pixel shows into this folder: depth.tif, elevation.tif, normal.png, feature.tif, features.csv
     #[arg(long, value_name = "DIR")]
     pub buffers: Option<PathBuf>,
-    /// Also describe the picture in a file beside it, OUT.json: the camera, the scene's hash and files, the boxes of labels and
-    /// features
+    /// Also describe the picture in OUT.json beside it: camera, hash and files of the scene, boxes of labels and features
     #[arg(long)]
     pub sidecar: bool,
     /// Print JSON: what the picture shows, how light its ground is, triangles, labels, notes and the time of each step

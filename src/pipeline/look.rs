@@ -21,22 +21,33 @@ use crate::scene::SceneModel;
 const DARKEST: f32 = 0.66;
 /// Gray of the walls of the block.
 const WALL: u8 = 225;
-/// The brightest red of the night look: full red dazzles.
-const BRIGHTEST: f32 = 0.5;
+/// The brightest red of the scene in the night look, and of letters and lines on it, of full red: the scene must not
+/// outshine what is written on it.
+const BRIGHTEST: f32 = 0.3;
+const BRIGHTEST_INK: f32 = 0.9;
 
 /// Gives a picture the look of the scene's preset; most have none of their own.
 pub fn apply_look(scene: &SceneModel, picture: &mut Rendering) {
     match scene.preset {
         Some(StylePreset::Print) => print(scene, picture),
         Some(StylePreset::Night) => {
-            picture.pixels.data_mut().par_iter_mut().for_each(|pixel| *pixel = red_light(*pixel));
+            let pixels = picture.pixels.data_mut().par_iter_mut().zip(&picture.features);
+            pixels.for_each(|(pixel, feature)| {
+                *pixel = if *feature == FeatureId::NONE { BLACK } else { red_light(*pixel) };
+            });
         }
         _ => {}
     }
 }
 
+/// A color of what is drawn on the scene in the night look: dark letters are bright, and their paper is dark.
+pub fn night_ink(color: Srgba) -> Srgba {
+    let dark = 1.0 - luminance(color.linear());
+    Srgba([srgb_from_linear(dark * dark * BRIGHTEST_INK), 0, 0, color.0[3]])
+}
+
 /// A color in red light.
-pub fn red_light(color: Srgba) -> Srgba {
+fn red_light(color: Srgba) -> Srgba {
     let light = luminance(color.linear());
     Srgba([srgb_from_linear(light * BRIGHTEST), 0, 0, color.0[3]])
 }
@@ -123,6 +134,17 @@ mod tests {
         let reds = [Srgba::opaque(10, 60, 10), Srgba::opaque(90, 140, 200), Srgba::WHITE].map(red_light);
         assert!(reds.windows(2).all(|pair| pair[0].0[0] < pair[1].0[0]));
         assert!(reds.iter().all(|red| red.0[1] == 0 && red.0[2] == 0 && red.0[3] == 255));
+    }
+
+    #[test]
+    fn at_night_letters_are_brighter_than_paper_and_paper_than_nothing() {
+        let [ink, halo, paper] =
+            [Srgba::opaque(30, 35, 39), Srgba::opaque(180, 180, 170), Srgba::WHITE].map(night_ink);
+        assert!(
+            ink.0[0] > 230 && ink.0[0] > 2 * halo.0[0] && halo.0[0] > paper.0[0],
+            "{ink:?} {halo:?} {paper:?}"
+        );
+        assert_eq!((paper, ink.0[1]), (BLACK, 0));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::description::words::StylePreset;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
 use crate::pipeline::labels;
-use crate::pipeline::look::{apply_look, red_light};
+use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -138,7 +138,7 @@ pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'sta
     let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {
-        sheet.recolor(&red_light);
+        sheet.recolor(&night_ink);
     }
     ComposedView { sheet, drawn, annotations }
 }

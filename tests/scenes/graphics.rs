@@ -95,7 +95,7 @@ fn every_graphic_lies_in_the_displayed_triangles_and_shows() {
 }
 
 #[test]
-fn a_graphic_that_does_not_fit_its_draw_rule_is_refused_with_the_place_and_a_remedy() {
+fn a_graphic_that_does_not_fit_its_rule_is_refused_with_place_and_remedy() {
     let cases = [
         ("kind = \"block\"\npoints = [[0, 0], [900, 0]]", "block has 2 points and needs 3"),
         ("kind = \"phase_lin\"\npoints = [[0, 0], [900, 0]]", "did you mean `phase_line`?"),

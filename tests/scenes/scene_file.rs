@@ -402,7 +402,7 @@ const BROKEN: &[(&str, &[&str])] = &[
     ("[[road]]\nfile = \"r\"\nsurface = \"ice\"\n", &["it may be `asphalt`, `gravel` or `track`"]),
     (
         "[[label]]\ntext = \"a\"\nat = [0, 0]\nkind = \"peak\"\n",
-        &["hill.toml:6:8:", "it may be `summit`, `place`, `water` or `point`"],
+        &["hill.toml:6:8:", "it may be `summit`, `place`, `water`, `road`, `area` or `point`"],
     ),
     ("[style]\nramp = \"grey\"\n", &["hill.toml:4:8:", "did you mean `gray`?"]),
     ("[style]\nramp = [[0, \"#fff\"]]\n", &["hill.toml:4:8:", "from 2 to 256 stops, but this has 1"]),
