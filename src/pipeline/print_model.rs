@@ -20,7 +20,7 @@ use crate::pipeline::files::{self, WriteFileError};
 use crate::render::cpu::{CpuRenderError, render_buffers};
 use crate::scene::picture::build_shapes;
 use crate::scene::{FeatureKind, SceneModel};
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, LatticeError};
 use crate::view::axes::DirectionAxes;
 use crate::view::camera::{Camera, CameraError, ParallelFrame};
 
@@ -38,6 +38,9 @@ const STEP_MM: f32 = 0.3;
 
 /// The thinnest relief, as a share of the model's longer side: of a flatter one little can be felt.
 const LEAST_RELIEF: f64 = 0.03;
+
+/// The highest relief, in millimeters: higher than any printer prints.
+const HIGHEST_MM: f64 = 2000.0;
 
 /// The gap between pieces on the bed, in millimeters.
 const GAP_MM: f32 = 10.0;
@@ -76,6 +79,12 @@ pub enum PrintError {
     Render(#[from] CpuRenderError),
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    #[error(
+        "the model would be {0:.0} mm high, and none is printed higher than {HIGHEST_MM} mm; state a smaller --side, or a smaller `vertical_exaggeration` in [terrain]"
+    )]
+    TooHigh(f64),
     #[error("a piece of the model is not closed: {0}")]
     Flaw(#[from] Flaw),
 }
@@ -101,7 +110,7 @@ pub fn print_model(
     };
     for row in 0..counts[1] {
         for column in 0..counts[0] {
-            let (at_mm, lattice) = relief.piece([column, row], counts);
+            let (at_mm, lattice) = relief.piece([column, row], counts)?;
             let mesh = BoundedMesh::new(&Arc::new(lattice), TOLERANCE_MM)?.mesh;
             let joints = [
                 (row, 0, Joint::Socket),
@@ -216,6 +225,10 @@ impl Relief {
         let (min, max) = scene.bounds;
         let span_m = (max - min).truncate();
         let mm_per_m = side_mm / f64::from(span_m.max_element());
+        let rise_mm = f64::from(max.z - min.z) * mm_per_m;
+        if rise_mm > HIGHEST_MM {
+            return Err(PrintError::TooHigh(rise_mm));
+        }
         let rays = (side_mm / RAY_MM).min(MOST_RAYS);
         let [columns, rows] = [span_m.x, span_m.y]
             .map(|span| libm::round(f64::from(span / span_m.max_element()) * rays).max(4.0) as u32);
@@ -239,7 +252,6 @@ impl Relief {
         let rows_from_above = seen.depth_m.chunks(columns_of).zip(seen.features.chunks(columns_of));
         let heights_mm = rows_from_above.rev().flat_map(row).collect();
         let cell_mm = span_m.as_dvec2() * mm_per_m / DVec2::new(f64::from(columns), f64::from(rows));
-        let rise_mm = f64::from(max.z - min.z) * mm_per_m;
         Ok(Self { columns, rows, cell_mm, heights_mm, scale: 1000.0 / mm_per_m, rise_mm })
     }
 
@@ -249,7 +261,7 @@ impl Relief {
 
     /// The piece `at` of `counts` from west to east and from south to north, with the place of its south-west corner in the
     /// whole. Neighbors share the posts between them.
-    fn piece(&self, at: [u32; 2], counts: [u32; 2]) -> (Vec2, Lattice) {
+    fn piece(&self, at: [u32; 2], counts: [u32; 2]) -> Result<(Vec2, Lattice), LatticeError> {
         let border = |number: u32, count: u32, posts: u32| {
             (u64::from(number) * u64::from(posts - 1) / u64::from(count)) as u32
         };
@@ -263,7 +275,7 @@ impl Relief {
         let heights = (south..=north).map(row).collect::<Vec<_>>().concat();
         let lattice = Lattice::new(DVec2::ZERO, self.cell_mm, east - west + 1, heights);
         let place = DVec2::new(f64::from(west), f64::from(south)) * self.cell_mm;
-        (place.as_vec2(), lattice.expect("millimeters of a bed, without voids"))
+        Ok((place.as_vec2(), lattice?))
     }
 }
 

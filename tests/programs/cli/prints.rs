@@ -111,6 +111,15 @@ fn the_same_scene_gives_the_same_bytes_and_options_of_others_are_refused() {
     assert!(said.contains("--side has no effect on a .glb or .obj"), "{said}");
     let said = refused(&["a.stl", "--max-error", "1"]);
     assert!(said.contains("--max-error has no effect on a model to print"), "{said}");
+    let tall = "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\nvertical_exaggeration = 1000\n";
+    std::fs::write(scratch.at("tall.toml"), tall).expect("a file");
+    let grid = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 0 0 0 900 0 0 0 0\n";
+    std::fs::write(scratch.at("hill.asc"), grid).expect("a file");
+    let said = run_in(scratch.folder(), &["export", "tall.toml", "-o", "a.stl"]).failed(1);
+    assert!(said.contains("mm high") && said.contains("vertical_exaggeration"), "{said}");
+    for name in ["tall.toml", "hill.asc"] {
+        std::fs::remove_file(scratch.at(name)).expect("there");
+    }
     assert!(refused(&["a.stl", "--side", "5"]).contains("from 20 to 4000"));
     assert_eq!(scratch.names(), ["one.3mf", "two.3mf"]);
 }
