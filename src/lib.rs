@@ -78,6 +78,9 @@ pub mod cli;
 #[doc(hidden)]
 #[cfg(feature = "serve")]
 pub mod serve;
+#[doc(hidden)]
+#[cfg(feature = "viewer")]
+pub mod viewer;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {

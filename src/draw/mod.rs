@@ -14,6 +14,7 @@ pub mod hatching;
 pub mod lighting;
 pub mod list;
 pub mod material;
+pub mod patches;
 pub mod pixels;
 pub mod print_pattern;
 pub mod undergrowth;

@@ -1,0 +1,68 @@
+//! The ground and what lies on it by patches, for renderers that show frame after frame: only what changed is handed over.
+//!
+//! A patch's vertices are handed over once and anew only where its heights change; what changes from frame to frame is the
+//! list of its triangles, 16 bits an index. What lies on the ground is cut to these triangles, so that it is handed over
+//! anew with them.
+
+use std::sync::Arc;
+
+use crate::draw::list::{DepthLayer, DrawMesh, FeatureId, MaterialId};
+
+/// The number of a patch, row by row from the south-west.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct PatchId(pub u32);
+
+/// The vertices of a patch, row by row from the south-west; all patches of a ground have as many.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchVertices {
+    /// Which patch.
+    pub patch: PatchId,
+    /// Positions in world space, meters; those beyond the ground's border lie on the border.
+    pub positions: Vec<[f32; 3]>,
+}
+
+/// The triangles that a patch shows, counter-clockwise seen from above.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchTriangles {
+    /// Which patch.
+    pub patch: PatchId,
+    /// Indices into its vertices.
+    pub triangles: Arc<Vec<[u16; 3]>>,
+}
+
+/// A piece of something that lies on the ground, within a patch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrapedPiece {
+    /// Vertices in world space, and triangles.
+    pub mesh: DrawMesh,
+    /// A material of the draw list that was loaded last.
+    pub material: MaterialId,
+    /// Where in the order of what lies on the ground.
+    pub layer: DepthLayer,
+    /// Whose it is.
+    pub feature: FeatureId,
+}
+
+/// All that lies on a patch, in drawing order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchDrapes {
+    /// Which patch.
+    pub patch: PatchId,
+    /// What lies on it; empty where there is nothing any more.
+    pub pieces: Vec<DrapedPiece>,
+}
+
+/// What changed on the ground since the frame before.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GroundChanges {
+    /// Vertices of patches that are shown for the first time, or whose heights changed.
+    pub vertices: Vec<PatchVertices>,
+    /// Triangles of patches that changed or came into view.
+    pub triangles: Vec<PatchTriangles>,
+    /// Patches that are not shown any more; their vertices may be needed again.
+    pub hidden: Vec<PatchId>,
+    /// Patches whose vertices are dropped from memory, too.
+    pub dropped: Vec<PatchId>,
+    /// What lies on patches, cut anew.
+    pub drapes: Vec<PatchDrapes>,
+}

@@ -1,0 +1,1 @@
+//! Changes of a scene that a user makes: applied, undone and saved into the scene file.
