@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::archive;
 use crate::mesh::trimesh::TriMesh;
 use crate::mesh::write::Remarks;
+use crate::message::xml::escaped;
 
 /// A solid and its place on the printer's bed.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,21 +76,6 @@ fn add_object(text: &mut String, number: u32, solid: &PlacedSolid) {
         let _ = writeln!(text, "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>", a.0, b.0, c.0);
     }
     text.push_str("</triangles></mesh></object>\n");
-}
-
-/// `text` as XML holds it.
-fn escaped(text: &str) -> String {
-    let legal = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
-    legal.fold(String::new(), |mut escaped, letter| {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            letter => escaped.push(letter),
-        }
-        escaped
-    })
 }
 
 #[cfg(test)]

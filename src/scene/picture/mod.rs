@@ -87,6 +87,14 @@ pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'sta
     listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
 }
 
+/// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as
+/// symbols, tactical graphics and viewsheds.
+pub fn build_relief(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Relief, progress).list
+}
+
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
 /// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
@@ -112,6 +120,8 @@ enum ListPurpose {
     Picture,
     /// To be measured: nobody asks how the ground is lit.
     Shapes,
+    /// To be modeled: as to be measured, without what is only drawn on it or beside it.
+    Relief,
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -138,7 +148,7 @@ fn listed(
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
     let map = match purpose {
         ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
-        ListPurpose::Shapes => Arc::new(GroundMap::level()),
+        ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
     };
     let lighting = Lighting { to_sun, ..Lighting::default() };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
@@ -153,19 +163,20 @@ fn listed(
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
-    let graphic_texts = camera.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
+    let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
+    let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
-    if setting.is_some_and(|setting| has_table(scene, setting)) {
+    if annotated.is_some() && setting.is_some_and(|setting| has_table(scene, setting)) {
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);
-    if camera.is_some() {
+    if annotated.is_some() {
         voids::add(&mut list, scene);
     }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
-    if camera.is_some() {
+    if annotated.is_some() {
         airspace::add(&mut list, scene);
     }
     ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
