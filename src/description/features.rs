@@ -27,7 +27,7 @@ use crate::description::words::{
 use crate::geom::crs::Crs;
 
 /// Widths of roads and rivers, and distances between things.
-const WIDTH: Bounds = Above(0.0, 10_000.0);
+const WIDTH: Bounds = Within(0.01, 10_000.0);
 /// Widths of strips beside something, and depths.
 const STRIP: Bounds = Within(0.0, 1000.0);
 /// Sizes of what stands on the ground.

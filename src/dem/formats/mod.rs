@@ -22,6 +22,7 @@ mod xyz;
 
 use std::error::Error;
 
+use crate::archive::MAX_RASTER_BYTES;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
@@ -61,6 +62,8 @@ pub struct DemFormat {
     pub shared_extensions: &'static [&'static str],
     pub(crate) recognition: Recognition,
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
+    /// The most bytes that a file has which starts with these: a packed one is unpacked no further.
+    pub(crate) most_bytes: fn(&[u8]) -> u64,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<DemWriter>,
 }
@@ -81,6 +84,11 @@ pub(crate) enum Recognition {
     },
     /// By a statement of the caller.
     Statement,
+}
+
+/// The limit for files whose first bytes do not tell their size.
+pub(crate) fn any_size(_: &[u8]) -> u64 {
+    MAX_RASTER_BYTES
 }
 
 impl DemFormat {

@@ -89,8 +89,9 @@ mod tests {
         let solid =
             PlacedSolid { name: "a <b> & \"c\"".into(), mesh: square(), at_mm: Vec3::new(1.5, 0.0, 0.0) };
         let bytes = bytes(&[solid.clone(), solid], &remarks()).expect("memory");
-        let zip = ZipReader::open(&bytes, 1 << 20).expect("intact");
-        let model = String::from_utf8(zip.read("3D/3dmodel.model").expect("there").to_vec()).expect("text");
+        let zip = ZipReader::open(&bytes).expect("intact");
+        let model =
+            String::from_utf8(zip.read("3D/3dmodel.model", 1 << 20).expect("there").to_vec()).expect("text");
         assert!(
             model.contains("unit=\"millimeter\"")
                 && model.contains("name=\"a &lt;b&gt; &amp; &quot;c&quot;\"")
