@@ -67,6 +67,22 @@ pub fn open_scene(
     Ok(build(&document, &assets, progress)?)
 }
 
+/// Parses and builds a scene that has no file, of the text `text`; it reads files as one at `path` would.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_scene_text(
+    path: &Path,
+    text: &str,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
+    let assets = Assets::new(path, allowed)?;
+    let load = |name: &str| assets.read(name).map_err(Into::into);
+    let document = parse_in_phase(&path.to_string_lossy(), text.as_bytes(), &load, None)?;
+    Ok(build(&document, &assets, progress)?)
+}
+
 /// [`open_scene`] for the phase called `phase`.
 ///
 /// # Errors

@@ -1,0 +1,4 @@
+//! What lies over the scene: each panel is a function of its state, so that tests draw it without a window.
+
+pub mod help;
+pub mod open;
