@@ -42,7 +42,8 @@ impl Borders {
         self.east.len().saturating_sub(1)
     }
 
-    fn patch_count(&self) -> usize {
+    /// The number of patches.
+    pub fn patch_count(&self) -> usize {
         self.columns() * self.north.len().saturating_sub(1)
     }
 
@@ -82,6 +83,9 @@ struct PatchDrape {
 }
 
 impl Drapes {
+    /// Nothing, in any patch.
+    pub const NONE: Self = Self { patches: Vec::new() };
+
     /// Divides `plans` along the borders; nothing is cut to the ground yet. Patches are numbered row by row from the
     /// south-west.
     pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
@@ -98,6 +102,9 @@ impl Drapes {
     /// # Panics
     /// Where a number is not that of a patch.
     pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
+        if self.patches.is_empty() {
+            return;
+        }
         let cut: Vec<Vec<DrawMesh>> = patches
             .par_iter()
             .map(|&patch| {
@@ -114,13 +121,21 @@ impl Drapes {
         }
     }
 
-    /// The ribbons in a patch, as places among the plans given, and what was cut of each.
-    ///
-    /// # Panics
-    /// Where the number is not that of a patch.
+    /// The ribbons in a patch, as places among the plans given, and what was cut of each; none where it was never cut.
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
-        let PatchDrape { parts, cut } = &self.patches[patch];
-        parts.iter().zip(cut).map(|(&(ribbon, _), mesh)| (ribbon, mesh))
+        let patch = self.patches.get(patch);
+        let parts = patch.into_iter().flat_map(|PatchDrape { parts, cut }| parts.iter().zip(cut));
+        parts.map(|((ribbon, _), mesh)| (*ribbon, mesh))
+    }
+
+    /// The ribbons in a patch, cut or not, as places among the plans given.
+    pub fn held(&self, patch: usize) -> impl Iterator<Item = usize> {
+        self.patches.get(patch).into_iter().flat_map(|patch| patch.parts.iter().map(|(ribbon, _)| *ribbon))
+    }
+
+    /// Whether something lies in a patch.
+    pub fn is_occupied(&self, patch: usize) -> bool {
+        self.patches.get(patch).is_some_and(|patch| !patch.parts.is_empty())
     }
 
     /// How many patches hold something.
@@ -131,9 +146,18 @@ impl Drapes {
     /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
-        let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
-        cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
+        check_all(self.patches.iter(), ground)
     }
+
+    /// [`Drapes::check`] in some patches.
+    pub fn check_in(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
+        check_all(patches.iter().filter_map(|&patch| self.patches.get(patch)), ground)
+    }
+}
+
+fn check_all<'a>(patches: impl Iterator<Item = &'a PatchDrape>, ground: &dyn TriangleSurface) -> f64 {
+    let cut: Vec<&DrawMesh> = patches.flat_map(|patch| &patch.cut).collect();
+    cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
 }
 
 impl PatchDrape {
