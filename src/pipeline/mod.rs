@@ -37,6 +37,7 @@ pub mod margin;
 pub mod military;
 pub mod model_file;
 pub mod new_scene;
+pub mod page;
 pub mod picture;
 pub mod picture_buffers;
 pub mod picture_statistics;
