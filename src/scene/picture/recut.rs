@@ -8,8 +8,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec2;
+
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::patches::DrapedPiece;
+use crate::geom::convex;
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
@@ -99,7 +102,8 @@ impl GroundSheets {
             .map(|ribbon| sources.get(&ribbon.feature).and_then(|symbol| tapered(ribbon, symbol)))
             .collect();
         let plans = order.iter().map(|ribbon| {
-            let lake = if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
+            let lake =
+                if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
             sheets.ribbon(ribbon, lake)
         });
         let plans: Vec<SheetPlan> = plans.collect();
@@ -147,7 +151,10 @@ impl GroundSheets {
             for PlannedSymbol { symbol, casing, fill } in lines {
                 plans.push(self.line(RibbonLook::Casing(symbol.surface), symbol, layer));
                 shapes.push(casing);
-                fills.push((self.line(RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol, layer), fill));
+                fills.push((
+                    self.line(RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol, layer),
+                    fill,
+                ));
             }
             for (plan, shape) in fills {
                 plans.push(plan);
@@ -165,7 +172,9 @@ impl GroundSheets {
         let has_turned = |patch: usize| self.ribbons.features(patch).any(|feature| turned.contains(&feature));
         (0..self.borders.patch_count())
             .filter(|&patch| {
-                before.drapes.is_occupied(patch) || self.symbols.drapes.is_occupied(patch) || has_turned(patch)
+                before.drapes.is_occupied(patch)
+                    || self.symbols.drapes.is_occupied(patch)
+                    || has_turned(patch)
             })
             .collect()
     }
@@ -181,7 +190,8 @@ impl GroundSheets {
         let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
         for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
             let plan = &self.ribbons.plans[at];
-            while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer) {
+            while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
+            {
                 self.symbols.plans[at].add(mesh.clone(), &mut pieces);
             }
             if self.replaced.contains(&plan.feature) {
@@ -201,9 +211,30 @@ impl GroundSheets {
         pieces
     }
 
+    /// What lies uppermost on a patch, as it was cut last, at a world position; `None` for bare ground.
+    pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
+        let holds = |mesh: &DrawMesh| {
+            mesh.triangles.iter().any(|corners| {
+                let plan = corners.map(|id| {
+                    let [x, y, _] = mesh.vertices[id.index()].position;
+                    DVec2::new(f64::from(x), f64::from(y))
+                });
+                convex::contains(&plan, at)
+            })
+        };
+        let of = |sheet: &Sheet, is_symbol: bool| {
+            let found = sheet.drapes.in_patch(patch).filter(|(plan, mesh)| {
+                (is_symbol || !self.replaced.contains(&sheet.plans[*plan].feature)) && holds(mesh)
+            });
+            found.last().map(|(plan, _)| ((sheet.plans[plan].layer, is_symbol), sheet.plans[plan].feature))
+        };
+        let uppermost = [of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten().max();
+        uppermost.map(|(_, feature)| feature)
+    }
+
     /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
     pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
-        let of = |sheet: &Sheet| sheet.drapes.check_in(patches, ground);
+        let of = |sheet: &Sheet| sheet.drapes.check_in(&self.borders, patches, ground);
         of(&self.ribbons).max(of(&self.symbols))
     }
 
