@@ -52,6 +52,7 @@ pub mod service;
 pub mod sheet_file;
 pub mod sidecar;
 pub mod sight;
+pub mod view_snapshot;
 pub mod viewing;
 pub mod viewshed;
 pub mod viewshed_map;

@@ -159,9 +159,22 @@ pub fn open_scene_true_to_scale(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
+    open_scene_exaggerated(path, allowed, 1.0, progress)
+}
+
+/// [`open_scene`] with heights drawn `factor` times as high, above 0, whatever exaggeration the scene file states.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_exaggerated(
+    path: &Path,
+    allowed: &[PathBuf],
+    factor: f64,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed, None)?;
-    document.terrain.vertical_exaggeration = 1.0;
+    document.terrain.vertical_exaggeration = factor;
     Ok(build(&document, &assets, progress)?)
 }
 

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::pipeline::files;
-use crate::pipeline::scene_file::{OpenSceneError, build_scene_text, open_scene};
+use crate::pipeline::scene_file::{OpenSceneError, build_scene_text, open_scene, open_scene_exaggerated};
 use crate::scene::SceneModel;
 
 /// What a window is opened for.
@@ -28,6 +28,16 @@ pub fn is_scene_file(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
+/// How many times as high as they are heights are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ViewedHeights {
+    /// As the scene file states.
+    #[default]
+    AsStated,
+    /// So many times, whatever it states.
+    Times(f64),
+}
+
 /// The scene in the file at `path`, or the ground of an elevation file. `progress` is called with the name of each step
 /// as it begins.
 ///
@@ -36,13 +46,21 @@ pub fn is_scene_file(path: &Path) -> bool {
 pub fn open_to_view(
     path: &Path,
     allowed: &[PathBuf],
+    heights: ViewedHeights,
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
-    if is_scene_file(path) {
-        return open_scene(path, allowed, progress);
+    progress(if is_scene_file(path) { "reading the scene file" } else { "reading the elevation file" });
+    match heights {
+        ViewedHeights::AsStated if is_scene_file(path) => open_scene(path, allowed, progress),
+        ViewedHeights::AsStated => build_scene_text(path, &bare_scene(path), allowed, progress),
+        ViewedHeights::Times(factor) if is_scene_file(path) => {
+            open_scene_exaggerated(path, allowed, factor, progress)
+        }
+        ViewedHeights::Times(factor) => {
+            let text = format!("{}vertical_exaggeration = {factor:?}\n", bare_scene(path));
+            build_scene_text(path, &text, allowed, progress)
+        }
     }
-    progress("reading the elevation file");
-    build_scene_text(path, &bare_scene(path), allowed, progress)
 }
 
 /// A scene of an elevation file and nothing else.
@@ -57,8 +75,12 @@ mod tests {
 
     #[test]
     fn an_elevation_file_is_a_scene_of_its_ground() {
-        let scene = open_to_view(Path::new("assets/jacksboro/valley.asc"), &[], &|_| ()).expect("sound");
-        assert!(scene.lattice.size().0 > 100 && scene.features.is_empty() && scene.cameras.len() == 1);
+        let open = |path: &str, heights| open_to_view(Path::new(path), &[], heights, &|_| ()).expect("sound");
+        let scene = open("assets/jacksboro/valley.asc", ViewedHeights::AsStated);
+        assert!(scene.lattice.columns() > 100 && scene.features.is_empty() && scene.cameras.len() == 1);
+        assert_eq!(scene.scale.0, 1.0);
+        assert_eq!(open("assets/jacksboro/valley.asc", ViewedHeights::Times(2.5)).scale.0, 2.5);
+        assert_eq!(open("scenes/road.toml", ViewedHeights::Times(2.5)).scale.0, 2.5);
     }
 
     #[test]

@@ -1,20 +1,34 @@
 //! All of the window but its surface: what is open, what is shown, what the user asked for.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use egui::{Align2, CentralPanel, Context, Frame, Panel, RichText, Ui, Window};
+use egui::{CentralPanel, Context, Frame, TextureId, Ui};
+use glam::Vec2;
 
+use crate::draw::list::FeatureId;
 use crate::pipeline::files;
-use crate::pipeline::viewing::ViewerOptions;
-use crate::scene::SceneModel;
-use crate::viewer::commands::{ViewCommand, key_text, pressed};
-use crate::viewer::loading::SceneLoading;
-use crate::viewer::panels::help::help_panel;
-use crate::viewer::panels::open::{OpenPanel, open_panel};
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::view_snapshot::{self, ViewSnapshot};
+use crate::pipeline::viewing::{ViewedHeights, ViewerOptions};
+use crate::viewer::commands::{ViewCommand, pressed};
+use crate::viewer::drawing_job::DrawingJob;
+use crate::viewer::frame_times::FrameTimes;
+use crate::viewer::loading::{SceneLoading, opening_error};
+use crate::viewer::notices::ViewerNotices;
+use crate::viewer::opened::{OpenedScene, SceneFrame};
+use crate::viewer::panels::detail::DetailSettings;
+use crate::viewer::panels::light::LightPanel;
+use crate::viewer::panels::open::OpenPanel;
+use crate::viewer::panels::tree::TreePanel;
+use crate::viewer::place::PlaceText;
 use crate::viewer::recent::RecentFiles;
+use crate::viewer::steering::SteeringMode;
+use crate::viewer::view_area::{ViewArea, ViewEvent};
+use crate::viewer::watch::{FileWatch, WatchState};
 
 /// What the window has to do for the app.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum WindowRequest {
     /// Shows this title.
     Title(String),
@@ -22,6 +36,8 @@ pub enum WindowRequest {
     FullScreen,
     /// Takes this size, in pixels.
     Resize(u32, u32),
+    /// Says which feature the picture shows at a pixel, to [`ViewerApp::picked`].
+    Pick(Vec2),
     /// Closes.
     Close,
 }
@@ -41,30 +57,46 @@ pub enum ViewerStage {
 
 /// A file that could not be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct OpeningFailure {
-    path: PathBuf,
-    message: String,
+pub(super) struct OpeningFailure {
+    pub path: PathBuf,
+    pub message: String,
 }
 
-/// An open scene.
-struct OpenedScene {
-    path: PathBuf,
-    scene: Box<SceneModel>,
+/// What was clicked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickedText {
+    /// The kind and the name of the feature; of bare ground, `ground`.
+    pub feature: String,
+    /// The place on the ground; `None` for the sky.
+    pub place: Option<PlaceText>,
 }
 
 /// The window's state.
 pub struct ViewerApp {
     /// The adapter's name.
     pub adapter: String,
-    options: ViewerOptions,
+    /// How long frames took.
+    pub frames: FrameTimes,
+    pub(super) options: ViewerOptions,
     context: Context,
-    recent: RecentFiles,
-    open_panel: OpenPanel,
-    shows_open: bool,
-    shows_help: bool,
-    loading: Option<SceneLoading>,
-    opened: Option<OpenedScene>,
-    failure: Option<OpeningFailure>,
+    pub(super) recent: RecentFiles,
+    pub(super) open_panel: OpenPanel,
+    pub(super) shows_open: bool,
+    pub(super) shows_help: bool,
+    pub(super) shows_panels: bool,
+    pub(super) loading: Option<SceneLoading>,
+    pub(super) opened: Option<Box<OpenedScene>>,
+    pub(super) failure: Option<OpeningFailure>,
+    pub(super) notices: ViewerNotices,
+    pub(super) view: ViewArea,
+    pub(super) tree: TreePanel,
+    pub(super) light: LightPanel,
+    pub(super) detail: DetailSettings,
+    pub(super) picked: Option<PickedText>,
+    pub(super) drawing: Option<DrawingJob>,
+    camera_number: usize,
+    heights: ViewedHeights,
+    watch: Option<FileWatch>,
     requests: Vec<WindowRequest>,
 }
 
@@ -75,19 +107,31 @@ impl ViewerApp {
     }
 
     fn with_recent(options: &ViewerOptions, context: &Context, recent: RecentFiles) -> Self {
-        let folder =
-            options.file.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        let folder = options.file.as_deref().and_then(Path::parent);
+        let folder = folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut app = Self {
             adapter: String::new(),
+            frames: FrameTimes::default(),
             options: options.clone(),
             context: context.clone(),
             recent,
-            open_panel: OpenPanel::at(folder.unwrap_or(Path::new("."))),
+            open_panel: OpenPanel::at(folder),
             shows_open: options.file.is_none(),
             shows_help: false,
+            shows_panels: true,
             loading: None,
             opened: None,
             failure: None,
+            notices: ViewerNotices::default(),
+            view: ViewArea::new(),
+            tree: TreePanel::default(),
+            light: LightPanel::default(),
+            detail: DetailSettings { tolerance_px: 1.0, wireframe: false, frozen: false },
+            picked: None,
+            drawing: None,
+            camera_number: 0,
+            heights: ViewedHeights::AsStated,
+            watch: None,
             requests: Vec::new(),
         };
         if let Some(file) = &options.file {
@@ -111,118 +155,292 @@ impl ViewerApp {
         std::mem::take(&mut self.requests)
     }
 
+    /// What the scene's renderer has to draw; `None` where there is no scene, or its camera sees nothing.
+    pub fn scene_frame(&mut self) -> Option<SceneFrame> {
+        let opened = self.opened.as_mut().filter(|_| self.view.size.0 > 0)?;
+        match opened.frame(self.view.size) {
+            Ok(frame) => {
+                self.view.camera = Some(frame.camera);
+                Some(frame)
+            }
+            Err(error) => {
+                self.notices.warn(opening_error(&error));
+                None
+            }
+        }
+    }
+
+    /// Whether the renderer outlines triangles.
+    pub fn shows_edges(&self) -> bool {
+        self.detail.wireframe
+    }
+
+    /// The renderer lost the scene: it takes over all of it again.
+    pub fn reload_scene(&mut self) {
+        if let Some(opened) = &mut self.opened {
+            opened.reload();
+        }
+    }
+
+    /// Says something that went wrong in the window.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        self.notices.warn(text);
+    }
+
     /// The user closes the window.
     pub fn ask_to_close(&mut self) {
         self.requests.push(WindowRequest::Close);
     }
 
-    fn open(&mut self, path: &Path) {
+    /// Opens a file; the scene from before stays until it is there.
+    pub fn open(&mut self, path: &Path) {
+        self.heights = ViewedHeights::AsStated;
+        self.start_loading(path);
+    }
+
+    fn start_loading(&mut self, path: &Path) {
         let context = self.context.clone();
         let wake = move || context.request_repaint();
-        self.loading = Some(SceneLoading::start(path, &self.options.allowed, wake));
+        self.loading = Some(SceneLoading::start(path, &self.options.allowed, self.heights, wake));
         self.failure = None;
         self.shows_open = false;
     }
 
-    /// Draws the window of one frame.
-    pub fn show(&mut self, ui: &mut Ui) {
-        self.follow_loading();
-        let is_typing = ui.ctx().text_edit_focused();
-        if !is_typing {
+    /// Draws the window of one frame; `texture` is the scene's picture.
+    pub fn show(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
+        self.follow_loading(ui);
+        self.follow_drawing(ui);
+        self.follow_files(ui);
+        if !ui.ctx().text_edit_focused() {
             let commands = ui.input_mut(pressed);
-            commands.into_iter().for_each(|command| self.run(command));
+            commands.into_iter().for_each(|command| self.run(command, ui));
         }
         self.show_menu(ui);
-        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| self.show_middle(ui));
+        self.show_status(ui);
+        self.show_sides(ui);
+        CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
+            self.show_middle(ui, texture);
+            self.notices.show(ui);
+        });
         self.show_windows(ui.ctx());
     }
 
-    fn follow_loading(&mut self) {
+    fn follow_loading(&mut self, ui: &Ui) {
         let Some(loading) = &mut self.loading else { return };
         let Some(result) = loading.poll() else { return };
         let path = loading.path.clone();
         self.loading = None;
         match result {
-            Ok(scene) => {
-                self.recent.add(&path);
-                self.requests.push(WindowRequest::Title(format!("{} · sandtable", files::file_name(&path))));
-                self.opened = Some(OpenedScene { path, scene });
+            Ok(opened) => self.take_over(path, opened, ui),
+            // The last good scene stays, and the error with it.
+            Err(message) if self.opened.is_some() => {
+                self.notices.warn(format!("{} cannot be opened:\n{message}", files::file_name(&path)));
             }
             Err(message) => self.failure = Some(OpeningFailure { path, message }),
         }
     }
 
-    fn run(&mut self, command: ViewCommand) {
-        match command {
-            ViewCommand::Help => self.shows_help = !self.shows_help,
-            ViewCommand::Open => self.shows_open = true,
-            ViewCommand::Cancel => (self.shows_help, self.shows_open) = (false, false),
-            ViewCommand::FullScreen => self.requests.push(WindowRequest::FullScreen),
-            ViewCommand::Quit => self.ask_to_close(),
-            _ => {}
+    /// Shows a scene; the camera stays where the same file was shown before.
+    fn take_over(&mut self, path: PathBuf, mut opened: Box<OpenedScene>, ui: &Ui) {
+        self.notices.clear();
+        self.recent.add(&path);
+        self.requests.push(WindowRequest::Title(format!("{} · sandtable", files::file_name(&path))));
+        match self.opened.as_ref().filter(|before| before.path == path) {
+            Some(before) => {
+                let mut pose = before.steering.pose;
+                pose.eye.z *= opened.scene.scale.0 / before.scene.scale.0;
+                opened.steering.set_mode(before.steering.mode());
+                opened.steering.jump_to(pose);
+                let is_there =
+                    |id: &FeatureId| id.index().is_some_and(|index| index < opened.scene.features.len());
+                self.tree.hidden.retain(is_there);
+                if !self.tree.hidden.is_empty() {
+                    opened.hide(&self.tree.hidden);
+                }
+                self.notices.tell(ui.input(|input| input.time), "read again");
+            }
+            None => {
+                self.camera_number = 0;
+                self.tree = TreePanel::default();
+                self.picked = None;
+            }
+        }
+        self.detail.tolerance_px = opened.walk.tolerance_px();
+        self.detail.frozen = false;
+        self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));
+        let context = self.context.clone();
+        let watched: Vec<PathBuf> = opened.scene.files.iter().cloned().chain([path]).collect();
+        self.watch = FileWatch::start(&watched, move || context.request_repaint());
+        self.opened = Some(opened);
+    }
+
+    fn follow_files(&mut self, ui: &Ui) {
+        let Some(watch) = &mut self.watch else { return };
+        match watch.poll(Instant::now()) {
+            WatchState::Unchanged => {}
+            WatchState::Changing(rest) => ui.ctx().request_repaint_after(rest),
+            WatchState::Changed => self.reload(),
         }
     }
 
-    fn show_menu(&mut self, ui: &mut Ui) {
-        Panel::top("menu").show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for (text, command) in [("Open", ViewCommand::Open), ("Keys", ViewCommand::Help)] {
-                    let button = ui.button(text).on_hover_text(key_text(command));
-                    if button.clicked() {
-                        self.run(command);
-                    }
-                }
-                if let Some(loading) = &self.loading {
-                    ui.spinner();
-                    ui.label(format!("{}: {}", files::file_name(&loading.path), loading.step));
-                }
-            });
+    fn reload(&mut self) {
+        let opened = self.opened.as_ref().map(|opened| opened.path.clone());
+        let failed = self.failure.as_ref().map(|failure| failure.path.clone());
+        if let Some(path) = opened.or(failed) {
+            self.start_loading(&path);
+        }
+    }
+
+    /// Draws heights another number of times as high: the scene is made anew.
+    pub(super) fn exaggerate(&mut self, factor: f64) {
+        self.heights = ViewedHeights::Times(factor);
+        self.reload();
+    }
+
+    fn follow_drawing(&mut self, ui: &Ui) {
+        let Some(result) = self.drawing.as_ref().and_then(DrawingJob::poll) else { return };
+        let Some(drawing) = self.drawing.take() else { return };
+        match result {
+            Ok(path) => {
+                let ViewSnapshot { name, camera, size, .. } = drawing.snapshot;
+                let PictureSize { width, height } = size;
+                let text = format!(
+                    "{} is the picture of this camera; its table is copied. `sandtable render --camera {name} --size \
+                     {width}x{height}` draws it again once the table is in the scene file:",
+                    path.display()
+                );
+                self.notices.tell_with_text(text, camera);
+            }
+            Err(error) => self.notices.warn(error),
+        }
+        ui.ctx().request_repaint();
+    }
+
+    fn take_snapshot(&mut self, ui: &Ui) {
+        let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        if self.drawing.is_some() {
+            self.notices.tell(ui.input(|input| input.time), "the picture before is still being drawn");
+            return;
+        }
+        let (width, height) = camera.size();
+        let snapshot = || -> Result<ViewSnapshot, String> {
+            let told = |error: view_snapshot::ViewSnapshotError| opening_error(&error);
+            let name = view_snapshot::free_name(&opened.scene, &opened.path).map_err(told)?;
+            let camera = view_snapshot::camera_table(&opened.scene, &camera, &name).map_err(told)?;
+            let text = view_snapshot::scene_text(&opened.path).map_err(|error| opening_error(&error))?;
+            let size = PictureSize { width: width.clamp(16, 16_384), height: height.clamp(16, 16_384) };
+            let (file, allowed) = (opened.path.clone(), self.options.allowed.clone());
+            Ok(ViewSnapshot { file, text, allowed, name, camera, size })
+        };
+        match snapshot() {
+            Ok(snapshot) => {
+                ui.ctx().copy_text(snapshot.camera.clone());
+                let context = self.context.clone();
+                self.drawing = Some(DrawingJob::start(snapshot, move || context.request_repaint()));
+            }
+            Err(error) => self.notices.warn(error),
+        }
+    }
+
+    /// What the picture shows at the pixel of [`WindowRequest::Pick`]; `place` is the feature and the place in world space.
+    pub fn picked(&mut self, place: Option<(FeatureId, glam::Vec3)>) {
+        let Some(opened) = &self.opened else { return };
+        self.picked = Some(match place {
+            Some((feature, at)) => {
+                let map = view_snapshot::map_position(&opened.scene, at);
+                let place = PlaceText::of(&opened.scene, opened.walk.lattice(), map);
+                PickedText { feature: feature_text(opened, feature), place: Some(place) }
+            }
+            None => PickedText { feature: "sky".to_owned(), place: None },
         });
     }
 
-    fn show_middle(&mut self, ui: &mut Ui) {
-        match self.stage() {
-            ViewerStage::Empty => {
-                ui.centered_and_justified(|ui| ui.label("Nothing is open."));
+    /// Carries out a command.
+    pub(super) fn run(&mut self, command: ViewCommand, ui: &Ui) {
+        match command {
+            ViewCommand::Help => self.shows_help = !self.shows_help,
+            ViewCommand::Open => self.shows_open = true,
+            ViewCommand::Cancel => {
+                (self.shows_help, self.shows_open) = (false, false);
+                self.notices.clear();
             }
-            ViewerStage::Loading => {
-                if let Some(loading) = &self.loading {
-                    let seconds = loading.since.elapsed().as_secs();
-                    let text = format!("Opening {} …\n{}, {seconds} s", loading.path.display(), loading.step);
-                    ui.centered_and_justified(|ui| ui.label(RichText::new(text).size(18.0)));
-                }
-            }
-            ViewerStage::Failed => {
-                if let Some(failure) = &self.failure {
-                    ui.vertical_centered(|ui| {
-                        ui.add_space(40.0);
-                        ui.heading(format!("{} cannot be opened", failure.path.display()));
-                        ui.monospace(&failure.message);
-                    });
-                }
-            }
-            ViewerStage::Ready => {
-                if let Some(opened) = &self.opened {
-                    ui.label(format!("{} {}", opened.path.display(), opened.scene.features.len()));
-                }
-            }
+            ViewCommand::FullScreen => self.requests.push(WindowRequest::FullScreen),
+            ViewCommand::Quit => self.ask_to_close(),
+            ViewCommand::Reload => self.reload(),
+            ViewCommand::Panels => self.shows_panels = !self.shows_panels,
+            ViewCommand::Labels => self.view.shows_labels = !self.view.shows_labels,
+            ViewCommand::Wireframe => self.detail.wireframe = !self.detail.wireframe,
+            ViewCommand::Freeze => self.set_frozen(!self.detail.frozen),
+            ViewCommand::Find => (self.shows_panels, self.tree.focuses_find) = (true, true),
+            ViewCommand::Snapshot => self.take_snapshot(ui),
+            ViewCommand::Home => self.go_to_camera(0),
+            ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
+            ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),
+            ViewCommand::Orbit => self.set_mode(SteeringMode::Orbit),
+            ViewCommand::Fly => self.set_mode(SteeringMode::Fly),
+            ViewCommand::Walk => self.set_mode(SteeringMode::Walk),
+            ViewCommand::North => self.look(Some(0.0), None),
+            ViewCommand::Down => self.look(None, Some(std::f32::consts::FRAC_PI_2)),
+            ViewCommand::Save
+            | ViewCommand::Undo
+            | ViewCommand::Redo
+            | ViewCommand::MeasureLine
+            | ViewCommand::MeasureArea => {}
+        }
+        ui.ctx().request_repaint();
+    }
+
+    pub(super) fn set_mode(&mut self, mode: SteeringMode) {
+        if let Some(opened) = &mut self.opened {
+            opened.steering.set_mode(mode);
         }
     }
 
-    fn show_windows(&mut self, context: &Context) {
-        let mut shows_help = self.shows_help;
-        Window::new("Keys")
-            .open(&mut shows_help)
-            .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-            .show(context, help_panel);
-        self.shows_help = shows_help;
-        let mut shows_open = self.shows_open;
-        let window = Window::new("Open").open(&mut shows_open).default_size([560.0, 460.0]);
-        let window = window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]);
-        let chosen = window.show(context, |ui| open_panel(ui, &mut self.open_panel, &self.recent));
-        self.shows_open = shows_open;
-        if let Some(path) = chosen.and_then(|window| window.inner).flatten() {
-            self.open(&path);
+    pub(super) fn set_frozen(&mut self, frozen: bool) {
+        self.detail.frozen = frozen;
+        if let Some(opened) = &mut self.opened {
+            opened.frozen = frozen.then_some(opened.steering.pose);
         }
+    }
+
+    /// Goes to a camera of the scene by its number, counted round.
+    pub(super) fn go_to_camera(&mut self, number: usize) {
+        let Some(opened) = &mut self.opened else { return };
+        let count = opened.scene.cameras.len();
+        self.camera_number = if number > usize::MAX / 2 { count - 1 } else { number % count };
+        let view = opened.scene.cameras[self.camera_number].clone();
+        let size = (self.view.size.0.max(16), self.view.size.1.max(16));
+        match opened.pose_of(&view, size) {
+            Ok(pose) => opened.steering.go_to(pose),
+            Err(error) => self.notices.warn(opening_error(&error)),
+        }
+    }
+
+    fn look(&mut self, azimuth_rad: Option<f32>, pitch_rad: Option<f32>) {
+        let Some((opened, camera)) = self.opened.as_mut().zip(self.view.camera) else { return };
+        let pivot = opened.focus(&camera);
+        let pose = opened.steering.pose;
+        opened.steering.look(
+            pivot,
+            azimuth_rad.unwrap_or(pose.azimuth_rad),
+            pitch_rad.unwrap_or(pose.pitch_rad),
+        );
+    }
+
+    pub(super) fn note_view_event(&mut self, event: ViewEvent) {
+        match event {
+            ViewEvent::Pick(pixel) => self.requests.push(WindowRequest::Pick(pixel)),
+        }
+    }
+}
+
+/// A feature by kind and name.
+fn feature_text(opened: &OpenedScene, feature: FeatureId) -> String {
+    let known = feature.index().and_then(|index| opened.scene.features.get(index));
+    match known {
+        Some(feature) if feature.name.is_empty() => feature.kind.noun(1).to_owned(),
+        Some(feature) => format!("{} {}", feature.kind.noun(1), feature.name),
+        None if feature == FeatureId::GROUND => "ground".to_owned(),
+        None => "the side of the block".to_owned(),
     }
 }

@@ -1,6 +1,6 @@
 //! What a user can tell the window, and the keys for it: one table for help and dispatch.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 /// Something done at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -176,25 +176,38 @@ pub fn pressed(input: &mut egui::InputState) -> Vec<ViewCommand> {
     commands
 }
 
-/// Takes a press of `shortcut`. A key alone is not pressed where Control or Shift is held, save for keys that need Shift
-/// on some keyboards.
+/// Takes presses of `shortcut`, with exactly its modifiers at the time; keys that need Shift on some keyboards may have it.
 fn take(input: &mut egui::InputState, shortcut: &KeyboardShortcut) -> bool {
     let needs_shift = shortcut.logical_key == Key::Questionmark;
-    let is_exact = input.modifiers.matches_exact(shortcut.modifiers);
-    let is_shifted = needs_shift && input.modifiers.matches_exact(Modifiers::SHIFT);
-    (is_exact || is_shifted) && input.consume_key(input.modifiers, shortcut.logical_key)
+    let count = input.events.len();
+    input.events.retain(|event| {
+        let Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+        let is_exact = modifiers.matches_exact(shortcut.modifiers);
+        let is_shifted = needs_shift && modifiers.matches_exact(Modifiers::SHIFT);
+        *key != shortcut.logical_key || !(is_exact || is_shifted)
+    });
+    input.events.len() < count
 }
 
-/// The motions whose keys are down, without Control; in the order of the table.
+/// The motions whose keys are down, or were pressed since the frame before, without Control; in the order of the table.
 pub fn held(input: &egui::InputState) -> Vec<HeldMotion> {
     if input.modifiers.command || input.modifiers.alt {
         return Vec::new();
     }
-    let motion = |binding: &KeyBinding| match binding.action {
-        KeyAction::Hold(motion) if input.key_down(binding.key.logical_key) => Some(motion),
+    let was_pressed = |wanted: Key| {
+        let is_press = |event: &Event| match event {
+            Event::Key { key, pressed: true, modifiers, .. } => *key == wanted && !modifiers.command,
+            _ => false,
+        };
+        input.events.iter().any(is_press)
+    };
+    let motion = |binding: &KeyBinding| match (binding.action, binding.key.logical_key) {
+        (KeyAction::Hold(motion), key) if input.key_down(key) || was_pressed(key) => Some(motion),
         _ => None,
     };
-    KEYS.iter().filter_map(motion).collect()
+    let mut motions: Vec<HeldMotion> = KEYS.iter().filter_map(motion).collect();
+    motions.dedup();
+    motions
 }
 
 /// The first key of a command, as it is written on a keyboard; empty where it has none.

@@ -92,6 +92,11 @@ impl WindowGraphics {
         format!("{} ({})", info.name, info.backend)
     }
 
+    /// The adapter.
+    pub fn adapter(&self) -> &wgpu::Adapter {
+        &self.adapter
+    }
+
     /// The longest side of a texture, in pixels.
     pub fn longest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
@@ -127,7 +132,7 @@ impl WindowGraphics {
     pub fn present(
         &mut self,
         mut before: wgpu::CommandEncoder,
-        panels: PaintedPanels<'_>,
+        mut panels: PaintedPanels<'_>,
     ) -> Result<FramePresented, ViewerError> {
         for (id, deltas) in &panels.textures.set {
             for delta in deltas {
@@ -138,6 +143,8 @@ impl WindowGraphics {
         for id in &panels.textures.free {
             self.painter.free_texture(id);
         }
+        // The deltas insist on being taken.
+        panels.textures.clear();
         let (presented, frame, commands) = presented?;
         self.queue.submit(commands.into_iter().chain([before.finish()]));
         if let Some(frame) = frame {

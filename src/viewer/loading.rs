@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::message::chain::error_text;
-use crate::pipeline::viewing::open_to_view;
-use crate::scene::SceneModel;
+use crate::pipeline::viewing::{ViewedHeights, open_to_view};
+use crate::viewer::opened::OpenedScene;
 
 /// A file that is being opened.
 pub struct SceneLoading {
@@ -23,12 +23,17 @@ pub struct SceneLoading {
 
 enum LoadingNews {
     Step(&'static str),
-    Done(Result<Box<SceneModel>, String>),
+    Done(Result<Box<OpenedScene>, String>),
 }
 
 impl SceneLoading {
     /// Begins to open the file at `path`. `wake` is called whenever [`SceneLoading::poll`] has news.
-    pub fn start(path: &Path, allowed: &[PathBuf], wake: impl Fn() + Send + 'static) -> Self {
+    pub fn start(
+        path: &Path,
+        allowed: &[PathBuf],
+        heights: ViewedHeights,
+        wake: impl Fn() + Send + 'static,
+    ) -> Self {
         let (sender, news) = channel();
         let (file, allowed) = (path.to_owned(), allowed.to_vec());
         thread::spawn(move || {
@@ -37,14 +42,18 @@ impl SceneLoading {
                 let _ = sender.send(news);
                 wake();
             };
-            let opened = open_to_view(&file, &allowed, &|step| tell(LoadingNews::Step(step)));
-            tell(LoadingNews::Done(opened.map(Box::new).map_err(|error| opening_error(&error))));
+            let progress = |step| tell(LoadingNews::Step(step));
+            let opened = open_to_view(&file, &allowed, heights, &progress);
+            let opened = opened.map_err(|error| opening_error(&error)).and_then(|scene| {
+                OpenedScene::new(file.clone(), scene, &progress).map_err(|error| opening_error(&error))
+            });
+            tell(LoadingNews::Done(opened.map(Box::new)));
         });
         Self { path: path.to_owned(), step: "starting", since: Instant::now(), news }
     }
 
     /// The scene, or why there is none; `None` while it is being opened.
-    pub fn poll(&mut self) -> Option<Result<Box<SceneModel>, String>> {
+    pub fn poll(&mut self) -> Option<Result<Box<OpenedScene>, String>> {
         loop {
             match self.news.try_recv() {
                 Ok(LoadingNews::Step(step)) => self.step = step,
@@ -72,8 +81,8 @@ mod tests {
     use super::*;
     use std::time::Duration;
 
-    fn opened(path: &str) -> Result<Box<SceneModel>, String> {
-        let mut loading = SceneLoading::start(Path::new(path), &[], || ());
+    fn opened(path: &str) -> Result<Box<OpenedScene>, String> {
+        let mut loading = SceneLoading::start(Path::new(path), &[], ViewedHeights::AsStated, || ());
         loop {
             match loading.poll() {
                 Some(result) => return result,
@@ -84,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_scene_arrives_from_its_thread() {
-        assert_eq!(opened("scenes/road.toml").expect("sound").title.as_deref(), Some("Two roads"));
+        assert_eq!(opened("scenes/road.toml").expect("sound").scene.title.as_deref(), Some("Two roads"));
     }
 
     #[test]

@@ -13,11 +13,23 @@
 
 mod app;
 mod commands;
+mod drawing_job;
 pub mod error;
+mod frame_times;
 mod graphics;
+mod ground_ray;
+mod labels;
+mod layout;
 mod loading;
+mod notices;
+mod opened;
 mod panels;
+mod place;
 mod recent;
+mod scene_graphics;
+mod steering;
+mod view_area;
+mod watch;
 mod window;
 
 use crate::pipeline::viewing::ViewerOptions;

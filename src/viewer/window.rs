@@ -9,14 +9,20 @@ use std::time::{Duration, Instant};
 use egui::{Context, ViewportId};
 use winit::application::ApplicationHandler;
 use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::error::EventLoopError;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
+use crate::message::chain::error_text;
 use crate::pipeline::viewing::ViewerOptions;
+use crate::render::gpu::live::LiveOptions;
 use crate::viewer::app::{ViewerApp, WindowRequest};
 use crate::viewer::error::ViewerError;
+use crate::viewer::frame_times::{FrameLoad, FrameTime};
 use crate::viewer::graphics::{FramePresented, PaintedPanels, WindowGraphics};
+use crate::viewer::opened::SceneFrame;
+use crate::viewer::scene_graphics::{SceneGraphics, milliseconds};
 
 /// The window's first size, in points; what fits on small screens.
 const FIRST_SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
@@ -45,7 +51,7 @@ impl From<egui_winit::accesskit_winit::Event> for WindowNews {
 /// # Errors
 /// See [`ViewerError`].
 pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
-    let no_display = |error: winit::error::EventLoopError| ViewerError::NoDisplay(error.to_string());
+    let no_display = |error: EventLoopError| ViewerError::NoDisplay(reason(&error));
     let event_loop = EventLoop::<WindowNews>::with_user_event().build().map_err(no_display)?;
     let context = Context::default();
     let proxy = event_loop.create_proxy();
@@ -66,6 +72,21 @@ pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
     window.failure.map_or(Ok(()), Err)
 }
 
+/// What the system says, without the place in the source of `winit` that its errors begin with.
+fn reason(error: &EventLoopError) -> String {
+    let text = error.to_string();
+    match error {
+        EventLoopError::Os(_) => text
+            .split_once(".rs:")
+            .map_or(text.as_str(), |(_, rest)| {
+                rest.trim_start_matches(|char: char| char.is_ascii_digit() || char == ':').trim()
+            })
+            .trim_end_matches('.')
+            .to_owned(),
+        _ => text,
+    }
+}
+
 struct ViewerWindow {
     app: ViewerApp,
     context: Context,
@@ -80,6 +101,8 @@ struct ViewerWindow {
 struct ShownWindow {
     window: Arc<Window>,
     graphics: WindowGraphics,
+    /// `None` until there is a scene, and after its renderer failed.
+    scene: Option<SceneGraphics>,
     input: egui_winit::State,
 }
 
@@ -109,7 +132,51 @@ impl ShownWindow {
         window.set_visible(true);
         let graphics = WindowGraphics::open(event_loop, Arc::clone(&window))?;
         input.set_max_texture_side(graphics.longest_side() as usize);
-        Ok(Self { window, graphics, input })
+        Ok(Self { window, graphics, scene: None, input })
+    }
+}
+
+impl ShownWindow {
+    /// Records the scene's picture, and picks what was clicked at. What fails is said in the window, which stays.
+    fn draw_scene(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &SceneFrame,
+        requests: &[WindowRequest],
+        app: &mut ViewerApp,
+    ) -> Option<(FrameTime, FrameLoad)> {
+        let mut scene = match self.scene.take() {
+            Some(scene) => scene,
+            None => match SceneGraphics::new(&self.graphics) {
+                Ok(scene) => scene,
+                Err(error) => {
+                    app.warn(error_text(&error));
+                    return None;
+                }
+            },
+        };
+        let options = LiveOptions { wireframe: app.shows_edges() };
+        let drawn = scene.draw(&mut self.graphics, encoder, frame, &options);
+        for request in requests {
+            if let WindowRequest::Pick(pixel) = request {
+                match scene.pick(frame, *pixel) {
+                    Ok(place) => app.picked(place),
+                    Err(error) => app.warn(error_text(&error)),
+                }
+            }
+        }
+        match drawn {
+            Ok(drawn) => {
+                self.scene = Some(scene);
+                Some(drawn)
+            }
+            Err(error) => {
+                // A renderer that failed is made anew, and takes over the scene again.
+                app.warn(error_text(&error));
+                app.reload_scene();
+                None
+            }
+        }
     }
 }
 
@@ -201,19 +268,33 @@ impl ViewerWindow {
         if size.width == 0 || size.height == 0 {
             return Ok(());
         }
+        let laying_out = Instant::now();
         let input = shown.input.take_egui_input(&shown.window);
-        let output = self.context.run_ui(input, |ui| self.app.show(ui));
+        let texture = shown.scene.as_ref().and_then(|scene| scene.texture);
+        let output = self.context.run_ui(input, |ui| self.app.show(ui, texture));
         shown.input.handle_platform_output(&shown.window, output.platform_output);
         let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let panels_ms = milliseconds(laying_out);
         let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let encoder = shown.graphics.device.create_command_encoder(&label);
+        let mut encoder = shown.graphics.device.create_command_encoder(&label);
+        let requests = self.app.take_requests();
+        let frame = self.app.scene_frame();
+        let drawn = frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &requests, &mut self.app));
         let panels = PaintedPanels {
             primitives: &primitives,
             textures: output.textures_delta,
             pixels_per_point: output.pixels_per_point,
         };
+        let presenting = Instant::now();
         let presented = shown.graphics.present(encoder, panels)?;
-        for request in self.app.take_requests() {
+        if let Some((mut time, load)) = drawn {
+            time.draw_ms += milliseconds(presenting);
+            self.app.frames.add(FrameTime { panels_ms, ..time }, load);
+        }
+        if shown.scene.as_ref().and_then(|scene| scene.texture) != texture {
+            self.context.request_repaint();
+        }
+        for request in requests {
             match request {
                 WindowRequest::Title(title) => shown.window.set_title(&title),
                 WindowRequest::FullScreen => {
@@ -224,6 +305,7 @@ impl ViewerWindow {
                     // What the system grants arrives as an event.
                     let _ = shown.window.request_inner_size(PhysicalSize::new(width, height));
                 }
+                WindowRequest::Pick(_) => {}
                 WindowRequest::Close => event_loop.exit(),
             }
         }

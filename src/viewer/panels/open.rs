@@ -1,11 +1,13 @@
 //! The list of files to open: a field for a path, the files opened last, and the folders of this machine.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use egui::{Key, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::dem::formats::FORMATS;
+use crate::pipeline::viewing::is_scene_file;
 use crate::viewer::recent::RecentFiles;
 
 /// The most names of a folder that are listed: a longer list is not read to its end.
@@ -44,7 +46,7 @@ impl OpenPanel {
                 let entry = |entry: fs::DirEntry| {
                     let name = entry.file_name().into_string().ok().filter(|name| !name.starts_with('.'))?;
                     let is_file = !entry.path().is_dir();
-                    (!is_file || can_be_opened(Path::new(&name))).then_some(FolderEntry { is_file, name })
+                    (!is_file || can_be_opened(&entry.path())).then_some(FolderEntry { is_file, name })
                 };
                 let entries = names.take(MOST_NAMES).filter_map(|name| entry(name.ok()?));
                 self.entries.extend(entries);
@@ -56,13 +58,25 @@ impl OpenPanel {
     }
 }
 
-/// Whether a file's name is that of a scene or of elevations.
+/// Whether a file is a scene, or has the name of elevations.
 fn can_be_opened(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase);
     let Some(extension) = extension else { return false };
+    if is_scene_file(path) {
+        return has_terrain(path);
+    }
     let is_known = |known: &[&str]| known.contains(&extension.as_str());
     extension == "toml"
         || FORMATS.iter().any(|format| is_known(format.extensions) || is_known(format.shared_extensions))
+}
+
+/// Whether a file in TOML has ground, as every scene has and no settings of a program do.
+fn has_terrain(path: &Path) -> bool {
+    /// Scenes name their ground among their first keys.
+    const LOOKED_AT: u64 = 64 << 10;
+    let mut head = Vec::new();
+    let is_read = File::open(path).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut head)).is_ok();
+    is_read && head.windows(7).any(|bytes| bytes == b"terrain")
 }
 
 /// Draws the list; returns the file that was chosen.
@@ -99,7 +113,7 @@ pub fn open_panel(ui: &mut Ui, panel: &mut OpenPanel, recent: &RecentFiles) -> O
     let mut entered = None;
     ScrollArea::vertical().auto_shrink([false, true]).show(ui, |ui| {
         if let Some(parent) = panel.folder.parent()
-            && ui.button("⬆ folder above").clicked()
+            && ui.button("Folder above").clicked()
         {
             entered = Some(parent.to_owned());
         }
@@ -157,7 +171,7 @@ mod tests {
     #[test]
     fn a_click_on_a_folder_lists_it() {
         let mut harness = harness(RecentFiles::default());
-        harness.get_by_label("⬆ folder above").click();
+        harness.get_by_label("Folder above").click();
         harness.run();
         harness.get_by_label("assets/").click();
         harness.run();
