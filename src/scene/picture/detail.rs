@@ -80,7 +80,9 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
             let (to_sun, lowest_z) = (list.lighting.to_sun, scene.bounds.0.z);
             let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
-                .filter(|stand| turns || balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z))
+                .filter(|stand| {
+                    turns || balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z)
+                })
                 .collect();
             let size = |stand: &PlacedModel| balls[stand.model].seen(stand, viewer, camera);
             let is_canopy = |stand: &PlacedModel, size: &ApparentSize| {

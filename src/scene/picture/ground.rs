@@ -80,8 +80,9 @@ fn rim(lattice: &Lattice) -> DrawMesh {
             return true;
         }
         has_holes
-            && (row - 1..=row + 2)
-                .any(|row| is_missing[row * columns + column - 1..=row * columns + column + 2].contains(&true))
+            && (row - 1..=row + 2).any(|row| {
+                is_missing[row * columns + column - 1..=row * columns + column + 2].contains(&true)
+            })
     };
     let (mut sink, mut placed) = (GroundSink(DrawMesh::default()), BTreeMap::new());
     for row in 0..rows - 1 {

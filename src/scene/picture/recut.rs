@@ -99,7 +99,8 @@ impl GroundSheets {
             .map(|ribbon| sources.get(&ribbon.feature).and_then(|symbol| tapered(ribbon, symbol)))
             .collect();
         let plans = order.iter().map(|ribbon| {
-            let lake = if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
+            let lake =
+                if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
             sheets.ribbon(ribbon, lake)
         });
         let plans: Vec<SheetPlan> = plans.collect();
@@ -147,7 +148,10 @@ impl GroundSheets {
             for PlannedSymbol { symbol, casing, fill } in lines {
                 plans.push(self.line(RibbonLook::Casing(symbol.surface), symbol, layer));
                 shapes.push(casing);
-                fills.push((self.line(RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol, layer), fill));
+                fills.push((
+                    self.line(RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol, layer),
+                    fill,
+                ));
             }
             for (plan, shape) in fills {
                 plans.push(plan);
@@ -165,7 +169,9 @@ impl GroundSheets {
         let has_turned = |patch: usize| self.ribbons.features(patch).any(|feature| turned.contains(&feature));
         (0..self.borders.patch_count())
             .filter(|&patch| {
-                before.drapes.is_occupied(patch) || self.symbols.drapes.is_occupied(patch) || has_turned(patch)
+                before.drapes.is_occupied(patch)
+                    || self.symbols.drapes.is_occupied(patch)
+                    || has_turned(patch)
             })
             .collect()
     }
@@ -181,7 +187,8 @@ impl GroundSheets {
         let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
         for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
             let plan = &self.ribbons.plans[at];
-            while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer) {
+            while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
+            {
                 self.symbols.plans[at].add(mesh.clone(), &mut pieces);
             }
             if self.replaced.contains(&plan.feature) {
