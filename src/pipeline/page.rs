@@ -1,6 +1,5 @@
 //! Exporting a scene as a page for browsers.
 
-use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 
 use glam::{DVec2, Vec3};
@@ -15,10 +14,11 @@ use crate::message::choice::Choice;
 use crate::pipeline::files::{self, WriteFileError};
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::flights::SceneFlight;
-use crate::scene::picture::{AllRoundScene, all_round, camera};
+use crate::scene::picture::all_round::{AllRoundScene, ItemShown, all_round};
+use crate::scene::picture::camera;
 use crate::scene::plinth::base_z;
-use crate::scene::{ParallelView, SceneLabel, SceneModel, SceneView, ViewAim};
-use crate::view::camera::{Camera, CameraError, ViewProjection};
+use crate::scene::{SceneLabel, SceneModel, SceneView};
+use crate::view::camera::{CameraError, ViewProjection};
 
 /// The error of the drawn ground where none is stated: the first of these, in meters, that needs no more triangles than
 /// [`MOST_TRIANGLES`].
@@ -32,9 +32,6 @@ const LON_LAT_ERROR_DEG: f64 = 1e-9;
 
 /// The picture that views are fitted to; on a narrower one they keep their width, on a wider one their height.
 const VIEW_SIZE: (u32, u32) = (1280, 720);
-
-/// The picture that line symbols are made for.
-const SYMBOL_SIZE: (u32, u32) = (1920, 1080);
 
 /// A page that was written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,11 +74,10 @@ pub fn export_page(
     SceneFlight::hold_light(scene, &first);
     progress("refining terrain");
     let (displayed, max_error_m) = displayed(scene, max_error_m);
-    let overview = camera(scene, &overview(), SYMBOL_SIZE)?;
-    let all = all_round(scene, &displayed, &overview, progress);
+    let all = all_round(scene, &displayed, progress)?;
     progress("writing");
-    let facts = facts(scene, &overview, max_error_m)?;
-    let range_of = |item: usize| range_of(&all, item);
+    let facts = facts(scene, &all, max_error_m)?;
+    let range_of = |item: usize| range_of(all.shown[item]);
     let lattice = &scene.lattice;
     let bytes = page(&PageScene { list: &all.list, range_of: &range_of, lattice, facts: &facts })?;
     files::write(path, &bytes)?;
@@ -124,33 +120,15 @@ fn triangle_count(displayed: &DisplayedTerrain) -> usize {
     count.triangles
 }
 
-/// The whole scene from straight above.
-fn overview() -> SceneView {
-    let aim = ViewAim::Parallel(ParallelView {
-        azimuth_rad: 0.0,
-        pitch_rad: FRAC_PI_2,
-        stretch: 1.0,
-        scale: None,
-        dpi: 96.0,
-        shown: None,
-    });
-    SceneView { name: String::new(), aim, fov_y_rad: 0.5, paper: None }
-}
-
-fn range_of(all: &AllRoundScene, item: usize) -> ShowRange {
-    // Without symbols the true widths show at any distance.
-    if all.near.contains(&item) && !all.far.is_empty() {
-        ShowRange::Near
-    } else if all.far.contains(&item) {
-        ShowRange::Far
-    } else if all.table.contains(&item) {
-        ShowRange::Table
-    } else {
-        ShowRange::Any
+fn range_of(shown: ItemShown) -> ShowRange {
+    match shown {
+        ItemShown::Always => ShowRange::Always,
+        ItemShown::Band(band) => ShowRange::Band(band),
+        ItemShown::Table => ShowRange::Table,
     }
 }
 
-fn facts(scene: &SceneModel, overview: &Camera, max_error_m: f64) -> Result<PageFacts, CameraError> {
+fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<PageFacts, CameraError> {
     let cameras: Result<_, CameraError> = scene.cameras.iter().map(|view| page_camera(scene, view)).collect();
     let furniture = &scene.furniture;
     let features = (2..).take(scene.features.len());
@@ -166,7 +144,7 @@ fn facts(scene: &SceneModel, overview: &Camera, max_error_m: f64) -> Result<Page
         bounds: [scene.bounds.0, scene.bounds.1],
         base_z: base_z(scene.bounds),
         haze_m: scene.haze_m,
-        symbol_px_m: overview.pixels_per_meter(1.0).recip(),
+        bands_m: all.bands_m.clone(),
         features: features.map(|id| scene.feature_name(FeatureId(id))).collect(),
         labels: scene.labels.iter().map(label).collect(),
         cameras: cameras?,

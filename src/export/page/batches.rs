@@ -18,24 +18,11 @@ use crate::mesh::sink::VertexId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShowRange {
     /// Always.
-    Any,
-    /// Where its true width shows.
-    Near,
-    /// Where a line symbol takes its place.
-    Far,
+    Always,
+    /// A line symbol, in its band of distances; V says how far across the line a place is.
+    Band(u8),
     /// Where the scene is seen as a block on a table.
     Table,
-}
-
-impl ShowRange {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Any => "any",
-            Self::Near => "near",
-            Self::Far => "far",
-            Self::Table => "table",
-        }
-    }
 }
 
 /// The key under which items become one batch; layers, then the order in which a draped material first comes.
@@ -74,10 +61,14 @@ pub fn batches(
     }
     let mut batches = Vec::new();
     for ((layer, range, material), mesh) in &merged {
-        let mut batch = mesh.write(sections, &list.materials[material.0 as usize], *layer);
+        let mut batch = mesh.write(sections, &list.materials[material.0 as usize], *layer, *range);
         batch["material"] = json!(material.0);
         batch["layer"] = json!(layer_word(*layer));
-        batch["range"] = json!(range.word());
+        match range {
+            ShowRange::Always => {}
+            ShowRange::Band(band) => batch["band"] = json!(band),
+            ShowRange::Table => batch["table"] = json!(true),
+        }
         batches.push(batch);
     }
     batches.extend(repeated.into_iter().map(|items| repeated_batch(sections, list, items)));
@@ -118,7 +109,13 @@ impl MergedMesh {
         }
     }
 
-    fn write(&self, sections: &mut PageSections, material: &Material, layer: DepthLayer) -> Value {
+    fn write(
+        &self,
+        sections: &mut PageSections,
+        material: &Material,
+        layer: DepthLayer,
+        range: ShowRange,
+    ) -> Value {
         let of =
             |part: fn(&DrawVertex) -> [f32; 3]| -> Vec<f32> { self.vertices.iter().flat_map(part).collect() };
         let is_uniform = self.features.windows(2).all(|pair| pair[0] == pair[1]);
@@ -132,7 +129,7 @@ impl MergedMesh {
             batch["features"] = sections.add_words(&self.features, 1);
         }
         if layer != DepthLayer::Ground && material.albedo == Albedo::Surface {
-            if material.texture.is_some() {
+            if material.texture.is_some() || matches!(range, ShowRange::Band(_)) {
                 let uvs: Vec<f32> = self.vertices.iter().flat_map(|vertex| vertex.uv).collect();
                 batch["uvs"] = sections.add_floats(&uvs, 2);
             }
@@ -163,7 +160,8 @@ fn repeated_batch(sections: &mut PageSections, list: &DrawList, items: &[DrawIte
     let first = &items[0];
     let mut mesh = MergedMesh::default();
     mesh.add(&list.meshes[first.mesh.0 as usize], &DrawItem { feature: FeatureId::NONE, ..first.clone() });
-    let mut batch = mesh.write(sections, &list.materials[first.material.0 as usize], first.layer);
+    let mut batch =
+        mesh.write(sections, &list.materials[first.material.0 as usize], first.layer, ShowRange::Always);
     // Three rows of four: rotation, scale and translation.
     let rows = |item: &DrawItem| {
         let rows = item.world_from_mesh.transpose();
@@ -176,7 +174,6 @@ fn repeated_batch(sections: &mut PageSections, list: &DrawList, items: &[DrawIte
     batch["count"] = json!(items.len());
     batch["material"] = json!(first.material.0);
     batch["layer"] = json!(layer_word(first.layer));
-    batch["range"] = json!(ShowRange::Any.word());
     batch
 }
 
@@ -234,7 +231,7 @@ mod tests {
         let tree = list.items[3].clone();
         list.items.push(DrawItem { feature: FeatureId(9), ..tree });
         let mut sections = PageSections::default();
-        let batches = batches(&mut sections, &list, |_| ShowRange::Any);
+        let batches = batches(&mut sections, &list, |_| ShowRange::Always);
         let counts: Vec<_> = batches.iter().map(|batch| (&batch["vertices"], &batch["count"])).collect();
         let null = Value::Null;
         assert_eq!(counts, [(&json!(6), &null), (&json!(3), &null), (&json!(3), &json!(2))]);

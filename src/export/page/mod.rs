@@ -72,8 +72,8 @@ pub struct PageFacts {
     pub base_z: f32,
     /// The distance at which 63 % is haze, 0 for clear air; `None` fits it to the view.
     pub haze_m: Option<f32>,
-    /// Meters in a pixel from which on line symbols take the place of narrow roads and rivers.
-    pub symbol_px_m: f32,
+    /// Meters in a pixel, of a picture 1080 lines high, for which the line symbols of each band are made; falling.
+    pub bands_m: Vec<f64>,
     /// Names by feature id from 2 on.
     pub features: Vec<String>,
     /// Names and heights on the picture.
@@ -210,7 +210,7 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
         "bounds": facts.bounds.map(|corner| corner.to_array()),
         "baseZ": facts.base_z,
         "haze": facts.haze_m,
-        "symbolPx": facts.symbol_px_m,
+        "bands": facts.bands_m,
         "features": facts.features,
         "labels": facts.labels.iter().map(label).collect::<Vec<_>>(),
         "cameras": facts.cameras.iter().map(camera).collect::<Vec<_>>(),
@@ -288,7 +288,7 @@ mod tests {
         let heights = (0..12u8).map(f32::from).collect();
         let lattice = Lattice::new(DVec2::new(500.0, 900.0), DVec2::splat(10.0), 4, heights).expect("sound");
         let list = DrawList::default();
-        let scene = PageScene { list: &list, range_of: &|_| ShowRange::Any, lattice: &lattice, facts };
+        let scene = PageScene { list: &list, range_of: &|_| ShowRange::Always, lattice: &lattice, facts };
         String::from_utf8(page(&scene).expect("small")).expect("text")
     }
 

@@ -1,6 +1,7 @@
 //! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
 mod airspace;
+pub mod all_round;
 mod detail;
 mod drapes;
 mod fit;
@@ -27,7 +28,6 @@ mod table;
 mod uprights;
 pub mod voids;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
@@ -106,56 +106,6 @@ pub fn draw_list(
 ) -> (DrawList, usize) {
     let listed = listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress);
     (listed.list, listed.ground_triangles)
-}
-
-/// A scene to be looked at from anywhere. Items are indices into the list's; those of no range show always.
-pub struct AllRoundScene {
-    /// The draw list; draped items are in drawing order, but layers begin anew with each range.
-    pub list: DrawList,
-    /// What lies on the ground in its true width.
-    pub near: Range<usize>,
-    /// What takes its place from afar, with line symbols; empty where there are none.
-    pub far: Range<usize>,
-    /// The table under the block; empty where there is none.
-    pub table: Range<usize>,
-    /// The texts of tactical graphics.
-    pub graphic_texts: Vec<PlacedText>,
-}
-
-/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models as their files have them,
-/// and line symbols as wide as `overview` needs them. `progress` is called with the name of each step as it begins.
-pub fn all_round(
-    scene: &SceneModel,
-    displayed: &DisplayedTerrain,
-    overview: &Camera,
-    progress: &dyn Fn(&'static str),
-) -> AllRoundScene {
-    let to_sun = scene.sunlight.to_sun(Some(overview));
-    let map = scene.map(GroundMapKey { level: 0, to_sun }, || progress("lighting terrain"));
-    let lighting = Lighting { to_sun, ..Lighting::default() };
-    let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
-    let walls = ground::add(&mut list, scene, displayed);
-    progress("draping features");
-    let mut ends = vec![list.items.len()];
-    drapes::add(&mut list, scene, displayed, Viewer::Anyone);
-    ends.push(list.items.len());
-    if !scene.symbols.is_empty() {
-        drapes::add(&mut list, scene, displayed, Viewer::Camera(overview));
-    }
-    ends.push(list.items.len());
-    let graphic_texts = overlay::add(&mut list, scene, overview, displayed, progress);
-    progress("setting models");
-    ground::add_plinth(&mut list, scene, walls);
-    ends.push(list.items.len());
-    table::add(&mut list, scene);
-    ends.push(list.items.len());
-    solids::add(&mut list, scene);
-    voids::add(&mut list, scene);
-    uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed, Viewer::Anyone);
-    airspace::add(&mut list, scene);
-    let range = |first: usize| ends[first]..ends[first + 1];
-    AllRoundScene { near: range(0), far: range(1), table: range(3), list, graphic_texts }
 }
 
 /// A draw list with what else a picture needs.

@@ -3,8 +3,8 @@
 // By how much what is draped counts as nearer than the ground that it lies on: DRAPE_TOLERANCE of draw/list.rs.
 const DRAPE_NEARER = 1 + 1 / 50000;
 
-// Line symbols show where pixels are wider than this share of those they were made for.
-const SYMBOL_SHARE = 0.45;
+// The lines of a picture that the widths of symbols are for; a picture lower than half of them has wider symbols.
+const SYMBOL_LINES = 1080;
 
 // The share of the distance to what is nearest at which the picture begins. Smaller loses depth, larger cuts off what
 // stands high beside the eye.
@@ -85,7 +85,7 @@ class Renderer {
   }
 
   // The values that do not differ between batches.
-  frame(camera, size) {
+  frame(camera, size, pixelRatio) {
     const { light } = this.data.description;
     const setting = this.setting(camera, size);
     const [near, far] = this.planes(camera);
@@ -103,7 +103,8 @@ class Renderer {
       haze: [...light.haze, hazeRate],
       zenith: [...light.zenith, hazeNear],
       setting,
-      isFar: camera.heightAtTarget(size) / 1080 > this.data.description.symbolPx * SYMBOL_SHARE,
+      // Meters in a pixel at unit depth.
+      pixel: 2 * up * camera.stretch / Math.min(SYMBOL_LINES, 2 * size[1] / pixelRatio),
     };
   }
 
@@ -164,9 +165,7 @@ class Renderer {
   }
 
   isShown(batch, frame) {
-    if (batch.range === "near") return !frame.isFar;
-    if (batch.range === "far") return frame.isFar;
-    return batch.range !== "table" || frame.setting === "block";
+    return !batch.table || frame.setting === "block";
   }
 
   one(batch, { places }, frame) {
@@ -183,6 +182,10 @@ class Renderer {
     set("is_natural", "uniform1f", material.isNatural ? 1 : 0);
     set("is_hatching", "uniform1f", material.hatching ? 1 : 0);
     set("in_all_light", "uniform1f", material.shadows ? 0 : 1);
+    const bands = this.data.description.bands;
+    set("band", "uniform4f", ...(batch.band === undefined
+      ? [0, 0, 0, 0]
+      : [bands[batch.band], batch.band === 0 ? 1e30 : bands[batch.band], bands[batch.band + 1] ?? 0, frame.pixel]));
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, material.texture === null ? this.scene.white : this.scene.textures[material.texture]);
     if (material.twoSided || frame.isShadow) gl.disable(gl.CULL_FACE);
@@ -219,7 +222,7 @@ class Renderer {
 
   draw(camera, size, pixelRatio) {
     const { gl } = this;
-    const frame = { ...this.frame(camera, size), pixelRatio };
+    const frame = { ...this.frame(camera, size, pixelRatio), pixelRatio };
     const isStudio = frame.setting === "landscape" || frame.setting === "skyline" ? 0 : 1;
     // The backdrop changes over some frames: a step would look like a flash.
     this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -0.08, 0.08);
@@ -266,7 +269,7 @@ class Renderer {
 
   // The depths of solids as the sun sees them, around what the picture shows; null where nothing casts a shadow.
   drawShadows(camera, size) {
-    const casts = (batch) => batch.layer === "solid" && batch.range === "any" && batch.material.alpha.mode !== "blend"
+    const casts = (batch) => batch.layer === "solid" && !batch.table && batch.material.alpha.mode !== "blend"
       && batch.material.shadows && batch.feature !== 0xffffffff;
     if (!this.scene.batches.some(casts)) return null;
     const { gl } = this;
@@ -286,7 +289,7 @@ class Renderer {
     const frame = {
       eye: plus(center, toSun, deep / 2), forward: toSun.map((part) => -part),
       right: [...right, 1 / half], up: [...up, 1 / half], depth: [2 / deep, -1], isParallel: true,
-      haze: [0, 0, 0, 0], zenith: [0, 0, 0, 0], setting: "plan", isFar: false, isShadow: true, pixelRatio: 1, studio: 0,
+      haze: [0, 0, 0, 0], zenith: [0, 0, 0, 0], setting: "plan", pixel: 0, isShadow: true, pixelRatio: 1, studio: 0,
     };
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.scene.shadow.frame);
     gl.viewport(0, 0, SHADOW_SIDE, SHADOW_SIDE);
@@ -310,9 +313,9 @@ class Renderer {
   }
 
   // The feature and the world position at a pixel of the picture, counted from the upper left; null for the sky.
-  pick(camera, size, pixel) {
+  pick(camera, size, pixel, pixelRatio) {
     const { gl } = this;
-    const frame = { ...this.frame(camera, size), pixelRatio: 1, studio: 0 };
+    const frame = { ...this.frame(camera, size, pixelRatio), pixelRatio, studio: 0 };
     const [x, y] = [Math.floor(pixel[0]), size[1] - 1 - Math.floor(pixel[1])];
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.scene.pickFrame(size));
     gl.viewport(0, 0, size[0], size[1]);
@@ -331,7 +334,7 @@ class Renderer {
     this.several(frame, (batch) => batch.layer === "draped", shader);
     gl.depthMask(true);
     gl.disable(gl.POLYGON_OFFSET_FILL);
-    this.several(frame, (batch) => batch.layer === "solid" && batch.range !== "table", shader);
+    this.several(frame, (batch) => batch.layer === "solid" && !batch.table, shader);
     const seen = new Uint32Array(4);
     gl.readPixels(x, y, 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, seen);
     gl.disable(gl.SCISSOR_TEST);

@@ -152,7 +152,7 @@ class Page {
   // What stands at a pixel, in CSS pixels: null for the sky.
   pick(pixel) {
     const scaled = pixel.map((part) => part * this.ratio);
-    const seen = this.renderer.pick(this.camera, [this.canvas.width, this.canvas.height], scaled);
+    const seen = this.renderer.pick(this.camera, [this.canvas.width, this.canvas.height], scaled, this.ratio);
     if (!seen) return null;
     const [east, north] = [0, 1].map((axis) => this.ground.origin[axis] + seen.world[axis]);
     // The height is that of the coordinates as they are written.

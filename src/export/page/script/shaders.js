@@ -55,6 +55,8 @@ uniform sampler2D base_texture;
 uniform int alpha_mode;   // 0 opaque, 1 mask, 2 blend
 uniform float cutoff;
 uniform float is_water, is_natural, is_hatching;
+uniform vec4 band;        // of a line symbol: meters in a pixel that it is wide enough for, the most, the least that it shows
+                          // at; meters in a pixel at unit depth
 uniform mat4 shadow_from_world;
 uniform vec4 shadow;      // 1 where there is a map, its texel in meters, 1 / its side, bias
 uniform sampler2DShadow shadow_map;
@@ -146,6 +148,16 @@ vec4 surface() {
     return vec4(base_color.rgb, base_color.a * clamp(1.05 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0));
   }
   return base_color * tint * texture(base_texture, at_texture);
+}
+
+// The share of a pixel that a line symbol covers; 1 for all else.
+float symbol_cover() {
+  float pixel = band.w * (depth.w > 0.5 ? 1.0 : along);
+  float across = abs(at_texture.y * 2.0 - 1.0);
+  float edge = max(fwidth(across), 1e-4);
+  if (band.x == 0.0) return 1.0;
+  if (pixel > band.y || pixel <= band.z) return 0.0;
+  return clamp((min(pixel / band.x, 1.0) - across) / edge + 0.5, 0.0, 1.0);
 }
 
 vec4 seen(vec3 light, float alpha) {
@@ -281,6 +293,7 @@ void main() {
   vec4 post = texture(slopes, place);
   float sky_share = texture(skies, place).r;
   vec2 wet_change = vec2(dFdx(post.w), dFdy(post.w));
+  float covered = symbol_cover();
   vec4 color = surface();
   float grain = 1.0;
   if ((is_map > 0.5 || is_natural > 0.5) && ramp_range.w > 0.5) {
@@ -322,7 +335,7 @@ void main() {
   vec3 light = mix(relief_lit(color.rgb, reading.height, post, sky_share, place, sun_share(vec3(0.0, 0.0, 1.0))), color.rgb, unlit);
   if (is_hatching > 0.5) light = color.rgb;
   light = mirror_sky(light, water_share, pixel_m);
-  shown = seen(light, alpha_mode == 2 ? color.a : 1.0);
+  shown = seen(light, (alpha_mode == 2 ? color.a : 1.0) * covered);
 }`;
 
 const SOLID_SHADER = `${COMMON}
@@ -355,7 +368,7 @@ const PICK_SHADER = `${COMMON}
 out uvec2 shown;
 
 void main() {
-  if (alpha_mode != 0 && surface().a < (alpha_mode == 1 ? cutoff : 0.5)) discard;
+  if (symbol_cover() < 0.5 || (alpha_mode != 0 && surface().a < (alpha_mode == 1 ? cutoff : 0.5))) discard;
   shown = uvec2(feature_id, floatBitsToUint(along));
 }`;
 
