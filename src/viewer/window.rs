@@ -279,7 +279,8 @@ impl ViewerWindow {
         let mut encoder = shown.graphics.device.create_command_encoder(&label);
         let requests = self.app.take_requests();
         let frame = self.app.scene_frame();
-        let drawn = frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &requests, &mut self.app));
+        let drawn =
+            frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &requests, &mut self.app));
         let panels = PaintedPanels {
             primitives: &primitives,
             textures: output.textures_delta,

@@ -143,7 +143,7 @@ fn values(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiValue
 
 fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     let nodata = nodata_to_write(raster)?;
     let (cell, south_west) = (raster.spacing(), raster.extent().min);
     let sides = if cell.x == cell.y {

@@ -220,7 +220,7 @@ fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
 }
 
 fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     if raster.width.min(raster.height) < 2 {
         let found = format!("{} x {}", raster.width, raster.height);
         return Err(WriteError::Shape { format: FORMAT.name, wanted: "at least 2 x 2 samples", found });

@@ -90,7 +90,7 @@ fn name(corner: DVec2) -> String {
 
 fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     let size = (raster.width, raster.height);
     let is_wgs84 = raster.crs.as_ref().is_none_or(|crs| crs.epsg() == Some(4326));
     let nodes = raster.node_extent();

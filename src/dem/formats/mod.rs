@@ -20,6 +20,7 @@ pub(crate) mod text;
 mod usgs;
 mod xyz;
 
+use std::borrow::Cow;
 use std::error::Error;
 
 use crate::archive::MAX_RASTER_BYTES;
@@ -120,12 +121,13 @@ impl DemFormat {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
 
-    /// Checks that a raster has north up and a georeference, for formats that hold no other.
-    pub(crate) fn check_place(&self, raster: &Raster) -> Result<(), WriteError> {
-        match (raster.georeferenced, raster.is_north_up()) {
+    /// A raster that has a georeference, with north up, for formats that hold no other; one that only runs the other way
+    /// along an axis is mirrored.
+    pub(crate) fn north_up<'a>(&self, raster: &'a Raster) -> Result<Cow<'a, Raster>, WriteError> {
+        match (raster.georeferenced, raster.is_axis_aligned()) {
             (false, _) => Err(WriteError::NoPlace(self.name)),
             (_, false) => Err(WriteError::NotNorthUp(self.name)),
-            _ => Ok(()),
+            _ => Ok(raster.turned_north_up()),
         }
     }
 }
