@@ -11,4 +11,5 @@ mod render_cpu;
 mod render_gpu;
 mod render_live;
 mod render_parity;
+mod shaders;
 mod symbols;

@@ -133,7 +133,11 @@ impl Gpu {
             return Err(GpuError::OutOfMemory { doing, adapter: self.name.clone() });
         }
         if let Some(failure) = self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone() {
-            return Err(GpuError::Driver { doing, adapter: self.name.clone(), source: failure });
+            let adapter = self.name.clone();
+            return Err(match &*failure {
+                DriverError::Lost(reason) => GpuError::DeviceLost { doing, adapter, reason: reason.clone() },
+                _ => GpuError::Driver { doing, adapter, source: failure },
+            });
         }
         match error {
             Some(error) => Err(self.driver_error(doing, error)),
@@ -200,4 +204,37 @@ fn watch(device: &wgpu::Device) -> DeviceFailure {
 fn supports_samples(adapter: &wgpu::Adapter) -> bool {
     let flags = |format| adapter.get_texture_format_features(format).flags;
     [COLOR, DEPTH].into_iter().all(|format| flags(format).sample_count_supported(SAMPLES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device of this machine; `None` with a loud line where there is none.
+    fn gpu() -> Option<Gpu> {
+        let opened = Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl]);
+        assert!(opened.is_ok() || std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{opened:?}");
+        opened.inspect_err(|error| eprintln!("SKIPPED: no GPU adapter: {error}")).ok()
+    }
+
+    #[test]
+    fn a_lost_device_and_exhausted_memory_are_errors_of_their_own() {
+        let Some(gpu) = gpu() else { return };
+        let exhausted = gpu.guarded("testing", || {
+            let usage = wgpu::BufferUsages::STORAGE;
+            let size = 1 << 60;
+            let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+            gpu.device.create_buffer(&descriptor);
+            Ok(())
+        });
+        let error = exhausted.expect_err("no device holds an exbibyte");
+        assert!(matches!(error, GpuError::OutOfMemory { .. } | GpuError::Driver { .. }), "{error}");
+        assert!(gpu.guarded("testing", || Ok(())).is_ok(), "the device still works");
+        let lost = Arc::new(DriverError::Lost("unplugged".into()));
+        *gpu.failure.lock().expect("not poisoned") = Some(lost);
+        let error = gpu.guarded("drawing a frame", || Ok(())).expect_err("it is lost");
+        assert!(matches!(error, GpuError::DeviceLost { .. }), "{error}");
+        let text = error.to_string();
+        assert!(text.contains("drawing a frame") && text.contains("unplugged"), "{text}");
+    }
 }

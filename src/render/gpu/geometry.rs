@@ -7,6 +7,7 @@ use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::{Mat4, Vec3};
 
 use crate::draw::list::{DrawList, DrawMesh, DrawVertex, FeatureId};
+use crate::mesh::sink::VertexId;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::materials::MaterialRow;
 use crate::render::gpu::memory::Loader;
@@ -61,9 +62,9 @@ impl MergedMesh {
         owner: SurfaceOwner,
     ) {
         let is_moved = *world_from_mesh != Mat4::IDENTITY;
-        let mut known = HashMap::with_capacity(triangles.len().min(mesh.vertices.len()));
+        let mut known = KnownVertices::new(mesh.vertices.len(), triangles.len() * 3);
         for id in mesh.triangles[triangles.start as usize..triangles.end as usize].iter().flatten() {
-            let index = *known.entry(id.0).or_insert_with(|| {
+            let index = known.of(*id, || {
                 let mut corner = mesh.vertices[id.index()];
                 if is_moved {
                     let position = Vec3::from(corner.position).extend(1.0);
@@ -75,6 +76,35 @@ impl MergedMesh {
                 self.vertices.len() as u32 - 1
             });
             self.indices.push(index);
+        }
+    }
+}
+
+/// The places of a mesh's vertices in a merged mesh.
+enum KnownVertices {
+    /// By vertex; `u32::MAX` for none.
+    All(Vec<u32>),
+    /// Of a small part of a large mesh.
+    Few(HashMap<VertexId, u32>),
+}
+
+impl KnownVertices {
+    /// No places yet, of at most `used` of so many vertices.
+    fn new(vertices: usize, used: usize) -> Self {
+        if vertices <= used * 4 { Self::All(vec![u32::MAX; vertices]) } else { Self::Few(HashMap::new()) }
+    }
+
+    /// The place of a vertex; where it has none, that which `add` returns.
+    fn of(&mut self, id: VertexId, add: impl FnOnce() -> u32) -> u32 {
+        match self {
+            Self::Few(places) => *places.entry(id).or_insert_with(add),
+            Self::All(places) => {
+                let place = &mut places[id.index()];
+                if *place == u32::MAX {
+                    *place = add();
+                }
+                *place
+            }
         }
     }
 }
@@ -162,7 +192,7 @@ mod tests {
     use super::*;
     use crate::draw::color::Srgba;
     use crate::draw::list::MaterialId;
-    use crate::mesh::sink::{MeshSink, VertexId};
+    use crate::mesh::sink::MeshSink;
 
     #[test]
     fn merging_takes_only_the_vertices_in_use_and_moves_them_to_the_world() {

@@ -83,18 +83,8 @@ impl<'a> Loader<'a> {
     }
 
     fn take(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
-        let total = self.taken.get().saturating_add(bytes);
-        self.taken.set(total);
-        if total <= MOST_BYTES {
-            return Ok(());
-        }
-        let what = format!("the {} MiB that the scene takes with {what}", total >> 20);
-        Err(GpuError::TooLarge {
-            what,
-            limit: MOST_BYTES >> 20,
-            unit: "MiB per scene",
-            adapter: self.gpu.name().into(),
-        })
+        self.taken.set(self.taken.get().saturating_add(bytes));
+        self.gpu.check_total(what, self.taken.get())
     }
 }
 
@@ -114,6 +104,15 @@ impl Gpu {
             return Ok(());
         }
         Err(self.too_large(what(), limit.into(), "per side"))
+    }
+
+    /// Checks that a scene may take `total` bytes, the last of them for `what`.
+    pub(super) fn check_total(&self, what: &str, total: u64) -> Result<(), GpuError> {
+        if total <= MOST_BYTES {
+            return Ok(());
+        }
+        let what = format!("the {} MiB of the scene up to {what}", total >> 20);
+        Err(self.too_large(what, MOST_BYTES >> 20, "MiB for a scene"))
     }
 
     pub(super) fn too_large(&self, what: String, limit: u64, unit: &'static str) -> GpuError {

@@ -12,7 +12,6 @@ use std::ops::Range;
 
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::memory::MOST_BYTES;
 
 /// Bytes in a block: larger ones waste more where little is stored, smaller ones are changed more often while drawing.
 const BLOCK_BYTES: u64 = 16 << 20;
@@ -99,11 +98,7 @@ impl Arena {
         let block_size = size.max(BLOCK_BYTES.min(gpu.limits.max_buffer_size));
         let label = self.label;
         gpu.check_size(|| label.into(), block_size)?;
-        let total = self.size() + block_size;
-        if total > MOST_BYTES {
-            let what = format!("the {} MiB of {label}", total >> 20);
-            return Err(gpu.too_large(what, MOST_BYTES >> 20, "MiB"));
-        }
+        gpu.check_total(label, self.size() + block_size)?;
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: block_size,
@@ -183,7 +178,7 @@ mod tests {
         let mut state = 7u32;
         for _ in 0..2000 {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let size = u64::from(state >> 24) * 4;
+            let size = u64::from(state >> 24) * 4 + 4;
             if state & 4 == 0
                 && let Some(range) = free.take(size)
             {

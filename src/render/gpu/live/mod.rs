@@ -18,7 +18,7 @@
 mod arena;
 mod encode;
 mod patches;
-mod pick;
+pub mod pick;
 mod targets;
 
 use std::sync::Arc;
@@ -35,7 +35,7 @@ use crate::render::gpu::frame::{FrameGroup, FrameTextures};
 use crate::render::gpu::geometry::Geometry;
 use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::patches::PatchStore;
-use crate::render::gpu::live::pick::PickTarget;
+use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
 use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::Loader;
@@ -46,8 +46,6 @@ use crate::render::gpu::shadow::ShadowView;
 use crate::render::gpu::uniforms::{FrameScene, FrameUniforms};
 use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
-
-pub use crate::render::gpu::live::pick::PickedPoint;
 
 /// How finely frames are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
