@@ -9,5 +9,6 @@ mod grid;
 mod overlaps;
 mod render_cpu;
 mod render_gpu;
+mod render_live;
 mod render_parity;
 mod symbols;
