@@ -101,10 +101,8 @@ impl ViewerApp {
 
     pub(super) fn show_status(&mut self, ui: &mut Ui) {
         let Some(opened) = &self.opened else { return };
-        let text = match self.view.hovered {
-            Some(at) => {
-                PlaceText::of(&opened.scene, opened.walk.lattice(), map_position(&opened.scene, at)).line()
-            }
+        let text = match &self.view.hovered {
+            Some(place) => PlaceText::of(&opened.scene, place).line(),
             None => format!("{}   ? shows the keys", self.adapter),
         };
         Panel::bottom("status").show(ui, |ui| ui.label(text));
