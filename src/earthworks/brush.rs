@@ -383,8 +383,8 @@ fn paint<Near>(
     height: impl Fn(&Near, DVec2, f64) -> f64,
 ) -> BrushChanges {
     let mut changes = BrushChanges::default();
-    let cell = lattice.cell();
-    let world = |post: Post| post.grid() * cell;
+    let (first, cell) = (lattice.first().grid(), lattice.cell());
+    let world = |post: Post| (first + post.grid()) * cell;
     for tile in PostRect::within(lattice, &bounds).into_iter().flat_map(tiles) {
         if let Some(near) = near(&Rect { min: world(tile.first), max: world(tile.last) }) {
             let new = |post: Post, before: f32| height(&near, world(post), f64::from(before)) as f32;

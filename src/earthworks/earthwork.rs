@@ -9,9 +9,10 @@ use crate::earthworks::brush::{BrushChanges, Crater, Embankment, TireTrack, Tren
 use crate::earthworks::held_posts::HeldPosts;
 use crate::earthworks::level_ground::LevelGround;
 use crate::geom::rect::Rect;
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::volumes::Volumes;
 
 /// How far the batter of raised ground reaches, as a multiple of its reach on level ground: down a slope half as steep as
 /// the batter it reaches twice as far. Steeper slopes end it in a step.
@@ -96,7 +97,8 @@ impl Earthwork {
             }
             Self::Level(ground) => {
                 let PostRect { first, last } = ground.window(lattice)?;
-                Rect { min: first.grid() * lattice.cell(), max: last.grid() * lattice.cell() }
+                let world = |post: Post| (lattice.first().grid() + post.grid()) * lattice.cell();
+                Rect { min: world(first), max: world(last) }
             }
             Self::Raise(ground) => {
                 let bank = ground.embankment(lattice)?;
@@ -136,6 +138,54 @@ impl Earthwork {
     }
 }
 
+/// The earth that works move, and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MovedEarth {
+    /// Cut and filled by each work after the other.
+    pub volumes: Volumes,
+    /// Area of the posts that each work changes, square meters: a cell for each.
+    pub area_m2: f64,
+}
+
+/// Does works one after the other, but for the posts that `held` holds; pins none.
+pub fn dig(works: &[Earthwork], lattice: &mut Lattice, held: &HeldPosts) -> BrushChanges {
+    works.iter().fold(BrushChanges::default(), |changes, work| changes.and(work.apply(lattice, held)))
+}
+
+/// What [`dig`] would move; nothing is moved. Costs a copy of the ground around the works.
+pub fn foreseen(works: &[Earthwork], lattice: &Lattice, held: &HeldPosts) -> MovedEarth {
+    let mut moved = MovedEarth::default();
+    let Some(mut part) = ground_around(works, lattice) else { return moved };
+    for work in works {
+        let changes = work.apply(&mut part, held);
+        moved.area_m2 += changes.area_m2(&part);
+        moved.volumes += changes.volumes;
+    }
+    moved
+}
+
+/// A copy of the ground around works, as a part of the lattice; `None` where none reaches it.
+fn ground_around(works: &[Earthwork], lattice: &Lattice) -> Option<Lattice> {
+    let around = works
+        .iter()
+        .filter_map(|work| work.bounds(lattice))
+        .reduce(|a, b| Rect { min: a.min.min(b.min), max: a.max.max(b.max) })?;
+    // A cell more on every side, whose corners interpolation between posts reads.
+    let PostRect { first, last } =
+        PostRect::within(lattice, &around.grown(lattice.cell().max_element()))?.grown((1, 1), lattice);
+    // The diagonals of cells go by whether columns and rows are even.
+    let first = Post { column: first.column & !1, row: first.row & !1 };
+    let mut heights = Vec::new();
+    for row in first.row..=last.row {
+        let from = lattice.index(Post { column: first.column, row });
+        heights.extend_from_slice(&lattice.heights()[from..=from + (last.column - first.column) as usize]);
+    }
+    let whole = first.offset(lattice.first().column, lattice.first().row);
+    let frame = (lattice.origin(), lattice.cell());
+    let part = Lattice::part(frame, whole, last.column - first.column + 1, heights).ok()?;
+    Some(part.with_doublings_of(lattice))
+}
+
 impl RaisedGround {
     /// The embankment on the ground as it is; `None` where a point of the line lies off it or where there is no data.
     fn embankment(&self, lattice: &Lattice) -> Option<Embankment> {
@@ -162,7 +212,6 @@ impl RaisedGround {
 mod tests {
     use super::*;
     use crate::earthworks::pad::Batters;
-    use crate::terrain::lattice::Post;
 
     const SIDE: u32 = 121;
 
@@ -238,6 +287,25 @@ mod tests {
                 "{work:?}"
             );
             assert!(cost >= changed.len() as f64 && cost < 1e6, "{cost} for {work:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_foreseen_is_what_is_dug() {
+        let mut wet = slope();
+        (0..40).for_each(|row| wet.pin(Post { column: 58, row: row + 30 }, 100.0));
+        let held = HeldPosts::pinned(&wet);
+        let mut each: Vec<Vec<Earthwork>> = works().into_iter().map(|work| vec![work]).collect();
+        each.push(works());
+        for works in each {
+            let mut lattice = slope();
+            let foreseen = foreseen(&works, &lattice, &held);
+            let changes = dig(&works, &mut lattice, &held);
+            let difference = foreseen.volumes.cut_m3 - changes.volumes.cut_m3;
+            assert!(difference.abs() < 1e-6 * (1.0 + changes.volumes.cut_m3), "{works:?}");
+            let difference = foreseen.volumes.fill_m3 - changes.volumes.fill_m3;
+            assert!(difference.abs() < 1e-6 * (1.0 + changes.volumes.fill_m3), "{works:?}");
+            assert!(foreseen.area_m2 >= changes.pieces.len() as f64, "{works:?}");
         }
     }
 

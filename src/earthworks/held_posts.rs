@@ -40,7 +40,7 @@ impl HeldPosts {
     }
 
     /// Whether a post of the lattice is held. Where posts were put in between those of the runs
-    /// ([`crate::terrain::densify`]), those between held ones are held.
+    /// ([`crate::terrain::densify`]), those between held ones are held. `lattice` may be a part of the one of the runs.
     pub fn holds(&self, lattice: &Lattice, post: Post) -> bool {
         if self.is_empty() {
             return false;
@@ -51,6 +51,7 @@ impl HeldPosts {
             let high = if low << times == at { low } else { low + 1 };
             low..=high
         };
+        let post = post.offset(lattice.first().column, lattice.first().row);
         between(post.row).all(|row| between(post.column).all(|column| self.has(Post { column, row })))
     }
 

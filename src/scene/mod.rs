@@ -14,7 +14,6 @@ pub mod builder;
 pub mod building_colors;
 pub mod buildings;
 pub mod earthworks;
-pub mod edited_ground;
 mod facade;
 pub mod feature_labels;
 pub mod fences;

@@ -1,16 +1,19 @@
 //! All of the window but its surface: what is open, what is shown, what the user asked for.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use egui::{CentralPanel, Context, Frame, TextureId, Ui};
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 use crate::draw::list::FeatureId;
 use crate::pipeline::files;
 use crate::pipeline::picture::PictureSize;
 use crate::pipeline::view_snapshot::{self, ViewSnapshot};
 use crate::pipeline::viewing::{ViewedHeights, ViewerOptions};
+use crate::view::navigation::pose::{ViewPose, wrapped};
+use crate::view::navigation::{NavigationMode, TRANSITION_S};
 use crate::viewer::commands::{ViewCommand, pressed};
 use crate::viewer::drawing_job::DrawingJob;
 use crate::viewer::frame_times::FrameTimes;
@@ -23,7 +26,6 @@ use crate::viewer::panels::open::OpenPanel;
 use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::place::PlaceText;
 use crate::viewer::recent::RecentFiles;
-use crate::viewer::steering::SteeringMode;
 use crate::viewer::view_area::{ViewArea, ViewEvent};
 use crate::viewer::watch::{FileWatch, WatchState};
 
@@ -36,8 +38,6 @@ pub enum WindowRequest {
     FullScreen,
     /// Takes this size, in pixels.
     Resize(u32, u32),
-    /// Says which feature the picture shows at a pixel, to [`ViewerApp::picked`].
-    Pick(Vec2),
     /// Closes.
     Close,
 }
@@ -247,10 +247,11 @@ impl ViewerApp {
         self.requests.push(WindowRequest::Title(format!("{} · sandtable", files::file_name(&path))));
         match self.opened.as_ref().filter(|before| before.path == path) {
             Some(before) => {
-                let mut pose = before.steering.pose;
-                pose.eye.z *= opened.scene.scale.0 / before.scene.scale.0;
-                opened.steering.set_mode(before.steering.mode());
-                opened.steering.jump_to(pose);
+                let mut pose = before.navigator.pose();
+                pose.eye.z *= f64::from(opened.scene.scale.0 / before.scene.scale.0);
+                opened.navigator.set_mode(before.navigator.mode());
+                opened.navigator.place(pose, &|_| None);
+                opened.fov_y_rad = before.fov_y_rad;
                 let is_there =
                     |id: &FeatureId| id.index().is_some_and(|index| index < opened.scene.features.len());
                 self.tree.hidden.retain(is_there);
@@ -342,15 +343,13 @@ impl ViewerApp {
         }
     }
 
-    /// What the picture shows at the pixel of [`WindowRequest::Pick`]; `place` is the feature and the place in world space.
-    pub fn picked(&mut self, place: Option<(FeatureId, glam::Vec3)>) {
-        let Some(opened) = &self.opened else { return };
-        self.picked = Some(match place {
-            Some((feature, at)) => {
-                let map = view_snapshot::map_position(&opened.scene, at);
-                let place = PlaceText::of(&opened.scene, opened.walk.lattice(), map);
-                PickedText { feature: feature_text(opened, feature), place: Some(place) }
-            }
+    fn pick(&mut self, pixel: Vec2) {
+        let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        self.picked = Some(match opened.pick(&camera, pixel) {
+            Some(pick) => PickedText {
+                feature: feature_text(opened, pick.place.feature),
+                place: Some(PlaceText::of(&opened.scene, &pick)),
+            },
             None => PickedText { feature: "sky".to_owned(), place: None },
         });
     }
@@ -376,11 +375,11 @@ impl ViewerApp {
             ViewCommand::Home => self.go_to_camera(0),
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),
-            ViewCommand::Orbit => self.set_mode(SteeringMode::Orbit),
-            ViewCommand::Fly => self.set_mode(SteeringMode::Fly),
-            ViewCommand::Walk => self.set_mode(SteeringMode::Walk),
+            ViewCommand::Orbit => self.set_mode(NavigationMode::Orbit),
+            ViewCommand::Fly => self.set_mode(NavigationMode::Flight),
+            ViewCommand::Walk => self.set_mode(NavigationMode::OnFoot),
             ViewCommand::North => self.look(Some(0.0), None),
-            ViewCommand::Down => self.look(None, Some(std::f32::consts::FRAC_PI_2)),
+            ViewCommand::Down => self.look(None, Some(-FRAC_PI_2)),
             ViewCommand::Save
             | ViewCommand::Undo
             | ViewCommand::Redo
@@ -390,16 +389,16 @@ impl ViewerApp {
         ui.ctx().request_repaint();
     }
 
-    pub(super) fn set_mode(&mut self, mode: SteeringMode) {
+    pub(super) fn set_mode(&mut self, mode: NavigationMode) {
         if let Some(opened) = &mut self.opened {
-            opened.steering.set_mode(mode);
+            opened.navigator.set_mode(mode);
         }
     }
 
     pub(super) fn set_frozen(&mut self, frozen: bool) {
         self.detail.frozen = frozen;
         if let Some(opened) = &mut self.opened {
-            opened.frozen = frozen.then_some(opened.steering.pose);
+            opened.frozen = frozen.then_some(opened.navigator.pose());
         }
     }
 
@@ -410,26 +409,27 @@ impl ViewerApp {
         self.camera_number = if number > usize::MAX / 2 { count - 1 } else { number % count };
         let view = opened.scene.cameras[self.camera_number].clone();
         let size = (self.view.size.0.max(16), self.view.size.1.max(16));
-        match opened.pose_of(&view, size) {
-            Ok(pose) => opened.steering.go_to(pose),
-            Err(error) => self.notices.warn(opening_error(&error)),
+        if let Err(error) = opened.go_to_view(&view, size) {
+            self.notices.warn(opening_error(&error));
         }
     }
 
-    fn look(&mut self, azimuth_rad: Option<f32>, pitch_rad: Option<f32>) {
+    /// Looks in a direction, about the place in the middle of the picture.
+    fn look(&mut self, azimuth_rad: Option<f64>, pitch_rad: Option<f64>) {
         let Some((opened, camera)) = self.opened.as_mut().zip(self.view.camera) else { return };
         let pivot = opened.focus(&camera);
-        let pose = opened.steering.pose;
-        opened.steering.look(
-            pivot,
-            azimuth_rad.unwrap_or(pose.azimuth_rad),
-            pitch_rad.unwrap_or(pose.pitch_rad),
-        );
+        let before = opened.navigator.pose();
+        let pitch = pitch_rad.map_or(0.0, |pitch| pitch - before.pitch_rad);
+        let turn =
+            DVec2::new(azimuth_rad.map_or(0.0, |azimuth| wrapped(azimuth - before.azimuth_rad)), pitch);
+        let after = before.turned(turn);
+        let eye = pivot + after.from_frame(before.to_frame(before.eye - pivot));
+        opened.navigator.go_to(ViewPose { eye, ..after }, TRANSITION_S);
     }
 
     pub(super) fn note_view_event(&mut self, event: ViewEvent) {
         match event {
-            ViewEvent::Pick(pixel) => self.requests.push(WindowRequest::Pick(pixel)),
+            ViewEvent::Pick(pixel) => self.pick(pixel),
         }
     }
 }

@@ -6,6 +6,7 @@ use egui::{
 
 use crate::pipeline::files;
 use crate::pipeline::view_snapshot::map_position;
+use crate::view::navigation::NavigationMode;
 use crate::viewer::app::{ViewerApp, ViewerStage};
 use crate::viewer::commands::{ViewCommand, key_text};
 use crate::viewer::panels::detail::detail_panel;
@@ -15,16 +16,15 @@ use crate::viewer::panels::open::open_panel;
 use crate::viewer::panels::timing::timing_panel;
 use crate::viewer::panels::tree::{TreeEvent, tree_panel};
 use crate::viewer::place::PlaceText;
-use crate::viewer::steering::SteeringMode;
 
 /// The width of the sections at the side, in points.
 const SIDE_WIDTH: f32 = 290.0;
 
 /// The ways to move, as the menu names them.
-const MODES: [(&str, SteeringMode, ViewCommand); 3] = [
-    ("Orbit", SteeringMode::Orbit, ViewCommand::Orbit),
-    ("Fly", SteeringMode::Fly, ViewCommand::Fly),
-    ("Walk", SteeringMode::Walk, ViewCommand::Walk),
+const MODES: [(&str, NavigationMode, ViewCommand); 3] = [
+    ("Orbit", NavigationMode::Orbit, ViewCommand::Orbit),
+    ("Fly", NavigationMode::Flight, ViewCommand::Fly),
+    ("Walk", NavigationMode::OnFoot, ViewCommand::Walk),
 ];
 
 /// The commands that are buttons while a scene is open.
@@ -50,7 +50,7 @@ impl ViewerApp {
                 if let Some(opened) = &self.opened {
                     ui.separator();
                     for (text, mode, command) in MODES {
-                        let is_chosen = opened.steering.mode() == mode;
+                        let is_chosen = opened.navigator.mode() == mode;
                         let hover = format!("Key: {}", key_text(command));
                         if ui.selectable_label(is_chosen, text).on_hover_text(hover).clicked() {
                             commands.push(command);
@@ -101,10 +101,8 @@ impl ViewerApp {
 
     pub(super) fn show_status(&mut self, ui: &mut Ui) {
         let Some(opened) = &self.opened else { return };
-        let text = match self.view.hovered {
-            Some(at) => {
-                PlaceText::of(&opened.scene, opened.walk.lattice(), map_position(&opened.scene, at)).line()
-            }
+        let text = match &self.view.hovered {
+            Some(place) => PlaceText::of(&opened.scene, place).line(),
             None => format!("{}   ? shows the keys", self.adapter),
         };
         Panel::bottom("status").show(ui, |ui| ui.label(text));
@@ -175,6 +173,7 @@ impl ViewerApp {
                 ("MGRS", &place.grid),
                 ("Height", &place.height),
                 ("Slope", &place.slope),
+                ("Distance", &place.distance),
             ] {
                 if !value.is_empty() {
                     ui.weak(name);

@@ -1,58 +1,54 @@
-//! A place on the ground in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
+//! A place in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
 
-use glam::DVec2;
-
-use crate::geom::crs::Crs;
-use crate::geom::mgrs;
 use crate::pipeline::positions::format_position;
+use crate::pipeline::walk::pick::WalkPick;
 use crate::scene::SceneModel;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::gradient::{Gradient, GradientSurface, ground_gradient};
-use crate::terrain::query::{Interpolation, ground_height};
 
-/// The digits of each half of a grid reference: one meter.
-const MGRS_DIGITS: u8 = 5;
-
-/// What is known about a place.
+/// What is known about a place; a text is empty where there is nothing to say.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaceText {
     /// Map coordinates, with the name of their system.
     pub map: String,
-    /// Longitude and latitude on WGS 84, degrees; empty where the system has no place on Earth.
+    /// Longitude and latitude on WGS 84, degrees.
     pub geographic: String,
-    /// The reference in the military grid; empty where there is none.
+    /// The reference in the military grid.
     pub grid: String,
-    /// The ground's height, with its surface; or why there is none.
+    /// The ground's height, and that of what stands there, where it is another.
     pub height: String,
     /// The ground's slope, with the direction that it faces.
     pub slope: String,
+    /// How far away it is.
+    pub distance: String,
 }
 
+/// What stands less than this over ground, in meters, lies on it.
+const LYING_M: f64 = 0.05;
+
 impl PlaceText {
-    /// The place `at`, in map coordinates of `scene`, on the ground `lattice`, at the heights that are drawn.
-    pub fn of(scene: &SceneModel, lattice: &Lattice, at: DVec2) -> Self {
-        let place = scene.crs.transform(&Crs::wgs84(), at).ok();
-        let gradient = ground_gradient(lattice, GradientSurface::Planar, at);
-        let gradient = gradient.map(|Gradient(drawn)| Gradient(drawn / f64::from(scene.scale.0)));
+    /// What was picked in `scene`.
+    pub fn of(scene: &SceneModel, pick: &WalkPick) -> Self {
+        let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
+        let is_above =
+            pick.ground_m.is_none_or(|ground_m| (pick.place.elevation_m - ground_m).abs() > LYING_M);
+        let top = is_above.then(|| format!("{:.1} m (what stands there)", pick.place.elevation_m));
+        let slope = pick.slope_deg.map(|degrees| {
+            let toward = pick.aspect_deg.map(|aspect| format!(" toward {}", compass(aspect)));
+            format!("{degrees:.0}°{}", toward.unwrap_or_default())
+        });
         Self {
-            map: format!("{} ({})", format_position(&scene.crs, at), scene.crs.name()),
-            geographic: place.map(|place| format!("{:.5}°, {:.5}°", place.x, place.y)).unwrap_or_default(),
-            grid: place.and_then(|place| mgrs::reference(place, MGRS_DIGITS)).unwrap_or_default(),
-            height: match ground_height(lattice, Interpolation::Planar, at).height_m() {
-                Some(drawn_m) => format!("{:.1} m (ground)", scene.scale.elevation_m(drawn_m)),
-                None => "no height".to_owned(),
-            },
-            slope: gradient.map_or_else(
-                |_| String::new(),
-                |gradient| {
-                    let toward = gradient.aspect_deg().map(|degrees| format!(" toward {}", compass(degrees)));
-                    format!("{:.0}°{}", gradient.slope_deg(), toward.unwrap_or_default())
-                },
-            ),
+            map: format!("{} ({})", format_position(&scene.crs, pick.place.at), scene.crs.name()),
+            geographic: pick
+                .lonlat
+                .map(|place| format!("{:.5}°, {:.5}°", place.x, place.y))
+                .unwrap_or_default(),
+            grid: pick.mgrs.clone().unwrap_or_default(),
+            height: ground.into_iter().chain(top).collect::<Vec<_>>().join(", "),
+            slope: slope.unwrap_or_default(),
+            distance: format!("{:.0} m", pick.place.distance_m),
         }
     }
 
-    /// All of it in one line.
+    /// All of it in one line, but for the distance.
     pub fn line(&self) -> String {
         let parts = [&self.map, &self.geographic, &self.grid, &self.height];
         let parts = parts.into_iter().filter(|part| !part.is_empty()).cloned();
@@ -71,32 +67,34 @@ pub fn compass(degrees: f64) -> &'static str {
 mod tests {
     use super::*;
     use crate::pipeline::viewing::{ViewedHeights, open_to_view};
-    use crate::terrain::query::Surface;
+    use crate::pipeline::walk::Walk;
+    use crate::pipeline::walk::frame::WalkOptions;
+    use crate::terrain::query::{Interpolation, Surface};
+    use crate::terrain::sight::ray::Ray;
+    use glam::{DVec2, DVec3};
     use std::path::Path;
+    use std::sync::Arc;
 
     #[test]
     fn a_place_is_told_in_every_system_with_height_and_slope() {
-        let scene = open_to_view(Path::new("scenes/road.toml"), &[], ViewedHeights::AsStated, &|_| ())
-            .expect("sound");
+        let scene = open_to_view(Path::new("scenes/road.toml"), &[], ViewedHeights::AsStated, &|_| ());
+        let walk = Walk::new(Arc::new(scene.expect("sound")), WalkOptions::default());
+        let scene = walk.scene();
         let at = DVec2::new(750_000.0, 4_018_000.0);
-        let drawn = scene.scale.drawn(&scene.lattice);
-        let place = PlaceText::of(&scene, &drawn, at);
-        let height = scene.heights.height(Surface::Ground, Interpolation::Planar, at).height_m();
-        assert_eq!(place.height, format!("{:.1} m (ground)", height.expect("ground")));
+        let origin = (at - scene.lattice.origin()).extend(9_000.0);
+        let pick = walk.pick(Ray { origin, direction: -DVec3::Z }, None).expect("ground");
+        let place = PlaceText::of(scene, &pick);
+        let height_m = scene.heights.height(Surface::Ground, Interpolation::Planar, at).height_m();
+        assert_eq!(place.height, format!("{:.1} m (ground)", height_m.expect("ground")));
         assert_eq!(place.map, "750000, 4018000 (EPSG:32616)");
-        assert_eq!(place.geographic, "-84.23142°, 36.27477°");
         assert_eq!(place.grid, "16SGF5000018000");
-        assert!(place.slope.contains("° toward "), "{place:?}");
-        let outside = PlaceText::of(&scene, &drawn, at + 1e6);
-        assert_eq!((outside.height.as_str(), outside.slope.as_str()), ("no height", ""));
-        assert!(!outside.line().contains("slope"));
+        assert!(place.geographic.ends_with("°, 36.27477°"), "{place:?}");
+        assert!(place.slope.contains("° toward ") && place.line().contains("slope"), "{place:?}");
     }
 
     #[test]
     fn directions_have_the_nearest_point_of_the_compass() {
-        assert_eq!(
-            [0.0, 22.0, 23.0, 180.0, 337.0, 338.0, 359.9].map(compass),
-            ["N", "N", "NE", "S", "NW", "N", "N"]
-        );
+        let named = [0.0, 22.0, 23.0, 180.0, 337.0, 338.0, 359.9].map(compass);
+        assert_eq!(named, ["N", "N", "NE", "S", "NW", "N", "N"]);
     }
 }

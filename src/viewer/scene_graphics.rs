@@ -5,12 +5,10 @@
 use std::time::Instant;
 
 use egui::TextureId;
-use glam::{Vec2, Vec3};
 
-use crate::draw::list::FeatureId;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::live::{LiveOptions, LiveRenderer, PickedPoint};
+use crate::render::gpu::live::{LiveOptions, LiveRenderer};
 use crate::viewer::frame_times::{FrameLoad, FrameTime};
 use crate::viewer::graphics::WindowGraphics;
 use crate::viewer::opened::SceneFrame;
@@ -99,18 +97,6 @@ impl SceneGraphics {
         self.texture = Some(graphics.show_texture(self.texture, &view));
         self.picture = Some(ScenePicture { view: view.clone(), size });
         view
-    }
-
-    /// The feature and the place in world space at a pixel; `None` for the sky.
-    ///
-    /// # Errors
-    /// See [`GpuError`].
-    pub fn pick(&self, frame: &SceneFrame, pixel: Vec2) -> Result<Option<(FeatureId, Vec3)>, GpuError> {
-        let camera = &frame.camera;
-        let place = |PickedPoint { feature, depth_m }| {
-            (feature, camera.ray_origin(pixel) + camera.ray_through(pixel) * depth_m)
-        };
-        Ok(self.renderer.pick(camera, pixel)?.map(place))
     }
 }
 

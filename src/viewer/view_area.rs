@@ -1,19 +1,33 @@
 //! The scene's picture in the window: pointer and keys move the camera; labels lie over it.
 
-use egui::{Color32, EventFilter, Id, Painter, Pos2, Rect, Response, Role, Sense, TextureId, Ui, WidgetInfo};
-use egui::{PointerButton, pos2};
-use glam::{Vec2, Vec3};
+use egui::{
+    Color32, EventFilter, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId, Ui,
+    WidgetInfo, pos2,
+};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use crate::pipeline::walk::pick::WalkPick;
 use crate::scene::SceneLabel;
 use crate::view::camera::Camera;
+use crate::view::navigation::{NavigationMode, NavigationSteps};
 use crate::viewer::commands::{HeldMotion, held};
 use crate::viewer::labels::{self, LabelLayer, LabelPicture};
 use crate::viewer::opened::OpenedScene;
 
+/// Degrees that dragging over the height of the picture turns.
+const DEG_PER_PICTURE: f64 = 110.0;
+/// Degrees a second that a held key turns.
+const DEG_PER_SECOND: f64 = 50.0;
+/// How many times as near a held key comes in a second.
+const NEARER_PER_SECOND: f64 = 4.0;
+/// How many times as fast keys are with Shift.
+const FAST: f64 = 4.0;
+/// The longest time of one frame that keys count, in seconds: after a pause nothing leaps.
+const LONGEST_STEP_S: f64 = 0.1;
 /// How much nearer a point of the wheel's way comes.
-const ZOOM_PER_POINT: f32 = 0.004;
+const ZOOM_PER_POINT: f64 = 0.004;
 /// A double click goes to this share of the distance.
-const APPROACH: f32 = 0.35;
+const APPROACH: f64 = 0.35;
 
 /// The view's state between frames.
 #[derive(Default)]
@@ -22,11 +36,13 @@ pub struct ViewArea {
     pub size: (u32, u32),
     /// The camera of the frame before.
     pub camera: Option<Camera>,
-    /// The place under the pointer.
-    pub hovered: Option<Vec3>,
+    /// The ground under the pointer.
+    pub hovered: Option<WalkPick>,
     /// What is shown over the picture.
     pub shows_labels: bool,
-    grabbed: Option<Vec3>,
+    grabbed: Option<DVec3>,
+    steps: NavigationSteps,
+    pace: f64,
     labels: LabelLayer,
 }
 
@@ -40,7 +56,7 @@ pub enum ViewEvent {
 impl ViewArea {
     /// A view with labels.
     pub fn new() -> Self {
-        Self { shows_labels: true, ..Self::default() }
+        Self { shows_labels: true, pace: 1.0, ..Self::default() }
     }
 
     /// The view's place among what can have the keys.
@@ -66,9 +82,9 @@ impl ViewArea {
             Ok(camera) => self.take_input(ui, opened, &response, &camera),
             Err(_) => None,
         };
-        let seconds = ui.input(|input| input.stable_dt);
-        opened.advance(seconds);
-        if opened.steering.is_under_way() {
+        let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
+        let has_moved = opened.advance(seconds * self.pace, std::mem::take(&mut self.steps));
+        if has_moved || opened.navigator.is_on_its_way() {
             ui.ctx().request_repaint();
         }
         if let Some(texture) = texture {
@@ -95,33 +111,31 @@ impl ViewArea {
         };
         let pointer = ui.input(|input| input.pointer.latest_pos());
         let hovered = response.contains_pointer().then_some(pointer).flatten();
-        self.hovered = hovered.and_then(|at| opened.ground_at(camera, to_pixel(at)));
-        if response.drag_started()
-            || ui.input(|input| input.pointer.any_pressed()) && response.contains_pointer()
-        {
+        self.hovered = hovered.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
+        let is_pressed = ui.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
+        if is_pressed {
             response.request_focus();
         }
-        let keys = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
         if response.has_focus() {
+            let keys =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
             ui.ctx().memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), keys));
         }
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin()).or(pointer);
-            let place = origin.and_then(|at| opened.ground_at(camera, to_pixel(at)));
-            self.grabbed = Some(place.unwrap_or_else(|| opened.focus(camera)));
+            let place = origin.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
+            self.grabbed = Some(place.map_or_else(|| opened.focus(camera), |place| place.world));
         }
         if response.dragged()
             && let (Some(grabbed), Some(at)) = (self.grabbed, pointer)
         {
-            let drag = ui.input(|input| input.pointer.delta()) * scale;
-            let drag = Vec2::new(drag.x, drag.y);
             let is_moved =
                 !response.dragged_by(PointerButton::Primary) || ui.input(|input| input.modifiers.shift);
             if is_moved {
-                let to = to_pixel(at);
-                opened.steering.pan(grabbed, camera.ray_through(to - drag), camera.ray_through(to));
-            } else if drag != Vec2::ZERO {
-                opened.steering.turn(drag, camera.size().1 as f32, Some(grabbed));
+                opened.drag(grabbed, camera, to_pixel(at));
+            } else {
+                let drag = ui.input(|input| input.pointer.delta()) * scale;
+                self.turn_by(opened, grabbed, DVec2::new(f64::from(drag.x), f64::from(drag.y)));
             }
         }
         if response.drag_stopped() {
@@ -129,15 +143,25 @@ impl ViewArea {
         }
         self.take_wheel(ui, opened, hovered.is_some(), camera);
         self.take_keys(ui, opened, response, camera);
-        let clicked = response.clicked().then(|| response.interact_pointer_pos());
         if response.double_clicked()
-            && let Some(place) = self.hovered
+            && let Some(place) = &self.hovered
         {
-            let distance_m = camera.eye().distance(place) * APPROACH;
-            opened.steering.go_toward(place, distance_m);
+            opened.go_toward(place.world, place.place.distance_m * APPROACH);
         }
         // Enter and the space bar click the middle.
+        let clicked = response.clicked().then(|| response.interact_pointer_pos());
         clicked.map(|at| ViewEvent::Pick(to_pixel(at.unwrap_or(response.rect.center()))))
+    }
+
+    /// Turns by a drag in pixels: about what was grabbed, which follows the pointer, or the head, which follows it too.
+    fn turn_by(&self, opened: &mut OpenedScene, grabbed: DVec3, drag: DVec2) {
+        let radians = drag / f64::from(self.size.1.max(1)) * DEG_PER_PICTURE.to_radians();
+        match opened.navigator.mode() {
+            NavigationMode::Orbit => opened.turn(Some(grabbed), DVec2::new(radians.x, -radians.y)),
+            NavigationMode::OnFoot | NavigationMode::Flight => {
+                opened.turn(None, DVec2::new(-radians.x, radians.y));
+            }
+        }
     }
 
     fn take_wheel(&self, ui: &Ui, opened: &mut OpenedScene, is_hovered: bool, camera: &Camera) {
@@ -145,37 +169,52 @@ impl ViewArea {
             return;
         }
         let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        let zoom = libm::expf(scroll * ZOOM_PER_POINT) * pinch;
-        if zoom != 1.0 {
-            let place = self.hovered.unwrap_or_else(|| opened.focus(camera));
-            opened.steering.zoom(place, zoom);
+        let nearer = libm::exp(f64::from(scroll) * ZOOM_PER_POINT) * f64::from(pinch);
+        if nearer != 1.0 {
+            let place = self.hovered.as_ref().map(|place| place.world);
+            opened.zoom(place.unwrap_or_else(|| opened.focus(camera)), nearer.recip());
             ui.ctx().request_repaint();
         }
     }
 
-    fn take_keys(&self, ui: &Ui, opened: &mut OpenedScene, response: &Response, camera: &Camera) {
+    fn take_keys(&mut self, ui: &Ui, opened: &mut OpenedScene, response: &Response, camera: &Camera) {
         if ui.ctx().text_edit_focused() {
             return;
         }
-        let mut motions = ui.input(held);
         // Arrows go from button to button where one of them has the keys.
         let has_others_focus = ui.ctx().memory(|memory| memory.focused()).is_some_and(|id| id != response.id);
-        if has_others_focus {
-            let is_letter = |motion: &HeldMotion| {
-                use HeldMotion::{LookDown, LookUp, TurnLeft, TurnRight};
-                !matches!(motion, TurnLeft | TurnRight | LookUp | LookDown)
+        let (is_fast, seconds) = ui.input(|input| (input.modifiers.shift, f64::from(input.stable_dt)));
+        self.pace = if is_fast { FAST } else { 1.0 };
+        let seconds = seconds.min(LONGEST_STEP_S) * self.pace;
+        let turn = (DEG_PER_SECOND * seconds).to_radians();
+        for motion in ui.input(held) {
+            ui.ctx().request_repaint();
+            let turned = match motion {
+                HeldMotion::TurnLeft => DVec2::new(-turn, 0.0),
+                HeldMotion::TurnRight => DVec2::new(turn, 0.0),
+                HeldMotion::LookUp => DVec2::new(0.0, turn * 0.6),
+                HeldMotion::LookDown => DVec2::new(0.0, -turn * 0.6),
+                _ => DVec2::ZERO,
             };
-            motions.retain(is_letter);
+            if turned != DVec2::ZERO && !has_others_focus {
+                opened.turn(None, turned);
+            }
+            match motion {
+                HeldMotion::Forward => self.steps.forward += 1.0,
+                HeldMotion::Backward => self.steps.forward -= 1.0,
+                HeldMotion::Right => self.steps.right += 1.0,
+                HeldMotion::Left => self.steps.right -= 1.0,
+                HeldMotion::Up => self.steps.up += 1.0,
+                HeldMotion::Down => self.steps.up -= 1.0,
+                HeldMotion::ZoomIn => {
+                    opened.zoom(opened.focus(camera), libm::pow(NEARER_PER_SECOND, -seconds))
+                }
+                HeldMotion::ZoomOut => {
+                    opened.zoom(opened.focus(camera), libm::pow(NEARER_PER_SECOND, seconds))
+                }
+                _ => {}
+            }
         }
-        if motions.is_empty() {
-            return;
-        }
-        let (is_fast, seconds) = ui.input(|input| (input.modifiers.shift, input.stable_dt));
-        let focus = opened.focus(camera);
-        let lattice = std::sync::Arc::clone(opened.walk.lattice());
-        let ground = |at: Vec3| crate::viewer::ground_ray::ground_z(&lattice, at);
-        opened.steering.hold(&motions, is_fast, seconds, focus, &ground);
-        ui.ctx().request_repaint();
     }
 
     fn show_labels(&mut self, ui: &Ui, rect: Rect, opened: &OpenedScene, camera: &Camera) {

@@ -137,12 +137,11 @@ impl ShownWindow {
 }
 
 impl ShownWindow {
-    /// Records the scene's picture, and picks what was clicked at. What fails is said in the window, which stays.
+    /// Records the scene's picture. What fails is said in the window, which stays.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         frame: &SceneFrame,
-        requests: &[WindowRequest],
         app: &mut ViewerApp,
     ) -> Option<(FrameTime, FrameLoad)> {
         let mut scene = match self.scene.take() {
@@ -157,14 +156,6 @@ impl ShownWindow {
         };
         let options = LiveOptions { wireframe: app.shows_edges() };
         let drawn = scene.draw(&mut self.graphics, encoder, frame, &options);
-        for request in requests {
-            if let WindowRequest::Pick(pixel) = request {
-                match scene.pick(frame, *pixel) {
-                    Ok(place) => app.picked(place),
-                    Err(error) => app.warn(error_text(&error)),
-                }
-            }
-        }
         match drawn {
             Ok(drawn) => {
                 self.scene = Some(scene);
@@ -279,8 +270,7 @@ impl ViewerWindow {
         let mut encoder = shown.graphics.device.create_command_encoder(&label);
         let requests = self.app.take_requests();
         let frame = self.app.scene_frame();
-        let drawn =
-            frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &requests, &mut self.app));
+        let drawn = frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &mut self.app));
         let panels = PaintedPanels {
             primitives: &primitives,
             textures: output.textures_delta,
@@ -306,7 +296,6 @@ impl ViewerWindow {
                     // What the system grants arrives as an event.
                     let _ = shown.window.request_inner_size(PhysicalSize::new(width, height));
                 }
-                WindowRequest::Pick(_) => {}
                 WindowRequest::Close => event_loop.exit(),
             }
         }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::DVec2;
+use sandtable::message::chain::error_text;
 use sandtable::pipeline::scene_file::{open_scene, open_scene_ground};
 use sandtable::scene::SceneModel;
 use sandtable::terrain::lattice::{Lattice, Post};
@@ -16,7 +17,7 @@ fn built(tables: &str) -> Result<SceneModel, String> {
     let scratch = Scratch::new();
     std::fs::copy(Path::new(ROOT).join("assets/jacksboro/hills.png"), scratch.at("hills.png"))
         .expect("copied");
-    let ground = "[terrain]\ndem = \"hills.png\"\nheight_scale = 0.1\ncell = 10\n";
+    let ground = "[terrain]\ndem = \"hills.png\"\nheight_scale = 0.1\ncell = 10\ncrs = \"EPSG:32616\"\n";
     scratch.write(
         "shots.geojson",
         r#"{"type":"FeatureCollection","features":[
@@ -24,7 +25,7 @@ fn built(tables: &str) -> Result<SceneModel, String> {
             {"type":"Feature","properties":{"name":"small","r":30},"geometry":{"type":"Point","coordinates":[800,700]}}]}"#,
     );
     let path = scratch.write("scene.toml", format!("{ground}{tables}"));
-    let scene = open_scene(&path, &[], &|_| {}).map_err(|failure| format!("{failure}"))?;
+    let scene = open_scene(&path, &[], &|_| {}).map_err(|failure| error_text(&failure))?;
     let ground = open_scene_ground(&path, &[]).expect("as the scene");
     let same = ground.heights.snapshot().lattice().heights() == scene.lattice.heights();
     assert!(same, "the ground that height queries build is that of the scene");
@@ -48,7 +49,7 @@ fn world(lattice: &Lattice, post: Post) -> DVec2 {
 #[test]
 fn a_crater_of_every_point_of_a_file_has_the_size_of_its_property() {
     let scene = sound(
-        "[[earthwork]]\nkind = \"crater\"\nfile = \"shots.geojson\"\nradius = \"r\"\ndepth = 20\nrim = 5\n",
+        "[[earthwork]]\nkind = \"crater\"\nfile = \"shots.geojson\"\ncrs = \"EPSG:32616\"\nradius = \"r\"\ndepth = 20\nrim = 5\n",
     );
     let rows = &scene.report.earthworks;
     assert_eq!(rows.iter().map(|row| row.name.as_str()).collect::<Vec<_>>(), ["large", "small"]);
@@ -112,7 +113,7 @@ fn works_too_small_or_off_the_model_are_noted_and_too_many_refused() {
     let huge = format!("[[earthwork]]\nkind = \"trench\"\nwidth = 9000\npoints = [{}]\n", ring.join(", "));
     let message = built(&huge).err().expect("refused");
     assert!(
-        message.contains("moving the earth takes more than") && message.contains("scene.toml:5"),
+        message.contains("moving the earth takes more than") && message.contains("scene.toml:9"),
         "{message}"
     );
     assert!(started.elapsed().as_secs() < 20);

@@ -18,7 +18,7 @@ use crate::pipeline::scene_file::OpenSceneError;
 use crate::scene::SceneModel;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::build;
-use crate::scene::edited_ground::EditedGround;
+use crate::terrain::lattice::Lattice;
 
 /// Decimals of coordinates that are written in degrees: a millimeter.
 const DEGREE_DECIMALS: i32 = 8;
@@ -206,7 +206,8 @@ impl SceneEditor {
         Ok(forward)
     }
 
-    /// The earth that an edit would move; the edit is not made. `ground` is that of the text.
+    /// The earth that an edit would move; the edit is not made. `ground` holds the elevations as they are now, true to
+    /// scale.
     ///
     /// # Errors
     /// See [`EditError`].
@@ -214,7 +215,7 @@ impl SceneEditor {
         &self,
         edit: &SceneEdit,
         scene: &SceneModel,
-        ground: &mut EditedGround,
+        ground: &Lattice,
     ) -> Result<EditPreview, EditError> {
         let text = self.edited(edit, &scene.crs)?;
         let assets = Assets::new(&self.source.path, &self.source.allowed)?;

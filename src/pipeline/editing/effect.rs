@@ -8,17 +8,17 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{Document, LabelTable};
 use crate::description::features::ModelPlacement;
 use crate::description::words::Footing;
-use crate::earthworks::earthwork::Earthwork;
+use crate::earthworks::earthwork::{Earthwork, MovedEarth, foreseen};
 use crate::geom::rect::Rect;
 use crate::pipeline::editing::edit::{EditPlace, SceneEdit};
 use crate::pipeline::editing::scene_text::number_at;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::DefaultCounts;
 use crate::scene::earthworks::{NamedEarthwork, of_table};
-use crate::scene::edited_ground::{DugGround, EditedGround};
 use crate::scene::sources::Sources;
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{Placement, SceneModel};
+use crate::terrain::lattice::Lattice;
 
 /// How far a model's pad may move ground beside its footprint, in cells: as far as its batters reach, and the pad's margin.
 const PAD_REACH_CELLS: f64 = 66.0;
@@ -30,10 +30,12 @@ const PAD_MARGIN: f32 = 1.3;
 pub enum EditEffect {
     /// The picture stays; views or the texts around the picture may differ.
     Views,
-    /// [`EditedGround::dig`] these: the ground, and what lies on it, changes. What stands there keeps its height, and
-    /// what is computed from the ground stays as it is, until the scene is built anew.
+    /// [`dig`](crate::earthworks::earthwork::dig) these, beside [`SceneModel::held`]: the ground, and what lies on it,
+    /// changes. What stands there keeps its height, and what is computed from the ground stays as it is, until the scene
+    /// is built anew.
     Dig(Vec<Earthwork>),
-    /// [`EditedGround::take_back`] the last digging; where there is none since the scene was built, build it anew.
+    /// The posts of the last digging get their former heights; where there is none since the scene was built, it is built
+    /// anew.
     TakeBack,
     /// A model stands elsewhere or looks elsewhere.
     Move(MovedModel),
@@ -121,12 +123,12 @@ pub(super) fn preview(
     documents: [&Document; 2],
     assets: &Assets,
     scene: &SceneModel,
-    ground: &mut EditedGround,
+    ground: &Lattice,
 ) -> Result<EditPreview, Diagnostic> {
     let is_earthwork = matches!(edit, SceneEdit::Add(table) if table.name == "earthwork");
     let works = if is_earthwork { added_works(documents, assets, scene)? } else { Vec::new() };
-    let DugGround { volumes, area_m2, .. } = ground.foreseen(&works);
-    let cell_m = scene.lattice.cell().max_element();
+    let MovedEarth { volumes, area_m2 } = foreseen(&works, ground, &scene.held);
+    let cell_m = ground.cell().max_element();
     Ok(EditPreview {
         cut_m3: volumes.cut_m3,
         fill_m3: volumes.fill_m3,

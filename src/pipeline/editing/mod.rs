@@ -16,3 +16,4 @@ pub mod effect;
 pub mod reload;
 mod scene_text;
 mod text_change;
+pub mod tool;
