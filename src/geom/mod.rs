@@ -25,6 +25,7 @@ pub mod rect;
 pub mod rect_tree;
 pub mod region;
 pub mod segment;
+pub mod self_crossing;
 pub mod simplify;
 pub mod smooth;
 pub mod spline;

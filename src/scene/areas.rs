@@ -13,6 +13,8 @@ use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
+use crate::geom::region::{self, PolygonRings};
+use crate::geom::self_crossing::count_crossings;
 use crate::ribbon::area;
 use crate::ribbon::border::{Dashes, border, edge};
 use crate::ribbon::plan::PlanMesh;
@@ -57,6 +59,14 @@ pub fn lay(
     Ok(())
 }
 
+/// The polygons that a polygon's rings enclose; they cross nothing.
+fn without_crossings(shape: &Polygon) -> Vec<PolygonRings> {
+    match count_crossings(shape.rings().map(Vec::as_slice), 0) {
+        Some(_) => vec![shape.rings().cloned().collect()],
+        None => region::even_odd(shape.rings().map(Vec::as_slice)),
+    }
+}
+
 /// One area, ready to be laid.
 struct AreaPatch {
     fill: PlanMesh,
@@ -75,8 +85,11 @@ impl AreaPatch {
         }
         let width_m = table.border_width;
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
-        area::fill(&shape.exterior, &shape.holes, texture_m(cover, width_m), &mut fill);
-        let rings: Vec<&[DVec2]> = shape.rings().map(Vec::as_slice).collect();
+        let parts = without_crossings(shape);
+        for part in &parts {
+            area::fill(&part[0], &part[1..], texture_m(cover, width_m), &mut fill);
+        }
+        let rings: Vec<&[DVec2]> = parts.iter().flatten().map(Vec::as_slice).collect();
         let edge = edge_of(table, cover, &rings, &fill.plan);
         let dashes = match border_of(table, cover) {
             Border::None => None,

@@ -1,6 +1,6 @@
 //! Lines and polygons of a feature, from inline points or a vector file, in world coordinates.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -13,6 +13,8 @@ use crate::description::scalar::Scalar;
 use crate::description::selection::Selection;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
+use crate::geom::self_crossing::count_crossings;
+use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
 use crate::scene::world_frame::WorldFrame;
@@ -21,6 +23,9 @@ use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
+
+/// The most crossings of a scene's polygons with themselves: a hundred megabytes and a second of resolving them.
+const MOST_CROSSINGS: usize = 100_000;
 
 /// A file's name, and the layer and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
@@ -32,6 +37,8 @@ pub struct Sources<'a> {
     /// The files that the document may name.
     pub assets: &'a Assets,
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
+    /// How many crossings more the scene's polygons may have with themselves.
+    crossings_left: Cell<usize>,
 }
 
 /// A shape with the properties of its feature.
@@ -45,7 +52,7 @@ pub struct Sourced<T> {
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        Self { frame, assets, layers: RefCell::default() }
+        Self { frame, assets, layers: RefCell::default(), crossings_left: Cell::new(MOST_CROSSINGS) }
     }
 
     /// The lines of a source.
@@ -71,11 +78,40 @@ impl<'a> Sources<'a> {
             Geometry::Lines(lines) => lines.iter().cloned().filter_map(closed).collect(),
             Geometry::Points(_) => Vec::new(),
         })?;
-        self.place_all(source, polygons, |polygon, place| {
+        let placed = self.place_all(source, polygons, |polygon, place| {
             let ring = |ring: Vec<DVec2>| ring.into_iter().map(place).collect::<Result<Vec<_>, _>>();
             let holes = polygon.holes.into_iter().map(ring).collect::<Result<_, _>>()?;
             Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
-        })
+        })?;
+        placed.iter().try_for_each(|polygon| self.check_crossings(source, polygon))?;
+        Ok(placed)
+    }
+
+    /// Refuses a polygon that would take too long to resolve, before anything is spent on it.
+    fn check_crossings(&self, source: &FeatureSource, polygon: &Sourced<Polygon>) -> Result<(), Diagnostic> {
+        let Polygon { exterior, holes } = &polygon.shape;
+        let rings = std::iter::once(exterior).chain(holes).map(Vec::as_slice);
+        let left = self.crossings_left.get();
+        match count_crossings(rings, left) {
+            Some(crossings) => {
+                self.crossings_left.set(left - crossings);
+                Ok(())
+            }
+            None => {
+                let name = polygon.attributes.name(None);
+                let name = if name.is_empty() {
+                    "a polygon".to_owned()
+                } else {
+                    format!("polygon '{}'", quoted(&name))
+                };
+                let message = format!(
+                    "{name} of {} vertices crosses itself too often: the polygons of a scene are resolved where they cross themselves up to {MOST_CROSSINGS} times in all",
+                    exterior.len()
+                );
+                let help = "mend it, for example with: ogr2ogr -makevalid out.geojson IN";
+                Err(self.frame.document.error_at(source.span(), message).with_help(help))
+            }
+        }
     }
 
     /// The points of a source.

@@ -102,3 +102,32 @@ fn a_road_thinner_than_any_is_refused_at_its_place() {
     let said = crate::cli::run_in(scratch.folder(), &["check", "thin.toml"]).failed(1);
     assert!(said.contains("thin.toml:5") && said.contains("0.01"), "{said}");
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_ring_that_crosses_itself_a_million_times_is_refused_by_name() {
+    let scratch = Scratch::new();
+    let hill = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3 4 5 6 7 8 9\n";
+    scratch.write("hill.asc", hill);
+    let count = 2001;
+    let vertex = |index: usize| {
+        let angle = (index * 1000 % count) as f64 / count as f64 * std::f64::consts::TAU;
+        format!("[{},{}]", 1500.0 + 900.0 * angle.cos(), 1500.0 + 900.0 * angle.sin())
+    };
+    let ring: Vec<String> = (0..=count).map(|index| vertex(index % count)).collect();
+    let feature = format!(
+        "{{\"type\":\"Feature\",\"properties\":{{\"name\":\"star\"}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[{}]]}}}}",
+        ring.join(",")
+    );
+    scratch.write("star.geojson", feature);
+    for (table, keys) in [("building", "height = 10"), ("area", "cover = \"forest\""), ("lake", "level = 3")]
+    {
+        let scene = format!(
+            "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\n[[{table}]]\nfile = \"star.geojson\"\ncrs = \"EPSG:32616\"\n{keys}\n"
+        );
+        scratch.write("star.toml", scene);
+        let (code, text) = run_within(600, &scratch, &["check", "star.toml"]);
+        assert_eq!(code, Some(1), "{table}: {text}");
+        assert!(text.contains("star.toml:5") && text.contains("polygon 'star' of 2001 vertices"), "{text}");
+    }
+}
