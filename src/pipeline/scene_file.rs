@@ -32,23 +32,24 @@ pub enum OpenSceneError {
 }
 
 fn no_phase(name: &str, names: &[String]) -> String {
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let remedy = match names[..] {
-        [] => "it has no [[phase]]".to_owned(),
-        _ => remedy(name, &names, "its phases are").replace(" or ", " and "),
-    };
-    format!("the scene has no phase '{}'; {remedy}", quoted(name))
+    match names {
+        [] => format!("the scene has no phase '{}'; it has no [[phase]]", quoted(name)),
+        names => none_named("phase", name, names),
+    }
 }
 
 fn no_flight(name: Option<&str>, names: &[String]) -> String {
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    match (name, &names[..]) {
-        (Some(name), [_, ..]) => {
-            let remedy = remedy(name, &names, "its flights are").replace(" or ", " and ");
-            format!("the scene has no flight '{}'; {remedy}", quoted(name))
-        }
+    match (name, names) {
+        (Some(name), [_, ..]) => none_named("flight", name, names),
         _ => "the scene has no [[flight]]; add one with a name and `points`".to_owned(),
     }
+}
+
+/// No `noun` is called `name`, but these are there.
+fn none_named(noun: &str, name: &str, names: &[String]) -> String {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let remedy = remedy(name, &names, &format!("its {noun}s are")).replace(" or ", " and ");
+    format!("the scene has no {noun} '{}'; {remedy}", quoted(name))
 }
 
 /// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
