@@ -21,6 +21,7 @@ pub mod recut;
 pub mod setting;
 mod sight;
 mod solids;
+pub mod standing;
 mod symbols;
 mod table;
 mod uprights;
@@ -28,7 +29,7 @@ pub mod voids;
 
 use std::sync::Arc;
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use crate::description::words::TableTop;
 use crate::draw::ground::GroundMap;
@@ -131,7 +132,7 @@ fn listed(
     progress: &dyn Fn(&'static str),
 ) -> ListedScene {
     let camera = match viewer {
-        Viewer::Camera(camera) => Some(camera),
+        Viewer::Camera(camera) | Viewer::Around(camera) => Some(camera),
         Viewer::Anyone => None,
     };
     let to_sun = scene.sunlight.to_sun(camera);
@@ -140,15 +141,12 @@ fn listed(
         ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
         ListPurpose::Shapes => Arc::new(GroundMap::level()),
     };
-    let lighting = Lighting { to_sun, ..Lighting::default() };
+    let lighting = match camera {
+        Some(camera) => lighting(scene, camera, to_sun),
+        None => Lighting { to_sun, ..Lighting::default() },
+    };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
-    if let Some((camera, setting)) = camera.zip(setting) {
-        let (min, max) = scene.bounds;
-        list.lighting.haze =
-            haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
-        list.lighting.backdrop = setting.backdrop();
-    }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
@@ -169,6 +167,14 @@ fn listed(
         airspace::add(&mut list, scene);
     }
     ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
+}
+
+/// The light, the haze and the backdrop of a picture; `to_sun` is the unit vector toward the sun.
+pub fn lighting(scene: &SceneModel, camera: &Camera, to_sun: Vec3) -> Lighting {
+    let setting = PictureSetting::new(camera, scene.bounds);
+    let (lighting, (min, max)) = (Lighting::default(), scene.bounds);
+    let haze = haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
+    Lighting { to_sun, haze, backdrop: setting.backdrop(), ..lighting }
 }
 
 /// The ground as `camera` shows it, off by at most the scene's own tolerance.

@@ -113,13 +113,44 @@ pub(super) struct Symbols<'a> {
     pub shows: BTreeMap<FeatureId, RibbonShow>,
 }
 
+/// A symbol in plan.
+pub(super) struct PlannedSymbol<'a> {
+    /// The line.
+    pub symbol: &'a LineSymbol,
+    /// Its outline; empty for the narrowest.
+    pub casing: PlanMesh,
+    /// Its inside.
+    pub fill: PlanMesh,
+}
+
 /// The symbols that `camera` sees, on the ground that it is shown.
 pub(super) fn symbols<'a>(
     scene: &'a SceneModel,
     camera: &Camera,
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
-    let view = SymbolView::new(scene, camera);
+    let mesh = |plan: &PlanMesh| {
+        let mut mesh = DrawMesh::default();
+        drape(plan, displayed, &mut mesh);
+        mesh
+    };
+    let draped = |PlannedSymbol { symbol, casing, fill }: PlannedSymbol<'a>| DrapedSymbol {
+        symbol,
+        casing: mesh(&casing),
+        fill: mesh(&fill),
+    };
+    let (draped, shows) = planned(scene, camera, LineScale::new(camera), draped);
+    Symbols { draped, shows }
+}
+
+/// What `finish` makes of each symbol that `camera` sees by `scale`, and how the ribbons beside them show.
+pub(super) fn planned<'a, T: Send>(
+    scene: &'a SceneModel,
+    camera: &Camera,
+    scale: LineScale<'_>,
+    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
+    let view = SymbolView::new(scene, camera, scale);
     let seen = |symbol: &'a LineSymbol| {
         let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
@@ -136,12 +167,7 @@ pub(super) fn symbols<'a>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let draped = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
-        let mesh = |plan: &PlanMesh| {
-            let mut mesh = DrawMesh::default();
-            drape(plan, displayed, &mut mesh);
-            mesh
-        };
+    let plan = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
         let runs = if symbol.surface == RibbonSurface::Track {
             seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect()
         } else {
@@ -150,17 +176,17 @@ pub(super) fn symbols<'a>(
         let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
             runs.iter().for_each(|run| stroke_run(run, part, &mut plan));
-            mesh(&plan)
+            plan
         };
         let casing = if symbol.widest_px() >= LEAST_CASED_PX {
             strokes(SymbolPart::Casing)
         } else {
-            DrawMesh::default()
+            PlanMesh::default()
         };
-        DrapedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) }
+        finish(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) })
     };
     let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
-    Symbols { draped: narrow.map(draped).collect(), shows }
+    (narrow.map(plan).collect(), shows)
 }
 
 /// A vertex of a line in view.
@@ -235,7 +261,8 @@ impl LinePoint {
 
 struct SymbolView<'a> {
     camera: &'a Camera,
-    frustum: Frustum,
+    /// `None` where the eye turns around.
+    frustum: Option<Frustum>,
     ground: FullResolution<'a>,
     extent: Rect,
     /// The lowest and the highest ground.
@@ -246,16 +273,16 @@ struct SymbolView<'a> {
 }
 
 impl<'a> SymbolView<'a> {
-    fn new(scene: &'a SceneModel, camera: &'a Camera) -> Self {
+    fn new(scene: &'a SceneModel, camera: &'a Camera, scale: LineScale<'a>) -> Self {
         let (min, max) = scene.bounds;
         let lattice = scene.ground().lattice();
         Self {
             camera,
-            frustum: Frustum::new(camera),
+            frustum: scale.frustum(),
             ground: FullResolution { lattice },
             extent: lattice.extent(),
             z: [min.z, max.z],
-            scale: LineScale::new(camera),
+            scale,
             water: scene.water(),
         }
     }
@@ -289,7 +316,8 @@ impl<'a> SymbolView<'a> {
         let reach = Rect::around([from.at.truncate(), to.at.truncate()]).grown(margin_m);
         let [low, high] = self.z;
         let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
-        if !(reach.meets(&self.extent) && self.frustum.may_see(min, max)) {
+        let is_out = self.frustum.is_some_and(|frustum| !frustum.may_see(min, max));
+        if is_out || !reach.meets(&self.extent) {
             return;
         }
         let length_m = from.at.distance(to.at);
