@@ -64,12 +64,11 @@ impl FrameGroup {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let constants = loader.buffer(|| "the camera".into(), usage, size_of::<FrameUniforms>() as u64)?;
         let FrameTextures { ground, ramp, imagery, shadows } = textures;
-        let views = [&ground.posts, &ground.coarse, ramp, &shadows.pages, &shadows.texels, imagery].map(view);
-        let [posts, coarse, ramp, pages, texels, imagery] =
-            views.each_ref().map(wgpu::BindingResource::TextureView);
+        let views = [&ground.posts, ramp, &shadows.pages, &shadows.texels, imagery].map(view);
+        let [posts, ramp, pages, texels, imagery] = views.each_ref().map(wgpu::BindingResource::TextureView);
         let sampler = sampler(loader.gpu);
         let sampler = wgpu::BindingResource::Sampler(&sampler);
-        let resources = [constants.as_entire_binding(), posts, coarse, ramp, pages, texels, imagery, sampler];
+        let resources = [constants.as_entire_binding(), posts, ramp, pages, texels, imagery, sampler];
         let group = bind(loader.gpu, "frame", &layouts.frame, resources);
         Ok(Self { group, constants })
     }

@@ -1,15 +1,16 @@
 //! The ground map as textures: the map itself and the coarser levels from which far ground is read.
 //!
-//! They are not mip levels of the device, which would halve rounding down: `n` posts become `n / 2 + 1`. The coarser
-//! levels lie side by side in a texture of their own:
+//! They are not mip levels of the device, which would halve rounding down: `n` posts become `n / 2 + 1`. All posts lie one
+//! after the other, row by row and level by level, in a texture whose rows have nothing to do with theirs:
 //!
 //! ```text
-//!   posts          coarse
-//! ┌───────────┐  ┌──────┬───┬─┐
-//! │  level 0  │  │  1   │ 2 │…│
-//! │           │  │      ├───┴─┘
-//! └───────────┘  └──────┘
+//! ┌─────────────────┐
+//! │0000000000000000 │  level 0 …
+//! │0000000011111122 │  … then 1, 2, …
+//! └─────────────────┘
 //! ```
+//!
+//! So a map may have more columns than a texture, and one reading serves all levels.
 //!
 //! Texels are integers that hold the bits of floats. Every adapter can read them and none may filter them, so that the
 //! interpolation in the shader is the same everywhere.
@@ -30,75 +31,98 @@ pub const MOST_LEVELS: usize = 24;
 /// Posts are sent in portions of about this many bytes, so that a large map is never held three times.
 const PORTION_BYTES: usize = 16 << 20;
 
+/// The binary logarithm of the most texels in a row.
+const MOST_ROW_BITS: u32 = 13;
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlacedLevel {
     pub size: PostCount,
-    /// Its first column in the texture that holds it.
+    /// Its first post among those of all levels; less than 2^32 wherever a texture holds them.
     pub first: u32,
 }
 
 #[derive(Debug)]
 pub struct GroundTextures {
-    /// Level 0.
     pub posts: wgpu::Texture,
-    pub coarse: wgpu::Texture,
+}
+
+/// Fills a texture texel by texel.
+struct TexelWriter<'a> {
+    loader: &'a Loader<'a>,
+    texture: &'a wgpu::Texture,
+    row: u32,
+    /// What does not fill a row yet.
+    pending: Vec<[u32; 4]>,
+}
+
+/// The binary logarithm of the texels in a row of the texture, on an adapter with textures of at most `largest` a side.
+pub fn row_bits(largest: u32) -> u32 {
+    largest.max(1).ilog2().min(MOST_ROW_BITS)
 }
 
 /// The levels of a map of `size`, down to two posts a side.
 pub fn levels(size: PostCount) -> Vec<PlacedLevel> {
     let next = |last: &PlacedLevel| {
-        let first = if last.size == size { 0 } else { last.first + last.size.columns };
+        let first = last.first.saturating_add(last.size.columns.saturating_mul(last.size.rows));
         last.size.halved().map(|size| PlacedLevel { size, first })
     };
     successors(Some(PlacedLevel { size, first: 0 }), next).take(MOST_LEVELS).collect()
 }
 
 impl GroundTextures {
-    /// Sends a checked map to the device; without a map, one texel that nothing reads.
+    /// Sends a checked map to the device; without a map, texels that nothing reads.
     pub fn upload(loader: &Loader<'_>, map: Option<&GroundMap>) -> Result<Self, GpuError> {
         let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
-        let one = PostCount { columns: 1, rows: 1 };
-        let posts = levels.first().map_or(one, |level| level.size);
-        let coarse = match (levels.get(1), levels.last()) {
-            (Some(finest), Some(last)) => {
-                PostCount { columns: last.first + last.size.columns, ..finest.size }
-            }
-            _ => one,
-        };
-        let what = || format!("the {}×{} posts of the ground map", posts.columns, posts.rows);
-        let create = |PostCount { columns, rows }| {
-            let format = wgpu::TextureFormat::Rgba32Uint;
-            loader.texture(what, &texture("ground posts", columns, rows, format))
-        };
-        let textures = Self { posts: create(posts)?, coarse: create(coarse)? };
+        let posts_of = |level: &PlacedLevel| u64::from(level.size.columns) * u64::from(level.size.rows);
+        let count = levels.iter().map(posts_of).sum::<u64>().max(1);
+        let width = 1 << row_bits(loader.gpu.limits.max_texture_dimension_2d);
+        let rows = u32::try_from(count.div_ceil(u64::from(width))).unwrap_or(u32::MAX);
+        let what = || format!("the {count} posts of the ground map and its coarser levels");
+        let format = wgpu::TextureFormat::Rgba32Uint;
+        let posts = loader.texture(what, &texture("ground posts", width, rows, format))?;
         if let Some(map) = map {
-            write(loader, &textures.posts, &levels[0], &map.posts)?;
-            for (place, level) in levels[1..].iter().zip(coarser_levels(map)) {
-                write(loader, &textures.coarse, place, &level.posts)?;
+            let mut writer = TexelWriter { loader, texture: &posts, row: 0, pending: Vec::new() };
+            writer.write(&map.posts)?;
+            for (_, level) in levels[1..].iter().zip(coarser_levels(map)) {
+                writer.write(&level.posts)?;
             }
+            writer.finish()?;
         }
-        Ok(textures)
+        Ok(Self { posts })
     }
 }
 
-fn write(
-    loader: &Loader<'_>,
-    texture: &wgpu::Texture,
-    place: &PlacedLevel,
-    posts: &[GroundPost],
-) -> Result<(), GpuError> {
-    let stride = place.size.columns as usize;
-    let portion = (PORTION_BYTES / (stride * size_of::<[u32; 4]>())).max(1);
-    let mut to = texture.as_image_copy();
-    to.origin.x = place.first;
-    for posts in posts.chunks(portion * stride) {
-        let texels: Vec<[u32; 4]> = posts.par_iter().with_min_len(1024).map(packed).collect();
-        let rows = (posts.len() / stride) as u32;
-        loader.gpu.write(to, place.size.columns, rows, cast_slice(&texels));
-        loader.count_sent((texels.len() * size_of::<[u32; 4]>()) as u64)?;
-        to.origin.y += rows;
+impl TexelWriter<'_> {
+    fn write(&mut self, posts: &[GroundPost]) -> Result<(), GpuError> {
+        for posts in posts.chunks(PORTION_BYTES / size_of::<[u32; 4]>()) {
+            self.pending.par_extend(posts.par_iter().with_min_len(1024).map(packed));
+            self.send()?;
+        }
+        Ok(())
     }
-    Ok(())
+
+    /// Sends the rows that are full.
+    fn send(&mut self) -> Result<(), GpuError> {
+        let width = self.texture.width();
+        let rows = self.pending.len() as u32 / width;
+        if rows == 0 {
+            return Ok(());
+        }
+        let texels = (rows * width) as usize;
+        let mut to = self.texture.as_image_copy();
+        to.origin.y = self.row;
+        self.loader.gpu.write(to, width, rows, cast_slice(&self.pending[..texels]));
+        self.loader.count_sent((texels * size_of::<[u32; 4]>()) as u64)?;
+        self.pending.drain(..texels);
+        self.row += rows;
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), GpuError> {
+        let width = self.texture.width() as usize;
+        self.pending.resize(self.pending.len().next_multiple_of(width), [0; 4]);
+        self.send()
+    }
 }
 
 /// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10, from −1 (woods) to 1.
@@ -119,14 +143,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn levels_shrink_to_two_posts_a_side_and_lie_side_by_side() {
+    fn levels_shrink_to_two_posts_a_side_and_lie_one_after_the_other() {
         let levels = |columns, rows| levels(PostCount { columns, rows });
         let placed = levels(9, 4);
         let sizes: Vec<_> =
             placed.iter().map(|level| (level.size.columns, level.size.rows, level.first)).collect();
-        assert_eq!(sizes, [(9, 4, 0), (5, 3, 0), (3, 2, 5), (2, 2, 8)]);
+        assert_eq!(sizes, [(9, 4, 0), (5, 3, 36), (3, 2, 51), (2, 2, 57)]);
         assert_eq!(levels(1, 1).len(), 1);
         assert!(levels(u32::MAX, 2).len() <= MOST_LEVELS);
+        assert_eq!([1, 2048, 16_384, 40_000].map(row_bits), [0, 11, 13, 13]);
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod ground;
 pub mod live;
 mod materials;
 mod memory;
+mod parts;
 mod passes;
 mod pipelines;
 mod plan;
@@ -37,8 +38,10 @@ use crate::render::gpu::adapter::{Gpu, GpuApi};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
 use crate::render::gpu::geometry::Geometry;
+use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::{Loader, view};
+use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::{PassViews, ScenePass};
 use crate::render::gpu::pipelines::{COLOR, FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
 use crate::render::gpu::plan::{PipelineKey, Plan};
@@ -65,6 +68,9 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
     list.check()?;
     let places = TexturePlaces::new(list, TextureScope::Items, &gpu.limits);
     let plan = Plan::new(list, &places, |_| true);
+    let shadows = Shadows::new(list, camera);
+    let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+    let parts = ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows);
     let (layouts, color, feature) = gpu.guarded("building its shaders", || {
         let layouts = Layouts::new(gpu);
         let shader = shader(gpu);
@@ -73,12 +79,11 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         };
         let mut color = target(GpuPass::Color, COLOR, gpu.samples);
         let mut feature = target(GpuPass::Feature, FEATURE, 1);
-        let [color_keys, feature_keys] = plan.keys();
+        let [color_keys, feature_keys] = plan.keys(parts);
         color.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]));
         feature.make(gpu, feature_keys);
         Ok((layouts, color, feature))
     })?;
-    let shadows = Shadows::new(list, camera);
     let loaded = gpu.guarded("loading the scene", || {
         let loader = Loader::new(gpu);
         let targets = Targets::new(&loader, camera.size())?;
@@ -86,7 +91,8 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         let frame = FrameGroup::new(&loader, &layouts, &textures)?;
         let shadows = ShadowView::both(&shadows);
         let ground = list.ground.as_deref();
-        let scene = FrameScene { ground, lighting: &list.lighting, shadows };
+        let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
+        let scene = FrameScene { ground, lighting: &list.lighting, shadows, row_bits };
         frame.write(gpu, &FrameUniforms::new(scene, camera));
         let materials = Materials::upload(&loader, &layouts, list, &places)?;
         Ok((targets, frame, materials, Geometry::upload(&loader, list, &plan)?))
@@ -106,11 +112,11 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         };
         let mut pass = ScenePass::new(colors.begin(&mut encoder, &frame.group), &color, &materials);
         pass.sky();
-        pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)));
+        pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)), parts);
         drop(pass);
         let features = PassViews { label: "features", color: &seen, resolved: None, depth: &depth };
         let mut pass = ScenePass::new(features.begin(&mut encoder, &frame.group), &feature, &materials);
-        pass.draw(&geometry, &plan.features);
+        pass.draw(&geometry, &plan.features, parts);
         drop(pass);
         targets.read(gpu, encoder)
     })

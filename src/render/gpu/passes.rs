@@ -5,6 +5,7 @@
 
 use crate::render::gpu::geometry::Geometry;
 use crate::render::gpu::materials::{ArrayId, Materials};
+use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::pipelines::Pipelines;
 use crate::render::gpu::plan::{DrawCall, PipelineKey};
 
@@ -68,9 +69,15 @@ impl<'e, 'a> ScenePass<'e, 'a> {
         }
     }
 
-    pub fn draw<'c>(&mut self, geometry: &Geometry, calls: impl IntoIterator<Item = &'c DrawCall>) {
+    /// Draws calls of a picture that has the parts `picture`.
+    pub fn draw<'c>(
+        &mut self,
+        geometry: &Geometry,
+        calls: impl IntoIterator<Item = &'c DrawCall>,
+        picture: ShaderParts,
+    ) {
         for call in calls {
-            if self.set(call.key(), call.array) {
+            if self.set(call.key(picture), call.array) {
                 geometry.draw(&mut self.pass, &call.shape);
             }
         }

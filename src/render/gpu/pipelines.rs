@@ -122,7 +122,6 @@ impl Layouts {
                 &[
                     (both, uniform(size_of::<FrameUniforms>())),
                     (fragment, texture(wgpu::TextureSampleType::Uint)),
-                    (fragment, texture(wgpu::TextureSampleType::Uint)),
                     (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
                     (fragment, texture(wgpu::TextureSampleType::Uint)),
                     (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
@@ -186,7 +185,9 @@ impl Pipelines {
         let nearer_px = if key.rule == DepthRule::Drape { f64::from(DRAPE_NEARER_PX) } else { 0.0 };
         let vertex_constants = [("nearer", nearer)];
         let textured = f64::from(u8::from(key.textured));
-        let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px), ("textured", textured)];
+        let parts = f64::from(key.parts.0);
+        let fragment_constants =
+            [("nearer", nearer), ("nearer_px", nearer_px), ("textured", textured), ("parts", parts)];
         let is_sky = key.source == VertexSource::None;
         let (vertex, buffers) = match key.source {
             VertexSource::Merged => ("merged_vertex", &MERGED_BUFFERS[..]),

@@ -20,6 +20,7 @@ use glam::Vec3;
 use crate::draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
 use crate::draw::material::AlphaMode;
 use crate::render::gpu::materials::{ArrayId, TexturePlaces};
+use crate::render::gpu::parts::ShaderParts;
 use crate::view::camera::Camera;
 
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
@@ -65,6 +66,8 @@ pub struct DrawCall {
     pub shape: DrawShape,
     /// The array that holds all textures it shows.
     pub array: ArrayId,
+    /// The parts that its materials need.
+    parts: ShaderParts,
     rule: DepthRule,
     two_sided: bool,
     masked: bool,
@@ -79,6 +82,8 @@ pub struct PipelineKey {
     pub masked: bool,
     /// Whether a texture is read.
     pub textured: bool,
+    /// None where the color is not drawn.
+    pub parts: ShaderParts,
 }
 
 /// A range of an item's triangles in a merged buffer; parts lie there one after the other.
@@ -116,6 +121,7 @@ impl PipelineKey {
         two_sided: true,
         masked: false,
         textured: false,
+        parts: ShaderParts::NONE,
     };
 
     /// Bare ground by patches.
@@ -125,17 +131,26 @@ impl PipelineKey {
         two_sided: false,
         masked: false,
         textured: false,
+        parts: ShaderParts::NONE,
     };
+
+    /// The same with parts of the shading.
+    pub fn with_parts(self, parts: ShaderParts) -> Self {
+        Self { parts, ..self }
+    }
 }
 
 impl DrawCall {
-    pub fn key(&self) -> PipelineKey {
+    /// What it is drawn with in a picture that has the parts `picture`.
+    pub fn key(&self, picture: ShaderParts) -> PipelineKey {
         let source = match self.shape {
             DrawShape::Merged { .. } => VertexSource::Merged,
             DrawShape::Placed { .. } => VertexSource::Placed,
         };
         let Self { rule, two_sided, masked, array, .. } = *self;
-        PipelineKey { source, rule, two_sided, masked, textured: array != ArrayId::NONE }
+        let is_colored = self.parts != ShaderParts::NONE;
+        let parts = if is_colored { self.parts.in_picture(picture) } else { ShaderParts::NONE };
+        PipelineKey { source, rule, two_sided, masked, textured: array != ArrayId::NONE, parts }
     }
 
     /// Adds `next` to this call if one call draws both, this one first.
@@ -146,9 +161,10 @@ impl DrawCall {
         match (&mut self.shape, &next.shape) {
             (
                 DrawShape::Merged { chunk, indices },
-                DrawShape::Merged { chunk: next_chunk, indices: next },
-            ) if is_alike && shares_array && chunk == next_chunk && indices.end == next.start => {
-                (indices.end, self.array) = (next.end, array);
+                DrawShape::Merged { chunk: next_chunk, indices: added },
+            ) if is_alike && shares_array && chunk == next_chunk && indices.end == added.start => {
+                (indices.end, self.array) = (added.end, array);
+                self.parts = self.parts.with(next.parts);
                 true
             }
             _ => false,
@@ -191,11 +207,11 @@ impl Plan {
         order.into_iter().map(|(_, call)| call).collect()
     }
 
-    /// The keys of all calls for the color, and of all for the features.
-    pub fn keys(&self) -> [Vec<PipelineKey>; 2] {
-        let transparent = self.transparent.iter().map(|each| each.call.key());
-        let color = self.color.iter().map(DrawCall::key).chain(transparent);
-        [color.collect(), self.features.iter().map(DrawCall::key).collect()]
+    /// The keys of all calls for the color in a picture that has the parts `picture`, and of all for the features.
+    pub fn keys(&self, picture: ShaderParts) -> [Vec<PipelineKey>; 2] {
+        let transparent = self.transparent.iter().map(|each| &each.call);
+        let color = self.color.iter().chain(transparent).map(|call| call.key(picture));
+        [color.collect(), self.features.iter().map(|call| call.key(picture)).collect()]
     }
 
     /// Adds a run of items of one mesh.
@@ -223,15 +239,19 @@ impl Plan {
         let is_transparent = material.alpha == AlphaMode::Blend && !is_draped;
         let rule = if is_draped { DepthRule::Drape } else { DepthRule::Solid };
         let (array, two_sided) = (places.array_of(item.material), material.two_sided);
-        let feature = DrawCall { shape, array, rule, two_sided, masked: false };
         let masked = matches!(material.alpha, AlphaMode::Mask(_));
+        let parts = ShaderParts::of_material(material);
+        let color = DrawCall { shape, array, parts, rule, two_sided, masked };
+        // An opaque surface hides what is behind it, whatever its texture.
+        let array = if material.alpha == AlphaMode::Opaque { ArrayId::NONE } else { array };
+        let feature = DrawCall { array, parts: ShaderParts::NONE, masked: false, ..color.clone() };
+        push(&mut self.features, feature);
         if is_transparent {
-            let call = DrawCall { rule: DepthRule::Blend, ..feature.clone() };
+            let call = DrawCall { rule: DepthRule::Blend, ..color };
             self.transparent.push(TransparentCall { center: center_of(list, item), call });
         } else {
-            push(&mut self.color, DrawCall { masked, ..feature.clone() });
+            push(&mut self.color, color);
         }
-        push(&mut self.features, feature);
     }
 }
 

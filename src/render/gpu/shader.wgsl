@@ -31,7 +31,7 @@ struct Frame {
     cover: vec4f,         // tree line and snow line in meters, true rise over drawn (0: no cover), 1 where the north is shady
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
-    ground_levels: array<vec4u, 24>, // columns, rows, first column in `ground_coarse` (level 0: in `ground_posts`)
+    ground_levels: array<vec4u, 24>, // columns, rows, first post of all; binary logarithm of the texels in a row
     shadows: array<ShadowView, 2>, // of the sun, of the sky
 }
 
@@ -71,20 +71,18 @@ const MOST_TAPS = 8.0;
 const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-// One texel a post: height, slope east and slope north as bits of f32; the visibilities of the sun in 12 bits and of the
-// sky in 10, and water in 10, from -1 (woods) to 1.
+// One texel a post, row by row and level by level: height, slope east and slope north as bits of f32; the visibilities of
+// the sun in 12 bits and of the sky in 10, and water in 10, from -1 (woods) to 1.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
-// The same for all smaller levels, side by side.
-@group(0) @binding(2) var ground_coarse: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
-@group(0) @binding(3) var ramp_stops: texture_2d<f32>;
+@group(0) @binding(2) var ramp_stops: texture_2d<f32>;
 // One texel a page: its number from 1 or 0, the greatest heights of solids and of the ground as bits of f32.
-@group(0) @binding(4) var shadow_pages: texture_2d<u32>;
+@group(0) @binding(3) var shadow_pages: texture_2d<u32>;
 // The heights of solids and of the ground, page by page.
-@group(0) @binding(5) var shadow_texels: texture_2d<f32>;
+@group(0) @binding(4) var shadow_texels: texture_2d<f32>;
 // The draped picture, colors multiplied by alpha.
-@group(0) @binding(6) var imagery_texture: texture_2d<f32>;
-@group(0) @binding(7) var imagery_sampler: sampler;
+@group(0) @binding(5) var imagery_texture: texture_2d<f32>;
+@group(0) @binding(6) var imagery_sampler: sampler;
 // The bits of every material's `Surface`; the first is the bare ground's.
 @group(1) @binding(0) var material_table: texture_2d<u32>;
 // Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
@@ -104,6 +102,24 @@ override nearer: f32 = 1.0;
 override nearer_px: f32 = 0.0;
 // Whether any of the materials drawn has a texture: reading one costs even where it is not shown.
 override textured: bool = true;
+// The parts of the shading that anything drawn can show: bits of the constants below. Software drivers run both sides of
+// a branch that is not decided when the pipeline is made.
+override parts: u32 = 0xffffffffu;
+
+const GROUND_COLOR_PART = 1u;
+const GROUND_LIGHT_PART = 2u;
+const OWN_LIGHT_PART = 4u;
+const HATCHING_PART = 8u;
+const WATER_PART = 16u;
+const NATURAL_PART = 32u;
+const IMAGERY_PART = 64u;
+const COVER_PART = 128u;
+const GRAIN_PART = 256u;
+const CONTOURS_PART = 512u;
+const SUN_SHADOWS_PART = 1024u;
+const SKY_SHADOWS_PART = 2048u;
+const HAZE_PART = 4096u;
+const MAP_WATER_PART = 8192u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -222,12 +238,10 @@ struct Post {
 }
 
 fn post_at(at: vec2u, level: u32) -> Post {
-    var texel: vec4u;
-    if level == 0u {
-        texel = textureLoad(ground_posts, at, 0);
-    } else {
-        texel = textureLoad(ground_coarse, at + vec2u(frame.ground_levels[level].z, 0u), 0);
-    }
+    let place = frame.ground_levels[level];
+    let index = place.z + at.y * place.x + at.x;
+    let row_bits = frame.ground_levels[0].w;
+    let texel = textureLoad(ground_posts, vec2u(index & ((1u << row_bits) - 1u), index >> row_bits), 0);
     let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
     let visibility = shares / vec3f(4095.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
     return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0), vec2f(0.0));
@@ -530,7 +544,7 @@ fn face_rise(normal: vec3f) -> vec2f {
 
 // ShadowMap::sun.
 fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
-    if frame.shadows[0].toward.w == 0.0 {
+    if !has(SUN_SHADOWS_PART) || frame.shadows[0].toward.w == 0.0 {
         return 1.0;
     }
     let offset = world - frame.shadows[0].eye.xyz;
@@ -561,7 +575,7 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
 
 // ShadowMap::contact.
 fn contact_share(world: vec3f, on_solid: bool) -> f32 {
-    if frame.shadows[1].toward.w == 0.0 {
+    if !has(SKY_SHADOWS_PART) || frame.shadows[1].toward.w == 0.0 {
         return 1.0;
     }
     let place = shadow_place(1u, world - frame.shadows[1].eye.xyz);
@@ -710,54 +724,88 @@ fn surface(in: Varying) -> vec4f {
     return material.base_color * in.color * texel;
 }
 
+fn has(part: u32) -> bool {
+    return (parts & part) != 0u;
+}
+
+// The color of bare ground; water_share is that of the water that mirrors the sky, unlit that of an unshaded picture.
+struct GroundColor {
+    color: vec3f,
+    water_share: f32,
+    unlit: f32,
+}
+
+fn ground_color(at: vec2f, post: Post, right: vec2f, down: vec2f, grain: f32) -> GroundColor {
+    var seen = GroundColor(ramp_at(post.height), 0.0, 0.0);
+    if has(COVER_PART) && frame.cover.z > 0.0 {
+        let pixel = max(length(right), length(down));
+        seen.color = with_cover(seen.color, post, cover_noise(at, pixel));
+    }
+    if has(MAP_WATER_PART) {
+        seen.color = mix(seen.color, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
+    }
+    seen.color *= grain;
+    if has(MAP_WATER_PART) {
+        // ShorePixel and WaterColor.
+        let change = length(vec2f(dot(post.water, right), dot(post.water, down)));
+        let away = (post.visibility.z - 0.5) / max(change, 1e-4);
+        let water = clamp(away + 0.5, 0.0, 1.0);
+        let shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
+        let tint = water_tint(post.height, clamp((post.visibility.z - 0.75) * 4.0, 0.0, 1.0));
+        seen.color = mix(seen.color, tint, water) * shore;
+        seen.water_share = water;
+    }
+    let land = 1.0 - seen.water_share;
+    if has(IMAGERY_PART) {
+        let draped = draped_at(at, right, down);
+        seen.color = mix(seen.color, draped.rgb, draped.a);
+        seen.water_share *= 1.0 - draped.a;
+        seen.unlit = select(draped.a, 0.0, frame.imagery_size.w > 0.5);
+    }
+    if has(CONTOURS_PART) {
+        let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
+        let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
+        seen.color = mix(seen.color, frame.contour.rgb, cover * land);
+    }
+    return seen;
+}
+
 fn shade(in: Varying, front: bool) -> vec4f {
     let flags = material.flags.x;
     var color = surface(in);
     let normal = vertex_normal(in, front);
-    var light = vec3f(0.0);
-    var unlit = 0.0;
-    var water_share = select(0.0, 1.0, (flags & WATER) != 0u);
+    var light = color.rgb;
+    var water_share = 0.0;
+    if has(WATER_PART) {
+        water_share = select(0.0, 1.0, (flags & WATER) != 0u);
+    }
     let right = dpdx(in.world.xy);
     let down = dpdy(in.world.xy);
     let face = cross(dpdx(in.world), dpdy(in.world));
-    if (flags & (FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO)) != 0u {
+    let pixel = max(length(right), length(down));
+    let from_ground = FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO;
+    if has(GROUND_COLOR_PART | GROUND_LIGHT_PART) && (flags & from_ground) != 0u {
         let post = ground_at(in.world.xy, right, down);
-        let pixel = max(length(right), length(down));
         var grain = 1.0;
-        if (flags & (FROM_GROUND_ALBEDO | NATURAL)) != 0u && frame.contour_shape.w > 0.5 {
+        if has(GRAIN_PART) && (flags & (FROM_GROUND_ALBEDO | NATURAL)) != 0u {
             grain = ground_grain(in.world.xy, pixel, length(post.slope));
         }
-        if (flags & NATURAL) != 0u {
+        if has(NATURAL_PART) && (flags & NATURAL) != 0u {
             color = vec4f(color.rgb * grain, color.a);
         }
-        if (flags & FROM_GROUND_ALBEDO) != 0u {
-            let per_pixel = length(vec2f(dot(post.gradient, right), dot(post.gradient, down)));
-            let cover = contour_cover(post.height, per_pixel) * frame.contour.a;
-            // ShorePixel and WaterColor.
-            let change = length(vec2f(dot(post.water, right), dot(post.water, down)));
-            let away = (post.visibility.z - 0.5) / max(change, 1e-4);
-            let water = clamp(away + 0.5, 0.0, 1.0);
-            let shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
-            let tint = water_tint(post.height, clamp((post.visibility.z - 0.75) * 4.0, 0.0, 1.0));
-            var land = ramp_at(post.height);
-            if frame.cover.z > 0.0 {
-                land = with_cover(land, post, cover_noise(in.world.xy, pixel));
-            }
-            land = mix(land, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
-            land *= grain;
-            let bare = mix(land, tint, water) * shore;
-            let draped = draped_at(in.world.xy, right, down);
-            let covered = mix(bare, draped.rgb, draped.a);
-            color = vec4f(mix(covered, frame.contour.rgb, cover * (1.0 - water)), 1.0);
-            water_share = water * (1.0 - draped.a);
-            unlit = select(draped.a, 0.0, frame.imagery_size.w > 0.5);
+        var unlit = 0.0;
+        if has(GROUND_COLOR_PART) && (flags & FROM_GROUND_ALBEDO) != 0u {
+            let seen = ground_color(in.world.xy, post, right, down, grain);
+            color = vec4f(seen.color, 1.0);
+            water_share = seen.water_share;
+            unlit = seen.unlit;
         }
-        if (flags & FROM_GROUND_NORMAL) != 0u {
+        if has(GROUND_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) != 0u {
             let received = vec2f(sun_share(in.world, face, false), contact_share(in.world, false));
             light = mix(relief_lit(color.rgb, post, in.world.xy, received), color.rgb, unlit);
         }
     }
-    if (flags & FROM_GROUND_NORMAL) == 0u {
+    if has(OWN_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) == 0u {
         var received = vec2f(1.0, 1.0);
         if (flags & IN_ALL_LIGHT) == 0u {
             received.y = contact_share(in.world, true);
@@ -767,12 +815,17 @@ fn shade(in: Varying, front: bool) -> vec4f {
         }
         light = lit(color.rgb, normal, received);
     }
-    if (flags & HATCHING) != 0u {
+    if has(HATCHING_PART) && (flags & HATCHING) != 0u {
         light = color.rgb;
     }
-    light = mirror_sky(light, from_eye(in.world), water_share, in.world.xy, max(length(right), length(down)));
-    let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
-    return vec4f(mix(frame.haze.rgb, light, clear), select(1.0, color.a, (flags & BLEND) != 0u));
+    if has(WATER_PART | MAP_WATER_PART) {
+        light = mirror_sky(light, from_eye(in.world), water_share, in.world.xy, pixel);
+    }
+    if has(HAZE_PART) {
+        let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
+        light = mix(frame.haze.rgb, light, clear);
+    }
+    return vec4f(light, select(1.0, color.a, (flags & BLEND) != 0u));
 }
 
 // The depth buffer's value from what the rasterizer knows exactly at a pixel's center: 1 / d or, with parallel rays, the

@@ -87,6 +87,8 @@ pub struct FrameScene<'a> {
     pub ground: Option<&'a GroundMap>,
     pub lighting: &'a Lighting,
     pub shadows: [ShadowView; 2],
+    /// [`row_bits`](crate::render::gpu::ground::row_bits) of the adapter.
+    pub row_bits: u32,
 }
 
 fn with(vector: Vec3, w: f32) -> [f32; 4] {
@@ -134,7 +136,7 @@ impl FrameUniforms {
             shallow: with(WaterColor::SHALLOW.linear(), WaterColor::OFF_SHORE),
             open: with(WaterColor::OPEN.linear(), 1.0),
             shadows: scene.shadows,
-            ..Self::ground(scene.ground)
+            ..Self::ground(scene.ground, scene.row_bits)
         }
     }
 
@@ -145,12 +147,12 @@ impl FrameUniforms {
     }
 
     /// The constants of the ground map; all others are zero.
-    fn ground(map: Option<&GroundMap>) -> Self {
+    fn ground(map: Option<&GroundMap>, row_bits: u32) -> Self {
         let mut frame = Self::zeroed();
         let Some(map) = map else { return frame };
         let levels = levels(PostCount::from_map(map));
         for (slot, level) in frame.ground_levels.iter_mut().zip(&levels) {
-            *slot = [level.size.columns, level.size.rows, level.first, 0];
+            *slot = [level.size.columns, level.size.rows, level.first, row_bits];
         }
         frame.ground = [map.origin.x, map.origin.y, map.cell.x, map.cell.y];
         let coarsest = levels.len() as u32 - 1;

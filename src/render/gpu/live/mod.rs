@@ -33,12 +33,14 @@ use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
 use crate::render::gpu::geometry::Geometry;
+use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
 use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::Loader;
+use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::{PassViews, ScenePass};
 use crate::render::gpu::pipelines::{FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
 use crate::render::gpu::plan::{DrawCall, PipelineKey, Plan};
@@ -108,6 +110,8 @@ struct LoadedScene {
     map: Option<Arc<GroundMap>>,
     lighting: Lighting,
     shadows: [ShadowView; 2],
+    row_bits: u32,
+    parts: ShaderParts,
     textures: FrameTextures,
     frame: FrameGroup,
     materials: Materials,
@@ -214,18 +218,15 @@ impl LiveRenderer {
             let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
             let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
             let patches = PatchStore::new(list, &places);
-            let [color_keys, feature_keys] = plan.keys();
-            colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]));
-            colors.make(gpu, patches.keys(GpuPass::Color));
-            features.make(gpu, feature_keys);
-            features.make(gpu, patches.keys(GpuPass::Feature));
             let loader = Loader::new(gpu);
             let shadows = Shadows::default();
             let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
-            Ok(LoadedScene {
+            let scene = LoadedScene {
                 map: list.ground.clone(),
                 lighting: list.lighting,
+                parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, [false; 2]),
                 shadows: ShadowView::both(&shadows),
+                row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
                 materials: Materials::upload(&loader, layouts, list, &places)?,
@@ -233,7 +234,9 @@ impl LiveRenderer {
                 plan,
                 patches,
                 pick: PickTarget::new(&loader)?,
-            })
+            };
+            scene.make(gpu, colors, features);
+            Ok(scene)
         });
         self.scene = Some(scene?);
         Ok(())
@@ -252,6 +255,8 @@ impl LiveRenderer {
     pub fn set_lighting(&mut self, lighting: Lighting) {
         if let Some(scene) = &mut self.scene {
             scene.lighting = lighting;
+            scene.parts = scene.parts.with(ShaderParts::of_picture(None, &lighting, [false; 2]));
+            scene.make(&self.gpu, &mut self.colors, &mut self.features);
         }
     }
 
@@ -268,7 +273,10 @@ impl LiveRenderer {
             let loader = Loader::new(&self.gpu);
             scene.textures.replace_ground(&loader, map.as_deref())?;
             scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
+            let shadows = scene.parts.shadows();
+            scene.parts = ShaderParts::of_picture(map.as_deref(), &scene.lighting, shadows);
             scene.map = map;
+            scene.make(&self.gpu, &mut self.colors, &mut self.features);
             Ok(())
         })
     }
@@ -284,6 +292,9 @@ impl LiveRenderer {
             scene.textures.replace_shadows(&loader, &shadows.0)?;
             scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
             scene.shadows = ShadowView::both(&shadows.0);
+            let has_shadows = [&shadows.0.sun, &shadows.0.sky].map(Option::is_some);
+            scene.parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
+            scene.make(&self.gpu, &mut self.colors, &mut self.features);
             Ok(())
         })
     }
@@ -361,23 +372,45 @@ impl LiveRenderer {
 }
 
 impl LoadedScene {
+    /// Makes the pipelines that it draws with and that are missing.
+    fn make(&self, gpu: &Gpu, colors: &mut Pipelines, features: &mut Pipelines) {
+        let [color_keys, feature_keys] = self.plan.keys(self.parts);
+        let patches = |which| {
+            let drapes = self.patches.keys(which, self.parts);
+            drapes.chain([patch_key(which, self.parts)])
+        };
+        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]));
+        colors.make(gpu, patches(GpuPass::Color));
+        features.make(gpu, feature_keys);
+        features.make(gpu, patches(GpuPass::Feature));
+    }
+
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
-        let scene =
-            FrameScene { ground: self.map.as_deref(), lighting: &self.lighting, shadows: self.shadows };
+        let Self { shadows, row_bits, .. } = *self;
+        let scene = FrameScene { ground: self.map.as_deref(), lighting: &self.lighting, shadows, row_bits };
         FrameUniforms::new(scene, camera).with_size(size)
     }
 
     /// Draws everything but the sky.
     fn draw(&self, pass: &mut ScenePass<'_, '_>, which: GpuPass, camera: &Camera) -> LiveStatistics {
         let shown = self.patches.shown(camera);
-        let mut drawn = self.patches.draw_ground(pass, &shown, PipelineKey::PATCH);
-        drawn.add(self.patches.draw_drapes(pass, which, &shown));
+        let parts = self.parts;
+        let mut drawn = self.patches.draw_ground(pass, &shown, patch_key(which, parts));
+        drawn.add(self.patches.draw_drapes(pass, which, &shown, parts));
         let calls: Vec<&DrawCall> = match which {
             GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
             GpuPass::Feature => self.plan.features.iter().collect(),
         };
         drawn.calls += calls.len() as u32;
-        pass.draw(&self.geometry, calls);
+        pass.draw(&self.geometry, calls, parts);
         drawn
+    }
+}
+
+/// What the ground's patches are drawn with.
+fn patch_key(which: GpuPass, picture: ShaderParts) -> PipelineKey {
+    match which {
+        GpuPass::Color => PipelineKey::PATCH.with_parts(ShaderParts::GROUND.in_picture(picture)),
+        GpuPass::Feature => PipelineKey::PATCH,
     }
 }

@@ -10,7 +10,7 @@ use bytemuck::cast_slice;
 use glam::{Mat4, Vec3};
 
 use crate::draw::list::{DrawList, DrawListError, MaterialId};
-use crate::draw::material::AlphaMode;
+use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::patches::{DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
@@ -18,6 +18,7 @@ use crate::render::gpu::geometry::{MergedMesh, SurfaceOwner};
 use crate::render::gpu::live::arena::{Arena, StoredRange};
 use crate::render::gpu::live::{LiveStatistics, UploadedBytes};
 use crate::render::gpu::materials::{ArrayId, TexturePlaces};
+use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::ScenePass;
 use crate::render::gpu::pipelines::GpuPass;
 use crate::render::gpu::plan::{DepthRule, PipelineKey, VertexSource};
@@ -71,16 +72,21 @@ struct DrapeMaterial {
     array: ArrayId,
     two_sided: bool,
     masked: bool,
+    parts: ShaderParts,
 }
 
 impl DrapeMaterial {
-    fn key(self, pass: GpuPass) -> PipelineKey {
+    fn key(self, pass: GpuPass, picture: ShaderParts) -> PipelineKey {
         PipelineKey {
             source: VertexSource::Merged,
             rule: DepthRule::Drape,
             two_sided: self.two_sided,
             masked: self.masked && pass == GpuPass::Color,
             textured: self.array != ArrayId::NONE,
+            parts: match pass {
+                GpuPass::Color => self.parts.in_picture(picture),
+                GpuPass::Feature => ShaderParts::NONE,
+            },
         }
     }
 
@@ -88,7 +94,7 @@ impl DrapeMaterial {
     fn joined(self, next: Self) -> Option<Self> {
         let array = self.array.max(next.array);
         let shares_array = [self.array, next.array].iter().all(|&own| own == array || own == ArrayId::NONE);
-        let is_alike = (self.two_sided, self.masked) == (next.two_sided, next.masked);
+        let is_alike = (self.two_sided, self.masked, self.parts) == (next.two_sided, next.masked, next.parts);
         (shares_array && is_alike).then_some(Self { array, ..self })
     }
 }
@@ -96,10 +102,19 @@ impl DrapeMaterial {
 impl PatchStore {
     /// No patches, of a scene with the materials of `list`.
     pub fn new(list: &DrawList, places: &TexturePlaces) -> Self {
-        let material = |(index, material): (usize, &crate::draw::material::Material)| DrapeMaterial {
+        // All that lies on the ground in its light has the parts that any of it needs: one pipeline, made before anything
+        // is drawn.
+        let is_ribbon = |material: &Material| {
+            material.normals == NormalSource::Ground && material.albedo == Albedo::Surface
+        };
+        let parts =
+            list.materials.iter().filter(|material| is_ribbon(material)).map(ShaderParts::of_material);
+        let ribbons = parts.fold(ShaderParts::NONE, ShaderParts::with);
+        let material = |(index, material): (usize, &Material)| DrapeMaterial {
             array: places.array_of(MaterialId(index as u32)),
             two_sided: material.two_sided,
             masked: matches!(material.alpha, AlphaMode::Mask(_)),
+            parts: if is_ribbon(material) { ribbons } else { ShaderParts::of_material(material) },
         };
         let (vertices, indices) = (wgpu::BufferUsages::VERTEX, wgpu::BufferUsages::INDEX);
         Self {
@@ -112,12 +127,12 @@ impl PatchStore {
         }
     }
 
-    /// The keys that patches draw with.
-    pub fn keys(&self, pass: GpuPass) -> impl Iterator<Item = PipelineKey> + '_ {
+    /// The keys that drapes are drawn with in a picture that has the parts `picture`.
+    pub fn keys(&self, pass: GpuPass, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
         let untextured =
             self.materials.iter().map(|&material| DrapeMaterial { array: ArrayId::NONE, ..material });
         let drapes = self.materials.iter().copied().chain(untextured);
-        std::iter::once(PipelineKey::PATCH).chain(drapes.map(move |material| material.key(pass)))
+        drapes.map(move |material| material.key(pass, picture))
     }
 
     /// Takes over what changed; returns what was sent for it.
@@ -186,6 +201,7 @@ impl PatchStore {
         pass: &mut ScenePass<'_, '_>,
         which: GpuPass,
         shown: &[PatchId],
+        picture: ShaderParts,
     ) -> LiveStatistics {
         let mut drawn = LiveStatistics::default();
         for drapes in shown.iter().filter_map(|id| self.patches.get(id)?.drapes.as_ref()) {
@@ -197,7 +213,7 @@ impl PatchStore {
             pass.pass.set_vertex_buffer(0, vertices);
             pass.pass.set_index_buffer(indices, wgpu::IndexFormat::Uint32);
             for call in &drapes.calls {
-                if pass.set(call.material.key(which), call.material.array) {
+                if pass.set(call.material.key(which, picture), call.material.array) {
                     pass.pass.draw_indexed(call.indices.clone(), 0, 0..1);
                     drawn.count(call.indices.len() as u32 / 3);
                 }

@@ -20,7 +20,7 @@ pub struct PickedPoint {
 
 /// One pixel to draw to.
 #[derive(Debug)]
-pub struct PickTarget {
+pub(super) struct PickTarget {
     targets: Targets,
 }
 
