@@ -431,13 +431,7 @@ pub fn paper_mm(paper: PaperName) -> [f64; 2] {
 impl LabelTable {
     /// The features that it labels; `None` for a label at one place.
     pub fn source(&self) -> Option<FeatureSource> {
-        self.file.is_some().then(|| FeatureSource {
-            points: None,
-            file: self.file.clone(),
-            layer: self.layer.clone(),
-            selection: self.selection.clone(),
-            crs: self.crs.clone(),
-        })
+        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs)
     }
 }
 

@@ -22,7 +22,11 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::{check_clearance, drape};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
-use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+
+/// The rounding of world positions, which are f32: those of a part may lie so far beside its patch, in meters, in a scene of
+/// ten kilometers.
+const ROUNDING_M: f64 = 2e-3;
 
 /// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
@@ -42,7 +46,8 @@ impl Borders {
         self.east.len().saturating_sub(1)
     }
 
-    fn patch_count(&self) -> usize {
+    /// The number of patches.
+    pub fn patch_count(&self) -> usize {
         self.columns() * self.north.len().saturating_sub(1)
     }
 
@@ -82,6 +87,9 @@ struct PatchDrape {
 }
 
 impl Drapes {
+    /// Nothing, in any patch.
+    pub const NONE: Self = Self { patches: Vec::new() };
+
     /// Divides `plans` along the borders; nothing is cut to the ground yet. Patches are numbered row by row from the
     /// south-west.
     pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
@@ -98,6 +106,9 @@ impl Drapes {
     /// # Panics
     /// Where a number is not that of a patch.
     pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
+        if self.patches.is_empty() {
+            return;
+        }
         let cut: Vec<Vec<DrawMesh>> = patches
             .par_iter()
             .map(|&patch| {
@@ -114,13 +125,21 @@ impl Drapes {
         }
     }
 
-    /// The ribbons in a patch, as places among the plans given, and what was cut of each.
-    ///
-    /// # Panics
-    /// Where the number is not that of a patch.
+    /// The ribbons in a patch, as places among the plans given, and what was cut of each; none where it was never cut.
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
-        let PatchDrape { parts, cut } = &self.patches[patch];
-        parts.iter().zip(cut).map(|(&(ribbon, _), mesh)| (ribbon, mesh))
+        let patch = self.patches.get(patch);
+        let parts = patch.into_iter().flat_map(|PatchDrape { parts, cut }| parts.iter().zip(cut));
+        parts.map(|((ribbon, _), mesh)| (*ribbon, mesh))
+    }
+
+    /// The ribbons in a patch, cut or not, as places among the plans given.
+    pub fn held(&self, patch: usize) -> impl Iterator<Item = usize> {
+        self.patches.get(patch).into_iter().flat_map(|patch| patch.parts.iter().map(|(ribbon, _)| *ribbon))
+    }
+
+    /// Whether something lies in a patch.
+    pub fn is_occupied(&self, patch: usize) -> bool {
+        self.patches.get(patch).is_some_and(|patch| !patch.parts.is_empty())
     }
 
     /// How many patches hold something.
@@ -133,6 +152,33 @@ impl Drapes {
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
         let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
         cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
+    }
+
+    /// [`Drapes::check`] in some patches, where nothing may be displayed beside them.
+    pub fn check_in(&self, borders: &Borders, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
+        let of_patch = |&patch: &usize| {
+            let window = Rect::around(borders.window((patch % borders.columns(), patch / borders.columns())));
+            let own = WindowSurface { ground, window: window.grown(-ROUNDING_M) };
+            let cut = self.patches.get(patch).into_iter().flat_map(|patch| &patch.cut);
+            cut.map(|mesh| check_clearance(mesh, &own)).fold(0.0, f64::max)
+        };
+        patches.par_iter().map(of_patch).reduce(|| 0.0, f64::max)
+    }
+}
+
+/// A ground whose heights are asked for inside a window alone: positions beside it are those of its border.
+struct WindowSurface<'a> {
+    ground: &'a dyn TriangleSurface,
+    window: Rect,
+}
+
+impl TriangleSurface for WindowSurface<'_> {
+    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle)) {
+        self.ground.visit_facets(rect, visit);
+    }
+
+    fn displayed_z(&self, at: DVec2) -> Option<f64> {
+        self.ground.displayed_z(at.clamp(self.window.min, self.window.max))
     }
 }
 

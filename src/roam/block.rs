@@ -71,6 +71,10 @@ pub trait BlockSource {
     /// The sphere in the middle of the patch with south-west corner `corner`, without reading the patch.
     fn root(&self, corner: Vertex) -> RootSphere;
 
+    /// World positions of the corners of the patch with south-west corner `corner`, without reading the patch: south-west,
+    /// south-east, north-west, north-east; Z NaN without data.
+    fn corners(&self, corner: Vertex) -> [Vec3; 4];
+
     /// The patch with south-west corner `corner`.
     ///
     /// # Errors
@@ -97,6 +101,14 @@ impl BlockSource for WholeGround<'_> {
         let middle = corner.moved(half, half);
         let radius = self.spheres.at(self.ground.layout, middle);
         RootSphere { center: self.ground.position(middle), radius }
+    }
+
+    fn corners(&self, corner: Vertex) -> [Vec3; 4] {
+        let (ground, side) = (self.ground, self.ground.layout.patch());
+        [(0, 0), (side, 0), (0, side), (side, side)].map(|(x, y)| {
+            let vertex = corner.moved(x, y);
+            ground.plan(vertex).extend(ground.lattice.height(ground.layout.post(vertex)))
+        })
     }
 
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {

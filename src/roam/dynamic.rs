@@ -10,6 +10,8 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use crate::earthworks::brush::{BrushChanges, Change};
 use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
@@ -101,6 +103,10 @@ impl BlockSource for DynamicTerrain {
         self.source().root(corner)
     }
 
+    fn corners(&self, corner: Vertex) -> [Vec3; 4] {
+        self.source().corners(corner)
+    }
+
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
         self.source().block(corner)
     }
@@ -108,7 +114,8 @@ impl BlockSource for DynamicTerrain {
 
 impl DynamicTerrain {
     /// The terrain over `lattice`; `None` where patches cannot be laid over it (see [`PatchLayout::new`]).
-    pub fn new(lattice: Lattice, options: DynamicOptions) -> Option<Self> {
+    pub fn new(lattice: impl Into<Arc<Lattice>>, options: DynamicOptions) -> Option<Self> {
+        let lattice: Arc<Lattice> = lattice.into();
         let layout = PatchLayout::new(lattice.columns(), lattice.rows(), options.patch)?;
         let ground = PatchedGround { lattice: &lattice, layout: &layout };
         let (own, errors) = match options.measure {
@@ -124,7 +131,6 @@ impl DynamicTerrain {
         };
         let spheres = SphereMap::new(ground, &own_radius(&options, &errors, roughness.as_ref()));
         let heights = PatchHeights::new(ground);
-        let lattice = Arc::new(lattice);
         let dirty = vec![false; layout.patch_count()];
         Some(Self { options, lattice, layout, errors, own, roughness, spheres, heights, edits: 0, dirty })
     }
@@ -156,6 +162,18 @@ impl DynamicTerrain {
     /// The lowest and highest Z of each patch.
     pub fn heights(&self) -> &PatchHeights {
         &self.heights
+    }
+
+    /// Meters of distance per meter of error.
+    pub fn reach(&self) -> f32 {
+        self.options.reach
+    }
+
+    /// Makes the spheres anew for another reach; a mesh of the terrain must begin anew.
+    pub fn set_reach(&mut self, reach: f32) {
+        self.options.reach = reach;
+        let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
+        self.spheres = SphereMap::new(self.ground(), &own);
     }
 
     /// The number of edits that changed something.

@@ -110,6 +110,7 @@ pub fn build(
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     let surroundings = Surroundings::new(document);
+    collected.notes.extend(style::missing_place_note(document, &crs, lattice.map_extent().center()));
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),

@@ -23,3 +23,4 @@ mod recut;
 mod scatter;
 mod scene_file;
 mod symbols;
+mod walk;

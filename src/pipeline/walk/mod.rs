@@ -1,1 +1,213 @@
 //! A walk through a scene: the ground refined from frame to frame, and what lies on it cut again where it changed.
+//!
+//! ```text
+//!  camera ─► patches in view ─► deferred refiner ─► patches that changed ─► their triangles, 16 bits an index ─┐
+//!               (culling)          ▲  spheres                        └────► what lies on them, cut anew ───────┴─► changes
+//!  edits ─► heights, errors, spheres, mended ──► vertices of the patches they touched ─────────────────────────┘
+//! ```
+//!
+//! A walk has no window and no clock: an update takes a camera and returns what changed since the update before, as a
+//! renderer is to receive it, and what it cost. What stands on the ground is a draw list that is made once
+//! ([`Walk::static_list`]).
+
+mod check;
+pub mod edit;
+pub mod frame;
+mod laid;
+pub mod measure;
+pub mod pick;
+mod relief_map;
+mod shown;
+
+use std::sync::{Arc, OnceLock};
+
+use glam::Vec3;
+
+use crate::draw::lighting::Lighting;
+use crate::draw::list::DrawList;
+use crate::geom::aabb::Aabb;
+use crate::pipeline::walk::frame::{WalkError, WalkFrame, WalkOptions, WalkStatistics};
+use crate::pipeline::walk::laid::LaidGround;
+use crate::pipeline::walk::relief_map::ReliefMap;
+use crate::pipeline::walk::shown::ShownPatches;
+use crate::roam::culling::{Culling, InView};
+use crate::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
+use crate::roam::refine::deferred::Deferred;
+use crate::roam::spheres;
+use crate::scene::SceneModel;
+use crate::scene::picture::standing::{self, WalkedGround};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::sight::ground::SightGround;
+use crate::view::camera::Camera;
+
+/// The picture that the first spheres are made for, before there is a camera: pixels from top to bottom, over the tangent of
+/// half the field of view. Spheres are made anew for another picture.
+const FIRST_PICTURE: f32 = 1080.0 / 0.5;
+
+/// Spheres that reach farther than a picture needs, by up to this factor, are kept: they show more triangles, and making
+/// them anew for every size that a window has while it is resized would take longer.
+const MOST_REACH: f32 = 1.25;
+
+/// Spheres that are made anew because a picture needs larger ones reach by this factor farther than it needs.
+const SPARE_REACH: f32 = 1.1;
+
+/// The distance of the eye whose spheres stand for parallel rays, in diagonals of the scene: all of the ground is equally far
+/// from it but for a thousandth.
+const PARALLEL_DISTANCE: f32 = 1000.0;
+
+/// A walk through a scene.
+pub struct Walk {
+    scene: Arc<SceneModel>,
+    options: WalkOptions,
+    mesh: Deferred<DynamicTerrain>,
+    view: InView,
+    shown: ShownPatches,
+    laid: LaidGround,
+    /// The elevations, true to scale, where they are drawn by another scale than the terrain has.
+    elevations: Option<Arc<Lattice>>,
+    /// The ground for rays and lines of sight, true to scale; `None` until somebody looks.
+    sight: OnceLock<SightGround>,
+    map: ReliefMap,
+}
+
+/// From where the ground is refined, and how far its spheres reach.
+#[derive(Clone, Copy, Debug)]
+struct Vantage {
+    eye: Vec3,
+    reach: f32,
+}
+
+impl Walk {
+    /// A walk that starts anywhere in `scene`. Measures the errors of all of the ground.
+    pub fn new(scene: Arc<SceneModel>, options: WalkOptions) -> Self {
+        let tolerance_px = options.tolerance_px.unwrap_or(scene.tolerance_px);
+        let lattice = Arc::clone(scene.ground().lattice());
+        let cell_m = lattice.cell().min_element();
+        let terrain = DynamicTerrain::new(
+            lattice,
+            DynamicOptions {
+                patch: scene.ground().layout().patch() as u32,
+                measure: ErrorMeasure::Exact,
+                radius: Radius::Bounding,
+                reach: FIRST_PICTURE / tolerance_px,
+            },
+        );
+        let terrain = terrain.expect("the scene's own patches lie over its ground");
+        let laid = LaidGround::new(&scene, terrain.ground());
+        let shown = ShownPatches::new(scene.ground().layout().patch_count(), options.kept_patches);
+        let mesh = Deferred::new(terrain, cell_m).expect("a scene's patches have 16-bit indices");
+        let elevations = (scene.scale.0 != 1.0).then(|| Arc::clone(&scene.lattice));
+        let (view, sight, map) = (InView::default(), OnceLock::new(), ReliefMap::default());
+        Self { scene, options, mesh, view, shown, laid, elevations, sight, map }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<SceneModel> {
+        &self.scene
+    }
+
+    /// The heights as they are drawn, with all edits; a snapshot while it is held.
+    pub fn lattice(&self) -> &Arc<Lattice> {
+        self.mesh.source().lattice()
+    }
+
+    /// The greatest error of the displayed ground, in pixels.
+    pub fn tolerance_px(&self) -> f32 {
+        self.options.tolerance_px.unwrap_or(self.scene.tolerance_px)
+    }
+
+    /// The elevations with all edits, true to scale; a snapshot while it is held.
+    pub fn elevations(&self) -> &Arc<Lattice> {
+        self.elevations.as_ref().unwrap_or_else(|| self.lattice())
+    }
+
+    /// Sets the greatest error of the displayed ground, in pixels, at least a hundredth; the next update shows it.
+    pub fn set_tolerance_px(&mut self, tolerance_px: f32) {
+        self.options.tolerance_px = Some(tolerance_px.max(0.01));
+    }
+
+    /// Unit vector toward the sun; as on a map with north above where the options name none.
+    pub fn to_sun(&self) -> Vec3 {
+        self.options.to_sun.unwrap_or_else(|| self.scene.sunlight.to_sun(None))
+    }
+
+    /// Moves the sun; the next [`Walk::static_list`] is lit by it.
+    pub fn set_sun(&mut self, to_sun: Vec3) {
+        self.options.to_sun = Some(to_sun);
+    }
+
+    /// Everything but the ground and what lies on it: the ground map, the light, solids, and models in the form that suits
+    /// their distance from `camera`, whichever way that turns.
+    ///
+    /// Its first material is that of the ground; those of [`DrapedPiece`](crate::draw::patches::DrapedPiece)s are among those
+    /// that follow, with the same numbers in every list of this walk.
+    pub fn static_list(&self, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+        let walked = WalkedGround { lattice: self.lattice(), to_sun: self.to_sun() };
+        let mut list = standing::standing(&self.scene, walked, camera, self.laid.head(), progress);
+        if let Some(map) = &mut list.ground {
+            self.map.load(map, self.elevations());
+        }
+        list
+    }
+
+    /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
+    /// everywhere.
+    pub fn list_depends_on_eye(&self) -> bool {
+        standing::depends_on_distance(&self.scene)
+    }
+
+    /// The light, the haze and the backdrop for a camera.
+    pub fn lighting(&self, camera: &Camera) -> Lighting {
+        crate::scene::picture::lighting(&self.scene, camera, self.to_sun())
+    }
+
+    /// Brings the ground up to date with a camera and returns what changed since the update before.
+    ///
+    /// # Errors
+    /// A patch cannot be read; the update can be repeated.
+    pub fn update(&mut self, camera: &Camera) -> Result<WalkFrame, WalkError> {
+        let vantage = self.vantage(camera);
+        self.renew_reach(vantage.reach);
+        let terrain = self.mesh.source();
+        let visible = self.view.update(terrain.ground(), terrain.heights(), Culling::frustum(camera));
+        let refined = self.mesh.update(vantage.eye, visible)?;
+        let mut statistics =
+            WalkStatistics { splits: refined.splits, merges: refined.merges, ..WalkStatistics::default() };
+        let mut changes = self.shown.update(&self.mesh);
+        changes.drapes = self.laid.update(&self.scene, &self.mesh, &self.shown, camera);
+        changes.map = self.map.take_new();
+        statistics.examined = self.mesh.examined();
+        statistics.count(&self.mesh, &changes);
+        Ok(WalkFrame { changes, statistics })
+    }
+
+    /// Hands everything over again in the next update: for a renderer that starts anew.
+    pub fn forget_handed(&mut self) {
+        self.shown.forget();
+        self.laid.forget_handed();
+    }
+
+    /// Where the camera's spheres are seen from. Parallel rays come from very far away.
+    fn vantage(&self, camera: &Camera) -> Vantage {
+        let (min, max) = self.scene.bounds;
+        if camera.parallel_frame().is_none() {
+            return Vantage { eye: camera.eye(), reach: spheres::reach(camera, self.tolerance_px()) };
+        }
+        let ground = Aabb { min, max };
+        let distance_m = PARALLEL_DISTANCE * ground.size().length().max(1.0);
+        let reach = distance_m * camera.pixels_per_meter(1.0) / self.tolerance_px();
+        Vantage { eye: ground.center() + Vec3::Z * distance_m, reach }
+    }
+
+    /// Makes the spheres anew where they are too small, or much larger than they need to be.
+    fn renew_reach(&mut self, needed: f32) {
+        let held = self.mesh.source().reach();
+        if (needed..=needed * MOST_REACH).contains(&held) {
+            return;
+        }
+        let reach = if needed > held { needed * SPARE_REACH } else { needed };
+        self.mesh.source_mut().set_reach(reach);
+        self.mesh.restart();
+        self.shown.relist_all();
+    }
+}

@@ -266,6 +266,12 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> BlockSource for PagedGro
         RootSphere { center, radius: summary.radius }
     }
 
+    fn corners(&self, corner: Vertex) -> [Vec3; 4] {
+        let (side, z) = (self.frame.layout.patch(), self.summary(corner).corners);
+        let at = |(x, y), z: f32| self.plan(corner.moved(x, y)).extend(z);
+        [at((0, 0), z[0]), at((side, 0), z[1]), at((0, side), z[2]), at((side, side), z[3])]
+    }
+
     /// A patch that cannot be read is an error now and is read again at the next request; kept patches stay.
     fn block(&mut self, corner: Vertex) -> Result<Arc<PatchBlock>, BlockError> {
         let index = self.frame.layout.patch_index(corner);

@@ -21,7 +21,7 @@ use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
 /// The triangles of models up to which a picture shows every one of them in full: as many as a landscape's ground has.
-const FULL_TRIANGLES: usize = 250_000;
+pub(super) const FULL_TRIANGLES: usize = 250_000;
 
 /// Small models of one kind are drawn as pictures on quads where they have this many triangles together; the pictures of
 /// fewer would take longer to make than their meshes to draw.
@@ -45,6 +45,8 @@ pub(super) enum Viewer<'a> {
     Anyone,
     /// The camera of one picture.
     Camera(&'a Camera),
+    /// Somebody who turns around at the eye of a camera.
+    Around(&'a Camera),
 }
 
 /// A model set in its place.
@@ -72,14 +74,17 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
     let balls: Vec<BoundingSphere> = scene.models.iter().map(BoundingSphere::around).collect();
     let groups = match viewer {
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
-        Viewer::Camera(camera) => {
+        Viewer::Camera(camera) | Viewer::Around(camera) => {
             let frustum = Frustum::new(camera);
+            let turns = matches!(viewer, Viewer::Around(_));
             let (to_sun, lowest_z) = (list.lighting.to_sun, scene.bounds.0.z);
             let in_view: Vec<&PlacedModel> = placed
                 .par_iter()
-                .filter(|stand| balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z))
+                .filter(|stand| {
+                    turns || balls[stand.model].in_world(stand).may_show(&frustum, to_sun, lowest_z)
+                })
                 .collect();
-            let size = |stand: &PlacedModel| balls[stand.model].seen(stand, camera);
+            let size = |stand: &PlacedModel| balls[stand.model].seen(stand, viewer, camera);
             let is_canopy = |stand: &PlacedModel, size: &ApparentSize| {
                 size.across_px < CANOPY_PX && !scene.models[stand.model].tints.is_empty()
             };
@@ -188,11 +193,15 @@ impl BoundingSphere {
     }
 
     /// The apparent size of the model in this sphere of model space.
-    fn seen(&self, stand: &PlacedModel, camera: &Camera) -> ApparentSize {
+    fn seen(&self, stand: &PlacedModel, viewer: Viewer<'_>, camera: &Camera) -> ApparentSize {
         let world = self.in_world(stand);
         let scale = if self.radius > 0.0 { world.radius / self.radius } else { 1.0 };
         let offset = camera.eye() - world.center;
-        let near = (-offset.dot(camera.forward()) - world.radius).max(camera.planes().0);
+        let depth_m = match viewer {
+            Viewer::Around(_) => offset.length(),
+            _ => -offset.dot(camera.forward()),
+        };
+        let near = (depth_m - world.radius).max(camera.planes().0);
         let px_per_unit = camera.pixels_per_meter(near) * scale;
         let toward = camera.toward_eye(world.center);
         let along = |axis: glam::Vec4| axis.truncate().dot(toward);

@@ -28,8 +28,8 @@ use crate::scene::{Ribbon, SceneModel};
 use crate::terrain::triangle_surface::TriangleSurface;
 
 /// The layers that symbols of rivers and of roads are the uppermost of: banks, and lakes.
-const BELOW_RIVERS: u8 = 1;
-const BELOW_ROADS: u8 = 3;
+pub(super) const BELOW_RIVERS: u8 = 1;
+pub(super) const BELOW_ROADS: u8 = 3;
 
 /// The share of its surface's light that a casing has.
 const CASING_LIGHT: f32 = 0.45;
@@ -52,18 +52,13 @@ pub(super) fn add(
 ) {
     let Symbols { draped, shows } = match viewer {
         Viewer::Anyone => Symbols::default(),
-        Viewer::Camera(camera) => symbols(scene, camera, displayed),
+        Viewer::Camera(camera) | Viewer::Around(camera) => symbols(scene, camera, displayed),
     };
     let scale = match viewer {
         Viewer::Anyone => None,
-        Viewer::Camera(camera) => Some(LineScale::new(camera)),
+        Viewer::Camera(camera) | Viewer::Around(camera) => Some(LineScale::new(camera)),
     };
-    let sources: BTreeMap<FeatureId, &LineSymbol> = scene
-        .symbols
-        .iter()
-        .filter(|symbol| symbol.has_source())
-        .map(|symbol| (symbol.feature, symbol))
-        .collect();
+    let sources = sources(scene);
     let lakes = scale.as_ref().map(|scale| large_lakes(scene, scale)).unwrap_or_default();
     let meshes: Vec<DrapedRibbon> = scene
         .ribbons
@@ -122,6 +117,12 @@ pub(super) fn add(
     add_up_to(&mut ribbons, u8::MAX);
 }
 
+/// The rivers that have a source, by feature.
+pub(super) fn sources(scene: &SceneModel) -> BTreeMap<FeatureId, &LineSymbol> {
+    let with_source = scene.symbols.iter().filter(|symbol| symbol.has_source());
+    with_source.map(|symbol| (symbol.feature, symbol)).collect()
+}
+
 /// A ribbon on the displayed ground.
 #[derive(Default)]
 struct DrapedRibbon {
@@ -133,7 +134,7 @@ struct DrapedRibbon {
 }
 
 /// A river's ribbon or banks without what its source is drawn narrower; `None` where that is nothing of it.
-fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
+pub(super) fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
     let more_m = match ribbon.surface {
         RibbonSurface::River => 0.0,
         RibbonSurface::Bank => symbol.bank_m,
@@ -145,7 +146,7 @@ fn tapered(ribbon: &Ribbon, symbol: &LineSymbol) -> Option<PlanMesh> {
 }
 
 /// The color of the fill of a symbol; `None` where it is that of its surface.
-fn fill_color(symbol: &LineSymbol) -> Option<[u8; 4]> {
+pub(super) fn fill_color(symbol: &LineSymbol) -> Option<[u8; 4]> {
     let is_paved = symbol.surface.unmarked() == RibbonSurface::AsphaltPlain;
     let class = PAVED_FILLS.iter().find(|(least_px, _)| symbol.least_px >= *least_px);
     class.filter(|_| is_paved).map(|(_, Srgba(color))| *color)
@@ -153,10 +154,14 @@ fn fill_color(symbol: &LineSymbol) -> Option<[u8; 4]> {
 
 /// What a material is made for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum RibbonLook {
+pub(super) enum RibbonLook {
+    /// A surface in a tint.
     Textured(RibbonSurface, [u8; 4]),
+    /// The markings of a surface.
     Markings(RibbonSurface),
+    /// The inside of a symbol.
     Fill(RibbonSurface, Option<[u8; 4]>),
+    /// The outline of a symbol.
     Casing(RibbonSurface),
 }
 
@@ -188,16 +193,19 @@ impl Ribbons<'_> {
 
     fn material(&mut self, look: RibbonLook) -> MaterialId {
         let list = &mut *self.list;
-        *self.materials.entry(look).or_insert_with(|| {
-            let material = match look {
-                RibbonLook::Textured(surface, tint) => draped_material(list, surface, Srgba(tint)),
-                RibbonLook::Markings(surface) => marking_material(list, surface),
-                RibbonLook::Fill(surface, color) => fill_material(list, surface, color.map(Srgba)),
-                RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
-            };
-            list.add_material(material)
-        })
+        *self.materials.entry(look).or_insert_with(|| add_material(list, look))
     }
+}
+
+/// Adds the material of a look.
+pub(super) fn add_material(list: &mut DrawList, look: RibbonLook) -> MaterialId {
+    let material = match look {
+        RibbonLook::Textured(surface, tint) => draped_material(list, surface, Srgba(tint)),
+        RibbonLook::Markings(surface) => marking_material(list, surface),
+        RibbonLook::Fill(surface, color) => fill_material(list, surface, color.map(Srgba)),
+        RibbonLook::Casing(surface) => flat_material("casing", surface, CASING_LIGHT),
+    };
+    list.add_material(material)
 }
 
 fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> Material {
@@ -214,7 +222,7 @@ fn draped_material(list: &mut DrawList, surface: RibbonSurface, tint: Srgba) -> 
     }
 }
 
-fn lake_material(list: &mut DrawList, pixels: Pixels) -> Material {
+pub(super) fn lake_material(list: &mut DrawList, pixels: Pixels) -> Material {
     Material {
         name: "lake".to_owned(),
         texture: Some(list.add_texture(pixels)),

@@ -1,9 +1,11 @@
 //! The displayed ground and the block under it.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use crate::draw::color::Srgba;
-use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use crate::draw::material::{Albedo, Material, NormalSource};
 use crate::geom::aabb::Aabb;
 use crate::mesh::sink::{MeshSink, VertexId};
@@ -11,6 +13,8 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::SceneModel;
 use crate::scene::picture::add_mesh;
 use crate::scene::plinth::{base_plate, plinth};
+use crate::terrain::cell_triangle::CellTriangle;
+use crate::terrain::lattice::{Lattice, Post};
 use crate::view::camera::Camera;
 
 /// Makes draw vertices of bare positions.
@@ -51,14 +55,60 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &Displayed
     let mut sink = GroundSink(DrawMesh::default());
     displayed.emit(&mut sink);
     let walls = plinth(&sink.0, scene.ground().lattice(), scene.bounds);
-    let material = list.add_material(Material {
+    let material = add_material(list);
+    add_mesh(list, sink.0, material, DepthLayer::Ground, FeatureId::GROUND);
+    walls
+}
+
+/// Adds the material of the ground.
+pub(super) fn add_material(list: &mut DrawList) -> MaterialId {
+    list.add_material(Material {
         name: "ground".into(),
         normals: NormalSource::Ground,
         albedo: Albedo::GroundMap,
         ..Material::default()
-    });
-    add_mesh(list, sink.0, material, DepthLayer::Ground, FeatureId::GROUND);
-    walls
+    })
+}
+
+/// The finest triangles along the edge of the ground and around its holes: all that walls under it need.
+fn rim(lattice: &Lattice) -> DrawMesh {
+    let (columns, rows) = (lattice.columns() as usize, lattice.rows() as usize);
+    let is_missing: Vec<bool> = lattice.heights().iter().map(|height| height.is_nan()).collect();
+    let has_holes = is_missing.contains(&true);
+    let is_rim = |column: usize, row: usize| {
+        if column == 0 || row == 0 || column + 2 == columns || row + 2 == rows {
+            return true;
+        }
+        has_holes
+            && (row - 1..=row + 2).any(|row| {
+                is_missing[row * columns + column - 1..=row * columns + column + 2].contains(&true)
+            })
+    };
+    let (mut sink, mut placed) = (GroundSink(DrawMesh::default()), BTreeMap::new());
+    for row in 0..rows - 1 {
+        // Between the borders a row without holes near it has two cells.
+        let inner = if row == 0 || row + 2 == rows || has_holes { 1 } else { (columns - 2).max(1) };
+        for column in (0..columns - 1).step_by(inner).filter(|&column| is_rim(column, row)) {
+            let cell = Post { column: column as u32, row: row as u32 };
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(east, north)| cell.offset(east, north));
+            for triangle in CellTriangle::of_cell(cell) {
+                let posts = triangle.corner_indices().map(|index| corners[index]);
+                if posts.iter().all(|&post| !lattice.height(post).is_nan()) {
+                    let ids = posts.map(|post| {
+                        let position = || lattice.position(post).extend(lattice.height(post));
+                        *placed.entry(lattice.index(post)).or_insert_with(|| sink.vertex(position()))
+                    });
+                    sink.triangle(ids);
+                }
+            }
+        }
+    }
+    sink.0
+}
+
+/// The walls below the edge of the finest ground, whose drawn heights are `lattice`.
+pub(super) fn finest_walls(scene: &SceneModel, lattice: &Lattice) -> DrawMesh {
+    plinth(&rim(lattice), lattice, scene.bounds)
 }
 
 /// Adds the walls and, where they do not end straight, the plate that they stand on.

@@ -33,6 +33,19 @@ pub(super) fn large_lakes<'a>(
     scene: &'a SceneModel,
     scale: &LineScale<'_>,
 ) -> BTreeMap<FeatureId, LakeOutline<'a>> {
+    let least = f64::from(scene.bounds.0.z);
+    longest_lakes(scene, |bounds| {
+        let length_m = bounds.size().max_element();
+        let length_px = length_m / (scale.px * scale.nearest_meters_per_px(bounds, least));
+        (length_px >= LEAST_PX).then_some(length_px)
+    })
+}
+
+/// The outlines of the lakes that `length` takes for the longest, by feature; it returns `None` for those to leave out.
+pub(super) fn longest_lakes<'a>(
+    scene: &'a SceneModel,
+    length: impl Fn(&Rect) -> Option<f64>,
+) -> BTreeMap<FeatureId, LakeOutline<'a>> {
     let mut lakes: BTreeMap<FeatureId, Vec<&[DVec2]>> = BTreeMap::new();
     for shore in scene.symbols.iter().filter(|symbol| symbol.surface == RibbonSurface::ShoreLine) {
         lakes.entry(shore.feature).or_default().push(shore.alignment.line.points());
@@ -40,11 +53,8 @@ pub(super) fn large_lakes<'a>(
     let mut large: Vec<(f64, FeatureId, LakeOutline<'a>)> = Vec::new();
     for (feature, rings) in lakes {
         let bounds = Rect::around(rings.iter().copied().flatten().copied());
-        let length_m = bounds.size().max_element();
-        let length_px =
-            length_m / (scale.px * scale.nearest_meters_per_px(&bounds, f64::from(scene.bounds.0.z)));
-        if length_px >= LEAST_PX {
-            large.push((length_px, feature, LakeOutline { bounds, rings }));
+        if let Some(length) = length(&bounds) {
+            large.push((length, feature, LakeOutline { bounds, rings }));
         }
     }
     large.sort_by(|a, b| b.0.total_cmp(&a.0));

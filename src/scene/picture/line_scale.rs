@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::geom::rect::Rect;
 use crate::scene::symbols::px_scale;
 use crate::view::camera::Camera;
+use crate::view::frustum::Frustum;
 
 /// The most that a width grows because ground is seen at a low angle. Ground is seldom level where it is seen lower than
 /// at twenty degrees.
@@ -15,19 +16,38 @@ pub(super) struct LineScale<'a> {
     camera: &'a Camera,
     /// Pixels of the picture in one of a picture 1080 lines high.
     pub px: f64,
+    /// Whether each place is in the picture's middle.
+    turns: bool,
 }
 
 impl<'a> LineScale<'a> {
     pub fn new(camera: &'a Camera) -> Self {
-        Self { camera, px: px_scale(camera.size().1) }
+        Self { camera, px: px_scale(camera.size().1), turns: false }
+    }
+
+    /// For an eye that turns around where the camera is: pixels as they are when it looks at the place.
+    pub fn around(camera: &'a Camera) -> Self {
+        Self { turns: camera.parallel_frame().is_none(), ..Self::new(camera) }
+    }
+
+    /// The part of space in view; `None` where the eye turns around.
+    pub fn frustum(&self) -> Option<Frustum> {
+        (!self.turns).then(|| Frustum::new(self.camera))
+    }
+
+    /// Rightward, upward and forward for a place `offset` from the eye.
+    fn axes(&self, offset: DVec3) -> [DVec3; 3] {
+        let own = [self.camera.right(), self.camera.up(), self.camera.forward()].map(|axis| axis.as_dvec3());
+        let Some(forward) = offset.try_normalize().filter(|_| self.turns) else { return own };
+        let right = forward.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);
+        [right, right.cross(forward), forward]
     }
 
     /// Meters of level ground, across a line through `at` along `along` (of length 1), in a pixel across the line on the
     /// picture.
     pub fn meters_per_px(&self, at: DVec3, along: DVec2) -> f64 {
-        let [right, up, forward] =
-            [self.camera.right(), self.camera.up(), self.camera.forward()].map(|axis| axis.as_dvec3());
         let offset = at - self.camera.eye().as_dvec3();
+        let [right, up, forward] = self.axes(offset);
         let depth_m = offset.dot(forward).max(f64::from(self.camera.planes().0));
         let on_picture = |way: DVec2| {
             let way = way.extend(0.0);

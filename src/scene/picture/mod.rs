@@ -1,6 +1,7 @@
 //! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
 mod airspace;
+pub mod all_round;
 mod detail;
 mod drapes;
 mod fit;
@@ -21,6 +22,7 @@ pub mod recut;
 pub mod setting;
 mod sight;
 mod solids;
+pub mod standing;
 mod symbols;
 mod table;
 mod uprights;
@@ -28,7 +30,7 @@ pub mod voids;
 
 use std::sync::Arc;
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use crate::description::words::TableTop;
 use crate::draw::ground::GroundMap;
@@ -87,6 +89,14 @@ pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'sta
     listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
 }
 
+/// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as
+/// symbols, tactical graphics and viewsheds.
+pub fn build_relief(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Relief, progress).list
+}
+
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
 /// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
@@ -112,6 +122,8 @@ enum ListPurpose {
     Picture,
     /// To be measured: nobody asks how the ground is lit.
     Shapes,
+    /// To be modeled: as to be measured, without what is only drawn on it or beside it.
+    Relief,
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -131,44 +143,50 @@ fn listed(
     progress: &dyn Fn(&'static str),
 ) -> ListedScene {
     let camera = match viewer {
-        Viewer::Camera(camera) => Some(camera),
+        Viewer::Camera(camera) | Viewer::Around(camera) => Some(camera),
         Viewer::Anyone => None,
     };
     let to_sun = scene.sunlight.to_sun(camera);
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
     let map = match purpose {
         ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
-        ListPurpose::Shapes => Arc::new(GroundMap::level()),
+        ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
     };
-    let lighting = Lighting { to_sun, ..Lighting::default() };
+    let lighting = match camera {
+        Some(camera) => lighting(scene, camera, to_sun),
+        None => Lighting { to_sun, ..Lighting::default() },
+    };
     let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
     let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
-    if let Some((camera, setting)) = camera.zip(setting) {
-        let (min, max) = scene.bounds;
-        list.lighting.haze =
-            haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
-        list.lighting.backdrop = setting.backdrop();
-    }
     let walls = ground::add(&mut list, scene, displayed);
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
-    let graphic_texts = camera.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
+    let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
+    let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
-    if setting.is_some_and(|setting| has_table(scene, setting)) {
+    if annotated.is_some() && setting.is_some_and(|setting| has_table(scene, setting)) {
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);
-    if camera.is_some() {
+    if annotated.is_some() {
         voids::add(&mut list, scene);
     }
     uprights::add(&mut list, scene, displayed);
     models::add(&mut list, scene, displayed, viewer);
-    if camera.is_some() {
+    if annotated.is_some() {
         airspace::add(&mut list, scene);
     }
     ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
+}
+
+/// The light, the haze and the backdrop of a picture; `to_sun` is the unit vector toward the sun.
+pub fn lighting(scene: &SceneModel, camera: &Camera, to_sun: Vec3) -> Lighting {
+    let setting = PictureSetting::new(camera, scene.bounds);
+    let (lighting, (min, max)) = (Lighting::default(), scene.bounds);
+    let haze = haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
+    Lighting { to_sun, haze, backdrop: setting.backdrop(), ..lighting }
 }
 
 /// The ground as `camera` shows it, off by at most the scene's own tolerance.

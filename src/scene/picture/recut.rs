@@ -1,9 +1,35 @@
-//! The ribbons of a scene by patch, for flights that cut again only the patches that changed.
+//! What lies on the ground of a scene by patch, for flights that cut again only the patches that changed.
+//!
+//! ```text
+//!  ribbons ──────────────────► plans that stay   ─┐
+//!                                                 ├─► parts by patch ─► cut to the displayed triangles ─► pieces
+//!  line symbols for a camera ► plans of a while  ─┘
+//! ```
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec2;
+
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
+use crate::draw::patches::DrapedPiece;
+use crate::geom::convex;
 use crate::ribbon::patches::{Borders, Drapes};
+use crate::ribbon::plan::PlanMesh;
+use crate::ribbon::texture::RibbonSurface;
 use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
-use crate::scene::SceneModel;
+use crate::scene::picture::drapes::{
+    BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
+};
+use crate::scene::picture::ground;
+use crate::scene::picture::lake_tint::{LakeTint, longest_lakes};
+use crate::scene::picture::line_scale::LineScale;
+use crate::scene::picture::markings::faded;
+use crate::scene::picture::symbols::{PlannedSymbol, RibbonShow, planned};
+use crate::scene::symbols::LineSymbol;
+use crate::scene::{Ribbon, SceneModel};
+use crate::terrain::triangle_surface::TriangleSurface;
+use crate::view::camera::Camera;
 
 /// The scene's ribbons divided along its patches, numbered as [`crate::roam::layout::PatchLayout::patches`] lists them;
 /// the places of ribbons are those in [`SceneModel::ribbons`].
@@ -20,5 +46,244 @@ fn borders(ground: PatchedGround<'_>) -> Borders {
     Borders {
         east: (0..=columns).map(|column| f64::from(at(column, 0).x)).collect(),
         north: (0..=rows).map(|row| f64::from(at(0, row).y)).collect(),
+    }
+}
+
+/// What lies on the ground that somebody walks over, by patch, and its materials.
+pub struct GroundSheets {
+    head: DrawList,
+    looks: BTreeMap<RibbonLook, MaterialId>,
+    borders: Borders,
+    ribbons: Sheet,
+    symbols: Sheet,
+    /// The features whose ribbons their symbols take the place of.
+    replaced: BTreeSet<FeatureId>,
+}
+
+/// Plans in drawing order, cut by patch.
+struct Sheet {
+    drapes: Drapes,
+    plans: Vec<SheetPlan>,
+}
+
+/// How a plan is drawn.
+struct SheetPlan {
+    material: MaterialId,
+    markings: Option<MaterialId>,
+    lake: Option<LakeTint>,
+    layer: u8,
+    feature: FeatureId,
+}
+
+impl GroundSheets {
+    /// The ribbons of a scene, and no symbols yet; nothing is cut. `ground` is the scene's, or an edited one with as many
+    /// posts.
+    pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
+        let mut head = DrawList::default();
+        ground::add_material(&mut head);
+        let mut sheets = Self {
+            head,
+            looks: BTreeMap::new(),
+            borders: borders(ground),
+            ribbons: Sheet::EMPTY,
+            symbols: Sheet::EMPTY,
+            replaced: BTreeSet::new(),
+        };
+        let sources = sources(scene);
+        let mut lakes: BTreeMap<FeatureId, LakeTint> =
+            longest_lakes(scene, |bounds| Some(bounds.size().max_element()))
+                .into_iter()
+                .map(|(feature, outline)| (feature, outline.tint()))
+                .collect();
+        let mut order: Vec<&Ribbon> = scene.ribbons.iter().collect();
+        order.sort_by_key(|ribbon| ribbon.layer);
+        let tapers: Vec<Option<PlanMesh>> = order
+            .iter()
+            .map(|ribbon| sources.get(&ribbon.feature).and_then(|symbol| tapered(ribbon, symbol)))
+            .collect();
+        let plans = order.iter().map(|ribbon| {
+            let lake =
+                if ribbon.surface == RibbonSurface::Lake { lakes.remove(&ribbon.feature) } else { None };
+            sheets.ribbon(ribbon, lake)
+        });
+        let plans: Vec<SheetPlan> = plans.collect();
+        let shapes = order.iter().zip(&tapers).map(|(ribbon, taper)| taper.as_ref().unwrap_or(&ribbon.plan));
+        sheets.ribbons = Sheet { drapes: Drapes::new(&sheets.borders, shapes), plans };
+        for symbol in &scene.symbols {
+            sheets.material(RibbonLook::Casing(symbol.surface));
+            sheets.material(RibbonLook::Fill(symbol.surface, fill_color(symbol)));
+        }
+        sheets
+    }
+
+    /// The materials of the ground, which is the first, and of all that lies on it, and their textures.
+    pub fn head(&self) -> &DrawList {
+        &self.head
+    }
+
+    /// Whether something lies in a patch.
+    pub fn is_occupied(&self, patch: usize) -> bool {
+        self.ribbons.drapes.is_occupied(patch) || self.symbols.drapes.is_occupied(patch)
+    }
+
+    /// Cuts what lies in `patches` to what is displayed there.
+    pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
+        self.ribbons.drapes.recut(patches, ground);
+        self.symbols.drapes.recut(patches, ground);
+    }
+
+    /// Plans the symbols of the lines that are too narrow for an eye that turns around where `camera` is. They are not cut
+    /// yet; returns the patches in which what lies has changed.
+    pub fn plan_symbols(&mut self, scene: &SceneModel, camera: &Camera) -> Vec<usize> {
+        let (lines, shows) = planned(scene, camera, LineScale::around(camera), |symbol| symbol);
+        let (mut shores, mut rivers, mut roads) = (Vec::new(), Vec::new(), Vec::new());
+        for line in lines {
+            match line.symbol.surface {
+                RibbonSurface::ShoreLine => shores.push(line),
+                RibbonSurface::River => rivers.push(line),
+                _ => roads.push(line),
+            }
+        }
+        let (mut plans, mut shapes) = (Vec::new(), Vec::new());
+        for (layer, mut lines) in [(BELOW_RIVERS, shores), (BELOW_RIVERS, rivers), (BELOW_ROADS, roads)] {
+            lines.sort_by(|a, b| a.symbol.least_px.total_cmp(&b.symbol.least_px));
+            let mut fills = Vec::new();
+            for PlannedSymbol { symbol, casing, fill } in lines {
+                plans.push(self.line(RibbonLook::Casing(symbol.surface), symbol, layer));
+                shapes.push(casing);
+                fills.push((
+                    self.line(RibbonLook::Fill(symbol.surface, fill_color(symbol)), symbol, layer),
+                    fill,
+                ));
+            }
+            for (plan, shape) in fills {
+                plans.push(plan);
+                shapes.push(shape);
+            }
+        }
+        let before = std::mem::replace(
+            &mut self.symbols,
+            Sheet { drapes: Drapes::new(&self.borders, &shapes), plans },
+        );
+        let replaced = shows.into_iter().filter(|(_, show)| *show == RibbonShow::Replaced);
+        let replaced: BTreeSet<FeatureId> = replaced.map(|(feature, _)| feature).collect();
+        let turned: BTreeSet<FeatureId> = replaced.symmetric_difference(&self.replaced).copied().collect();
+        self.replaced = replaced;
+        let has_turned = |patch: usize| self.ribbons.features(patch).any(|feature| turned.contains(&feature));
+        (0..self.borders.patch_count())
+            .filter(|&patch| {
+                before.drapes.is_occupied(patch)
+                    || self.symbols.drapes.is_occupied(patch)
+                    || has_turned(patch)
+            })
+            .collect()
+    }
+
+    /// Whether what shows in a patch depends on how far away it is: markings, which fade.
+    pub fn fades(&self, patch: usize) -> bool {
+        self.ribbons.drapes.in_patch(patch).any(|(plan, _)| self.ribbons.plans[plan].markings.is_some())
+    }
+
+    /// What lies in a patch as it was cut last, in drawing order, with the markings that `camera` sees.
+    pub fn pieces(&self, patch: usize, camera: &Camera) -> Vec<DrapedPiece> {
+        let scale = LineScale::around(camera);
+        let (mut pieces, mut symbols) = (Vec::new(), self.symbols.drapes.in_patch(patch).peekable());
+        for (at, mesh) in self.ribbons.drapes.in_patch(patch) {
+            let plan = &self.ribbons.plans[at];
+            while let Some((at, mesh)) = symbols.next_if(|(at, _)| self.symbols.plans[*at].layer < plan.layer)
+            {
+                self.symbols.plans[at].add(mesh.clone(), &mut pieces);
+            }
+            if self.replaced.contains(&plan.feature) {
+                continue;
+            }
+            let mut mesh = mesh.clone();
+            if let Some(lake) = &plan.lake {
+                lake.lay_over(&mut mesh);
+            }
+            let markings = plan.markings.map(|material| (material, faded(&mesh, &scale)));
+            plan.add(mesh, &mut pieces);
+            if let Some((material, mesh)) = markings {
+                plan.add_with(material, mesh, &mut pieces);
+            }
+        }
+        symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
+        pieces
+    }
+
+    /// What lies uppermost on a patch, as it was cut last, at a world position; `None` for bare ground.
+    pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
+        let holds = |mesh: &DrawMesh| {
+            mesh.triangles.iter().any(|corners| {
+                let plan = corners.map(|id| {
+                    let [x, y, _] = mesh.vertices[id.index()].position;
+                    DVec2::new(f64::from(x), f64::from(y))
+                });
+                convex::contains(&plan, at)
+            })
+        };
+        let of = |sheet: &Sheet, is_symbol: bool| {
+            let found = sheet.drapes.in_patch(patch).filter(|(plan, mesh)| {
+                (is_symbol || !self.replaced.contains(&sheet.plans[*plan].feature)) && holds(mesh)
+            });
+            found.last().map(|(plan, _)| ((sheet.plans[plan].layer, is_symbol), sheet.plans[plan].feature))
+        };
+        let uppermost = [of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten().max();
+        uppermost.map(|(_, feature)| feature)
+    }
+
+    /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
+    pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
+        let of = |sheet: &Sheet| sheet.drapes.check_in(&self.borders, patches, ground);
+        of(&self.ribbons).max(of(&self.symbols))
+    }
+
+    fn ribbon(&mut self, ribbon: &Ribbon, lake: Option<LakeTint>) -> SheetPlan {
+        let is_marked = ribbon.surface != ribbon.surface.unmarked();
+        let material = match &lake {
+            Some(lake) => {
+                let material = lake_material(&mut self.head, lake.pixels.clone());
+                self.head.add_material(material)
+            }
+            None => self.material(RibbonLook::Textured(ribbon.surface.unmarked(), ribbon.tint.0)),
+        };
+        let markings = is_marked.then(|| self.material(RibbonLook::Markings(ribbon.surface)));
+        SheetPlan { material, markings, lake, layer: ribbon.layer, feature: ribbon.feature }
+    }
+
+    fn line(&mut self, look: RibbonLook, symbol: &LineSymbol, layer: u8) -> SheetPlan {
+        SheetPlan {
+            material: self.material(look),
+            markings: None,
+            lake: None,
+            layer,
+            feature: symbol.feature,
+        }
+    }
+
+    fn material(&mut self, look: RibbonLook) -> MaterialId {
+        let head = &mut self.head;
+        *self.looks.entry(look).or_insert_with(|| add_material(head, look))
+    }
+}
+
+impl Sheet {
+    const EMPTY: Self = Self { drapes: Drapes::NONE, plans: Vec::new() };
+
+    fn features(&self, patch: usize) -> impl Iterator<Item = FeatureId> {
+        self.drapes.held(patch).map(|plan| self.plans[plan].feature)
+    }
+}
+
+impl SheetPlan {
+    fn add(&self, mesh: DrawMesh, pieces: &mut Vec<DrapedPiece>) {
+        self.add_with(self.material, mesh, pieces);
+    }
+
+    fn add_with(&self, material: MaterialId, mesh: DrawMesh, pieces: &mut Vec<DrapedPiece>) {
+        if !mesh.triangles.is_empty() {
+            let layer = DepthLayer::Draped(self.layer);
+            pieces.push(DrapedPiece { mesh, material, layer, feature: self.feature });
+        }
     }
 }

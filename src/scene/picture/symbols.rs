@@ -113,13 +113,64 @@ pub(super) struct Symbols<'a> {
     pub shows: BTreeMap<FeatureId, RibbonShow>,
 }
 
+/// A symbol in plan.
+pub(super) struct PlannedSymbol<'a> {
+    /// The line.
+    pub symbol: &'a LineSymbol,
+    /// Its outline; empty for the narrowest.
+    pub casing: PlanMesh,
+    /// Its inside.
+    pub fill: PlanMesh,
+}
+
 /// The symbols that `camera` sees, on the ground that it is shown.
 pub(super) fn symbols<'a>(
     scene: &'a SceneModel,
     camera: &Camera,
     displayed: &dyn TriangleSurface,
 ) -> Symbols<'a> {
-    let view = SymbolView::new(scene, camera);
+    let mesh = |plan: &PlanMesh| {
+        let mut mesh = DrawMesh::default();
+        drape(plan, displayed, &mut mesh);
+        mesh
+    };
+    let draped = |PlannedSymbol { symbol, casing, fill }: PlannedSymbol<'a>| DrapedSymbol {
+        symbol,
+        casing: mesh(&casing),
+        fill: mesh(&fill),
+    };
+    let (draped, shows) = planned(scene, camera, LineScale::new(camera), draped);
+    Symbols { draped, shows }
+}
+
+/// What the texture coordinates of symbols say.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum SymbolUv {
+    /// U of a fill how much of a symbol each place is, see [`SymbolVertex::symbolic_share`].
+    Share,
+    /// U how far across the line each place is: 0 and 1 at the edges, 0.5 in the middle.
+    Across,
+}
+
+/// What `finish` makes of each symbol that `camera` sees by `scale`, and how the ribbons beside them show.
+pub(super) fn planned<'a, T: Send>(
+    scene: &'a SceneModel,
+    camera: &Camera,
+    scale: LineScale<'_>,
+    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
+    planned_with(scene, camera, scale, SymbolUv::Share, finish)
+}
+
+/// [`planned`] with texture coordinates of another meaning.
+pub(super) fn planned_with<'a, T: Send>(
+    scene: &'a SceneModel,
+    camera: &Camera,
+    scale: LineScale<'_>,
+    uv: SymbolUv,
+    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
+    let view = SymbolView::new(scene, camera, scale);
     let seen = |symbol: &'a LineSymbol| {
         let seen = view.seen(symbol, LineSmoothing::None);
         // Beside a ribbon in its true width a line keeps to the centerline that both have.
@@ -136,12 +187,7 @@ pub(super) fn symbols<'a>(
         let most = shows.entry(symbol.feature).or_insert(show);
         *most = show.max(*most);
     }
-    let draped = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
-        let mesh = |plan: &PlanMesh| {
-            let mut mesh = DrawMesh::default();
-            drape(plan, displayed, &mut mesh);
-            mesh
-        };
+    let plan = |(symbol, seen): (&'a LineSymbol, SeenLine)| {
         let runs = if symbol.surface == RibbonSurface::Track {
             seen.runs.iter().flat_map(|run| dashes(run, symbol.least_px)).collect()
         } else {
@@ -149,18 +195,18 @@ pub(super) fn symbols<'a>(
         };
         let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
-            runs.iter().for_each(|run| stroke_run(run, part, &mut plan));
-            mesh(&plan)
+            runs.iter().for_each(|run| stroke_run(run, part, uv, &mut plan));
+            plan
         };
         let casing = if symbol.widest_px() >= LEAST_CASED_PX {
             strokes(SymbolPart::Casing)
         } else {
-            DrawMesh::default()
+            PlanMesh::default()
         };
-        DrapedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) }
+        finish(PlannedSymbol { symbol, casing, fill: strokes(SymbolPart::Fill) })
     };
     let narrow = seen.into_par_iter().filter(|(_, seen)| !seen.runs.is_empty());
-    Symbols { draped: narrow.map(draped).collect(), shows }
+    (narrow.map(plan).collect(), shows)
 }
 
 /// A vertex of a line in view.
@@ -235,7 +281,8 @@ impl LinePoint {
 
 struct SymbolView<'a> {
     camera: &'a Camera,
-    frustum: Frustum,
+    /// `None` where the eye turns around.
+    frustum: Option<Frustum>,
     ground: FullResolution<'a>,
     extent: Rect,
     /// The lowest and the highest ground.
@@ -246,16 +293,16 @@ struct SymbolView<'a> {
 }
 
 impl<'a> SymbolView<'a> {
-    fn new(scene: &'a SceneModel, camera: &'a Camera) -> Self {
+    fn new(scene: &'a SceneModel, camera: &'a Camera, scale: LineScale<'a>) -> Self {
         let (min, max) = scene.bounds;
         let lattice = scene.ground().lattice();
         Self {
             camera,
-            frustum: Frustum::new(camera),
+            frustum: scale.frustum(),
             ground: FullResolution { lattice },
             extent: lattice.extent(),
             z: [min.z, max.z],
-            scale: LineScale::new(camera),
+            scale,
             water: scene.water(),
         }
     }
@@ -289,7 +336,8 @@ impl<'a> SymbolView<'a> {
         let reach = Rect::around([from.at.truncate(), to.at.truncate()]).grown(margin_m);
         let [low, high] = self.z;
         let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
-        if !(reach.meets(&self.extent) && self.frustum.may_see(min, max)) {
+        let is_out = self.frustum.is_some_and(|frustum| !frustum.may_see(min, max));
+        if is_out || !reach.meets(&self.extent) {
             return;
         }
         let length_m = from.at.distance(to.at);
@@ -451,10 +499,8 @@ fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
     dashes
 }
 
-/// Strokes a part of a run of vertices, its ends round; the casing of a mouth is open toward the water.
-/// Strokes the part of a symbol along a run; U of a fill says how much of a symbol each place is, see
-/// [`SymbolVertex::symbolic_share`].
-fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
+/// Strokes a part of a symbol along a run of vertices, its ends round; the casing of a mouth is open toward the water.
+fn stroke_run(run: &[SymbolVertex], part: SymbolPart, uv: SymbolUv, plan: &mut PlanMesh) {
     let options = StrokeOptions::default();
     let first = plan.vertices.len();
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
@@ -473,11 +519,15 @@ fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
         }
         let outward = (points[end] - points[inner]).normalize_or_zero();
         let lengths = line.stations()[end] / options.texture_length_m;
+        let middle = plan.vertices.len();
         cap(points[end], outward * widths.values()[end] / 2.0, lengths, plan);
+        if uv == SymbolUv::Across {
+            plan.vertices[middle].uv.x = 0.5;
+        }
     }
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
     stroke(&StrokePath::alone(&alignment), &options, plan);
-    let Some(shares) = shares else { return };
+    let Some(shares) = shares.filter(|_| uv == SymbolUv::Share) else { return };
     for vertex in &mut plan.vertices[first..] {
         let station_m = f64::from(vertex.uv.y) * options.texture_length_m;
         vertex.uv = Vec2::new(shares.at(station_m) as f32, 0.5);

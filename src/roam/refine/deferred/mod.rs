@@ -17,6 +17,7 @@
 
 mod check;
 pub mod patch;
+pub mod surface;
 pub mod topology;
 pub mod wheel;
 
@@ -165,6 +166,11 @@ impl<S: BlockSource> Deferred<S> {
         &self.visible
     }
 
+    /// The eye of the last update, world space.
+    pub fn eye(&self) -> Vec3 {
+        self.station.eye
+    }
+
     /// The changes of the last update. A patch that has come into view is not dirty for that alone.
     pub fn changes(&self) -> &RefinementChanges {
         &self.changes
@@ -179,6 +185,25 @@ impl<S: BlockSource> Deferred<S> {
     /// all patches of one orientation; [`Deferred::vertex`] resolves a number.
     pub fn indices(&self, corner: Vertex) -> &[[u16; 3]] {
         self.mesh(corner).map_or(self.topology(corner).roots().as_slice(), PatchMesh::indices)
+    }
+
+    /// [`Deferred::indices`] by the places of vertices in a patch stored row by row from the south-west. A patch without a
+    /// mesh that lacks data at a corner shows the other half.
+    pub fn local_triangles(&self, corner: Vertex) -> Vec<[u16; 3]> {
+        let topology = self.topology(corner);
+        let is_whole = self.mesh(corner).is_some();
+        let has_data = |corners: &&[u16; 3]| {
+            is_whole || corners.iter().all(|&number| !self.corner_position(corner, number).z.is_nan())
+        };
+        let local = |corners: &[u16; 3]| corners.map(|number| topology.row_major(number) as u16);
+        self.indices(corner).iter().filter(has_data).map(local).collect()
+    }
+
+    /// The position of one of the four corners of the patch with south-west corner `corner`, by its number; Z NaN without
+    /// data.
+    fn corner_position(&self, corner: Vertex, number: u16) -> Vec3 {
+        let [x, y] = self.topology(corner).places()[number as usize];
+        self.source.corners(corner)[usize::from(x > 0) + 2 * usize::from(y > 0)]
     }
 
     /// The vertex with a number in the patch with south-west corner `corner`.
@@ -258,6 +283,18 @@ impl<S: BlockSource> Deferred<S> {
     /// The source of patches; a change of it must be followed by [`Deferred::edit`].
     pub fn source_mut(&mut self) -> &mut S {
         &mut self.source
+    }
+
+    /// Begins anew, as after [`Deferred::new`]: for a source whose spheres have all changed.
+    pub fn restart(&mut self) {
+        self.patches.fill(WalkedPatch::default());
+        self.spare = (0..self.meshes.0.len() as u32).collect();
+        self.seen.fill(0);
+        self.behind.fill(false);
+        self.wheel = Wheel::new(0);
+        self.visible.clear();
+        self.station = EyeStation { eye: Vec3::NAN, traveled: 0.0, ..self.station };
+        self.settled = false;
     }
 
     /// The number of patches with a mesh.

@@ -368,6 +368,11 @@ impl PatchMesh {
         }
     }
 
+    /// Whether a leaf of the bintree is displayed.
+    pub(super) fn is_displayed(&self, topology: &Topology, corners: [u16; 3]) -> bool {
+        !(self.partial && self.is_missing(topology, corners))
+    }
+
     /// Whether a triangle lies over no data, or has no area, as beyond the border of the terrain.
     pub(super) fn is_missing(&self, topology: &Topology, corners: [u16; 3]) -> bool {
         if corners.iter().any(|&corner| self.flags[corner as usize] & HOLE != 0) {
