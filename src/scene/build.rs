@@ -14,6 +14,7 @@ use glam::DVec2;
 use crate::dem::raster::Raster;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::earthworks::brush::Change;
 use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
@@ -138,6 +139,7 @@ pub fn build(
         layout,
         ground: OnceLock::new(),
         held: Arc::new(shaped.held),
+        dug: shaped.dug,
         ribbons: collected.ribbons,
         symbols: collected.symbols,
         graphics: collected.graphics,
@@ -168,6 +170,7 @@ struct ShapedFeatures {
     plots: Vec<Plot>,
     lines: Vec<FenceLine>,
     held: HeldPosts,
+    dug: Vec<Change>,
 }
 
 /// Shapes the ground for everything but models, and builds the decks over it.
@@ -187,8 +190,8 @@ fn shape(
     let plots = buildings::lay_out(document, sources, lattice, collected)?;
     let lines = fences::lay_out(document, sources, lattice, collected)?;
     bridges::build(document, sources, lattice, &mut roads, collected)?;
-    earthworks::build(document, sources, lattice, &held, collected)?;
-    Ok(ShapedFeatures { roads, plots, lines, held })
+    let dug = earthworks::build(document, sources, lattice, &held, collected)?;
+    Ok(ShapedFeatures { roads, plots, lines, held, dug })
 }
 
 fn height_service(

@@ -10,7 +10,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::earthworks::EarthworkTable;
 use crate::description::words::EarthworkKind;
-use crate::earthworks::brush::{Crater, TireTrack, Trench};
+use crate::earthworks::brush::{Change, Crater, TireTrack, Trench, set_heights};
 use crate::earthworks::earthwork::{CrownHeight, Earthwork, RaisedGround};
 use crate::earthworks::held_posts::HeldPosts;
 use crate::earthworks::level_ground::LevelGround;
@@ -22,7 +22,8 @@ use crate::scene::builder::SceneBuilder;
 use crate::scene::near::MERGE_M;
 use crate::scene::report::EarthworkRow;
 use crate::scene::sources::{Sourced, Sources};
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::water_cover::{WaterCover, water_cover};
 
 /// The steps, of some nanoseconds each, that all earthworks of a scene may take together.
 const MAX_COST: f64 = 1e9;
@@ -56,6 +57,7 @@ pub struct NamedEarthwork {
 }
 
 /// Changes the ground by the document's earthworks, beside the posts that `held` holds, and reports the earth moved.
+/// Returns the rectangles of posts that changed, in order, with their heights before.
 ///
 /// # Errors
 /// A source cannot be had, or there is more to do than [`MAX_COST`].
@@ -65,8 +67,8 @@ pub fn build(
     lattice: &mut Lattice,
     held: &HeldPosts,
     collected: &mut SceneBuilder,
-) -> Result<(), Diagnostic> {
-    let (mut cost, mut unseen, mut leveled) = (0.0, 0, Vec::new());
+) -> Result<Vec<Change>, Diagnostic> {
+    let (mut cost, mut unseen, mut dug) = (0.0, 0, Vec::new());
     for table in &document.earthworks {
         for NamedEarthwork { name, work } in of_table(table, sources, &mut collected.default_counts)? {
             cost += work.cost(lattice);
@@ -74,11 +76,6 @@ pub fn build(
                 return Err(too_much(document, table));
             }
             let changes = work.apply(lattice, held);
-            if matches!(work, Earthwork::Level(_)) {
-                leveled.extend(
-                    changes.pieces.iter().flat_map(|piece| piece.changed(lattice)).map(|(post, _)| post),
-                );
-            }
             unseen += usize::from(!work.is_resolved(lattice.cell().max_element()));
             collected.report.earthworks.push(EarthworkRow {
                 name,
@@ -87,14 +84,30 @@ pub fn build(
                 cut: changes.volumes.cut_m3,
                 fill: changes.volumes.fill_m3,
             });
+            dug.extend(changes.pieces);
         }
     }
-    // Level ground that a feature has shaped is no lake.
-    for post in leveled {
-        lattice.pin(post, lattice.height(post));
-    }
     note(unseen, lattice, collected);
-    Ok(())
+    Ok(dug)
+}
+
+/// The water that the elevations show without earthworks, on the ground that they left dry: a level pit is no lake.
+pub fn water_beside(dug: &[Change], lattice: &Lattice) -> WaterCover {
+    if dug.is_empty() {
+        return water_cover(lattice);
+    }
+    let mut before = lattice.clone();
+    for Change { posts, before: heights } in dug.iter().rev() {
+        set_heights(&mut before, *posts, heights);
+    }
+    let mut cover = water_cover(&before);
+    let is_other = |&post: &Post| before.height(post).to_bits() != lattice.height(post).to_bits();
+    if !cover.is_water.is_empty() {
+        for post in dug.iter().flat_map(|change| change.posts.posts()).filter(is_other) {
+            cover.is_water[lattice.index(post)] = false;
+        }
+    }
+    cover
 }
 
 fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {

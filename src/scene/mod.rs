@@ -62,6 +62,7 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
+use crate::earthworks::brush::Change;
 use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::geom::declination::CalendarDay;
@@ -72,6 +73,7 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
+use crate::scene::earthworks::water_beside;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
@@ -88,7 +90,7 @@ use crate::scene::vertical_scale::VerticalScale;
 use crate::structure::draped_solid::DrapedSolid;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::service::HeightService;
-use crate::terrain::water_cover::{WaterCover, water_cover};
+use crate::terrain::water_cover::WaterCover;
 
 /// A digital terrain model: the ground, the features on it, labels and views.
 pub struct SceneModel {
@@ -114,6 +116,8 @@ pub struct SceneModel {
     ground: OnceLock<MeasuredGround>,
     /// The posts under water, which earthworks leave as they are.
     pub held: Arc<HeldPosts>,
+    /// The posts that its earthworks changed, with their heights before.
+    dug: Vec<Change>,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     ramp: RampSource,
@@ -449,7 +453,7 @@ impl SceneModel {
     /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.
     pub fn water(&self) -> &WaterCover {
         self.water.get_or_init(|| {
-            if self.infers_water { water_cover(&self.lattice) } else { WaterCover::default() }
+            if self.infers_water { water_beside(&self.dug, &self.lattice) } else { WaterCover::default() }
         })
     }
 

@@ -7,6 +7,7 @@ use sandtable::message::chain::error_text;
 use sandtable::pipeline::scene_file::{open_scene, open_scene_ground};
 use sandtable::scene::SceneModel;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::water_cover::water_cover;
 
 use crate::common::scratch::Scratch;
 
@@ -92,11 +93,19 @@ fn water_stays_level_and_roads_follow() {
 }
 
 #[test]
-fn a_leveled_pit_is_not_drawn_as_a_lake() {
+fn a_leveled_pit_is_not_drawn_as_a_lake_nor_is_a_bank_in_the_sea_water() {
     let pit = "[[earthwork]]\nkind = \"level\"\npoints = [[300, 300], [600, 300], [600, 600], [300, 600]]\nlevel = 20\n";
     let scene = sound(pit);
     let dug = scene.report.earthworks[0].area;
     assert!(scene.water().lakes.is_empty() && dug > 90_000.0, "{:?} of {dug}", scene.water().lakes);
+    assert!(water_cover(&scene.lattice).lakes.len() == 1, "its heights alone would make it one");
+    let sea = "height_offset = -200\n";
+    let bank = "[[earthwork]]\nkind = \"raise\"\npoints = [[300, 300], [900, 900]]\nlevel = 5\nwidth = 40\n";
+    let scene = sound(&format!("{sea}{bank}"));
+    let water = scene.water();
+    let on_bank = scene.lattice.index(Post { column: 60, row: 60 });
+    let beside = scene.lattice.index(Post { column: 60, row: 10 });
+    assert!(scene.has_sea() && !water.is_water[on_bank] && water.is_water[beside]);
 }
 
 #[test]

@@ -97,9 +97,12 @@ pub(super) fn effect(
         }
         SceneEdit::Add(table) if table.name == "earthwork" => {
             let works = added_works([before, after], assets, scene)?;
-            match works.iter().any(|work| meets_a_pad(work, scene)) {
-                true => rebuild,
-                false => EffectOfEdit { forward: EditEffect::Dig(works), back: EditEffect::TakeBack },
+            if works.iter().all(|work| work.bounds(&scene.lattice).is_none()) {
+                EffectOfEdit::both(EditEffect::Views)
+            } else if works.iter().any(|work| meets_a_pad(work, scene)) {
+                rebuild
+            } else {
+                EffectOfEdit { forward: EditEffect::Dig(works), back: EditEffect::TakeBack }
             }
         }
         SceneEdit::Set { place: EditPlace::Table { name, .. }, keys, .. }

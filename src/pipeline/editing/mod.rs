@@ -1,14 +1,17 @@
 //! Changes of a scene that a user makes: applied, undone and saved into the scene file.
 //!
 //! ```text
-//!  SceneEdit ─► edit: places in the systems of the file ─► scene_text: bytes of the file ─► decoded as any scene file
+//!  clicks ─► tool ─┐
+//!                  ▼
+//!  SceneEdit ─► editor: places in the systems of the file ─► scene_text: bytes of the file ─► decoded as any scene file
 //!                                                                                            │ wrong: nothing changes
 //!  window ◄── EditEffect: ground mended, a model moved, or the scene built anew ◄── effect ◄─┘
 //!             save: beside the file, then renamed over it        reload: the file as others left it
 //! ```
 //!
 //! The text of the file is what is edited, so that all that its author wrote stays as it is, and undoing all edits gives
-//! the same bytes.
+//! the same bytes. A scene that is built on a thread is that of the text at its start: where
+//! [`source`](editor::SceneEditor::source) has changed meanwhile, it is built once more.
 
 pub mod edit;
 pub mod editor;

@@ -84,17 +84,19 @@ pub(super) fn with_table(text: &str, table: &NewTable) -> Result<String, SceneTe
 pub(super) fn without_table(text: &str, place: &EditPlace) -> Result<String, SceneTextError> {
     let parsed = ParsedText::new(text)?;
     parsed.table(place)?;
-    let own = parsed.tables.iter().filter(|table| table.is_of(place));
-    let ranges: Vec<Range<usize>> = own
-        .map(|table| {
-            let end = parsed.line_end(parsed.end(table));
-            let after = &text[end..];
-            let blank = after.len() - after.trim_start_matches(['\r', '\n', ' ', '\t']).len();
-            // Whole lines alone: what indents the line that stays is not blank.
-            let blank = after[..blank].rfind('\n').map_or(0, |feed| feed + 1);
-            parsed.comment_start(table.start)..end + blank
-        })
-        .collect();
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for table in parsed.tables.iter().filter(|table| table.is_of(place)) {
+        let end = parsed.line_end(table.values_end);
+        let after = &text[end..];
+        let blank = after.len() - after.trim_start_matches(['\r', '\n', ' ', '\t']).len();
+        // Whole lines alone: what indents the line that stays is not blank.
+        let blank = after[..blank].rfind('\n').map_or(0, |feed| feed + 1);
+        let range = parsed.comment_start(table.start)..end + blank;
+        match ranges.last_mut() {
+            Some(last) if last.end >= range.start => last.end = range.end,
+            _ => ranges.push(range),
+        }
+    }
     let mut left = text.to_owned();
     for range in ranges.into_iter().rev() {
         if range.end == text.len() {
