@@ -11,6 +11,7 @@ mod los;
 mod manners;
 mod meshes;
 mod new;
+mod pages;
 mod pictures;
 mod prints;
 mod profile;

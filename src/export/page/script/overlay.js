@@ -14,14 +14,17 @@ const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-se
 const GAP_PX = 4;
 const MOST_NAMES = 120;
 
+// A name's lines; the first has the letters of its kind, the others are smaller.
+const withLines = (label) => ({ ...label, lines: label.text.split("\n") });
+
 class Overlay {
   constructor(description, ground) {
     this.description = description;
     this.ground = ground;
     this.canvas = document.getElementById("names");
-    this.labels = [...description.labels].sort((a, b) => a.rank - b.rank);
-    // A name that was shown keeps its place before its equals, so that names do not flicker.
-    this.shown = new Set();
+    this.labels = description.labels.map(withLines).sort((a, b) => a.rank - b.rank);
+    // Where each name stood last: it keeps to that place while it is free, so that names do not flicker.
+    this.last = new Map();
     this.pick = null;
   }
 
@@ -38,7 +41,7 @@ class Overlay {
     const taken = this.furniture();
     const placed = this.names(pen, camera, size, taken);
     for (const { label, box, at, top } of placed) this.name(pen, label, box, at, top);
-    this.shown = new Set(placed.map(({ label }) => label));
+    this.last = new Map(placed.map(({ label, place }) => [label, place]));
     if (this.pick) this.cross(pen, camera, size);
     this.north(camera);
     this.scale(camera, size);
@@ -62,26 +65,29 @@ class Overlay {
       if (!at || !top || top.x < 0 || top.x > size[0] || top.y < 0 || top.y > size[1]) continue;
       const letters = LETTERS[label.kind] || LETTERS.point;
       pen.font = `${letters.font} ${letters.px}px ${FONT}`;
-      label.width ??= pen.measureText(label.text).width;
-      const box = this.places(label, letters, at, top).find((candidate) =>
-        candidate[0] >= 2 && candidate[2] <= size[0] - 2 && candidate[1] >= 2 && isFree(candidate));
+      label.width ??= Math.max(...label.lines.map((line) => pen.measureText(line).width));
+      const boxes = this.places(label, letters, at, top);
+      const fits = (box) => box && box[0] >= 2 && box[2] <= size[0] - 2 && box[1] >= 2 && isFree(box);
+      const last = this.last.get(label);
+      const place = fits(boxes[last]) ? last : boxes.findIndex(fits);
+      const box = boxes[place];
       if (!box || (this.ground.hides(camera, label.anchor) && this.ground.hides(camera, label.ground))) continue;
       taken.push(box);
-      placed.push({ label, box, at, top });
+      placed.push({ label, place, box, at, top });
     }
     return placed;
   }
 
   // Boxes where a name may stand, the best first.
   places(label, letters, at, top) {
-    const [width, height] = [label.width, letters.px * 1.2];
+    const [width, height] = [label.width, letters.px * 1.2 * label.lines.length];
     const boxOf = (left, lower) => [left, lower - height, left + width, lower];
     const isRaised = Math.hypot(top.x - at.x, top.y - at.y) > 3;
     const centered = boxOf(top.x - width / 2, top.y + height / 2);
     if (label.kind === "water" || label.kind === "area" || label.kind === "road") return [centered];
     const above = boxOf(top.x - width / 2, top.y - 5);
     if (isRaised) return [above];
-    return [boxOf(at.x + 7, at.y + height / 2), boxOf(at.x - 7 - width, at.y + height / 2), above,
+    return [boxOf(at.x + 8, at.y + height / 2 - 3), boxOf(at.x - 8 - width, at.y + height / 2 - 3), above,
       boxOf(at.x - width / 2, at.y + height + 5)];
   }
 
@@ -97,14 +103,18 @@ class Overlay {
       pen.stroke();
     }
     this.mark(pen, label.kind, at);
-    pen.font = `${letters.font} ${letters.px}px ${FONT}`;
     pen.textBaseline = "alphabetic";
-    pen.strokeStyle = "rgba(255, 255, 255, 0.86)";
-    pen.lineWidth = 3;
-    const baseline = box[3] - letters.px * 0.26;
-    pen.strokeText(label.text, box[0], baseline);
-    pen.fillStyle = letters.color;
-    pen.fillText(label.text, box[0], baseline);
+    pen.textAlign = box[0] > at.x ? "left" : box[2] < at.x ? "right" : "center";
+    const x = { left: box[0], right: box[2], center: (box[0] + box[2]) / 2 }[pen.textAlign];
+    label.lines.forEach((line, index) => {
+      pen.font = `${index ? "500" : letters.font} ${letters.px * (index ? 0.88 : 1)}px ${FONT}`;
+      pen.strokeStyle = "rgba(255, 255, 255, 0.8)";
+      pen.lineWidth = 3;
+      const baseline = box[1] + letters.px * (0.94 + 1.2 * index);
+      pen.strokeText(line, x, baseline);
+      pen.fillStyle = letters.color;
+      pen.fillText(line, x, baseline);
+    });
   }
 
   mark(pen, kind, at) {
@@ -112,12 +122,15 @@ class Overlay {
     pen.strokeStyle = "#ffffff";
     pen.lineWidth = 1.2;
     pen.beginPath();
-    if (kind === "summit") {
+    if (kind === "place") {
+      pen.arc(at.x, at.y, 3.4, 0, 2 * Math.PI);
+      [pen.fillStyle, pen.strokeStyle, pen.lineWidth] = ["#ffffff", "#1c1b19", 1.6];
+    } else if (kind === "summit") {
       pen.moveTo(at.x, at.y - 5);
       pen.lineTo(at.x + 4.2, at.y + 2.5);
       pen.lineTo(at.x - 4.2, at.y + 2.5);
       pen.closePath();
-    } else if (kind === "place" || kind === "point") {
+    } else if (kind === "point") {
       pen.arc(at.x, at.y, 2.8, 0, 2 * Math.PI);
     }
     pen.stroke();
