@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use crate::draw::ground::GroundPost;
 use crate::draw::list::{DepthLayer, DrawMesh, FeatureId, MaterialId};
 
 /// The number of a patch, row by row from the south-west.
@@ -52,6 +53,17 @@ pub struct PatchDrapes {
     pub pieces: Vec<DrapedPiece>,
 }
 
+/// A rectangle of the posts of the ground map that was loaded last, which an edit changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundMapPatch {
+    /// The column of its south-west post, and the row.
+    pub first: [u32; 2],
+    /// Posts per row.
+    pub columns: u32,
+    /// The posts, row by row from the south-west.
+    pub posts: Vec<GroundPost>,
+}
+
 /// What changed on the ground since the frame before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroundChanges {
@@ -65,4 +77,6 @@ pub struct GroundChanges {
     pub dropped: Vec<PatchId>,
     /// What lies on patches, cut anew.
     pub drapes: Vec<PatchDrapes>,
+    /// Changes of the ground map; a later one lies over those before it.
+    pub map: Vec<GroundMapPatch>,
 }

@@ -22,7 +22,11 @@ use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
 use crate::ribbon::drape::{check_clearance, drape};
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
-use crate::terrain::triangle_surface::TriangleSurface;
+use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+
+/// The rounding of world positions, which are f32: those of a part may lie so far beside its patch, in meters, in a scene of
+/// ten kilometers.
+const ROUNDING_M: f64 = 2e-3;
 
 /// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
@@ -146,18 +150,36 @@ impl Drapes {
     /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
-        check_all(self.patches.iter(), ground)
+        let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
+        cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
     }
 
-    /// [`Drapes::check`] in some patches.
-    pub fn check_in(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
-        check_all(patches.iter().filter_map(|&patch| self.patches.get(patch)), ground)
+    /// [`Drapes::check`] in some patches, where nothing may be displayed beside them.
+    pub fn check_in(&self, borders: &Borders, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
+        let of_patch = |&patch: &usize| {
+            let window = Rect::around(borders.window((patch % borders.columns(), patch / borders.columns())));
+            let own = WindowSurface { ground, window: window.grown(-ROUNDING_M) };
+            let cut = self.patches.get(patch).into_iter().flat_map(|patch| &patch.cut);
+            cut.map(|mesh| check_clearance(mesh, &own)).fold(0.0, f64::max)
+        };
+        patches.par_iter().map(of_patch).reduce(|| 0.0, f64::max)
     }
 }
 
-fn check_all<'a>(patches: impl Iterator<Item = &'a PatchDrape>, ground: &dyn TriangleSurface) -> f64 {
-    let cut: Vec<&DrawMesh> = patches.flat_map(|patch| &patch.cut).collect();
-    cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
+/// A ground whose heights are asked for inside a window alone: positions beside it are those of its border.
+struct WindowSurface<'a> {
+    ground: &'a dyn TriangleSurface,
+    window: Rect,
+}
+
+impl TriangleSurface for WindowSurface<'_> {
+    fn visit_facets(&self, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle)) {
+        self.ground.visit_facets(rect, visit);
+    }
+
+    fn displayed_z(&self, at: DVec2) -> Option<f64> {
+        self.ground.displayed_z(at.clamp(self.window.min, self.window.max))
+    }
 }
 
 impl PatchDrape {

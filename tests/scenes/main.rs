@@ -22,3 +22,4 @@ mod recut;
 mod scatter;
 mod scene_file;
 mod symbols;
+mod walk;

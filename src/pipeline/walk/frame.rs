@@ -65,6 +65,8 @@ pub struct WalkStatistics {
     pub triangle_bytes: usize,
     /// Bytes of what lies on patches that is handed over.
     pub drape_bytes: usize,
+    /// Bytes of changes of the ground map that are handed over.
+    pub map_bytes: usize,
 }
 
 impl WalkStatistics {
@@ -79,6 +81,7 @@ impl WalkStatistics {
             changes.vertices.iter().map(|patch| size_of_val(patch.positions.as_slice())).sum();
         self.triangle_bytes =
             changes.triangles.iter().map(|patch| size_of_val(patch.triangles.as_slice())).sum();
+        self.map_bytes = changes.map.iter().map(|patch| size_of_val(patch.posts.as_slice())).sum();
         let pieces = changes.drapes.iter().flat_map(|patch| &patch.pieces);
         self.drape_bytes = pieces
             .map(|piece| {
@@ -89,6 +92,6 @@ impl WalkStatistics {
 
     /// Bytes that are handed over, in all.
     pub fn bytes(&self) -> usize {
-        self.vertex_bytes + self.triangle_bytes + self.drape_bytes
+        self.vertex_bytes + self.triangle_bytes + self.drape_bytes + self.map_bytes
     }
 }

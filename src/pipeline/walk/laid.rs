@@ -1,8 +1,9 @@
 //! What lies on the ground of a walk, cut again where the ground or the view of it changed.
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
+use rayon::prelude::*;
 
-use crate::draw::list::DrawList;
+use crate::draw::list::{DrawList, FeatureId};
 use crate::draw::patches::{PatchDrapes, PatchId};
 use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::shown::ShownPatches;
@@ -13,6 +14,9 @@ use crate::roam::refine::deferred::Deferred;
 use crate::roam::refine::deferred::surface::DeferredSurface;
 use crate::scene::SceneModel;
 use crate::scene::picture::recut::GroundSheets;
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::lattice::Lattice;
+use crate::terrain::triangle_surface::TriangleSurface;
 use crate::view::camera::Camera;
 
 /// The share of its distance that an eye moves until what depends on it is made anew: a line is then at most so much too
@@ -22,12 +26,21 @@ const STALE_SHARE: f32 = 0.2;
 /// The least distance that is counted with, in meters: near the eye nothing is too narrow.
 const LEAST_DISTANCE_M: f32 = 25.0;
 
+/// The least height above the ground that is counted with where symbols are planned, in meters.
+const LEAST_HEIGHT_M: f32 = 150.0;
+
+/// The most patches on which what lies is made anew in one update though it still lies on the ground: lines that the eye has
+/// come nearer to can wait for a few frames, and a frame that waits for all of them is a late one.
+const MOST_RENEWED: usize = 12;
+
 /// What lies on a patch as the renderer has it.
 #[derive(Clone, Copy, Debug, Default)]
 struct LaidPatch {
     /// Whether it was cut to what the patch displays now.
     is_cut: bool,
-    /// From where it was seen when it was handed over.
+    /// Whether other symbols are planned in it than it was cut of.
+    is_replanned: bool,
+    /// From where it was seen when it was handed over; `None` where the renderer does not have it.
     eye: Option<Vec3>,
 }
 
@@ -35,17 +48,29 @@ struct LaidPatch {
 pub(super) struct LaidGround {
     sheets: GroundSheets,
     patches: Vec<LaidPatch>,
+    /// From where symbols were planned.
+    planned: Option<Vec3>,
 }
 
 impl LaidGround {
     pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
         let patches = vec![LaidPatch::default(); ground.layout.patch_count()];
-        Self { sheets: GroundSheets::new(scene, ground), patches }
+        Self { sheets: GroundSheets::new(scene, ground), patches, planned: None }
     }
 
     /// The materials.
     pub fn head(&self) -> &DrawList {
         self.sheets.head()
+    }
+
+    /// Marks what lies on a patch as off the ground, which has moved.
+    pub fn moved(&mut self, patch: usize) {
+        self.patches[patch].is_cut = false;
+    }
+
+    /// What lies uppermost on a patch at a world position; `None` for bare ground.
+    pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
+        self.sheets.feature_at(patch, at)
     }
 
     /// Hands everything over again that comes into view.
@@ -56,42 +81,76 @@ impl LaidGround {
     /// What lies on the patches that changed or came into view, and what looks otherwise from where the camera is now.
     pub fn update(
         &mut self,
-        _scene: &SceneModel,
+        scene: &SceneModel,
         mesh: &Deferred<DynamicTerrain>,
         shown: &ShownPatches,
         camera: &Camera,
     ) -> Vec<PatchDrapes> {
-        mesh.changes().dirty.iter().for_each(|&patch| self.patches[patch].is_cut = false);
-        for &patch in shown.changed() {
-            self.patches[patch].eye = None;
-        }
         let terrain = mesh.source();
-        let layout = *terrain.ground().layout;
-        let (east, _) = layout.patch_grid();
-        let corner = |patch: usize| {
-            Vertex::new((patch % east) as i32 * layout.patch(), (patch / east) as i32 * layout.patch())
-        };
-        let is_due = |&patch: &usize| {
-            let laid = &self.patches[patch];
-            self.sheets.is_occupied(patch)
-                && match laid.eye {
-                    Some(eye) if laid.is_cut => {
-                        let bounds = terrain.heights().bounds(terrain.ground(), corner(patch));
-                        self.sheets.fades(patch) && has_moved(camera.eye(), eye, bounds)
-                    }
-                    _ => true,
+        self.plan_symbols(scene, terrain.lattice(), camera);
+        mesh.changes().dirty.iter().for_each(|&patch| self.patches[patch].is_cut = false);
+        shown.changed().iter().for_each(|&patch| self.patches[patch].eye = None);
+        let (mut due, mut renewed) = (Vec::new(), 0);
+        for &patch in shown
+            .visible()
+            .iter()
+            .filter(|&&patch| self.patches[patch].is_replanned || self.sheets.is_occupied(patch))
+        {
+            let laid = self.patches[patch];
+            let is_due = match laid.eye {
+                Some(eye) if laid.is_cut => {
+                    let looks_otherwise =
+                        laid.is_replanned || self.looks_otherwise(terrain, patch, eye, camera.eye());
+                    renewed += usize::from(looks_otherwise);
+                    looks_otherwise && renewed <= MOST_RENEWED
                 }
-        };
-        let due: Vec<usize> = shown.visible().iter().copied().filter(is_due).collect();
-        let uncut: Vec<usize> = due.iter().copied().filter(|&patch| !self.patches[patch].is_cut).collect();
+                _ => true,
+            };
+            if is_due {
+                due.push(patch);
+            }
+        }
+        let is_uncut = |patch: &usize| !self.patches[*patch].is_cut || self.patches[*patch].is_replanned;
+        let uncut: Vec<usize> = due.iter().copied().filter(is_uncut).collect();
         if !uncut.is_empty() {
             self.sheets.recut(&uncut, &DeferredSurface::new(mesh, terrain.lattice().cell()));
         }
-        let handed = due.into_iter().map(|patch| {
-            self.patches[patch] = LaidPatch { is_cut: true, eye: Some(camera.eye()) };
-            PatchDrapes { patch: PatchId(patch as u32), pieces: self.sheets.pieces(patch, camera) }
-        });
-        handed.collect()
+        for &patch in &due {
+            self.patches[patch] = LaidPatch { is_cut: true, is_replanned: false, eye: Some(camera.eye()) };
+        }
+        let pieces = |patch: usize| self.sheets.pieces(patch, camera);
+        due.into_par_iter()
+            .map(|patch| PatchDrapes { patch: PatchId(patch as u32), pieces: pieces(patch) })
+            .collect()
+    }
+
+    /// Plans symbols for the camera where it has moved by a share of its height above the ground.
+    fn plan_symbols(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
+        if scene.symbols.is_empty() {
+            return;
+        }
+        let eye = camera.eye();
+        let ground = FullResolution { lattice }.displayed_z(eye.truncate().as_dvec2());
+        let height_m = ground.map_or(eye.z - scene.bounds.0.z, |ground| eye.z - ground as f32);
+        let stale_m = STALE_SHARE * height_m.max(LEAST_HEIGHT_M);
+        if self.planned.is_none_or(|planned| planned.distance(eye) > stale_m) {
+            self.planned = Some(eye);
+            for patch in self.sheets.plan_symbols(scene, camera) {
+                self.patches[patch].is_replanned = true;
+            }
+        }
+    }
+
+    /// Whether what shows of a patch differs from what was handed over when the eye was at `then`.
+    fn looks_otherwise(&self, terrain: &DynamicTerrain, patch: usize, then: Vec3, now: Vec3) -> bool {
+        if now == then || !self.sheets.fades(patch) {
+            return false;
+        }
+        let layout = *terrain.ground().layout;
+        let (east, _) = layout.patch_grid();
+        let corner =
+            Vertex::new((patch % east) as i32 * layout.patch(), (patch / east) as i32 * layout.patch());
+        has_moved(now, then, terrain.heights().bounds(terrain.ground(), corner))
     }
 
     /// The largest clearance in meters between what was cut in the patches in view and what they display.

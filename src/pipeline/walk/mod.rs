@@ -11,11 +11,15 @@
 //! ([`Walk::static_list`]).
 
 mod check;
+pub mod edit;
 pub mod frame;
 mod laid;
+pub mod measure;
+pub mod pick;
+mod relief_map;
 mod shown;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
@@ -24,6 +28,7 @@ use crate::draw::list::DrawList;
 use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::frame::{WalkError, WalkFrame, WalkOptions, WalkStatistics};
 use crate::pipeline::walk::laid::LaidGround;
+use crate::pipeline::walk::relief_map::ReliefMap;
 use crate::pipeline::walk::shown::ShownPatches;
 use crate::roam::culling::{Culling, InView};
 use crate::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
@@ -32,6 +37,7 @@ use crate::roam::spheres;
 use crate::scene::SceneModel;
 use crate::scene::picture::standing::{self, WalkedGround};
 use crate::terrain::lattice::Lattice;
+use crate::terrain::sight::ground::SightGround;
 use crate::view::camera::Camera;
 
 /// The picture that the first spheres are made for, before there is a camera: pixels from top to bottom, over the tangent of
@@ -57,6 +63,11 @@ pub struct Walk {
     view: InView,
     shown: ShownPatches,
     laid: LaidGround,
+    /// The elevations, true to scale, where they are drawn by another scale than the terrain has.
+    elevations: Option<Arc<Lattice>>,
+    /// The ground for rays and lines of sight, true to scale; `None` until somebody looks.
+    sight: OnceLock<SightGround>,
+    map: ReliefMap,
 }
 
 /// From where the ground is refined, and how far its spheres reach.
@@ -85,7 +96,9 @@ impl Walk {
         let laid = LaidGround::new(&scene, terrain.ground());
         let shown = ShownPatches::new(scene.ground().layout().patch_count(), options.kept_patches);
         let mesh = Deferred::new(terrain, cell_m).expect("a scene's patches have 16-bit indices");
-        Self { scene, options, mesh, view: InView::default(), shown, laid }
+        let elevations = (scene.scale.0 != 1.0).then(|| Arc::clone(&scene.lattice));
+        let (view, sight, map) = (InView::default(), OnceLock::new(), ReliefMap::default());
+        Self { scene, options, mesh, view, shown, laid, elevations, sight, map }
     }
 
     /// The scene.
@@ -101,6 +114,11 @@ impl Walk {
     /// The greatest error of the displayed ground, in pixels.
     pub fn tolerance_px(&self) -> f32 {
         self.options.tolerance_px.unwrap_or(self.scene.tolerance_px)
+    }
+
+    /// The elevations with all edits, true to scale; a snapshot while it is held.
+    pub fn elevations(&self) -> &Arc<Lattice> {
+        self.elevations.as_ref().unwrap_or_else(|| self.lattice())
     }
 
     /// Sets the greatest error of the displayed ground, in pixels, at least a hundredth; the next update shows it.
@@ -125,7 +143,11 @@ impl Walk {
     /// that follow, with the same numbers in every list of this walk.
     pub fn static_list(&self, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
         let walked = WalkedGround { lattice: self.lattice(), to_sun: self.to_sun() };
-        standing::standing(&self.scene, walked, camera, self.laid.head(), progress)
+        let mut list = standing::standing(&self.scene, walked, camera, self.laid.head(), progress);
+        if let Some(map) = &mut list.ground {
+            self.map.load(map, self.elevations());
+        }
+        list
     }
 
     /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
@@ -153,6 +175,7 @@ impl Walk {
             WalkStatistics { splits: refined.splits, merges: refined.merges, ..WalkStatistics::default() };
         let mut changes = self.shown.update(&self.mesh);
         changes.drapes = self.laid.update(&self.scene, &self.mesh, &self.shown, camera);
+        changes.map = self.map.take_new();
         statistics.examined = self.mesh.examined();
         statistics.count(&self.mesh, &changes);
         Ok(WalkFrame { changes, statistics })

@@ -8,8 +8,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use glam::DVec2;
+
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::patches::DrapedPiece;
+use crate::geom::convex;
 use crate::ribbon::patches::{Borders, Drapes};
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
@@ -208,9 +211,30 @@ impl GroundSheets {
         pieces
     }
 
+    /// What lies uppermost on a patch, as it was cut last, at a world position; `None` for bare ground.
+    pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
+        let holds = |mesh: &DrawMesh| {
+            mesh.triangles.iter().any(|corners| {
+                let plan = corners.map(|id| {
+                    let [x, y, _] = mesh.vertices[id.index()].position;
+                    DVec2::new(f64::from(x), f64::from(y))
+                });
+                convex::contains(&plan, at)
+            })
+        };
+        let of = |sheet: &Sheet, is_symbol: bool| {
+            let found = sheet.drapes.in_patch(patch).filter(|(plan, mesh)| {
+                (is_symbol || !self.replaced.contains(&sheet.plans[*plan].feature)) && holds(mesh)
+            });
+            found.last().map(|(plan, _)| ((sheet.plans[plan].layer, is_symbol), sheet.plans[plan].feature))
+        };
+        let uppermost = [of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten().max();
+        uppermost.map(|(_, feature)| feature)
+    }
+
     /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
     pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
-        let of = |sheet: &Sheet| sheet.drapes.check_in(patches, ground);
+        let of = |sheet: &Sheet| sheet.drapes.check_in(&self.borders, patches, ground);
         of(&self.ribbons).max(of(&self.symbols))
     }
 

@@ -63,6 +63,21 @@ impl SightGround {
         Self::with_pyramid(lattice, pyramid)
     }
 
+    /// Lets the ground go, so that it can be edited without a copy; [`SightGround::again`] takes it back.
+    pub fn release(self) -> Arc<Pyramid> {
+        self.pyramid
+    }
+
+    /// The ground that was released as `pyramid`, after an edit of the posts in `edited` alone, which made it `lattice`.
+    ///
+    /// # Panics
+    /// Where `lattice` is of another size, or `edited` leaves it.
+    pub fn again(pyramid: Arc<Pyramid>, lattice: Arc<Lattice>, edited: &[PostRect]) -> Self {
+        let mut pyramid = Arc::unwrap_or_clone(pyramid);
+        edited.iter().for_each(|&posts| pyramid.update(&lattice, posts));
+        Self::with_pyramid(lattice, pyramid)
+    }
+
     /// The ground itself.
     pub fn lattice(&self) -> &Arc<Lattice> {
         &self.lattice

@@ -1,0 +1,81 @@
+//! Measures of the ground as it is now: lines, areas, lines of sight and what is seen from a place.
+//!
+//! Positions are map coordinates in the scene's system; elevations are meters, true to scale, with all edits.
+
+use glam::DVec2;
+
+use crate::dem::answer::Answer;
+use crate::geom::polygon;
+use crate::pipeline::viewshed::ViewshedSummary;
+use crate::pipeline::walk::Walk;
+use crate::terrain::profile::{ProfileStation, ProfileSummary, profile};
+use crate::terrain::query::pieces::{GridRegion, RegionError};
+use crate::terrain::query::zone::{Zone, zone};
+use crate::terrain::sight::Curvature;
+use crate::terrain::sight::line::{Sight, SightEnd};
+use crate::terrain::sight::viewshed::{Viewshed, ViewshedOptions, viewshed};
+
+/// A measured line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineMeasure {
+    /// The ground at its vertices and at every crossing with an edge of the finest triangles, in order.
+    pub stations: Vec<ProfileStation>,
+    /// Lengths in plan and over the ground, climbs and extremes.
+    pub summary: ProfileSummary,
+}
+
+/// A measured area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaMeasure {
+    /// Square meters in plan, whether there is ground or not.
+    pub plan_m2: f64,
+    /// The length of its border in plan, meters.
+    pub perimeter_m: f64,
+    /// The ground in it.
+    pub zone: Zone,
+}
+
+/// What is seen from a place.
+pub struct SeenGround {
+    /// What of each post is.
+    pub viewshed: Viewshed,
+    /// How much.
+    pub summary: ViewshedSummary,
+}
+
+impl Walk {
+    /// The ground along a line of at least one vertex.
+    pub fn measure_line(&self, line: &[DVec2]) -> LineMeasure {
+        let stations = profile(self.elevations(), line);
+        LineMeasure { summary: ProfileSummary::from_stations(&stations), stations }
+    }
+
+    /// The ground inside a ring, whichever way round; the last vertex need not be the first.
+    ///
+    /// # Errors
+    /// The ring has fewer than three vertices, or one that is not finite.
+    pub fn measure_area(&self, ring: &[DVec2]) -> Result<AreaMeasure, RegionError> {
+        let elevations = self.elevations();
+        let region = GridRegion::new(elevations, &[ring.to_vec()])?;
+        Ok(AreaMeasure {
+            plan_m2: polygon::doubled_area(ring).abs() / 2.0,
+            perimeter_m: polygon::edges(ring).map(|(from, to)| from.distance(to)).sum(),
+            zone: zone(elevations, &region),
+        })
+    }
+
+    /// Whether the target is seen from the observer, on the curved Earth with the usual refraction.
+    pub fn line_of_sight(&self, observer: SightEnd, target: SightEnd) -> Sight {
+        self.sight().line_of_sight(observer, target, Curvature::default())
+    }
+
+    /// All that is seen from a place.
+    ///
+    /// # Errors
+    /// The ground's answer at the observer, where it has no height there.
+    pub fn viewshed(&self, options: &ViewshedOptions) -> Result<SeenGround, Answer> {
+        let viewshed = viewshed(self.elevations(), options)?;
+        let summary = ViewshedSummary::new(self.elevations(), &viewshed);
+        Ok(SeenGround { viewshed, summary })
+    }
+}
