@@ -23,6 +23,8 @@ pub enum ShowRange {
     Band(u8),
     /// Where the scene is seen as a block on a table.
     Table,
+    /// A form of a model, by its number.
+    Form(u32),
 }
 
 /// The key under which items become one batch; layers, then the order in which a draped material first comes.
@@ -43,11 +45,13 @@ pub fn batches(
         if first.triangles.is_empty() {
             continue;
         }
-        if items.len() > 1 || first.world_from_mesh != Mat4::IDENTITY {
-            repeated.push(items);
+        let range_of_run = range(run.start);
+        let is_form = matches!(range_of_run, ShowRange::Form(_));
+        if items.len() > 1 || is_form || first.world_from_mesh != Mat4::IDENTITY {
+            repeated.push((items, range_of_run));
             continue;
         }
-        let key = (first.layer, range(run.start), first.material);
+        let key = (first.layer, range_of_run, first.material);
         let open = match first.layer {
             DepthLayer::Solid => solids.get(&key).copied(),
             _ => merged.len().checked_sub(1).filter(|&last| merged[last].0 == key),
@@ -64,15 +68,24 @@ pub fn batches(
         let mut batch = mesh.write(sections, &list.materials[material.0 as usize], *layer, *range);
         batch["material"] = json!(material.0);
         batch["layer"] = json!(layer_word(*layer));
-        match range {
-            ShowRange::Always => {}
-            ShowRange::Band(band) => batch["band"] = json!(band),
-            ShowRange::Table => batch["table"] = json!(true),
-        }
+        note_range(&mut batch, *range);
         batches.push(batch);
     }
-    batches.extend(repeated.into_iter().map(|items| repeated_batch(sections, list, items)));
+    for (items, range) in repeated {
+        let mut batch = repeated_batch(sections, list, items);
+        note_range(&mut batch, range);
+        batches.push(batch);
+    }
     batches
+}
+
+fn note_range(batch: &mut Value, range: ShowRange) {
+    match range {
+        ShowRange::Always => {}
+        ShowRange::Band(band) => batch["band"] = json!(band),
+        ShowRange::Table => batch["table"] = json!(true),
+        ShowRange::Form(form) => batch["form"] = json!(form),
+    }
 }
 
 fn layer_word(layer: DepthLayer) -> &'static str {

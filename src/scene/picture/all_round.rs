@@ -17,7 +17,7 @@ use crate::ribbon::drape::drape;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
-use crate::scene::picture::detail::Viewer;
+use crate::scene::picture::detail::ListedForm;
 use crate::scene::picture::drapes::{
     BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
 };
@@ -53,6 +53,8 @@ pub struct AllRoundScene {
     pub shown: Vec<ItemShown>,
     /// Meters in a pixel, of a picture 1080 lines high, for which the symbols of each band are wide enough; falling.
     pub bands_m: Vec<f64>,
+    /// The forms of models.
+    pub forms: Vec<ListedForm>,
     /// The texts of tactical graphics.
     pub graphic_texts: Vec<PlacedText>,
 }
@@ -67,9 +69,11 @@ pub enum ItemShown {
     Band(u8),
     /// Where the scene is seen as a block on a table.
     Table,
+    /// Where a model is seen at the size for which this form is fine enough, and no simpler one is.
+    Form(u32),
 }
 
-/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models as their files have them.
+/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models in all their forms.
 /// `progress` is called with the name of each step as it begins.
 ///
 /// # Errors
@@ -97,10 +101,13 @@ pub fn all_round(
     solids::add(&mut list, scene);
     voids::add(&mut list, scene);
     uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed, Viewer::Anyone);
+    let forms = models::add_forms(&mut list, scene, displayed);
     airspace::add(&mut list, scene);
     shown.resize(list.items.len(), ItemShown::Always);
-    Ok(AllRoundScene { list, shown, bands_m, graphic_texts })
+    for (index, form) in forms.iter().enumerate() {
+        shown[form.items.clone()].fill(ItemShown::Form(index as u32));
+    }
+    Ok(AllRoundScene { list, shown, bands_m, forms, graphic_texts })
 }
 
 /// The whole scene from straight above, with pixels that are `fineness` times as fine as those of the overview.

@@ -95,7 +95,9 @@ fn every_scene_becomes_a_page_within_the_limit_and_sizes_of_prints_are_refused()
         let scene = project(&format!("scenes/{scene}.toml"));
         run_in(scratch.folder(), &["export", &scene, "-o", "page.HTML", "--max-error", "5"]).ok();
         let text = std::fs::read_to_string(scratch.at("page.HTML")).expect("written");
-        assert!(text.starts_with("<!doctype html>") && text.ends_with("</html>\n") && text.len() < 64_000_000);
+        assert!(
+            text.starts_with("<!doctype html>") && text.ends_with("</html>\n") && text.len() < 64_000_000
+        );
     }
     let scene = project("scenes/models.toml");
     let said = run_in(scratch.folder(), &["export", &scene, "-o", "a.html", "--side", "90"]).failed(2);

@@ -195,13 +195,14 @@ class Renderer {
     if (!batch.normals) gl.vertexAttrib3f(1, 0, 0, 0);
     if (!batch.uvs) gl.vertexAttrib2f(2, 0, 0);
     if (!batch.features && !batch.placeFeatures) gl.vertexAttribI4ui(4, batch.feature ?? 0, 0, 0, 0);
+    const count = batch.form === undefined ? batch.count ?? 1 : this.scene.forms[batch.form].count;
     if (batch.places) {
-      gl.drawElementsInstanced(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0, batch.count);
+      if (count > 0) gl.drawElementsInstanced(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0, count);
     } else {
       [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]].forEach((row, index) => gl.vertexAttrib4f(5 + index, ...row));
       gl.drawElements(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0);
     }
-    this.triangles += batch.indices / 3 * (batch.count ?? 1);
+    this.triangles += batch.indices / 3 * count;
   }
 
   // Batches of a kind in their order; `program` names the shader of each.
@@ -227,6 +228,7 @@ class Renderer {
     // The backdrop changes over some frames: a step would look like a flash.
     this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -0.08, 0.08);
     frame.studio = this.studio;
+    this.chooseForms(camera, size);
     frame.shadow = this.drawShadows(camera, size);
     this.triangles = 0;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -265,6 +267,17 @@ class Renderer {
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
     return { isSettled: this.studio === isStudio, setting: frame.setting };
+  }
+
+  // Chooses the forms of models anew where the eye has moved by more than a share of the way to what it looks at.
+  chooseForms(camera, size) {
+    if (this.scene.groups.length === 0) return;
+    const [eye, pixels] = [camera.eye, size[1] / (2 * camera.spans(size)[1])];
+    const last = this.formsFor;
+    const moved = last ? length(minus(last.eye, eye)) / camera.distance + Math.abs(Math.log(pixels / last.pixels)) : 1;
+    if (moved < 0.02 && last.isParallel === camera.isParallel) return;
+    this.formsFor = { eye, pixels, isParallel: camera.isParallel };
+    this.scene.chooseForms(eye, pixels, camera.isParallel);
   }
 
   // The depths of solids as the sun sees them, around what the picture shows; null where nothing casts a shadow.

@@ -45,7 +45,7 @@ class Page {
     numbers.remove();
     this.data = await SceneData.read(description, sections, (step) => this.message(`Opening the scene: ${step} …`));
     this.ground = new Ground(description, this.data.heights);
-    this.overlay = new Overlay(description, this.ground);
+    this.overlay = new Overlay(description, this.ground, this.data.symbols);
     this.renderer = new Renderer(this.gl, this.data, this.ground);
     this.cameras = description.cameras.map((view) => this.cameraOf(view));
     this.camera = this.cameras[0];

@@ -8,7 +8,10 @@ const LETTERS = {
   road: { px: 11.5, font: "500", color: "#4a3a2a" },
   area: { px: 13, font: "italic 500", color: "#3b4a2e" },
   point: { px: 12.5, font: "500", color: "#1c1b19" },
+  graphic: { px: 12.5, font: "600", color: "#1c1b19" },
 };
+// CSS pixels in a pixel of a symbol, which is made for a page 1080 pixels high.
+const SYMBOL_SCALE = 0.75;
 const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
 // Free pixels around a name, and the most names at once: more would hide the ground.
 const GAP_PX = 4;
@@ -18,8 +21,10 @@ const MOST_NAMES = 120;
 const withLines = (label) => ({ ...label, lines: label.text.split("\n") });
 
 class Overlay {
-  constructor(description, ground) {
+  constructor(description, ground, symbols) {
     this.description = description;
+    this.symbols = description.symbols.map((symbol, index) => ({ ...symbol, bitmap: symbols[index] }))
+      .filter(({ bitmap }) => bitmap).sort((a, b) => a.rank - b.rank);
     this.ground = ground;
     this.canvas = document.getElementById("names");
     this.labels = description.labels.map(withLines).sort((a, b) => a.rank - b.rank);
@@ -39,6 +44,7 @@ class Overlay {
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     pen.clearRect(0, 0, size[0], size[1]);
     const taken = this.furniture();
+    this.drawSymbols(pen, camera, size, taken);
     const placed = this.names(pen, camera, size, taken);
     for (const { label, box, at, top } of placed) this.name(pen, label, box, at, top);
     this.last = new Map(placed.map(({ label, place }) => [label, place]));
@@ -52,6 +58,19 @@ class Overlay {
     const boxes = ["title", "subtitle", "views", "north", "scale", "picked", "credits"].map((id) =>
       document.getElementById(id).getBoundingClientRect());
     return boxes.filter((box) => box.width > 0).map(({ left, top, right, bottom }) => [left, top, right, bottom]);
+  }
+
+  drawSymbols(pen, camera, size, taken) {
+    for (const { ground, bitmap, anchor } of this.symbols) {
+      const at = camera.project(ground, size);
+      if (!at || at.x < 0 || at.x > size[0] || at.y < 0 || at.y > size[1] || this.ground.hides(camera, ground)) continue;
+      const [left, top] = [at.x - anchor[0] * SYMBOL_SCALE, at.y - anchor[1] * SYMBOL_SCALE];
+      const [width, height] = [bitmap.width * SYMBOL_SCALE, bitmap.height * SYMBOL_SCALE];
+      const box = [left, top, left + width, top + height];
+      if (taken.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1])) continue;
+      taken.push(box);
+      pen.drawImage(bitmap, left, top, width, height);
+    }
   }
 
   names(pen, camera, size, taken) {
@@ -84,7 +103,7 @@ class Overlay {
     const boxOf = (left, lower) => [left, lower - height, left + width, lower];
     const isRaised = Math.hypot(top.x - at.x, top.y - at.y) > 3;
     const centered = boxOf(top.x - width / 2, top.y + height / 2);
-    if (label.kind === "water" || label.kind === "area" || label.kind === "road") return [centered];
+    if (label.kind === "water" || label.kind === "area" || label.kind === "road" || label.kind === "graphic") return [centered];
     const above = boxOf(top.x - width / 2, top.y - 5);
     if (isRaised) return [above];
     return [boxOf(at.x + 8, at.y + height / 2 - 3), boxOf(at.x - 8 - width, at.y + height / 2 - 3), above,
@@ -112,7 +131,7 @@ class Overlay {
       pen.lineWidth = 3;
       const baseline = box[1] + letters.px * (0.94 + 1.2 * index);
       pen.strokeText(line, x, baseline);
-      pen.fillStyle = letters.color;
+      pen.fillStyle = label.color ? `rgb(${label.color.slice(0, 3).join(" ")})` : letters.color;
       pen.fillText(line, x, baseline);
     });
   }
