@@ -27,6 +27,11 @@ pub enum ShowRange {
     Form(u32),
 }
 
+/// Parts of a meter in positions of line symbols, and of a texture in texture coordinates: finer ones are not seen, and
+/// take most of a page.
+const SYMBOL_PARTS: f32 = 16.0;
+const TEXTURE_PARTS: f32 = 2048.0;
+
 /// The key under which items become one batch; layers, then the order in which a draped material first comes.
 type BatchKey = (DepthLayer, ShowRange, MaterialId);
 
@@ -134,7 +139,7 @@ impl MergedMesh {
         let is_uniform = self.features.windows(2).all(|pair| pair[0] == pair[1]);
         let mut batch = json!({
             "vertices": self.vertices.len(),
-            "positions": sections.add_floats(&of(|vertex| vertex.position), 3),
+            "positions": sections.add_floats(&positions, 3),
             "triangles": sections.add_words(self.triangles.as_flattened(), 3),
             "feature": self.features.first(),
         });
@@ -142,8 +147,9 @@ impl MergedMesh {
             batch["features"] = sections.add_words(&self.features, 1);
         }
         if layer != DepthLayer::Ground && material.albedo == Albedo::Surface {
-            if material.texture.is_some() || matches!(range, ShowRange::Band(_)) {
-                let uvs: Vec<f32> = self.vertices.iter().flat_map(|vertex| vertex.uv).collect();
+            if material.texture.is_some() || is_symbol {
+                let part = |value: f32| rounded(value, TEXTURE_PARTS);
+                let uvs: Vec<f32> = self.vertices.iter().flat_map(|vertex| vertex.uv.map(part)).collect();
                 batch["uvs"] = sections.add_floats(&uvs, 2);
             }
             let first = self.vertices.first().map(|vertex| vertex.color);

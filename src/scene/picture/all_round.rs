@@ -42,6 +42,10 @@ const BANDS: [u32; 3] = [1, 3, 8];
 /// How many times as wide as in the overview the widest symbols are: perspective shows the far end of a scene smaller.
 const WIDEST: f64 = 1.3;
 
+/// How many times as wide symbols are made as their band needs, of which the rest is cut off: lines that are seen across
+/// at a low angle need it. The page's script has the same constant.
+const SPREAD: f64 = 2.0;
+
 /// U of a fill in the color of its class.
 const CLASS_U: f32 = 0.98;
 
@@ -146,7 +150,7 @@ fn add_laid(
     for (band, &fineness) in bands.iter().enumerate() {
         let camera = overview(scene, fineness)?;
         let mut scale = LineScale::new(&camera);
-        scale.px = WIDEST;
+        scale.px = WIDEST * SPREAD;
         bands_m.push(WIDEST / f64::from(camera.pixels_per_meter(1.0)));
         let shown = ItemShown::Band(band as u8);
         laid.extend(symbols(list, &mut looks, scene, displayed, &camera, scale, shown));

@@ -100,10 +100,12 @@ class Renderer {
         ? [2 / (far - near), -(far + near) / (far - near)]
         : [(far + near) / (far - near), -2 * far * near / (far - near)],
       isParallel: camera.isParallel,
+      depths: camera.isParallel ? [1, 1] : [near, far],
       haze: [...light.haze, hazeRate],
       zenith: [...light.zenith, hazeNear],
       setting,
       // Meters in a pixel at unit depth.
+      realPixel: 2 * up * camera.stretch / size[1],
       pixel: 2 * up * camera.stretch / Math.min(SYMBOL_LINES, 2 * size[1] / pixelRatio),
     };
   }
@@ -119,6 +121,7 @@ class Renderer {
     set("up", "uniform4fv", frame.up);
     set("haze", "uniform4fv", frame.haze);
     set("zenith", "uniform4fv", frame.zenith);
+    set("real_pixel", "uniform1f", frame.realPixel ?? 1);
     set("horizon", "uniform1f", light.horizon);
     set("to_sun", "uniform3fv", light.toSun);
     for (const name of ["sun", "sky", "bounce"]) set(name, "uniform3fv", light[name]);
@@ -165,6 +168,11 @@ class Renderer {
   }
 
   isShown(batch, frame) {
+    if (batch.band !== undefined) {
+      const { bands } = this.data.description;
+      const [least, most] = frame.depths.map((depth) => depth * frame.pixel);
+      return most > (bands[batch.band + 1] ?? 0) && (batch.band === 0 || least <= bands[batch.band]);
+    }
     return !batch.table || frame.setting === "block";
   }
 

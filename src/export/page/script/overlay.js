@@ -105,7 +105,7 @@ class Overlay {
     const centered = boxOf(top.x - width / 2, top.y + height / 2);
     if (label.kind === "water" || label.kind === "area" || label.kind === "road" || label.kind === "graphic") return [centered];
     const above = boxOf(top.x - width / 2, top.y - 5);
-    if (isRaised) return [above];
+    if (isRaised) return [above, boxOf(top.x + 8, top.y + height / 2), boxOf(top.x - 8 - width, top.y + height / 2)];
     return [boxOf(at.x + 8, at.y + height / 2 - 3), boxOf(at.x - 8 - width, at.y + height / 2 - 3), above,
       boxOf(at.x - width / 2, at.y + height + 5)];
   }
