@@ -140,6 +140,7 @@ fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<Pa
     Ok(PageFacts {
         title: scene.title.clone().unwrap_or_default(),
         subtitle: scene.subtitle.clone().unwrap_or_default(),
+        classification: furniture.classification.clone().unwrap_or_default(),
         credits: [lines(&furniture.sources), lines(&furniture.notes)].concat(),
         crs: scene.crs.name().to_owned(),
         lon_lat: lon_lat(scene),

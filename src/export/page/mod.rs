@@ -57,6 +57,8 @@ pub struct PageFacts {
     pub title: String,
     /// A line under it; may be empty.
     pub subtitle: String,
+    /// The classification, above and below all else; may be empty.
+    pub classification: String,
     /// Sources of the data and remarks, a line each.
     pub credits: Vec<String>,
     /// The name of the coordinate system.
@@ -238,6 +240,7 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
     json!({
         "title": facts.title,
         "subtitle": facts.subtitle,
+        "classification": facts.classification,
         "credits": facts.credits,
         "crs": facts.crs,
         "lonLat": facts.lon_lat.as_ref().map(lon_lat),

@@ -81,9 +81,16 @@ class Page {
     const { title, subtitle, credits, maxError, ground } = this.description;
     document.getElementById("title").textContent = title;
     document.getElementById("subtitle").textContent = subtitle;
+    const { classification, zScale } = this.description;
+    document.body.classList.toggle("classified", classification !== "");
+    for (const id of ["classified-above", "classified-below"]) {
+      document.getElementById(id).textContent = classification;
+      document.getElementById(id).hidden = classification === "";
+    }
+    const scale = zScale === 1 ? [] : [`Heights drawn ×${digits(Number(zScale.toPrecision(3)))}`];
     const error = `Ground drawn within ${digits(maxError)} m of its elevation model; heights asked are `
       + (ground.step > 1 ? `those of every ${ground.step}th post of it.` : "exact.");
-    document.getElementById("credits").textContent = [...credits, error].join(" · ");
+    document.getElementById("credits").textContent = [...credits, ...scale, error].join(" · ");
     const list = document.createElement("dl");
     for (const [key, action] of KEYS) {
       const [name, value] = [document.createElement("dt"), document.createElement("dd")];
@@ -101,6 +108,7 @@ class Page {
       this.controls.flyTo(this.cameras[Number(views.value)]);
       this.canvas.focus({ preventScroll: true });
     });
+    this.overlay.legend();
     document.getElementById("north").addEventListener("click", () => this.controls.turnNorth());
     document.getElementById("help").addEventListener("click", () => this.toggleHelp());
   }

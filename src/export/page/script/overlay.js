@@ -55,7 +55,8 @@ class Overlay {
 
   // The boxes of what stands on the page.
   furniture() {
-    const boxes = ["title", "subtitle", "views", "north", "scale", "picked", "credits"].map((id) =>
+    const boxes = ["title", "subtitle", "views", "north", "scale", "legend", "picked", "credits",
+      "classified-above", "classified-below"].map((id) =>
       document.getElementById(id).getBoundingClientRect());
     return boxes.filter((box) => box.width > 0).map(({ left, top, right, bottom }) => [left, top, right, bottom]);
   }
@@ -191,6 +192,35 @@ class Overlay {
     document.getElementById("bar").style.width = `${meters / perPixel}px`;
     const text = meters >= 1000 ? `${digits(meters / 1000)} km` : `${digits(Number(meters.toPrecision(1)))} m`;
     document.getElementById("length").textContent = camera.isParallel ? text : `${text} in the middle`;
+  }
+
+  // The colors of the ground by height; none where a picture hides most of it.
+  legend() {
+    const { map, imagery } = this.description;
+    const stops = map.ramp;
+    const [low, high] = [stops[0][0], stops[stops.length - 1][0]];
+    if (imagery || !(high > low)) return;
+    const channel = (light) => Math.round(255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055));
+    const steps = Array.from({ length: 33 }, (_, step) => {
+      const height = mix(low, high, step / 32);
+      const above = clamp(stops.findIndex((stop) => stop[0] > height), 1, stops.length - 1) || 1;
+      const [before, after] = [stops[above - 1], stops[step === 32 ? stops.length - 1 : above]];
+      const part = step === 32 ? 1 : (height - before[0]) / (after[0] - before[0]);
+      return `rgb(${[1, 2, 3].map((index) => channel(mix(before[index], after[index], part))).join(" ")})`;
+    });
+    const bar = document.getElementById("ramp");
+    bar.style.background = `linear-gradient(to top, ${steps.join(", ")})`;
+    const power = 10 ** Math.floor(Math.log10((high - low) / 3));
+    const step = [5, 2, 1].map((digit) => digit * power).find((round) => round * 3 <= high - low) ?? power;
+    for (let height = Math.ceil(low / step) * step; height <= high; height += step) {
+      const mark = document.createElement("span");
+      mark.textContent = digits(Number(height.toPrecision(12)));
+      mark.style.bottom = `${100 * (height - low) / (high - low)}%`;
+      bar.append(mark);
+    }
+    const most = Math.max(...[...bar.children].map((mark) => mark.textContent.length));
+    bar.style.marginRight = `${8 + 7 * most}px`;
+    document.getElementById("legend").hidden = false;
   }
 
   // Shows what was picked: rows of a term and a text.
