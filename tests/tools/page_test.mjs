@@ -33,13 +33,15 @@ const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swifts
 const browser = await chromium.launch({ executablePath: browserPath(), args });
 const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, hasTouch: true });
 const page = await context.newPage();
+// Cameras jump: a software adapter draws few frames a second.
+await page.emulateMedia({ reducedMotion: "reduce" });
 const told = { requests: [], complaints: [] };
 page.on("request", (request) => told.requests.push(request.url().slice(0, 100)));
 page.on("pageerror", (error) => told.complaints.push(error.message));
 page.on("console", (message) => {
   if (message.type() === "error") told.complaints.push(message.text());
 });
-page.setDefaultTimeout(120_000);
+page.setDefaultTimeout(300_000);
 
 const settled = () => page.waitForFunction(() => window.sandtable?.frames > 0 && !sandtable.page.isWanted
   && !sandtable.page.controls.flight);
@@ -55,10 +57,12 @@ await page.waitForFunction(() => window.sandtable?.frames > 0);
 told.firstFrame_ms = Date.now() - started;
 await settled();
 told.title = await page.title();
-await page.addStyleTag({ content: "main > :not(#view) { visibility: hidden }" }).catch(() => {});
-await page.evaluate(() => document.querySelectorAll("main > :not(#view)").forEach((it) => { it.style.visibility = "hidden"; }));
-await page.screenshot({ path: picture });
-await page.evaluate(() => document.querySelectorAll("main > :not(#view)").forEach((it) => { it.style.visibility = ""; }));
+const stands = (visibility) => page.evaluate((to) => {
+  document.querySelectorAll("main > :not(#view)").forEach((it) => { it.style.visibility = to; });
+}, visibility);
+await stands("hidden");
+await page.screenshot({ path: picture, timeout: 300_000 });
+await stands("");
 
 // A click with the mouse, and a tap elsewhere.
 await page.mouse.click(500, 480);

@@ -229,12 +229,14 @@ class Renderer {
     return batch.material.onGround || batch.material.groundMap ? "ground" : "solid";
   }
 
-  draw(camera, size, pixelRatio) {
+  // Draws a frame `seconds` after the last one.
+  draw(camera, size, pixelRatio, seconds = 1) {
     const { gl } = this;
     const frame = { ...this.frame(camera, size, pixelRatio), pixelRatio };
     const isStudio = frame.setting === "landscape" || frame.setting === "skyline" ? 0 : 1;
-    // The backdrop changes over some frames: a step would look like a flash.
-    this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -0.08, 0.08);
+    // The backdrop changes over a fifth of a second: a step would look like a flash.
+    const most = 5 * seconds;
+    this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -most, most);
     frame.studio = this.studio;
     this.chooseForms(camera, size);
     frame.shadow = this.drawShadows(camera, size);

@@ -148,9 +148,9 @@ class Page {
     this.isWanted = false;
     if (!this.renderer || this.canvas.clientWidth === 0) return;
     this.fit();
-    const seconds = this.lastTime === null ? 1 / 60 : Math.min((time - this.lastTime) / 1000, 0.1);
+    const seconds = this.lastTime === null ? 1 / 60 : Math.min((time - this.lastTime) / 1000, 0.3);
     const isMoving = this.controls.step(seconds);
-    const { isSettled } = this.renderer.draw(this.camera, [this.canvas.width, this.canvas.height], this.ratio);
+    const { isSettled } = this.renderer.draw(this.camera, [this.canvas.width, this.canvas.height], this.ratio, seconds);
     this.overlay.draw(this.camera, this.size);
     this.frames += 1;
     this.lastTime = isMoving || !isSettled ? time : null;
