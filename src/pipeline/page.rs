@@ -33,6 +33,9 @@ const MOST_TRIANGLES: usize = 400_000;
 /// The error of longitude and latitude in degrees that is aimed at: a tenth of a millimeter.
 const LON_LAT_ERROR_DEG: f64 = 1e-9;
 
+/// The most that is accepted: one in the last digit that a page shows.
+const MOST_LON_LAT_ERROR_DEG: f64 = 1e-6;
+
 /// The picture that views are fitted to; on a narrower one they keep their width, on a wider one their height.
 const VIEW_SIZE: (u32, u32) = (1280, 720);
 
@@ -169,6 +172,7 @@ fn lon_lat(scene: &SceneModel) -> Option<ChebyshevTable> {
         Some(place)
     };
     ChebyshevTable::fit(rect, LON_LAT_ERROR_DEG, near_middle)
+        .filter(|table| table.error <= MOST_LON_LAT_ERROR_DEG)
 }
 
 fn label(label: &SceneLabel) -> PageLabel {

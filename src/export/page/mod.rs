@@ -37,6 +37,9 @@ use crate::terrain::lattice::Lattice;
 /// The largest page that is written: browsers take more, but mail and phones do not.
 pub const MOST_BYTES: usize = 64_000_000;
 
+/// Bytes that a vertex takes at least: with more of them nothing is packed to find out how many.
+const LEAST_VERTEX_BYTES: usize = 2;
+
 /// A scene for a page.
 #[derive(Clone, Copy)]
 pub struct PageScene<'a> {
@@ -158,7 +161,7 @@ pub struct PageCamera {
 /// A page that is too large.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the page would have {:.1} MB; a page may have {:.0} MB, so that it can be mailed and opened on a phone: state a larger \
+    "the page would have {:.1} MB or more; a page may have {:.0} MB, so that it can be mailed and opened on a phone: state a larger \
      --max-error, a smaller `extent` in [terrain], or a smaller picture in [style.imagery]",
     *.0 as f64 / 1e6, MOST_BYTES as f64 / 1e6
 )]
@@ -169,6 +172,10 @@ pub struct PageTooLarge(pub usize);
 /// # Errors
 /// [`PageTooLarge`].
 pub fn page(scene: &PageScene<'_>) -> Result<Vec<u8>, PageTooLarge> {
+    let least = LEAST_VERTEX_BYTES * scene.list.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>();
+    if least > MOST_BYTES {
+        return Err(PageTooLarge(least));
+    }
     let mut sections = PageSections::default();
     let description = description(scene, &mut sections);
     let text = as_script_data(&description.to_string());
@@ -425,7 +432,7 @@ mod tests {
     #[test]
     fn a_page_too_large_says_how_large_and_what_to_do() {
         let text = PageTooLarge(123_456_789).to_string();
-        assert!(text.starts_with("the page would have 123.5 MB; a page may have 64 MB"), "{text}");
+        assert!(text.starts_with("the page would have 123.5 MB or more; a page may have 64 MB"), "{text}");
         assert!(text.contains("--max-error") && text.contains("extent"));
     }
 }
