@@ -89,7 +89,7 @@ fn a_browser_opens_the_demo_s_page_without_a_network_and_answers_as_height_does(
 }
 
 #[test]
-fn every_scene_becomes_a_page_within_the_limit_and_sizes_of_prints_are_refused() {
+fn scenes_of_all_kinds_become_pages_and_the_size_of_a_print_is_refused() {
     let scratch = Scratch::new();
     for scene in ["models", "sheet", "sight", "operation"] {
         let scene = project(&format!("scenes/{scene}.toml"));
