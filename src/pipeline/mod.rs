@@ -38,6 +38,7 @@ pub mod military;
 pub mod model_file;
 pub mod new_scene;
 pub mod page;
+mod page_symbols;
 pub mod picture;
 pub mod picture_buffers;
 pub mod picture_statistics;

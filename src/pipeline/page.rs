@@ -6,16 +6,19 @@ use glam::{DVec2, Vec3};
 
 use crate::draw::list::FeatureId;
 use crate::export::page::batches::ShowRange;
-use crate::export::page::{PageCamera, PageFacts, PageLabel, PageScene, PageTooLarge, page};
+use crate::export::page::{PageCamera, PageFacts, PageForm, PageLabel, PageScene, PageTooLarge, page};
 use crate::geom::chebyshev::ChebyshevTable;
 use crate::geom::crs::Crs;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::message::choice::Choice;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::page_symbols::symbol_pictures;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::flights::SceneFlight;
 use crate::scene::picture::all_round::{AllRoundScene, ItemShown, all_round};
 use crate::scene::picture::camera;
+use crate::scene::picture::detail::ListedForm;
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::plinth::base_z;
 use crate::scene::{SceneLabel, SceneModel, SceneView};
 use crate::view::camera::{CameraError, ViewProjection};
@@ -29,6 +32,9 @@ const MOST_TRIANGLES: usize = 400_000;
 
 /// The error of longitude and latitude in degrees that is aimed at: a tenth of a millimeter.
 const LON_LAT_ERROR_DEG: f64 = 1e-9;
+
+/// The most that is accepted: one in the last digit that a page shows.
+const MOST_LON_LAT_ERROR_DEG: f64 = 1e-6;
 
 /// The picture that views are fitted to; on a narrower one they keep their width, on a wider one their height.
 const VIEW_SIZE: (u32, u32) = (1280, 720);
@@ -125,6 +131,7 @@ fn range_of(shown: ItemShown) -> ShowRange {
         ItemShown::Always => ShowRange::Always,
         ItemShown::Band(band) => ShowRange::Band(band),
         ItemShown::Table => ShowRange::Table,
+        ItemShown::Form(form) => ShowRange::Form(form),
     }
 }
 
@@ -136,6 +143,7 @@ fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<Pa
     Ok(PageFacts {
         title: scene.title.clone().unwrap_or_default(),
         subtitle: scene.subtitle.clone().unwrap_or_default(),
+        classification: furniture.classification.clone().unwrap_or_default(),
         credits: [lines(&furniture.sources), lines(&furniture.notes)].concat(),
         crs: scene.crs.name().to_owned(),
         lon_lat: lon_lat(scene),
@@ -146,7 +154,9 @@ fn facts(scene: &SceneModel, all: &AllRoundScene, max_error_m: f64) -> Result<Pa
         haze_m: scene.haze_m,
         bands_m: all.bands_m.clone(),
         features: features.map(|id| scene.feature_name(FeatureId(id))).collect(),
-        labels: scene.labels.iter().map(label).collect(),
+        labels: scene.labels.iter().map(label).chain(all.graphic_texts.iter().map(graphic_text)).collect(),
+        symbols: symbol_pictures(scene),
+        forms: all.forms.iter().map(form).collect(),
         cameras: cameras?,
     })
 }
@@ -162,11 +172,37 @@ fn lon_lat(scene: &SceneModel) -> Option<ChebyshevTable> {
         Some(place)
     };
     ChebyshevTable::fit(rect, LON_LAT_ERROR_DEG, near_middle)
+        .filter(|table| table.error <= MOST_LON_LAT_ERROR_DEG)
 }
 
 fn label(label: &SceneLabel) -> PageLabel {
     let SceneLabel { text, ground, anchor, kind, rank, .. } = label;
-    PageLabel { text: text.clone(), ground: *ground, anchor: *anchor, kind: kind.word(), rank: *rank }
+    PageLabel {
+        text: text.clone(),
+        ground: *ground,
+        anchor: *anchor,
+        kind: kind.word(),
+        rank: *rank,
+        color: None,
+    }
+}
+
+/// A text of a graphic, level at its place.
+fn graphic_text(text: &PlacedText) -> PageLabel {
+    let PlacedText { text, at, color, .. } = text;
+    PageLabel {
+        text: text.clone(),
+        ground: *at,
+        anchor: *at,
+        kind: "graphic",
+        rank: -1.0,
+        color: Some(*color),
+    }
+}
+
+fn form(form: &ListedForm) -> PageForm {
+    let &ListedForm { group, error, center, radius, is_plant, .. } = form;
+    PageForm { group, error, sphere: (center, radius), is_plant }
 }
 
 fn page_camera(scene: &SceneModel, view: &SceneView) -> Result<PageCamera, CameraError> {

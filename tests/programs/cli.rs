@@ -12,6 +12,7 @@ mod los;
 mod manners;
 mod meshes;
 mod new;
+mod pages;
 mod pictures;
 mod prints;
 mod profile;

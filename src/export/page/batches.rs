@@ -23,7 +23,14 @@ pub enum ShowRange {
     Band(u8),
     /// Where the scene is seen as a block on a table.
     Table,
+    /// A form of a model, by its number.
+    Form(u32),
 }
+
+/// Parts of a meter in positions of line symbols, and of a texture in texture coordinates: finer ones are not seen, and
+/// take most of a page.
+const SYMBOL_PARTS: f32 = 16.0;
+const TEXTURE_PARTS: f32 = 2048.0;
 
 /// The key under which items become one batch; layers, then the order in which a draped material first comes.
 type BatchKey = (DepthLayer, ShowRange, MaterialId);
@@ -43,11 +50,13 @@ pub fn batches(
         if first.triangles.is_empty() {
             continue;
         }
-        if items.len() > 1 || first.world_from_mesh != Mat4::IDENTITY {
-            repeated.push(items);
+        let range_of_run = range(run.start);
+        let is_form = matches!(range_of_run, ShowRange::Form(_));
+        if items.len() > 1 || is_form || first.world_from_mesh != Mat4::IDENTITY {
+            repeated.push((items, range_of_run));
             continue;
         }
-        let key = (first.layer, range(run.start), first.material);
+        let key = (first.layer, range_of_run, first.material);
         let open = match first.layer {
             DepthLayer::Solid => solids.get(&key).copied(),
             _ => merged.len().checked_sub(1).filter(|&last| merged[last].0 == key),
@@ -64,15 +73,24 @@ pub fn batches(
         let mut batch = mesh.write(sections, &list.materials[material.0 as usize], *layer, *range);
         batch["material"] = json!(material.0);
         batch["layer"] = json!(layer_word(*layer));
-        match range {
-            ShowRange::Always => {}
-            ShowRange::Band(band) => batch["band"] = json!(band),
-            ShowRange::Table => batch["table"] = json!(true),
-        }
+        note_range(&mut batch, *range);
         batches.push(batch);
     }
-    batches.extend(repeated.into_iter().map(|items| repeated_batch(sections, list, items)));
+    for (items, range) in repeated {
+        let mut batch = repeated_batch(sections, list, items);
+        note_range(&mut batch, range);
+        batches.push(batch);
+    }
     batches
+}
+
+fn note_range(batch: &mut Value, range: ShowRange) {
+    match range {
+        ShowRange::Always => {}
+        ShowRange::Band(band) => batch["band"] = json!(band),
+        ShowRange::Table => batch["table"] = json!(true),
+        ShowRange::Form(form) => batch["form"] = json!(form),
+    }
 }
 
 fn layer_word(layer: DepthLayer) -> &'static str {
@@ -121,7 +139,7 @@ impl MergedMesh {
         let is_uniform = self.features.windows(2).all(|pair| pair[0] == pair[1]);
         let mut batch = json!({
             "vertices": self.vertices.len(),
-            "positions": sections.add_floats(&of(|vertex| vertex.position), 3),
+            "positions": sections.add_floats(&positions, 3),
             "triangles": sections.add_words(self.triangles.as_flattened(), 3),
             "feature": self.features.first(),
         });
@@ -129,8 +147,9 @@ impl MergedMesh {
             batch["features"] = sections.add_words(&self.features, 1);
         }
         if layer != DepthLayer::Ground && material.albedo == Albedo::Surface {
-            if material.texture.is_some() || matches!(range, ShowRange::Band(_)) {
-                let uvs: Vec<f32> = self.vertices.iter().flat_map(|vertex| vertex.uv).collect();
+            if material.texture.is_some() || is_symbol {
+                let part = |value: f32| rounded(value, TEXTURE_PARTS);
+                let uvs: Vec<f32> = self.vertices.iter().flat_map(|vertex| vertex.uv.map(part)).collect();
                 batch["uvs"] = sections.add_floats(&uvs, 2);
             }
             let first = self.vertices.first().map(|vertex| vertex.color);

@@ -4,6 +4,7 @@
 //! difference from the number `stride` before it, as integers that wrap round, and then all lowest bytes come before all
 //! second ones, and so on: neighbors differ little, and their high bytes hardly ever. No bit is lost.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 
 use flate2::Compression;
@@ -17,6 +18,8 @@ const LEVEL: u32 = 8;
 #[derive(Debug, Default)]
 pub struct PageSections {
     bytes: Vec<u8>,
+    /// Where the section with these packed bytes is: equal ones, such as the places of all parts of a model, are there once.
+    places: BTreeMap<Vec<u8>, usize>,
 }
 
 impl PageSections {
@@ -27,8 +30,7 @@ impl PageSections {
 
     /// Adds bytes that are packed already, such as a picture; returns where they are, for the page's description.
     pub fn add_packed(&mut self, bytes: &[u8]) -> Value {
-        let at = self.bytes.len();
-        self.bytes.extend_from_slice(bytes);
+        let at = self.add_once(bytes.to_vec());
         json!({"at": at, "length": bytes.len()})
     }
 
@@ -59,10 +61,20 @@ impl PageSections {
     }
 
     fn add_deflated(&mut self, bytes: &[u8], kind: &str, stride: usize, count: usize) -> Value {
-        let at = self.bytes.len();
-        let mut encoder = ZlibEncoder::new(&mut self.bytes, Compression::new(LEVEL));
-        encoder.write_all(bytes).and_then(|()| encoder.finish().map(drop)).expect("memory takes all bytes");
-        json!({"at": at, "length": self.bytes.len() - at, "kind": kind, "stride": stride, "count": count})
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+        let packed =
+            encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory takes all bytes");
+        let length = packed.len();
+        let at = self.add_once(packed);
+        json!({"at": at, "length": length, "kind": kind, "stride": stride, "count": count})
+    }
+
+    fn add_once(&mut self, packed: Vec<u8>) -> usize {
+        let next = self.bytes.len();
+        *self.places.entry(packed).or_insert_with_key(|packed| {
+            self.bytes.extend_from_slice(packed);
+            next
+        })
     }
 }
 

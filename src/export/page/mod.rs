@@ -17,14 +17,16 @@ mod textures;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use glam::{DVec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 
 use crate::draw::backdrop::Backdrop;
 use crate::draw::bathymetry::bathymetry;
+use crate::draw::color::Srgba;
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::{Lighting, ReliefShading};
 use crate::draw::list::DrawList;
+use crate::draw::pixels::Pixels;
 use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::WaterColor;
 use crate::export::page::batches::ShowRange;
@@ -34,6 +36,9 @@ use crate::terrain::lattice::Lattice;
 
 /// The largest page that is written: browsers take more, but mail and phones do not.
 pub const MOST_BYTES: usize = 64_000_000;
+
+/// Bytes that a vertex takes at least: with more of them nothing is packed to find out how many.
+const LEAST_VERTEX_BYTES: usize = 2;
 
 /// A scene for a page.
 #[derive(Clone, Copy)]
@@ -55,6 +60,8 @@ pub struct PageFacts {
     pub title: String,
     /// A line under it; may be empty.
     pub subtitle: String,
+    /// The classification, above and below all else; may be empty.
+    pub classification: String,
     /// Sources of the data and remarks, a line each.
     pub credits: Vec<String>,
     /// The name of the coordinate system.
@@ -78,6 +85,10 @@ pub struct PageFacts {
     pub features: Vec<String>,
     /// Names and heights on the picture.
     pub labels: Vec<PageLabel>,
+    /// Symbols on the picture.
+    pub symbols: Vec<PageSymbol>,
+    /// The forms of models, by the number in [`ShowRange::Form`].
+    pub forms: Vec<PageForm>,
     /// Views, the first shown first; at least one.
     pub cameras: Vec<PageCamera>,
 }
@@ -95,6 +106,36 @@ pub struct PageLabel {
     pub kind: &'static str,
     /// The lower, the more important.
     pub rank: f64,
+    /// The color of its letters; `None` for that of its kind.
+    pub color: Option<Srgba>,
+}
+
+/// A symbol on a page, such as that of a unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PageSymbol {
+    /// What it is called.
+    pub name: String,
+    /// The place on the ground, world space.
+    pub ground: Vec3,
+    /// Its picture, for a page 1080 pixels high.
+    pub pixels: Pixels,
+    /// The place on the ground in its picture, pixels from the upper left.
+    pub anchor_px: Vec2,
+    /// The lower, the more important.
+    pub rank: f64,
+}
+
+/// A form of equal models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PageForm {
+    /// Which models; the forms of the same models follow one another, the finest first.
+    pub group: usize,
+    /// How far its surface is off, in units of the model.
+    pub error: f32,
+    /// The center of the sphere around the model, in its own space, and its radius.
+    pub sphere: (Vec3, f32),
+    /// Whether it is a plant, whose tone the ground under it has.
+    pub is_plant: bool,
 }
 
 /// A view of a page.
@@ -120,7 +161,7 @@ pub struct PageCamera {
 /// A page that is too large.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the page would have {:.1} MB; a page may have {:.0} MB, so that it can be mailed and opened on a phone: state a larger \
+    "the page would have {:.1} MB or more; a page may have {:.0} MB, so that it can be mailed and opened on a phone: state a larger \
      --max-error, a smaller `extent` in [terrain], or a smaller picture in [style.imagery]",
     *.0 as f64 / 1e6, MOST_BYTES as f64 / 1e6
 )]
@@ -131,6 +172,10 @@ pub struct PageTooLarge(pub usize);
 /// # Errors
 /// [`PageTooLarge`].
 pub fn page(scene: &PageScene<'_>) -> Result<Vec<u8>, PageTooLarge> {
+    let least = LEAST_VERTEX_BYTES * scene.list.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>();
+    if least > MOST_BYTES {
+        return Err(PageTooLarge(least));
+    }
     let mut sections = PageSections::default();
     let description = description(scene, &mut sections);
     let text = as_script_data(&description.to_string());
@@ -202,6 +247,7 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
     json!({
         "title": facts.title,
         "subtitle": facts.subtitle,
+        "classification": facts.classification,
         "credits": facts.credits,
         "crs": facts.crs,
         "lonLat": facts.lon_lat.as_ref().map(lon_lat),
@@ -213,6 +259,8 @@ fn description(scene: &PageScene<'_>, sections: &mut PageSections) -> Value {
         "bands": facts.bands_m,
         "features": facts.features,
         "labels": facts.labels.iter().map(label).collect::<Vec<_>>(),
+        "symbols": facts.symbols.iter().map(|it| symbol(it, sections)).collect::<Vec<_>>(),
+        "forms": facts.forms.iter().map(form).collect::<Vec<_>>(),
         "cameras": facts.cameras.iter().map(camera).collect::<Vec<_>>(),
         "light": light(&list.lighting),
         "ground": ground::heights(sections, lattice),
@@ -242,6 +290,28 @@ fn label(label: &PageLabel) -> Value {
         "anchor": label.anchor.to_array(),
         "kind": label.kind,
         "rank": label.rank,
+        "color": label.color.map(|color| color.0),
+    })
+}
+
+fn symbol(symbol: &PageSymbol, sections: &mut PageSections) -> Value {
+    json!({
+        "name": symbol.name,
+        "ground": symbol.ground.to_array(),
+        "picture": textures::picture(sections, &symbol.pixels),
+        "anchor": symbol.anchor_px.to_array(),
+        "rank": symbol.rank,
+    })
+}
+
+fn form(form: &PageForm) -> Value {
+    let (center, radius) = form.sphere;
+    json!({
+        "group": form.group,
+        "error": form.error,
+        "center": center.to_array(),
+        "radius": radius,
+        "isPlant": form.is_plant,
     })
 }
 
@@ -323,8 +393,14 @@ mod tests {
     #[test]
     fn names_cannot_end_the_script_that_holds_them() {
         let evil = "</script><script>alert(1)</script><!-- {{numbers}} \u{2028} \" & <b>";
-        let label =
-            PageLabel { text: evil.into(), ground: Vec3::ZERO, anchor: Vec3::Z, kind: "point", rank: 1.0 };
+        let label = PageLabel {
+            text: evil.into(),
+            ground: Vec3::ZERO,
+            anchor: Vec3::Z,
+            kind: "point",
+            rank: 1.0,
+            color: None,
+        };
         let facts = PageFacts {
             title: evil.into(),
             features: vec![evil.into()],
@@ -356,7 +432,7 @@ mod tests {
     #[test]
     fn a_page_too_large_says_how_large_and_what_to_do() {
         let text = PageTooLarge(123_456_789).to_string();
-        assert!(text.starts_with("the page would have 123.5 MB; a page may have 64 MB"), "{text}");
+        assert!(text.starts_with("the page would have 123.5 MB or more; a page may have 64 MB"), "{text}");
         assert!(text.contains("--max-error") && text.contains("extent"));
     }
 }

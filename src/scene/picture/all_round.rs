@@ -17,7 +17,7 @@ use crate::ribbon::drape::drape;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
-use crate::scene::picture::detail::Viewer;
+use crate::scene::picture::detail::ListedForm;
 use crate::scene::picture::drapes::{
     BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
 };
@@ -42,6 +42,10 @@ const BANDS: [u32; 3] = [1, 3, 8];
 /// How many times as wide as in the overview the widest symbols are: perspective shows the far end of a scene smaller.
 const WIDEST: f64 = 1.3;
 
+/// How many times as wide symbols are made as their band needs, of which the rest is cut off: lines that are seen across
+/// at a low angle need it. The page's script has the same constant.
+const SPREAD: f64 = 2.0;
+
 /// U of a fill in the color of its class.
 const CLASS_U: f32 = 0.98;
 
@@ -53,6 +57,8 @@ pub struct AllRoundScene {
     pub shown: Vec<ItemShown>,
     /// Meters in a pixel, of a picture 1080 lines high, for which the symbols of each band are wide enough; falling.
     pub bands_m: Vec<f64>,
+    /// The forms of models.
+    pub forms: Vec<ListedForm>,
     /// The texts of tactical graphics.
     pub graphic_texts: Vec<PlacedText>,
 }
@@ -67,9 +73,11 @@ pub enum ItemShown {
     Band(u8),
     /// Where the scene is seen as a block on a table.
     Table,
+    /// Where a model is seen at the size for which this form is fine enough, and no simpler one is.
+    Form(u32),
 }
 
-/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models as their files have them.
+/// What is to be drawn of a scene from anywhere, its terrain shown as `displayed`: all models in all their forms.
 /// `progress` is called with the name of each step as it begins.
 ///
 /// # Errors
@@ -97,10 +105,13 @@ pub fn all_round(
     solids::add(&mut list, scene);
     voids::add(&mut list, scene);
     uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed, Viewer::Anyone);
+    let forms = models::add_forms(&mut list, scene, displayed);
     airspace::add(&mut list, scene);
     shown.resize(list.items.len(), ItemShown::Always);
-    Ok(AllRoundScene { list, shown, bands_m, graphic_texts })
+    for (index, form) in forms.iter().enumerate() {
+        shown[form.items.clone()].fill(ItemShown::Form(index as u32));
+    }
+    Ok(AllRoundScene { list, shown, bands_m, forms, graphic_texts })
 }
 
 /// The whole scene from straight above, with pixels that are `fineness` times as fine as those of the overview.
@@ -139,7 +150,7 @@ fn add_laid(
     for (band, &fineness) in bands.iter().enumerate() {
         let camera = overview(scene, fineness)?;
         let mut scale = LineScale::new(&camera);
-        scale.px = WIDEST;
+        scale.px = WIDEST * SPREAD;
         bands_m.push(WIDEST / f64::from(camera.pixels_per_meter(1.0)));
         let shown = ItemShown::Band(band as u8);
         laid.extend(symbols(list, &mut looks, scene, displayed, &camera, scale, shown));

@@ -6,6 +6,7 @@
 //! [`DrawList::runs`].
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
@@ -113,6 +114,54 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
             },
         }
     }
+}
+
+/// A form of equal models, for programs that choose forms themselves.
+#[derive(Clone, Debug)]
+pub struct ListedForm {
+    /// Which models: the forms of the same models have the same number, the finest first.
+    pub group: usize,
+    /// How far its surface is off, in units of the model.
+    pub error: f32,
+    /// The center of the sphere around the model, in its own space.
+    pub center: Vec3,
+    /// The radius of that sphere.
+    pub radius: f32,
+    /// Whether it is a plant, whose tone the ground under it has.
+    pub is_plant: bool,
+    /// The items that draw it.
+    pub items: Range<usize>,
+}
+
+/// Adds all models in full and, where they are many, also in their simpler forms.
+pub(super) fn add_forms(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel]) -> Vec<ListedForm> {
+    let triangles = placed.iter().map(|stand| scene.models[stand.model].triangle_count());
+    let are_many = triangles.sum::<usize>() > FULL_TRIANGLES;
+    let groups = grouped(placed.iter().map(|stand| (stand, DetailForm::Full)));
+    let (mut listed, mut forms) = (ModelItems::new(list), Vec::new());
+    for (group, (&(index, _, tint), stands)) in groups.iter().enumerate() {
+        let model = &scene.models[index];
+        let source = TintedModel { index, model, tint };
+        let BoundingSphere { center, radius } = BoundingSphere::around(model);
+        let mut add = |form: DetailForm, parts: &[ModelPart], error: f32| {
+            let first = listed.list.items.len();
+            listed.add_parts(&source, form, parts, stands);
+            let (items, is_plant) = (first..listed.list.items.len(), !model.tints.is_empty());
+            forms.push(ListedForm { group, error, center, radius, is_plant, items });
+        };
+        add(DetailForm::Full, &model.parts, 0.0);
+        if are_many {
+            if scene.details[index].get().is_none() {
+                // Another picture may have set the same value first.
+                let _ = scene.details[index].set(ModelDetail::new(model));
+            }
+            let levels = scene.details[index].get().map(|detail| &detail.levels[..]).unwrap_or_default();
+            for (number, level) in levels.iter().enumerate() {
+                add(DetailForm::Level(number as u8), &level.parts, level.error);
+            }
+        }
+    }
+    forms
 }
 
 /// Placed models by model, form and tint.

@@ -2,7 +2,7 @@
 
 mod airspace;
 pub mod all_round;
-mod detail;
+pub mod detail;
 mod drapes;
 mod fit;
 mod fitted_view;

@@ -7,7 +7,7 @@ use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::picture::add_mesh;
-use crate::scene::picture::detail::{self, PlacedModel, Viewer};
+use crate::scene::picture::detail::{self, ListedForm, PlacedModel, Viewer};
 use crate::scene::placement::stand;
 use crate::scene::scatter::chance::Chance;
 use crate::scene::{Placement, SceneModel};
@@ -24,6 +24,22 @@ pub(super) fn add(
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
 ) {
+    let placed = place(list, scene, displayed);
+    detail::add(list, scene, &placed, viewer);
+}
+
+/// [`add`] of all models in all their forms.
+pub(super) fn add_forms(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    displayed: &dyn TriangleSurface,
+) -> Vec<ListedForm> {
+    let placed = place(list, scene, displayed);
+    detail::add_forms(list, scene, &placed)
+}
+
+/// Adds the plinths of all placements that have ground under them, and returns these.
+fn place(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurface) -> Vec<PlacedModel> {
     let finest = scene.scale.ground(&scene.lattice);
     let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
@@ -46,7 +62,7 @@ pub(super) fn add(
         });
         add_mesh(list, block, material, DepthLayer::Solid, placed.feature);
     }
-    detail::add(list, scene, &placed, viewer);
+    placed
 }
 
 /// Which of so many tints the model at a place has: the same in every picture.

@@ -100,10 +100,12 @@ class Renderer {
         ? [2 / (far - near), -(far + near) / (far - near)]
         : [(far + near) / (far - near), -2 * far * near / (far - near)],
       isParallel: camera.isParallel,
+      depths: camera.isParallel ? [1, 1] : [near, far],
       haze: [...light.haze, hazeRate],
       zenith: [...light.zenith, hazeNear],
       setting,
       // Meters in a pixel at unit depth.
+      realPixel: 2 * up * camera.stretch / size[1],
       pixel: 2 * up * camera.stretch / Math.min(SYMBOL_LINES, 2 * size[1] / pixelRatio),
     };
   }
@@ -119,6 +121,7 @@ class Renderer {
     set("up", "uniform4fv", frame.up);
     set("haze", "uniform4fv", frame.haze);
     set("zenith", "uniform4fv", frame.zenith);
+    set("real_pixel", "uniform1f", frame.realPixel ?? 1);
     set("horizon", "uniform1f", light.horizon);
     set("to_sun", "uniform3fv", light.toSun);
     for (const name of ["sun", "sky", "bounce"]) set(name, "uniform3fv", light[name]);
@@ -165,6 +168,11 @@ class Renderer {
   }
 
   isShown(batch, frame) {
+    if (batch.band !== undefined) {
+      const { bands } = this.data.description;
+      const [least, most] = frame.depths.map((depth) => depth * frame.pixel);
+      return most > (bands[batch.band + 1] ?? 0) && (batch.band === 0 || least <= bands[batch.band]);
+    }
     return !batch.table || frame.setting === "block";
   }
 
@@ -195,13 +203,14 @@ class Renderer {
     if (!batch.normals) gl.vertexAttrib3f(1, 0, 0, 0);
     if (!batch.uvs) gl.vertexAttrib2f(2, 0, 0);
     if (!batch.features && !batch.placeFeatures) gl.vertexAttribI4ui(4, batch.feature ?? 0, 0, 0, 0);
+    const count = batch.form === undefined ? batch.count ?? 1 : this.scene.forms[batch.form].count;
     if (batch.places) {
-      gl.drawElementsInstanced(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0, batch.count);
+      if (count > 0) gl.drawElementsInstanced(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0, count);
     } else {
       [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]].forEach((row, index) => gl.vertexAttrib4f(5 + index, ...row));
       gl.drawElements(gl.TRIANGLES, batch.indices, gl.UNSIGNED_INT, 0);
     }
-    this.triangles += batch.indices / 3 * (batch.count ?? 1);
+    this.triangles += batch.indices / 3 * count;
   }
 
   // Batches of a kind in their order; `program` names the shader of each.
@@ -220,13 +229,16 @@ class Renderer {
     return batch.material.onGround || batch.material.groundMap ? "ground" : "solid";
   }
 
-  draw(camera, size, pixelRatio) {
+  // Draws a frame `seconds` after the last one.
+  draw(camera, size, pixelRatio, seconds = 1) {
     const { gl } = this;
     const frame = { ...this.frame(camera, size, pixelRatio), pixelRatio };
     const isStudio = frame.setting === "landscape" || frame.setting === "skyline" ? 0 : 1;
-    // The backdrop changes over some frames: a step would look like a flash.
-    this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -0.08, 0.08);
+    // The backdrop changes over a fifth of a second: a step would look like a flash.
+    const most = 5 * seconds;
+    this.studio = this.studio === null ? isStudio : this.studio + clamp(isStudio - this.studio, -most, most);
     frame.studio = this.studio;
+    this.chooseForms(camera, size);
     frame.shadow = this.drawShadows(camera, size);
     this.triangles = 0;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -265,6 +277,17 @@ class Renderer {
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
     return { isSettled: this.studio === isStudio, setting: frame.setting };
+  }
+
+  // Chooses the forms of models anew where the eye has moved by more than a share of the way to what it looks at.
+  chooseForms(camera, size) {
+    if (this.scene.groups.length === 0) return;
+    const [eye, pixels] = [camera.eye, size[1] / (2 * camera.spans(size)[1])];
+    const last = this.formsFor;
+    const moved = last ? length(minus(last.eye, eye)) / camera.distance + Math.abs(Math.log(pixels / last.pixels)) : 1;
+    if (moved < 0.02 && last.isParallel === camera.isParallel) return;
+    this.formsFor = { eye, pixels, isParallel: camera.isParallel };
+    this.scene.chooseForms(eye, pixels, camera.isParallel);
   }
 
   // The depths of solids as the sun sees them, around what the picture shows; null where nothing casts a shadow.

@@ -45,7 +45,7 @@ class Page {
     numbers.remove();
     this.data = await SceneData.read(description, sections, (step) => this.message(`Opening the scene: ${step} …`));
     this.ground = new Ground(description, this.data.heights);
-    this.overlay = new Overlay(description, this.ground);
+    this.overlay = new Overlay(description, this.ground, this.data.symbols);
     this.renderer = new Renderer(this.gl, this.data, this.ground);
     this.cameras = description.cameras.map((view) => this.cameraOf(view));
     this.camera = this.cameras[0];
@@ -81,9 +81,16 @@ class Page {
     const { title, subtitle, credits, maxError, ground } = this.description;
     document.getElementById("title").textContent = title;
     document.getElementById("subtitle").textContent = subtitle;
+    const { classification, zScale } = this.description;
+    document.body.classList.toggle("classified", classification !== "");
+    for (const id of ["classified-above", "classified-below"]) {
+      document.getElementById(id).textContent = classification;
+      document.getElementById(id).hidden = classification === "";
+    }
+    const scale = zScale === 1 ? [] : [`Heights drawn ×${digits(Number(zScale.toPrecision(3)))}`];
     const error = `Ground drawn within ${digits(maxError)} m of its elevation model; heights asked are `
       + (ground.step > 1 ? `those of every ${ground.step}th post of it.` : "exact.");
-    document.getElementById("credits").textContent = [...credits, error].join(" · ");
+    document.getElementById("credits").textContent = [...credits, ...scale, error].join(" · ");
     const list = document.createElement("dl");
     for (const [key, action] of KEYS) {
       const [name, value] = [document.createElement("dt"), document.createElement("dd")];
@@ -101,6 +108,7 @@ class Page {
       this.controls.flyTo(this.cameras[Number(views.value)]);
       this.canvas.focus({ preventScroll: true });
     });
+    this.overlay.legend();
     document.getElementById("north").addEventListener("click", () => this.controls.turnNorth());
     document.getElementById("help").addEventListener("click", () => this.toggleHelp());
   }
@@ -140,9 +148,9 @@ class Page {
     this.isWanted = false;
     if (!this.renderer || this.canvas.clientWidth === 0) return;
     this.fit();
-    const seconds = this.lastTime === null ? 1 / 60 : Math.min((time - this.lastTime) / 1000, 0.1);
+    const seconds = this.lastTime === null ? 1 / 60 : Math.min((time - this.lastTime) / 1000, 0.3);
     const isMoving = this.controls.step(seconds);
-    const { isSettled } = this.renderer.draw(this.camera, [this.canvas.width, this.canvas.height], this.ratio);
+    const { isSettled } = this.renderer.draw(this.camera, [this.canvas.width, this.canvas.height], this.ratio, seconds);
     this.overlay.draw(this.camera, this.size);
     this.frames += 1;
     this.lastTime = isMoving || !isSettled ? time : null;

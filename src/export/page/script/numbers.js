@@ -43,4 +43,11 @@ class Sections {
   async floats(section) {
     return new Float32Array((await this.words(section)).buffer);
   }
+
+  // Sections that several things share, such as the places of all parts of a model, are unpacked once.
+  shared(kind, section) {
+    this.kept ??= new Map();
+    if (!this.kept.has(section.at)) this.kept.set(section.at, this[kind](section));
+    return this.kept.get(section.at);
+  }
 }

@@ -8,20 +8,28 @@ const LETTERS = {
   road: { px: 11.5, font: "500", color: "#4a3a2a" },
   area: { px: 13, font: "italic 500", color: "#3b4a2e" },
   point: { px: 12.5, font: "500", color: "#1c1b19" },
+  graphic: { px: 12.5, font: "600", color: "#1c1b19" },
 };
+// CSS pixels in a pixel of a symbol, which is made for a page 1080 pixels high.
+const SYMBOL_SCALE = 0.75;
 const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
 // Free pixels around a name, and the most names at once: more would hide the ground.
 const GAP_PX = 4;
 const MOST_NAMES = 120;
 
+// A name's lines; the first has the letters of its kind, the others are smaller.
+const withLines = (label) => ({ ...label, lines: label.text.split("\n") });
+
 class Overlay {
-  constructor(description, ground) {
+  constructor(description, ground, symbols) {
     this.description = description;
+    this.symbols = description.symbols.map((symbol, index) => ({ ...symbol, bitmap: symbols[index] }))
+      .filter(({ bitmap }) => bitmap).sort((a, b) => a.rank - b.rank);
     this.ground = ground;
     this.canvas = document.getElementById("names");
-    this.labels = [...description.labels].sort((a, b) => a.rank - b.rank);
-    // A name that was shown keeps its place before its equals, so that names do not flicker.
-    this.shown = new Set();
+    this.labels = description.labels.map(withLines).sort((a, b) => a.rank - b.rank);
+    // Where each name stood last: it keeps to that place while it is free, so that names do not flicker.
+    this.last = new Map();
     this.pick = null;
   }
 
@@ -36,9 +44,10 @@ class Overlay {
     pen.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     pen.clearRect(0, 0, size[0], size[1]);
     const taken = this.furniture();
+    this.drawSymbols(pen, camera, size, taken);
     const placed = this.names(pen, camera, size, taken);
     for (const { label, box, at, top } of placed) this.name(pen, label, box, at, top);
-    this.shown = new Set(placed.map(({ label }) => label));
+    this.last = new Map(placed.map(({ label, place }) => [label, place]));
     if (this.pick) this.cross(pen, camera, size);
     this.north(camera);
     this.scale(camera, size);
@@ -46,9 +55,23 @@ class Overlay {
 
   // The boxes of what stands on the page.
   furniture() {
-    const boxes = ["title", "subtitle", "views", "north", "scale", "picked", "credits"].map((id) =>
+    const boxes = ["title", "subtitle", "views", "north", "scale", "legend", "picked", "credits",
+      "classified-above", "classified-below"].map((id) =>
       document.getElementById(id).getBoundingClientRect());
     return boxes.filter((box) => box.width > 0).map(({ left, top, right, bottom }) => [left, top, right, bottom]);
+  }
+
+  drawSymbols(pen, camera, size, taken) {
+    for (const { ground, bitmap, anchor } of this.symbols) {
+      const at = camera.project(ground, size);
+      if (!at || at.x < 0 || at.x > size[0] || at.y < 0 || at.y > size[1] || this.ground.hides(camera, ground)) continue;
+      const [left, top] = [at.x - anchor[0] * SYMBOL_SCALE, at.y - anchor[1] * SYMBOL_SCALE];
+      const [width, height] = [bitmap.width * SYMBOL_SCALE, bitmap.height * SYMBOL_SCALE];
+      const box = [left, top, left + width, top + height];
+      if (taken.some((other) => box[0] < other[2] && box[2] > other[0] && box[1] < other[3] && box[3] > other[1])) continue;
+      taken.push(box);
+      pen.drawImage(bitmap, left, top, width, height);
+    }
   }
 
   names(pen, camera, size, taken) {
@@ -62,26 +85,29 @@ class Overlay {
       if (!at || !top || top.x < 0 || top.x > size[0] || top.y < 0 || top.y > size[1]) continue;
       const letters = LETTERS[label.kind] || LETTERS.point;
       pen.font = `${letters.font} ${letters.px}px ${FONT}`;
-      label.width ??= pen.measureText(label.text).width;
-      const box = this.places(label, letters, at, top).find((candidate) =>
-        candidate[0] >= 2 && candidate[2] <= size[0] - 2 && candidate[1] >= 2 && isFree(candidate));
+      label.width ??= Math.max(...label.lines.map((line) => pen.measureText(line).width));
+      const boxes = this.places(label, letters, at, top);
+      const fits = (box) => box && box[0] >= 2 && box[2] <= size[0] - 2 && box[1] >= 2 && isFree(box);
+      const last = this.last.get(label);
+      const place = fits(boxes[last]) ? last : boxes.findIndex(fits);
+      const box = boxes[place];
       if (!box || (this.ground.hides(camera, label.anchor) && this.ground.hides(camera, label.ground))) continue;
       taken.push(box);
-      placed.push({ label, box, at, top });
+      placed.push({ label, place, box, at, top });
     }
     return placed;
   }
 
   // Boxes where a name may stand, the best first.
   places(label, letters, at, top) {
-    const [width, height] = [label.width, letters.px * 1.2];
+    const [width, height] = [label.width, letters.px * 1.2 * label.lines.length];
     const boxOf = (left, lower) => [left, lower - height, left + width, lower];
     const isRaised = Math.hypot(top.x - at.x, top.y - at.y) > 3;
     const centered = boxOf(top.x - width / 2, top.y + height / 2);
-    if (label.kind === "water" || label.kind === "area" || label.kind === "road") return [centered];
+    if (label.kind === "water" || label.kind === "area" || label.kind === "road" || label.kind === "graphic") return [centered];
     const above = boxOf(top.x - width / 2, top.y - 5);
-    if (isRaised) return [above];
-    return [boxOf(at.x + 7, at.y + height / 2), boxOf(at.x - 7 - width, at.y + height / 2), above,
+    if (isRaised) return [above, boxOf(top.x + 8, top.y + height / 2), boxOf(top.x - 8 - width, top.y + height / 2)];
+    return [boxOf(at.x + 8, at.y + height / 2 - 3), boxOf(at.x - 8 - width, at.y + height / 2 - 3), above,
       boxOf(at.x - width / 2, at.y + height + 5)];
   }
 
@@ -97,14 +123,18 @@ class Overlay {
       pen.stroke();
     }
     this.mark(pen, label.kind, at);
-    pen.font = `${letters.font} ${letters.px}px ${FONT}`;
     pen.textBaseline = "alphabetic";
-    pen.strokeStyle = "rgba(255, 255, 255, 0.86)";
-    pen.lineWidth = 3;
-    const baseline = box[3] - letters.px * 0.26;
-    pen.strokeText(label.text, box[0], baseline);
-    pen.fillStyle = letters.color;
-    pen.fillText(label.text, box[0], baseline);
+    pen.textAlign = box[0] > at.x ? "left" : box[2] < at.x ? "right" : "center";
+    const x = { left: box[0], right: box[2], center: (box[0] + box[2]) / 2 }[pen.textAlign];
+    label.lines.forEach((line, index) => {
+      pen.font = `${index ? "500" : letters.font} ${letters.px * (index ? 0.88 : 1)}px ${FONT}`;
+      pen.strokeStyle = "rgba(255, 255, 255, 0.8)";
+      pen.lineWidth = 3;
+      const baseline = box[1] + letters.px * (0.94 + 1.2 * index);
+      pen.strokeText(line, x, baseline);
+      pen.fillStyle = label.color ? `rgb(${label.color.slice(0, 3).join(" ")})` : letters.color;
+      pen.fillText(line, x, baseline);
+    });
   }
 
   mark(pen, kind, at) {
@@ -112,12 +142,15 @@ class Overlay {
     pen.strokeStyle = "#ffffff";
     pen.lineWidth = 1.2;
     pen.beginPath();
-    if (kind === "summit") {
+    if (kind === "place") {
+      pen.arc(at.x, at.y, 3.4, 0, 2 * Math.PI);
+      [pen.fillStyle, pen.strokeStyle, pen.lineWidth] = ["#ffffff", "#1c1b19", 1.6];
+    } else if (kind === "summit") {
       pen.moveTo(at.x, at.y - 5);
       pen.lineTo(at.x + 4.2, at.y + 2.5);
       pen.lineTo(at.x - 4.2, at.y + 2.5);
       pen.closePath();
-    } else if (kind === "place" || kind === "point") {
+    } else if (kind === "point") {
       pen.arc(at.x, at.y, 2.8, 0, 2 * Math.PI);
     }
     pen.stroke();
@@ -159,6 +192,35 @@ class Overlay {
     document.getElementById("bar").style.width = `${meters / perPixel}px`;
     const text = meters >= 1000 ? `${digits(meters / 1000)} km` : `${digits(Number(meters.toPrecision(1)))} m`;
     document.getElementById("length").textContent = camera.isParallel ? text : `${text} in the middle`;
+  }
+
+  // The colors of the ground by height; none where a picture hides most of it.
+  legend() {
+    const { map, imagery } = this.description;
+    const stops = map.ramp;
+    const [low, high] = [stops[0][0], stops[stops.length - 1][0]];
+    if (imagery || !(high > low)) return;
+    const channel = (light) => Math.round(255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055));
+    const steps = Array.from({ length: 33 }, (_, step) => {
+      const height = mix(low, high, step / 32);
+      const above = clamp(stops.findIndex((stop) => stop[0] > height), 1, stops.length - 1) || 1;
+      const [before, after] = [stops[above - 1], stops[step === 32 ? stops.length - 1 : above]];
+      const part = step === 32 ? 1 : (height - before[0]) / (after[0] - before[0]);
+      return `rgb(${[1, 2, 3].map((index) => channel(mix(before[index], after[index], part))).join(" ")})`;
+    });
+    const bar = document.getElementById("ramp");
+    bar.style.background = `linear-gradient(to top, ${steps.join(", ")})`;
+    const power = 10 ** Math.floor(Math.log10((high - low) / 3));
+    const step = [5, 2, 1].map((digit) => digit * power).find((round) => round * 3 <= high - low) ?? power;
+    for (let height = Math.ceil(low / step) * step; height <= high; height += step) {
+      const mark = document.createElement("span");
+      mark.textContent = digits(Number(height.toPrecision(12)));
+      mark.style.bottom = `${100 * (height - low) / (high - low)}%`;
+      bar.append(mark);
+    }
+    const most = Math.max(...[...bar.children].map((mark) => mark.textContent.length));
+    bar.style.marginRight = `${8 + 7 * most}px`;
+    document.getElementById("legend").hidden = false;
   }
 
   // Shows what was picked: rows of a term and a text.

@@ -3,6 +3,11 @@
 // The side of the shadow map in texels.
 const SHADOW_SIDE = 2048;
 
+// The error of a model's simpler form on the picture, in pixels, and the size below which the ground alone shows a plant:
+// those of model/detail.rs and scene/picture/detail.rs, a little coarser while everything moves.
+const FORM_ERROR_PX = 0.75;
+const LEAST_PLANT_PX = 1.5;
+
 // Numbers of the scene, decoded once; the adapter's copies are made of them.
 class SceneData {
   static async read(description, sections, progress) {
@@ -33,7 +38,8 @@ class SceneData {
       const [positions, triangles, uvs, colors, normals, features, places, placeFeatures] = await Promise.all([
         sections.floats(batch.positions), sections.words(batch.triangles), optional("uvs", "floats"),
         optional("colors", "bytes"), optional("normals", "bytes"), optional("features", "words"),
-        optional("places", "floats"), optional("placeFeatures", "words"),
+        batch.places ? sections.shared("floats", batch.places) : null,
+        batch.placeFeatures ? sections.shared("words", batch.placeFeatures) : null,
       ]);
       data.batches.push({ ...batch, positions, triangles, uvs, colors, normals, features, places, placeFeatures });
     }
@@ -44,6 +50,9 @@ class SceneData {
     );
     data.textures = await Promise.all(
       description.textures.map((texture) => texture && picture(texture, sections.raw(texture))),
+    );
+    data.symbols = await Promise.all(
+      description.symbols.map(({ picture: texture }) => texture && picture(texture, sections.raw(texture))),
     );
     const imagery = description.imagery && description.imagery.picture;
     data.imagery = imagery ? await picture(imagery, sections.raw(imagery)) : null;
@@ -133,7 +142,9 @@ class AdapterScene {
     this.ramp = this.rampTexture(description.map.ramp);
     this.textures = data.textures.map((bitmap) => (bitmap ? this.picture(bitmap, gl.REPEAT) : this.white));
     this.imagery = data.imagery ? this.picture(data.imagery, gl.CLAMP_TO_EDGE) : this.white;
+    this.forms = description.forms.map((form) => ({ ...form, count: 0, places: null }));
     this.batches = data.batches.map((batch) => this.batch(batch));
+    this.groups = this.formGroups();
     this.shadow = this.shadowTarget();
     this.pickTarget = null;
   }
@@ -233,15 +244,18 @@ class AdapterScene {
       gl.enableVertexAttribArray(3);
       gl.vertexAttribPointer(3, 4, gl.UNSIGNED_BYTE, true, 0, 0);
     }
+    const form = this.formOf(batch);
     const features = batch.placeFeatures || batch.features;
     if (features) {
-      this.buffer(gl.ARRAY_BUFFER, features);
+      if (form) gl.bindBuffer(gl.ARRAY_BUFFER, form.featureBuffer);
+      else this.buffer(gl.ARRAY_BUFFER, features);
       gl.enableVertexAttribArray(4);
       gl.vertexAttribIPointer(4, 1, gl.UNSIGNED_INT, 0, 0);
       gl.vertexAttribDivisor(4, batch.placeFeatures ? 1 : 0);
     }
     if (batch.places) {
-      this.buffer(gl.ARRAY_BUFFER, batch.places);
+      if (form) gl.bindBuffer(gl.ARRAY_BUFFER, form.placeBuffer);
+      else this.buffer(gl.ARRAY_BUFFER, batch.places);
       for (let row = 0; row < 3; row += 1) {
         gl.enableVertexAttribArray(5 + row);
         gl.vertexAttribPointer(5 + row, 4, gl.FLOAT, false, 48, 16 * row);
@@ -252,6 +266,63 @@ class AdapterScene {
     gl.bindVertexArray(null);
     const material = this.data.description.materials[batch.material];
     return { ...batch, array, material, indices: batch.triangles.length };
+  }
+
+  // The form of models that a batch is a part of, with the buffers of the places where it is shown.
+  formOf(batch) {
+    if (batch.form === undefined) return null;
+    const form = this.forms[batch.form];
+    if (!form.places) {
+      form.places = batch.places;
+      form.features = batch.placeFeatures;
+      form.count = batch.count;
+      form.placeBuffer = this.buffer(this.gl.ARRAY_BUFFER, batch.places);
+      form.featureBuffer = this.buffer(this.gl.ARRAY_BUFFER, batch.placeFeatures);
+    }
+    return form;
+  }
+
+  // The forms of each group of equal models, the finest first; groups that are always shown in full are left out.
+  formGroups() {
+    const groups = new Map();
+    for (const form of this.forms.filter((each) => each.places)) {
+      if (!groups.has(form.group)) groups.set(form.group, []);
+      groups.get(form.group).push(form);
+    }
+    return [...groups.values()].filter((forms) => forms.length > 1 || forms[0].isPlant);
+  }
+
+  // Chooses the form of each model by its size on the picture; `pixels` are those of a meter at unit depth.
+  chooseForms(eye, pixels, isParallel) {
+    const { gl } = this;
+    for (const forms of this.groups) {
+      const { places, features, center, radius, isPlant } = forms[0];
+      const chosen = forms.map(() => ({ places: [], features: [] }));
+      for (let index = 0; index < features.length; index += 1) {
+        const at = index * 12;
+        const scale = Math.hypot(places[at], places[at + 4], places[at + 8]);
+        let away = 0;
+        for (let row = 0; row < 3; row += 1) {
+          const first = at + 4 * row;
+          const world = places[first] * center[0] + places[first + 1] * center[1] + places[first + 2] * center[2] + places[first + 3];
+          away += (world - eye[row]) ** 2;
+        }
+        const depth = isParallel ? 1 : Math.max(Math.sqrt(away) - radius * scale, 0.5);
+        const perUnit = pixels * scale / depth;
+        if (isPlant && 2 * radius * perUnit < LEAST_PLANT_PX) continue;
+        let form = forms.length - 1;
+        while (form > 0 && forms[form].error * perUnit > FORM_ERROR_PX) form -= 1;
+        for (let value = 0; value < 12; value += 1) chosen[form].places.push(places[at + value]);
+        chosen[form].features.push(features[index]);
+      }
+      forms.forEach((form, index) => {
+        form.count = chosen[index].features.length;
+        gl.bindBuffer(gl.ARRAY_BUFFER, form.placeBuffer);
+        gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(chosen[index].places), gl.DYNAMIC_DRAW);
+        gl.bindBuffer(gl.ARRAY_BUFFER, form.featureBuffer);
+        gl.bufferData(gl.ARRAY_BUFFER, new Uint32Array(chosen[index].features), gl.DYNAMIC_DRAW);
+      });
+    }
   }
 
   shadowTarget() {

@@ -57,6 +57,7 @@ uniform float cutoff;
 uniform float is_water, is_natural, is_hatching;
 uniform vec4 band;        // of a line symbol: meters in a pixel that it is wide enough for, the most, the least that it shows
                           // at; meters in a pixel at unit depth
+uniform float real_pixel; // meters in a pixel of the picture at unit depth
 uniform mat4 shadow_from_world;
 uniform vec4 shadow;      // 1 where there is a map, its texel in meters, 1 / its side, bias
 uniform sampler2DShadow shadow_map;
@@ -150,14 +151,26 @@ vec4 surface() {
   return base_color * tint * texture(base_texture, at_texture);
 }
 
-// The share of a pixel that a line symbol covers; 1 for all else.
+// The share of a pixel that a line symbol covers; 1 for all else. Symbols are made SPREAD times as wide as their band needs,
+// see scene/picture/all_round.rs, and grow where they are seen across at a low angle.
+const float SPREAD = 2.0;
+const float MOST_GROWTH = 3.0;
+
 float symbol_cover() {
-  float pixel = band.w * (depth.w > 0.5 ? 1.0 : along);
   float across = abs(at_texture.y * 2.0 - 1.0);
-  float edge = max(fwidth(across), 1e-4);
+  vec2 change = vec2(dFdx(across), dFdy(across));
+  vec2 right = dFdx(world.xy);
+  vec2 down = dFdy(world.xy);
   if (band.x == 0.0) return 1.0;
+  float pixel = band.w * (depth.w > 0.5 ? 1.0 : along);
   if (pixel > band.y || pixel <= band.z) return 0.0;
-  return clamp((min(pixel / band.x, 1.0) - across) / edge + 0.5, 0.0, 1.0);
+  // What it changes by in a meter of ground, and what that would be in a pixel if it were seen from above.
+  float area = right.x * down.y - right.y * down.x;
+  vec2 per_m = vec2(change.x * down.y - change.y * right.y, change.y * right.x - change.x * down.x) / area;
+  float level = length(per_m) * real_pixel * (depth.w > 0.5 ? 1.0 : along);
+  float edge = max(length(change), 1e-4);
+  float growth = clamp(edge / max(level, 1e-6), 1.0, MOST_GROWTH);
+  return clamp((min(pixel / band.x * growth / SPREAD, 1.0) - across) / edge + 0.5, 0.0, 1.0);
 }
 
 vec4 seen(vec3 light, float alpha) {
@@ -294,6 +307,7 @@ void main() {
   float sky_share = texture(skies, place).r;
   vec2 wet_change = vec2(dFdx(post.w), dFdy(post.w));
   float covered = symbol_cover();
+  if (covered <= 0.0) discard;
   vec4 color = surface();
   float grain = 1.0;
   if ((is_map > 0.5 || is_natural > 0.5) && ramp_range.w > 0.5) {
