@@ -13,7 +13,7 @@ mod haze;
 mod lake_tint;
 mod line_scale;
 mod markings;
-mod models;
+pub mod models;
 mod overlay;
 mod parallel_view;
 pub mod placed_text;
@@ -40,6 +40,7 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
+use crate::scene::picture::models::PlacementMoves;
 use crate::scene::picture::parallel_view::parallel_camera;
 use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::setting::PictureSetting;
@@ -162,7 +163,7 @@ fn listed(
         voids::add(&mut list, scene);
     }
     uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed, viewer);
+    models::add(&mut list, scene, displayed, viewer, &PlacementMoves::new());
     if camera.is_some() {
         airspace::add(&mut list, scene);
     }

@@ -1,5 +1,7 @@
 //! Models, each in its pose.
 
+use std::collections::BTreeMap;
+
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -17,17 +19,34 @@ use crate::terrain::triangle_surface::TriangleSurface;
 /// The seed of tints: any other gives others.
 const TINT_SEED: u64 = 0x7ea5;
 
+/// Where a model stands instead, while a user moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacementMove {
+    /// World X and Y of its origin.
+    pub at: Vec2,
+    /// The heading of its front, radians clockwise from north.
+    pub heading_rad: f32,
+}
+
+/// Models that stand elsewhere, by their number among the scene's placements.
+pub type PlacementMoves = BTreeMap<usize, PlacementMove>;
+
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(
     list: &mut DrawList,
     scene: &SceneModel,
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
+    moves: &PlacementMoves,
 ) {
     let finest = scene.scale.ground(&scene.lattice);
     let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
-    let set = |placement: &Placement| -> Option<(PlacedModel, Option<DrawMesh>)> {
+    let set = |(number, placement): (usize, &Placement)| -> Option<(PlacedModel, Option<DrawMesh>)> {
+        let placement = &match moves.get(&number) {
+            Some(&PlacementMove { at, heading_rad }) => Placement { at, heading_rad, ..*placement },
+            None => *placement,
+        };
         let footprint = &footprints[placement.model];
         let stand = stand(placement, footprint, ground)?;
         let Placement { model, feature, .. } = *placement;
@@ -36,7 +55,7 @@ pub(super) fn add(
         Some((PlacedModel { model, world_from_model: stand.world_from_model, tint, feature }, plinth))
     };
     let (placed, plinths): (Vec<PlacedModel>, Vec<Option<DrawMesh>>) =
-        scene.placements.par_iter().filter_map(set).unzip();
+        scene.placements.par_iter().enumerate().filter_map(set).unzip();
     let mut concrete = None;
     for (block, placed) in
         plinths.into_iter().zip(&placed).filter_map(|(block, placed)| Some((block?, placed)))
