@@ -1,8 +1,8 @@
-//! The `sandtable` program: the command line, with the height service where it is built in.
+//! The `sandtable` program: the command line, with the height service and the window where they are built in.
 
 use std::process::ExitCode;
 
-use sandtable::cli::ServeProgram;
+use sandtable::cli::{BuiltInPrograms, ServeProgram, ViewProgram};
 
 #[cfg(feature = "serve")]
 const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable::serve::run(options)?));
@@ -10,6 +10,12 @@ const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable::serve::run(opti
 #[cfg(not(feature = "serve"))]
 const SERVE: Option<ServeProgram> = None;
 
+#[cfg(feature = "viewer")]
+const VIEW: Option<ViewProgram> = Some(|options| Ok(sandtable::viewer::run(options)?));
+
+#[cfg(not(feature = "viewer"))]
+const VIEW: Option<ViewProgram> = None;
+
 fn main() -> ExitCode {
-    sandtable::cli::main(SERVE)
+    sandtable::cli::main(BuiltInPrograms { serve: SERVE, view: VIEW })
 }

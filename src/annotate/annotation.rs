@@ -197,3 +197,23 @@ impl SymbolHeight {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod samples {
+    use super::*;
+
+    /// A place at a pixel.
+    pub fn label(text: &str, x: f32, y: f32) -> PictureLabel {
+        let anchor_px = Vec2::new(x, y);
+        let text = text.to_owned();
+        PictureLabel {
+            text,
+            anchor_px,
+            top_px: None,
+            depth_m: 1000.0,
+            visible: true,
+            kind: LabelKind::Place,
+            rank: 0.0,
+        }
+    }
+}

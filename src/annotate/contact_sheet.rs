@@ -21,11 +21,11 @@ const SMALLEST_PX: u32 = 16;
 
 /// A picture and its caption.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ContactPicture {
+pub struct ContactPicture<'a> {
     /// The line below it.
     pub caption: String,
     /// The picture, of the size that [`ContactSheet::picture_size`] says.
-    pub pixels: Pixels,
+    pub pixels: &'a Pixels,
 }
 
 /// Where pictures are on a sheet: in rows, as large as there is room for.
@@ -65,7 +65,7 @@ impl ContactSheet {
     pub fn compose(
         &self,
         title: Option<&str>,
-        pictures: &[ContactPicture],
+        pictures: &[ContactPicture<'_>],
         font: Option<&FontFile>,
     ) -> Pixels {
         let mut composer = Composer::with_font(self.width, self.height, font);
@@ -83,7 +83,7 @@ impl ContactSheet {
         for (number, picture) in (0..).zip(pictures) {
             let cell = Vec2::new((number % self.columns) as f32, (number / self.columns) as f32);
             let at = Vec2::new(left, top) + cell * Vec2::new(size.x + gap, size.y + below + gap);
-            copy(&picture.pixels, &mut pixels, at.as_uvec2().to_array());
+            copy(picture.pixels, &mut pixels, at.as_uvec2().to_array());
             drawing.frame(PixelBox { min: at, max: at + size }, sheet.px(1.0).max(1.0), FRAME);
             let style = composer.style(17.0, TextStyle::REGULAR);
             if let Some(line) = composer.fitted(&picture.caption, style, size.x) {
@@ -133,11 +133,12 @@ mod tests {
         let sheet = ContactSheet::new(640, 360, 5).expect("room");
         let [width, height] = sheet.picture_size();
         let color = |number: u8| Srgba::opaque(10 * number, 200, 0);
-        let pictures: Vec<ContactPicture> = (1..=5)
-            .map(|number| ContactPicture {
-                caption: format!("No {number}"),
-                pixels: Pixels::filled(width, height, color(number)),
-            })
+        let drawn: Vec<(String, Pixels)> = (1..=5)
+            .map(|number| (format!("No {number}"), Pixels::filled(width, height, color(number))))
+            .collect();
+        let pictures: Vec<ContactPicture> = drawn
+            .iter()
+            .map(|(caption, pixels)| ContactPicture { caption: caption.clone(), pixels })
             .collect();
         let composed = sheet.compose(Some("Five"), &pictures, None);
         for number in 1..=5 {

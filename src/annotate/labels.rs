@@ -308,24 +308,9 @@ impl<'a> SheetNames<'a> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec2;
-
     use super::*;
+    use crate::annotate::annotation::samples::label;
     use crate::draw::color::Srgba;
-
-    fn label(text: &str, x: f32, y: f32) -> PictureLabel {
-        let anchor_px = Vec2::new(x, y);
-        let text = text.to_owned();
-        PictureLabel {
-            text,
-            anchor_px,
-            top_px: None,
-            depth_m: 1000.0,
-            visible: true,
-            kind: LabelKind::Place,
-            rank: 0.0,
-        }
-    }
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
         let mut report = AnnotationReport::default();

@@ -165,20 +165,7 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn label(text: &str, x: f32, y: f32) -> PictureLabel {
-        let anchor_px = Vec2::new(x, y);
-        let text = text.to_owned();
-        PictureLabel {
-            text,
-            anchor_px,
-            top_px: None,
-            depth_m: 1000.0,
-            visible: true,
-            kind: LabelKind::Place,
-            rank: 0.0,
-        }
-    }
+    use crate::annotate::annotation::samples::label;
 
     #[test]
     fn a_leader_goes_up_whatever_the_top_says() {

@@ -2,10 +2,12 @@
 
 use std::fmt::Write;
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use tiny_skia::PathSegment;
 
 use crate::annotate::drawing::PaintedPath;
 use crate::annotate::paint::ComposedSheet;
+use crate::message::xml::escaped;
 
 /// Millimeters per inch.
 const INCH_MM: f32 = 25.4;
@@ -22,13 +24,13 @@ impl ComposedSheet {
             mm(width),
             mm(height)
         );
-        encode_base64(png, &mut svg);
+        BASE64_STANDARD.encode_string(png, &mut svg);
         svg.push_str("\"/>\n");
         for drawing in &self.drawings {
             svg.push_str("<g>\n");
             for text in &drawing.texts {
                 svg.push_str("<desc>");
-                escape(&text.text, &mut svg);
+                svg.push_str(&escaped(&text.text));
                 svg.push_str("</desc>\n");
             }
             drawing.marks.iter().for_each(|mark| write_path(mark, &mut svg));
@@ -36,20 +38,6 @@ impl ComposedSheet {
         }
         svg.push_str("</svg>\n");
         svg
-    }
-}
-
-/// Text with the characters that mark up SVG written as entities, and without those that XML does not hold.
-fn escape(text: &str, svg: &mut String) {
-    for character in text.chars() {
-        match character {
-            '&' => svg.push_str("&amp;"),
-            '<' => svg.push_str("&lt;"),
-            '>' => svg.push_str("&gt;"),
-            '\n' | '\t' => svg.push(' '),
-            character if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => {}
-            character => svg.push(character),
-        }
     }
 }
 
@@ -75,46 +63,19 @@ fn write_path(mark: &PaintedPath, svg: &mut String) {
     svg.push_str("/>\n");
 }
 
-/// Appends `bytes` in base 64 (RFC 4648).
-fn encode_base64(bytes: &[u8], text: &mut String) {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    text.reserve(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let [first, second, third] = [0, 1, 2].map(|at| u32::from(group.get(at).copied().unwrap_or(0)));
-        let bits = first << 16 | second << 8 | third;
-        for digit in 0..4 {
-            let is_there = digit <= group.len();
-            let value = (bits >> (18 - 6 * digit) & 63) as usize;
-            text.push(if is_there { char::from(DIGITS[value]) } else { '=' });
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::annotate::annotation::Annotations;
     use crate::annotate::paint::compose_sheet;
     use crate::draw::color::Srgba;
     use crate::draw::pixels::Pixels;
 
     #[test]
-    fn bytes_in_base_64_are_those_of_the_standard() {
-        for (bytes, expected) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            let mut text = String::new();
-            encode_base64(bytes.as_bytes(), &mut text);
-            assert_eq!(text, expected);
-        }
-    }
-
-    #[test]
     fn texts_that_look_like_markup_are_escaped_and_sizes_are_those_of_the_print() {
         let annotations = Annotations { title: Some("A <b> & \"c\"\u{1}".into()), ..Annotations::default() };
         let (sheet, _) = compose_sheet(Pixels::filled(960, 540, Srgba::WHITE), &annotations);
         let svg = sheet.svg(96.0, b"png");
-        assert!(svg.contains("<desc>A &lt;b&gt; &amp; \"c\"</desc>"), "{svg}");
+        assert!(svg.contains("<desc>A &lt;b&gt; &amp; &quot;c&quot; </desc>"), "{svg}");
         assert!(svg.contains("width=\"254.000mm\"") && svg.matches("<path").count() > 2);
     }
 }

@@ -23,6 +23,9 @@ const DEFLATE_EXPANSION: u64 = 1032;
 const ENTRY_BYTES: usize = 46;
 const ENTRY_SIGNATURE: [u8; 4] = *b"PK\x01\x02";
 
+/// A member in messages.
+const MEMBER: &str = "zip archive's member";
+
 /// Why packed content cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
@@ -73,6 +76,14 @@ pub fn gunzip(bytes: &[u8], limit: u64) -> Result<Vec<u8>, ArchiveError> {
     read_within("gzip file", MultiGzDecoder::new(bytes), bytes.len() as u64, limit)
 }
 
+/// The first `most` bytes of an unpacked gzip file, or fewer where it has fewer.
+///
+/// # Errors
+/// [`ArchiveError`] where it is broken up to there.
+pub fn gunzip_head(bytes: &[u8], most: u64) -> Result<Vec<u8>, ArchiveError> {
+    read_head("gzip file", MultiGzDecoder::new(bytes), most)
+}
+
 /// Unpacks a zlib stream.
 ///
 /// # Errors
@@ -94,26 +105,31 @@ fn read_within(
     if content.len() as u64 > limit { Err(ArchiveError::TooLarge { format, limit }) } else { Ok(content) }
 }
 
+fn read_head(format: &'static str, decoder: impl Read, most: u64) -> Result<Vec<u8>, ArchiveError> {
+    let mut head = Vec::new();
+    let read = decoder.take(most).read_to_end(&mut head);
+    read.map(|_| head).map_err(|source| ArchiveError::Corrupt { format, source })
+}
+
 /// A zip archive in memory.
 pub struct ZipReader<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
     names: Vec<String>,
-    limit: u64,
 }
 
 impl<'a> ZipReader<'a> {
-    /// Reads the directory of the archive `bytes`; its members unpack to at most `limit` bytes each.
+    /// Reads the directory of the archive `bytes`.
     ///
     /// # Errors
     /// [`ArchiveError`] where the directory is broken or has more than 65,535 entries.
-    pub fn open(bytes: &'a [u8], limit: u64) -> Result<Self, ArchiveError> {
+    pub fn open(bytes: &'a [u8]) -> Result<Self, ArchiveError> {
         if has_too_many_members(bytes) {
             return Err(ArchiveError::TooManyMembers);
         }
         let archive = ZipArchive::new(Cursor::new(bytes))?;
         // Lossy: most writers store UTF-8 without setting its flag.
         let names = archive.file_names_raw().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
-        Ok(Self { archive, names, limit })
+        Ok(Self { archive, names })
     }
 
     /// Returns the members' names in the order of the directory, without the resource forks that macOS adds.
@@ -121,21 +137,32 @@ impl<'a> ZipReader<'a> {
         self.names.iter().map(String::as_str).filter(|name| !name.starts_with("__MACOSX/"))
     }
 
-    /// Unpacks the member `name`, in any case.
+    /// Unpacks the member `name`, in any case, to at most `limit` bytes.
     ///
     /// # Errors
     /// [`ArchiveError`] where there is no such member, or where it is broken, encrypted, too large or not deflated.
-    pub fn read(&self, name: &str) -> Result<Vec<u8>, ArchiveError> {
-        const FORMAT: &str = "zip archive's member";
-        let is_wanted = |member: &String| member.eq_ignore_ascii_case(name);
-        let index = self.names.iter().position(is_wanted).ok_or(ZipError::FileNotFound)?;
+    pub fn read(&self, name: &str, limit: u64) -> Result<Vec<u8>, ArchiveError> {
         let mut archive = self.archive.clone();
-        let member = archive.by_index(index)?;
-        if member.size() > self.limit {
-            return Err(ArchiveError::TooLarge { format: FORMAT, limit: self.limit });
+        let member = archive.by_index(self.index(name)?)?;
+        if member.size() > limit {
+            return Err(ArchiveError::TooLarge { format: MEMBER, limit });
         }
         let packed_bytes = member.compressed_size();
-        read_within(FORMAT, member, packed_bytes, self.limit)
+        read_within(MEMBER, member, packed_bytes, limit)
+    }
+
+    /// The first `most` bytes of the member `name`, in any case, or fewer where it has fewer.
+    ///
+    /// # Errors
+    /// As [`ZipReader::read`], up to there.
+    pub fn read_head(&self, name: &str, most: u64) -> Result<Vec<u8>, ArchiveError> {
+        let mut archive = self.archive.clone();
+        read_head(MEMBER, archive.by_index(self.index(name)?)?, most)
+    }
+
+    fn index(&self, name: &str) -> Result<usize, ArchiveError> {
+        let is_wanted = |member: &String| member.eq_ignore_ascii_case(name);
+        Ok(self.names.iter().position(is_wanted).ok_or(ZipError::FileNotFound)?)
     }
 }
 
@@ -174,24 +201,37 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn the_head_is_unpacked_without_the_rest() {
+        let archive = zipped(&[("a", &vec![7; 1 << 20])]);
+        let zip = ZipReader::open(&archive).expect("intact");
+        assert_eq!(zip.read_head("a", 5).expect("intact"), [7; 5]);
+        assert_eq!(zip.read_head("a", u64::MAX).expect("intact").len(), 1 << 20);
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(&vec![7; 1 << 20]).expect("memory");
+        let packed = encoder.finish().expect("memory");
+        assert_eq!(gunzip_head(&packed[..packed.len() / 2], 5).expect("intact"), [7; 5]);
+        assert!(gunzip_head(&packed[..packed.len() / 2], u64::MAX).is_err());
+    }
+
+    #[test]
     fn members_are_found_by_name_in_any_case() {
         let archive = zipped(&[("a.txt", b"one"), ("__MACOSX/a.txt", b"fork"), ("folder/B.KML", b"two")]);
         assert!(is_zip(&archive));
-        let zip = ZipReader::open(&archive, MAX_VECTOR_BYTES).expect("intact");
+        let zip = ZipReader::open(&archive).expect("intact");
         assert_eq!(zip.names().collect::<Vec<_>>(), ["a.txt", "folder/B.KML"]);
-        assert_eq!(zip.read("folder/b.kml").expect("intact"), b"two");
-        assert!(matches!(zip.read("c"), Err(ArchiveError::Zip(ZipError::FileNotFound))));
+        assert_eq!(zip.read("folder/b.kml", 3).expect("intact"), b"two");
+        assert!(matches!(zip.read("c", 3), Err(ArchiveError::Zip(ZipError::FileNotFound))));
     }
 
     #[test]
     fn an_archive_cut_anywhere_is_refused() {
         let archive = zipped(&[("a.txt", b"one"), ("folder/B.KML", b"two")]);
         for end in 0..archive.len() {
-            assert!(ZipReader::open(&archive[..end], MAX_VECTOR_BYTES).is_err(), "{end}");
+            assert!(ZipReader::open(&archive[..end]).is_err(), "{end}");
         }
         let hollow = b"PK\x03\x04 nothing PK\x05\x06\0\0\0\0\x01\0\x01\0\0\0\0\0\0\0\0\0\0\0";
         for end in 0..=hollow.len() {
-            let zip = ZipReader::open(&hollow[..end], MAX_RASTER_BYTES);
+            let zip = ZipReader::open(&hollow[..end]);
             assert!(!zip.is_ok_and(|zip| zip.names().next().is_some()), "{end}");
         }
     }
@@ -201,8 +241,8 @@ pub(crate) mod tests {
         let archive = zipped(&[("a.txt", &[b'x'; 900])]);
         let mut turned = archive.clone();
         turned[40] ^= 0xff;
-        let zip = ZipReader::open(&turned, MAX_VECTOR_BYTES).expect("the directory is intact");
-        assert!(zip.read("a.txt").is_err());
+        let zip = ZipReader::open(&turned).expect("the directory is intact");
+        assert!(zip.read("a.txt", 1000).is_err());
     }
 
     #[test]
@@ -212,8 +252,8 @@ pub(crate) mod tests {
         let error = inflate_zlib(&packed, (1 << 20) - 1).expect_err("too much").to_string();
         assert!(error.contains("more than 1048575 bytes"), "{error}");
         let archive = zipped(&[("a", &vec![0; 1 << 20])]);
-        let zip = ZipReader::open(&archive, 1000).expect("intact");
-        assert!(zip.read("a").expect_err("too much").to_string().contains("more than 1000 bytes"));
+        let zip = ZipReader::open(&archive).expect("intact");
+        assert!(zip.read("a", 1000).expect_err("too much").to_string().contains("more than 1000 bytes"));
     }
 
     #[test]
@@ -225,14 +265,14 @@ pub(crate) mod tests {
                 archive[at..at + 4].copy_from_slice(&7u32.to_le_bytes());
             }
         }
-        let zip = ZipReader::open(&archive, 1000).expect("intact");
-        assert!(zip.read("a").is_err());
+        let zip = ZipReader::open(&archive).expect("intact");
+        assert!(zip.read("a", 1000).is_err());
     }
 
     #[test]
     fn a_directory_of_too_many_entries_is_refused_unread() {
         let entries = [&ENTRY_SIGNATURE[..], &[0; ENTRY_BYTES - 4]].concat().repeat(MAX_MEMBERS + 1);
-        let error = ZipReader::open(&entries, 1000).err().expect("too many");
+        let error = ZipReader::open(&entries).err().expect("too many");
         assert!(matches!(error, ArchiveError::TooManyMembers));
     }
 }

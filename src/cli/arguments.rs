@@ -19,6 +19,7 @@ use crate::cli::profile::ProfileArguments;
 use crate::cli::render::RenderArguments;
 use crate::cli::report::ReportArguments;
 use crate::cli::serve::ServeArguments;
+use crate::cli::view::ViewArguments;
 use crate::cli::viewshed::ViewshedArguments;
 
 /// Builds digital terrain models from scene files and renders annotated pictures of them.
@@ -34,6 +35,8 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene file to an annotated PNG
     Render(RenderArguments),
+    /// Open a window on a scene or an elevation file: walk through it, measure, dig, save
+    View(ViewArguments),
     /// Say what a picture of a scene shows at a pixel: where it is, how high, and of which feature
     Pick(PickArguments),
     /// Draw a flight through a scene, frame by frame

@@ -28,10 +28,15 @@ use crate::pipeline::raster_file;
                   to some meters; one that needs a grid file is refused."
 )]
 pub struct ConvertArguments {
-    /// The elevation files, tiles of one raster where there are several, and the file to write: .tif, .asc, .bt, .hgt
-    /// or .png
-    #[arg(required = true, num_args = 2.., value_names = ["IN", "OUT"])]
+    /// The elevation files, tiles of one raster where there are several, and without -o the file to write
+    #[arg(required = true, num_args = 1.., value_names = ["IN", "OUT"])]
     pub files: Vec<PathBuf>,
+    /// The file to write: .tif, .asc, .bt, .hgt or .png [default: the last of the files, where it is no elevation yet]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Write over the last of the files although it is elevation
+    #[arg(long, conflicts_with = "output")]
+    pub force: bool,
     /// Fill voids that samples enclose, with a membrane from their rims; the filled samples are counted
     #[arg(long)]
     pub fill_voids: bool,
@@ -49,11 +54,15 @@ pub struct ConvertArguments {
 }
 
 pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
-    let (out, inputs) = match arguments.files.split_last() {
-        Some((out, inputs @ [_, ..])) => (out.as_path(), inputs),
+    let (out, inputs) = match (&arguments.output, arguments.files.split_last()) {
+        (Some(out), _) => (out.as_path(), &arguments.files[..]),
+        (None, Some((out, inputs @ [_, ..]))) => (out.as_path(), inputs),
         _ => return Err(CliError::usage("name an elevation file and the file to write")),
     };
     let format = raster_format(out, inputs)?;
+    if arguments.output.is_none() && !arguments.force && out.exists() {
+        refuse_elevation(out, &arguments.heights.dem_options())?;
+    }
     let steps = StepTimer::default();
     steps.begin("reading");
     let options = DemOptions {
@@ -76,6 +85,17 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
     let written = raster_file::write(&converted.raster, format, out, inputs)?;
     steps.finish();
     print_lines(&summary(out, format, &converted, &written))
+}
+
+/// Refuses a file that may have been meant as one of those to read.
+fn refuse_elevation(out: &Path, options: &DemOptions) -> Result<(), CliError> {
+    match dem::open(out, options) {
+        Ok(_) => Err(CliError::input(format!(
+            "{}: it is elevation, and would be written over; name the file to write with -o, or add --force",
+            out.display()
+        ))),
+        Err(_) => Ok(()),
+    }
 }
 
 /// The error with the arguments that would mend it.

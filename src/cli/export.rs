@@ -13,6 +13,7 @@ use crate::cli::progress::StepTimer;
 use crate::cli::values::number;
 use crate::pipeline::export::{ExportFormat, export};
 use crate::pipeline::files;
+use crate::pipeline::page::export_page;
 use crate::pipeline::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
 use crate::pipeline::scene_file::{open_scene, open_scene_true_to_scale};
 
@@ -29,16 +30,18 @@ const BED_MM: f64 = 200.0;
     after_help = "Lengths and heights are meters from the south-west post, heights without exaggeration; the file says where that\n\
                   is. In a .glb north is -Z and up is Y; in an .obj north is Y and up is Z. The materials (.mtl) and textures of\n\
                   an .obj are written beside it. Light, labels and furniture are not exported.\n\n\
+                  A .html is a page that any browser opens without a server or a network: the scene as in its pictures, to turn, to\n\
+                  fly through and to ask for heights. Its light is that of the first camera.\n\n\
                   A .3mf or .stl is a solid to print in millimeters, with the scene's exaggeration: what is seen from above, on a\n\
                   base. A model larger than the bed is cut into pieces with pegs and sockets; as .stl each is a file of its own."
 )]
 pub struct ExportArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Write the scene to this file; the extension names the format, .glb or .obj, or .3mf or .stl to print it
-    #[arg(short, long, value_name = "OUT.glb|.obj|.3mf|.stl")]
+    /// Write the scene to this file; the extension names the format: .glb, .obj, .html for browsers, .3mf or .stl to print
+    #[arg(short, long, value_name = "OUT.glb|.obj|.html|.3mf|.stl")]
     pub output: PathBuf,
-    /// The largest error of the ground at any post, in meters [default: 1]; under features that lie level in it, it is exact
+    /// The largest error of the ground at any post, in meters [default: 1, of a page 0.5 or more by its size]
     #[arg(long, value_name = "METERS", value_parser = number::<f64>(0.0.., "write meters as a number from 0 on"))]
     pub max_error: Option<f64>,
     /// The longer side of a printed model, in millimeters [default: 180]
@@ -53,27 +56,32 @@ pub struct ExportArguments {
 #[derive(Clone, Copy, Debug)]
 enum ExportKind {
     Scene(ExportFormat),
+    Page,
     Print(PrintFormat),
 }
 
 impl ExportKind {
     fn from_extension(extension: &str) -> Option<Self> {
-        let scene = ExportFormat::from_extension(extension).map(Self::Scene);
+        let page = ["html", "htm"].iter().any(|page| extension.eq_ignore_ascii_case(page));
+        let scene = ExportFormat::from_extension(extension).map(Self::Scene).or(page.then_some(Self::Page));
         scene.or_else(|| PrintFormat::from_extension(extension).map(Self::Print))
     }
 }
 
 pub fn run(arguments: &ExportArguments) -> Result<(), CliError> {
     let (scene, out) = (&arguments.scene, &arguments.output);
-    let written = "scenes are exported as .glb or .obj, or as .3mf or .stl to print";
+    let written = "scenes are exported as .glb, .obj or .html, or as .3mf or .stl to print";
     let unused = |option: &str, kind: &str| {
         Err(CliError::Usage(format!("--{option} has no effect on {kind}; remove it")))
     };
     match output_format(out, from_ref(&scene.scene), ExportKind::from_extension, written)? {
         ExportKind::Scene(_) if arguments.side.is_some() => unused("side", "a .glb or .obj"),
         ExportKind::Scene(_) if arguments.bed.is_some() => unused("bed", "a .glb or .obj"),
+        ExportKind::Page if arguments.side.is_some() => unused("side", "a page"),
+        ExportKind::Page if arguments.bed.is_some() => unused("bed", "a page"),
         ExportKind::Print(_) if arguments.max_error.is_some() => unused("max-error", "a model to print"),
         ExportKind::Scene(format) => run_scene(arguments, format),
+        ExportKind::Page => run_page(arguments),
         ExportKind::Print(format) => run_print(arguments, format),
     }
 }
@@ -92,6 +100,24 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
         row(10, "materials", exported.list.materials.len()),
     ];
     print_lines(&summary(&exported.files, &facts, &scene.notes))
+}
+
+fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
+    let (scene, out) = (&arguments.scene, &arguments.output);
+    let steps = StepTimer::default();
+    let progress = |step| steps.begin(step);
+    let mut scene = open_scene(&scene.scene, &scene.access.allow, &progress)?;
+    let page = export_page(&mut scene, out, arguments.max_error, &progress)?;
+    steps.finish();
+    let facts = [
+        row(10, "size", format!("{:.1} MB", page.bytes as f64 / 1e6)),
+        row(
+            10,
+            "ground",
+            format!("{} triangles, off by at most {} m", page.ground_triangles, page.max_error_m),
+        ),
+    ];
+    print_lines(&summary(&[out], &facts, &scene.notes))
 }
 
 fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), CliError> {

@@ -28,6 +28,7 @@ mod report;
 mod schema;
 mod serve;
 mod values;
+mod view;
 mod viewshed;
 
 use std::error::Error;
@@ -38,22 +39,34 @@ use clap::Parser;
 use crate::cli::arguments::{Arguments, Command, DemCommand, ModelCommand};
 use crate::cli::error::CliError;
 use crate::pipeline::service::ServiceOptions;
+use crate::pipeline::viewing::ViewerOptions;
 
 /// A height service: serves until a signal ends it.
 pub type ServeProgram = fn(&ServiceOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
 
-/// Runs the program: parses the arguments, runs the command, reports errors. `serve` runs the command of that name;
-/// `None` where the service is not built in.
+/// A window on a scene: returns when it is closed.
+pub type ViewProgram = fn(&ViewerOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
+
+/// What other programs run for commands of the same names; `None` where they are not built in.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BuiltInPrograms {
+    /// Runs `serve`.
+    pub serve: Option<ServeProgram>,
+    /// Runs `view`.
+    pub view: Option<ViewProgram>,
+}
+
+/// Runs the program: parses the arguments, runs the command, reports errors.
 ///
 /// Exit codes: 0 done, 1 the input is wrong, 2 usage.
-pub fn main(serve: Option<ServeProgram>) -> ExitCode {
-    match run(&Arguments::parse(), serve) {
+pub fn main(programs: BuiltInPrograms) -> ExitCode {
+    match run(&Arguments::parse(), programs) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }
 }
 
-fn run(arguments: &Arguments, serve: Option<ServeProgram>) -> Result<(), CliError> {
+fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Pick(arguments) => pick::run(arguments),
@@ -69,7 +82,8 @@ fn run(arguments: &Arguments, serve: Option<ServeProgram>) -> Result<(), CliErro
         Command::Profile(arguments) => profile::run(arguments),
         Command::Los(arguments) => los::run(arguments),
         Command::Viewshed(arguments) => viewshed::run(arguments),
-        Command::Serve(arguments) => serve::run(arguments, serve),
+        Command::Serve(arguments) => serve::run(arguments, programs.serve),
+        Command::View(arguments) => view::run(arguments, programs.view),
         Command::Report(arguments) => report::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Mesh(arguments) => mesh::run(arguments),

@@ -12,6 +12,7 @@ use crate::cli::render::{RenderArguments, find_camera, named_by_option};
 use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::files;
+use crate::pipeline::fingerprint::fingerprint;
 use crate::pipeline::picture::{ComposedView, PictureSize, compose_view, draw_view};
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
@@ -101,26 +102,35 @@ fn render_scene(
     let paths =
         if arguments.all_cameras { named_paths(path, &names) } else { vec![path.to_owned(); views.len()] };
     for path in &paths {
-        files::check_output(path, &scene.files)
-            .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
-        if arguments.sidecar {
-            files::check_output(&sidecar_path(path), &scene.files)
+        let sidecar = arguments.sidecar.then(|| sidecar_path(path));
+        for output in std::iter::once(path).chain(&sidecar) {
+            files::check_output(output, &scene.files)
                 .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
         }
     }
+    let fingerprint = match arguments.sidecar {
+        true => Some(fingerprint(&arguments.scene.scene, &scene.files)?),
+        false => None,
+    };
     let mut pictures = Vec::new();
     for (view, path) in views.into_iter().zip(paths) {
-        pictures.push(render_picture(arguments, &scene, view, (path, small), progress)?);
+        pictures.push(render_picture(
+            arguments,
+            &scene,
+            view,
+            (path, small, fingerprint.as_deref()),
+            progress,
+        )?);
     }
     Ok(RenderedScene { scene, pictures })
 }
 
-/// Renders a picture to a file, or of the size `small` for a sheet.
+/// Renders a picture to a file, or of the size `small` for a sheet; with a sidecar where the scene has a fingerprint.
 fn render_picture(
     arguments: &RenderArguments,
     scene: &SceneModel,
     camera: &SceneView,
-    (path, small): (PathBuf, Option<[u32; 2]>),
+    (path, small, fingerprint): (PathBuf, Option<[u32; 2]>, Option<&str>),
     progress: &dyn Fn(&'static str),
 ) -> Result<RenderedPicture, CliError> {
     let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(camera));
@@ -135,12 +145,10 @@ fn render_picture(
         files::make_folder(&folder)?;
         PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
     }
-    let draft = if arguments.sidecar {
+    let draft = fingerprint.map(|fingerprint| {
         progress("describing the picture");
-        Some(SidecarDraft::new(scene, &arguments.scene.scene, camera, &drawn)?)
-    } else {
-        None
-    };
+        SidecarDraft::new(scene, (&arguments.scene.scene, fingerprint), camera, &drawn)
+    });
     let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, progress);
     let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
     let output = if small.is_some() {
@@ -179,18 +187,21 @@ fn sheet_of(arguments: &RenderArguments, pictures: usize) -> Result<ContactSheet
 
 /// The pictures of all scenes on one sheet.
 pub fn contact_sheet(arguments: &RenderArguments, scenes: &[RenderedScene]) -> Result<Pixels, CliError> {
-    let picture = |(scene, picture): (&SceneModel, &RenderedPicture)| {
-        let PictureOutput::Sheet(pixels) = &picture.output else { return None };
+    let caption = |scene: &SceneModel, picture: &RenderedPicture| {
         let phase = scene.phase.as_ref().filter(|_| arguments.all_phases);
-        let caption = match (phase, arguments.shows_all_cameras()) {
+        match (phase, arguments.shows_all_cameras()) {
             (Some(phase), true) => format!("{phase}: {}", picture.camera),
             (Some(phase), false) => phase.clone(),
             (None, _) => picture.camera.clone(),
-        };
-        Some(ContactPicture { caption, pixels: pixels.clone() })
+        }
     };
     let all = scenes.iter().flat_map(|scene| scene.pictures.iter().map(|picture| (&scene.scene, picture)));
-    let pictures: Vec<ContactPicture> = all.filter_map(picture).collect();
+    let pictures: Vec<ContactPicture> = all
+        .filter_map(|(scene, picture)| match &picture.output {
+            PictureOutput::Sheet(pixels) => Some(ContactPicture { caption: caption(scene, picture), pixels }),
+            PictureOutput::File(_) => None,
+        })
+        .collect();
     let first = scenes.first().map(|scene| &scene.scene);
     let title = first.and_then(|scene| scene.title.as_deref());
     let font = first.and_then(|scene| scene.font.as_ref());

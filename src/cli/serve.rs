@@ -36,7 +36,7 @@ pub struct ServeArguments {
     /// The most requests answered at once; more are refused with 503
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_requests, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub max_requests: u32,
-    /// The most connections held open
+    /// The most connections held open; one client may hold half of them
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_connections, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub max_connections: u32,
     /// How long a request may take to arrive, and how long its answer may take

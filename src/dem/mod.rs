@@ -13,6 +13,7 @@ pub mod imagery;
 pub mod largest_rectangle;
 pub mod limits;
 pub mod mosaic;
+mod north_up;
 mod point_text;
 pub mod points;
 pub mod raster;

@@ -35,6 +35,8 @@ pub struct Mosaic {
     pub greatest_difference: f64,
     /// Samples that no tile covers.
     pub gaps: u64,
+    /// How many tiles state no vertical datum where others do.
+    pub without_datum: usize,
 }
 
 impl Mosaic {
@@ -49,6 +51,12 @@ impl Mosaic {
         }
         if self.gaps > 0 {
             note.push_str(&format!("; {} samples lie in no tile", self.gaps));
+        }
+        if let Some(datum) = self.raster.vertical_datum.as_ref().filter(|_| self.without_datum > 0) {
+            note.push_str(&format!(
+                "; {} of them state no vertical datum and are taken to be above {datum}, as the others state",
+                self.without_datum
+            ));
         }
         note
     }
@@ -116,8 +124,16 @@ impl Tiles {
     pub fn join(mut self) -> Result<Mosaic, MosaicError> {
         if self.rasters.len() < 2 {
             let raster = self.rasters.pop().ok_or(MosaicError::Empty)?;
-            let (overlaps, differing, greatest_difference, gaps) = (0, 0, 0.0, 0);
-            return Ok(Mosaic { raster, tiles: 1, overlaps, differing, greatest_difference, gaps });
+            let (overlaps, differing, greatest_difference, gaps, without_datum) = (0, 0, 0.0, 0, 0);
+            return Ok(Mosaic {
+                raster,
+                tiles: 1,
+                overlaps,
+                differing,
+                greatest_difference,
+                gaps,
+                without_datum,
+            });
         }
         for index in 0..self.rasters.len() {
             self.compare_with_first(index)?;
@@ -156,10 +172,14 @@ impl Tiles {
                 [first, tile].map(|raster| format!("{} m", raster.meters_per_z)),
             );
         }
-        if let (Some(one), Some(two)) = (&first.vertical_datum, &tile.vertical_datum)
+        let stated = self.rasters.iter().position(|raster| raster.vertical_datum.is_some());
+        let stated = stated.map_or(0, |stated| stated.min(index));
+        if let (Some(one), Some(two)) = (&self.rasters[stated].vertical_datum, &tile.vertical_datum)
             && one != two
         {
-            return differ("vertical datums", [one.clone(), two.clone()]);
+            let (first, other) = (self.names[stated].clone(), self.names[index].clone());
+            let (what, found) = ("vertical datums", [one.clone(), two.clone()]);
+            return Err(MosaicError::Differ { first, other, what, found });
         }
         // The axes of both grids must agree over the longest side.
         let axes = first.map_from_grid.matrix2 - tile.map_from_grid.matrix2;
@@ -270,16 +290,20 @@ fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFram
     let first = &tiles[0];
     let mut map_from_grid = first.map_from_grid;
     map_from_grid.translation = map_from_grid.transform_point2(frame.min.as_dvec2());
-    let have_one_datum = tiles.iter().all(|tile| tile.vertical_datum == first.vertical_datum);
+    let datum = tiles.iter().find_map(|tile| tile.vertical_datum.clone());
+    let without_datum = match datum {
+        Some(_) => tiles.iter().filter(|tile| tile.vertical_datum.is_none()).count(),
+        None => 0,
+    };
     let raster = Raster {
         width: frame.width as u32,
         height: frame.height as u32,
         samples: T::into_samples(values),
         map_from_grid,
-        vertical_datum: first.vertical_datum.clone().filter(|_| have_one_datum),
+        vertical_datum: datum,
         ..first.without_samples()
     };
-    Mosaic { raster, tiles: tiles.len(), overlaps, differing, greatest_difference, gaps }
+    Mosaic { raster, tiles: tiles.len(), overlaps, differing, greatest_difference, gaps, without_datum }
 }
 
 #[cfg(test)]
@@ -356,14 +380,21 @@ mod tests {
     }
 
     #[test]
-    fn two_datums_are_refused_and_one_that_not_all_state_is_not_claimed() {
+    fn two_datums_are_refused_and_one_that_not_all_state_is_told() {
         let datum = |name: Option<&str>| Raster {
             vertical_datum: name.map(str::to_owned),
             ..tile(0.0, 0.0, 1, 1, vec![0.0])
         };
         assert!(mosaic([datum(Some("NAVD88")), datum(Some("NGVD29"))]).is_err());
-        let joined = mosaic([datum(Some("NAVD88")), datum(None)]).expect("nothing contradicts");
-        assert_eq!(joined.raster.vertical_datum, None);
+        let error = mosaic([datum(None), datum(Some("NAVD88")), datum(Some("NGVD29"))]).expect_err("two");
+        assert!(error.to_string().starts_with("tile 2 and tile 3"), "{error}");
+        for tiles in [[Some("NAVD88"), None], [None, Some("NAVD88")]] {
+            let joined = mosaic(tiles.map(datum)).expect("nothing contradicts");
+            assert_eq!(joined.raster.vertical_datum.as_deref(), Some("NAVD88"));
+            assert!(joined.note().contains("1 of them state no vertical datum"), "{}", joined.note());
+        }
+        let joined = mosaic([datum(None), datum(None)]).expect("nothing contradicts");
+        assert!(joined.raster.vertical_datum.is_none() && !joined.note().contains("datum"));
     }
 
     #[test]

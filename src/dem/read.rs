@@ -8,6 +8,12 @@ use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
+/// The bytes of a packed file that are unpacked before it is known what it is.
+const HEAD_BYTES: u64 = 64 << 10;
+
+/// The most bytes of a packed companion: a mask of the largest raster, a bit a sample.
+const MOST_COMPANION_BYTES: u64 = 64 << 20;
+
 /// Options for reading an elevation file.
 #[derive(Clone)]
 pub struct DemHints<'a> {
@@ -159,7 +165,10 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
 
 fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
     if archive::is_gzip(file.bytes) {
-        let (name, content) = (unpacked_name(file.name), archive::gunzip(file.bytes, MAX_RASTER_BYTES)?);
+        let name = unpacked_name(file.name);
+        let head = archive::gunzip_head(file.bytes, HEAD_BYTES)?;
+        let limit = most_bytes(&DemFile { name: &name, bytes: &head, hints: file.hints })?;
+        let content = archive::gunzip(file.bytes, limit)?;
         return read_unpacked(&DemFile { name: &name, bytes: &content, hints: file.hints });
     }
     if archive::is_zip(file.bytes) {
@@ -170,18 +179,30 @@ fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
 
 /// Reads the first elevation file in an archive, with its companions there.
 fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
-    let zip = ZipReader::open(file.bytes, MAX_RASTER_BYTES)?;
+    let zip = ZipReader::open(file.bytes)?;
     let name = zip
         .names()
         .find(|name| is_tile_name(name))
         .ok_or_else(|| unknown("it is a zip archive without an .hgt tile or another elevation file in it"))?;
-    let content = zip.read(name)?;
-    let companions = |wanted: &str| zip.read(wanted).ok();
+    let companions = |wanted: &str| zip.read(wanted, MOST_COMPANION_BYTES).ok();
     let hints = DemHints { companions: &companions, ..file.hints.clone() };
+    let head = zip.read_head(name, HEAD_BYTES)?;
+    let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
+    let content = zip.read(name, limit)?;
     read_unpacked(&DemFile { name, bytes: &content, hints: &hints })
 }
 
 fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
+    (format_of(file)?.reader)(file)
+}
+
+/// The most bytes that a packed file unpacks to; the bytes of `head` are its first.
+fn most_bytes(head: &DemFile) -> Result<u64, DemErrorKind> {
+    Ok((format_of(head)?.most_bytes)(head.bytes).min(MAX_RASTER_BYTES))
+}
+
+/// The format of an unpacked file, of whose content the first bytes are enough.
+fn format_of(file: &DemFile) -> Result<&'static DemFormat, DemErrorKind> {
     if archive::is_gzip(file.bytes) || archive::is_zip(file.bytes) {
         return Err(unknown("it is packed twice"));
     }
@@ -190,7 +211,7 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
         return Err(unknown("it is the header of a file beside it: name that one"));
     }
     if file.hints.raw.is_some() {
-        return (raw::FORMAT.reader)(file);
+        return Ok(&raw::FORMAT);
     }
     let by_content = |format: &DemFormat| matches!(format.recognition, Recognition::Content { matches, .. } if matches(file.bytes));
     let by_name =
@@ -200,10 +221,7 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
         find(|format| matches!(format.recognition, Recognition::HeaderFile { matches } if matches(&header)))
     };
     let recognized = find(by_content).or_else(by_name).or_else(by_header);
-    match recognized {
-        Some(format) => (format.reader)(file),
-        None => Err(not_recognized(file.bytes, &extension)),
-    }
+    recognized.ok_or_else(|| not_recognized(file.bytes, &extension))
 }
 
 fn find(is_wanted: impl Fn(&DemFormat) -> bool) -> Option<&'static DemFormat> {

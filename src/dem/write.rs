@@ -43,18 +43,22 @@ pub enum WriteError {
     #[error("elevation is not written as {0}; write a GeoTIFF")]
     OnlyRead(&'static str),
     #[error(
-        "a {0} has rows that run east, from the northernmost to the southernmost, and this elevation lies otherwise; write a GeoTIFF, or turn it with --crs"
+        "a file of the format {0} has rows that run east, and this elevation is turned against its axes; write a GeoTIFF, or turn it with --crs"
     )]
     NotNorthUp(&'static str),
-    #[error("a {0} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG")]
+    #[error(
+        "a file of the format {0} states where its samples lie, and this elevation does not; write a GeoTIFF or a PNG"
+    )]
     NoPlace(&'static str),
-    #[error("a {format} writes {value} for no data, and {value} is one of the heights; write a GeoTIFF")]
+    #[error(
+        "a file of the format {format} writes {value} for no data, and {value} is one of the heights; write a GeoTIFF"
+    )]
     NoDataTaken { format: &'static str, value: f64 },
     #[error(
-        "a {format} holds heights from {least} to {greatest} and this elevation has {found}; write a GeoTIFF"
+        "a file of the format {format} holds heights from {least} to {greatest} and this elevation has {found}; write a GeoTIFF"
     )]
     OutOfRange { format: &'static str, least: f64, greatest: f64, found: f64 },
-    #[error("a {format} has {wanted}, not {found}; write a GeoTIFF")]
+    #[error("a file of the format {format} has {wanted}, not {found}; write a GeoTIFF")]
     Shape { format: &'static str, wanted: &'static str, found: String },
     /// The file's name states another place than the raster's; the right name, without its extension.
     #[error("an SRTM tile is named by its south-west corner: name this one {0}.hgt")]

@@ -39,6 +39,7 @@ use crate::description::bounds::Bounds::{self, Above, Within};
 use crate::description::color::{Color, RampChoice};
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::Diagnostic;
+use crate::description::earthworks::EarthworkTable;
 use crate::description::feature_value::DefaultedValue;
 use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
@@ -95,6 +96,8 @@ table! {
         lakes as "lake": Vec<LakeTable> = key::styled_tables::<LakeTable>(), default [];
         /// What covers the ground, in drawing order.
         areas as "area": Vec<AreaTable> = key::styled_tables::<AreaTable>(), default [];
+        /// Ground that is dug, leveled and filled.
+        earthworks as "earthwork": Vec<EarthworkTable> = key::styled_tables::<EarthworkTable>(), default [];
         /// Footprints raised to a height.
         buildings as "building": Vec<BuildingTable> = key::styled_tables::<BuildingTable>(), default [];
         /// What stands or runs along a line.
@@ -428,13 +431,7 @@ pub fn paper_mm(paper: PaperName) -> [f64; 2] {
 impl LabelTable {
     /// The features that it labels; `None` for a label at one place.
     pub fn source(&self) -> Option<FeatureSource> {
-        self.file.is_some().then(|| FeatureSource {
-            points: None,
-            file: self.file.clone(),
-            layer: self.layer.clone(),
-            selection: self.selection.clone(),
-            crs: self.crs.clone(),
-        })
+        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs)
     }
 }
 

@@ -27,7 +27,7 @@ use crate::description::words::{
 use crate::geom::crs::Crs;
 
 /// Widths of roads and rivers, and distances between things.
-const WIDTH: Bounds = Above(0.0, 10_000.0);
+const WIDTH: Bounds = Within(0.01, 10_000.0);
 /// Widths of strips beside something, and depths.
 const STRIP: Bounds = Within(0.0, 1000.0);
 /// Sizes of what stands on the ground.
@@ -330,6 +330,19 @@ table! {
 }
 
 impl FeatureSource {
+    /// The features of a table whose own keys name a file; `None` where it names none.
+    pub fn of_file(
+        file: &Option<Stated<String>>,
+        layer: &Option<Stated<String>>,
+        selection: &Option<Stated<Selection>>,
+        crs: &Option<Crs>,
+    ) -> Option<Self> {
+        let (layer, selection, crs) = (layer.clone(), selection.clone(), crs.clone());
+        let of =
+            |file: &Stated<String>| Self { points: None, file: Some(file.clone()), layer, selection, crs };
+        file.as_ref().map(of)
+    }
+
     /// The bytes of the scene file that state the coordinates or the file's name, for messages.
     pub fn span(&self) -> Range<usize> {
         let points = self.points.as_ref().and_then(Stated::span);

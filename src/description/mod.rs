@@ -8,6 +8,7 @@ pub mod color;
 pub mod declaration;
 pub mod diagnostic;
 pub mod document;
+pub mod earthworks;
 pub mod expression;
 pub mod feature_value;
 pub mod features;

@@ -108,13 +108,7 @@ const TEXT_KEYS: [&str; 16] = [
 impl SymbolTable {
     /// The features that are symbols; `None` for a symbol at one place.
     pub fn source(&self) -> Option<FeatureSource> {
-        self.file.is_some().then(|| FeatureSource {
-            points: None,
-            file: self.file.clone(),
-            layer: self.layer.clone(),
-            selection: self.selection.clone(),
-            crs: self.crs.clone(),
-        })
+        FeatureSource::of_file(&self.file, &self.layer, &self.selection, &self.crs)
     }
 
     /// The fields of text with their texts or expressions, as the table of text fields has their keys.

@@ -207,6 +207,15 @@ words! {
         Pyramidal = "pyramidal": "slopes that meet in one point",
     }
 
+    /// The shape of an earthwork.
+    enum EarthworkKind {
+        Crater = "crater": "a bowl with a raised rim",
+        Trench = "trench": "a ditch along a line",
+        Track = "track": "the two ruts of a vehicle",
+        Level = "level": "level ground within an outline, with batters",
+        Raise = "raise": "raised ground: a bank along a line, a mound at a point",
+    }
+
     /// What stands or runs along a line.
     enum FenceKind {
         Fence = "fence": "posts and rails",

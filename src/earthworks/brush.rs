@@ -9,6 +9,7 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::rect::Rect;
 use crate::terrain::lattice::{HIGHEST_M, Lattice, Post};
 use crate::terrain::post_rect::PostRect;
@@ -45,6 +46,15 @@ impl Change {
         posts.filter(|&(post, before)| lattice.height(post).to_bits() != before.to_bits())
     }
 
+    /// The part within `bounds`, a rectangle of its posts.
+    fn within(self, bounds: PostRect) -> Self {
+        if bounds == self.posts {
+            return self;
+        }
+        let before = bounds.posts().map(|post| self.height_before(post)).collect();
+        Self { posts: bounds, before }
+    }
+
     fn index(&self, post: Post) -> usize {
         let first = self.posts.first;
         (post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize
@@ -68,8 +78,36 @@ impl BrushChanges {
         self
     }
 
+    /// These changes without those of posts that `held` holds, which get their former heights back. For the changes of
+    /// one brush, right after it made them.
+    pub fn without_held(self, lattice: &mut Lattice, held: &HeldPosts) -> Self {
+        let mut kept = Self::default();
+        for piece in self.pieces {
+            let moved: Vec<(Post, f32)> = piece.changed(lattice).collect();
+            let mut bounds: Option<PostRect> = None;
+            for (post, before) in moved {
+                let rise_m = f64::from(lattice.height(post)) - f64::from(before);
+                if held.holds(lattice, post) {
+                    lattice.heights_mut(post, post.column)[0] = before;
+                } else {
+                    kept.volumes += Volumes::from_rise(rise_m, lattice.cell_m2());
+                    let alone = PostRect { first: post, last: post };
+                    bounds = Some(bounds.map_or(alone, |bounds| bounds.with(post)));
+                }
+            }
+            kept.pieces.extend(bounds.map(|bounds| piece.within(bounds)));
+        }
+        kept
+    }
+
+    /// The area of the posts that changed, in square meters: a cell for each.
+    pub fn area_m2(&self, lattice: &Lattice) -> f64 {
+        let posts: usize = self.pieces.iter().map(|piece| piece.changed(lattice).count()).sum();
+        posts as f64 * lattice.cell_m2()
+    }
+
     /// Gives every post of `posts` that has data its new height, in meters, from its old one.
-    fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
+    pub(super) fn write(&mut self, lattice: &mut Lattice, posts: PostRect, new: impl Fn(Post, f32) -> f32) {
         let PostRect { first, last } = posts;
         let area_m2 = lattice.cell_m2();
         let mut bounds: Option<PostRect> = None;
@@ -93,9 +131,7 @@ impl BrushChanges {
             }
         }
         if let Some(bounds) = bounds {
-            let all = Change { posts, before };
-            let before = bounds.posts().map(|post| all.height_before(post)).collect();
-            self.pieces.push(if bounds == posts { all } else { Change { posts: bounds, before } });
+            self.pieces.push(Change { posts, before }.within(bounds));
         }
     }
 }
@@ -347,8 +383,8 @@ fn paint<Near>(
     height: impl Fn(&Near, DVec2, f64) -> f64,
 ) -> BrushChanges {
     let mut changes = BrushChanges::default();
-    let cell = lattice.cell();
-    let world = |post: Post| post.grid() * cell;
+    let (first, cell) = (lattice.first().grid(), lattice.cell());
+    let world = |post: Post| (first + post.grid()) * cell;
     for tile in PostRect::within(lattice, &bounds).into_iter().flat_map(tiles) {
         if let Some(near) = near(&Rect { min: world(tile.first), max: world(tile.last) }) {
             let new = |post: Post, before: f32| height(&near, world(post), f64::from(before)) as f32;

@@ -27,7 +27,7 @@ pub fn level(lattice: &mut Lattice, rings: &[Vec<DVec2>], level_m: f32) -> Volum
 ///
 /// Costs one step for each row an edge crosses and each cell the polygon touches, whatever the lattice's size.
 pub(in crate::earthworks) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
-    let to_grid = |point: DVec2| point / lattice.cell();
+    let to_grid = |point: DVec2| lattice.grid_at(point);
     let edges = || rings.iter().flat_map(|ring| polygon::edges(ring)).map(|(a, b)| (to_grid(a), to_grid(b)));
     let mut touched = Touched::new(lattice, Rect::around(rings.iter().flatten().copied().map(to_grid)));
     edges().for_each(|(from, to)| touched.mark_line(from, to));

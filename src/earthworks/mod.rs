@@ -3,8 +3,11 @@
 pub mod alignment;
 pub mod brush;
 pub mod channel;
+pub mod earthwork;
 pub mod falling_levels;
 pub mod grading;
+pub mod held_posts;
+pub mod level_ground;
 pub mod leveling;
 pub mod pad;
 pub mod shore;

@@ -1,4 +1,4 @@
-//! Draw lists as files for modeling programs: binary glTF and OBJ.
+//! Draw lists as files for modeling programs, binary glTF and OBJ, and as a page for browsers ([`page`]).
 //!
 //! A draw list cannot be written as it is: the ground's color comes from a map that is read at every pixel, and what
 //! is draped on the ground shares its planes, so that other programs would show both flickering. So a list is prepared
@@ -14,6 +14,7 @@ mod bake;
 pub mod glb;
 mod inlay;
 pub mod obj;
+pub mod page;
 pub mod prepare;
 
 use std::ops::Range;

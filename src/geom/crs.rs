@@ -209,6 +209,12 @@ impl Crs {
         self.inner.epsg
     }
 
+    /// The well-known text, version 1, that the EPSG registry has for this system; `None` where it has no code.
+    pub(crate) fn registered_wkt(&self) -> Option<&'static str> {
+        let definition = crs_definitions::from_code(u16::try_from(self.epsg()?).ok()?)?;
+        (!definition.wkt.is_empty()).then_some(definition.wkt)
+    }
+
     /// Whether coordinates are longitude and latitude in degrees.
     pub fn is_geographic(&self) -> bool {
         self.inner.proj.is_latlong()

@@ -74,28 +74,28 @@ pub fn convergence_deg(crs: &Crs, place: DVec2) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn east_deg(year: i32, height_m: f64, latitude: f64, longitude: f64) -> f64 {
-        let day = CalendarDay { year, month: 1, day: 1 };
-        declination(DVec2::new(longitude, latitude), height_m, day).expect("covered").east_deg
-    }
-
     #[test]
     fn declinations_are_the_test_values_that_the_models_were_published_with() {
-        // Chulliat et al. 2020 and 2025, tables of test values; degrees with two decimals.
-        for (year, height_m, latitude, longitude, expected) in [
-            (2020, 0.0, 80.0, 0.0, -1.28),
-            (2020, 0.0, 0.0, 120.0, 0.16),
-            (2020, 0.0, -80.0, -120.0, 69.36),
-            (2025, 0.0, 80.0, 0.0, 1.28),
-            (2025, 0.0, 0.0, 120.0, -0.16),
-            (2025, 0.0, -80.0, -120.0, 68.78),
-        ] {
-            let found = east_deg(year, height_m, latitude, longitude);
-            assert!(
-                (found - expected).abs() < 0.0101,
-                "{year} {latitude} {longitude}: {found}, not {expected}"
-            );
+        let table = include_str!("../../tests/heights/declinations.txt");
+        let rows = table.lines().filter(|line| !line.starts_with('#'));
+        let mut worst_deg = 0.0f64;
+        for row in rows.clone() {
+            let [year, height_km, latitude, longitude, expected] = numbers(row);
+            // The years are whole or have a half, which is noon of a day early in July.
+            let (month, day) = if year.fract() == 0.0 { (1, 1) } else { (7, 2) };
+            let day = CalendarDay { year: year as i32, month, day };
+            let found = declination(DVec2::new(longitude, latitude), 1000.0 * height_km, day);
+            let off_deg = (found.expect("covered").east_deg - expected).abs();
+            assert!(off_deg < 0.0101, "{row}: {found:?}");
+            worst_deg = worst_deg.max(off_deg);
         }
+        assert_eq!(rows.count(), 200);
+        assert!(worst_deg > 0.001, "expected values have two decimals");
+    }
+
+    fn numbers(row: &str) -> [f64; 5] {
+        let numbers: Vec<f64> = row.split(' ').map(|word| word.parse().expect("a number")).collect();
+        numbers.try_into().expect("five columns")
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 pub mod aabb;
 pub mod axis;
+pub mod chebyshev;
 pub mod convex;
 pub mod crs;
 pub mod crs_fault;

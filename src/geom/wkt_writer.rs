@@ -4,10 +4,15 @@
 use crate::geom::crs::Crs;
 use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
-/// The WKT of a system; `None` for [`Crs::local`] and for a projection that [`Definition`] cannot express.
+/// The WKT of a system; `None` for [`Crs::local`], and for a projection that [`Definition`] cannot express in a system
+/// without an EPSG code.
 ///
 /// A system with an EPSG code has it at the root, for readers that look it up.
 pub fn write(crs: &Crs) -> Option<String> {
+    written(crs).or_else(|| crs.registered_wkt().map(str::to_owned))
+}
+
+fn written(crs: &Crs) -> Option<String> {
     let definition = crs.definition()?;
     let name = quoted(crs.name());
     let authority = crs.epsg().map_or_else(String::new, authority);
@@ -150,6 +155,23 @@ mod tests {
             assert_eq!(Crs::parse(&text).expect("readable").epsg(), Some(code), "{text}");
         }
         assert_eq!(write(&Crs::local()), None);
+    }
+
+    #[test]
+    fn whatever_its_projection_a_system_with_a_code_has_well_known_text() {
+        let mut systems = 0;
+        for code in 2000..=32766 {
+            let Ok(crs) = Crs::from_epsg(code) else { continue };
+            let text = write(&crs).unwrap_or_else(|| panic!("EPSG:{code} {}", crs.proj_text()));
+            assert!(text.starts_with("PROJCS[") || text.starts_with("GEOGCS["), "{text}");
+            systems += 1;
+        }
+        assert!(systems > 4000, "{systems}");
+        for (code, projection) in [(28992, "Oblique_Stereographic"), (2056, "Hotine_Oblique_Mercator")] {
+            let text = write(&Crs::from_epsg(code).expect("known")).expect("registered");
+            assert!(text.contains(projection), "{text}");
+            assert_eq!(Crs::parse(&text).expect("readable").epsg(), Some(code));
+        }
     }
 
     #[test]

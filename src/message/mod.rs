@@ -3,3 +3,4 @@
 pub mod chain;
 pub mod choice;
 pub mod suggest;
+pub mod xml;

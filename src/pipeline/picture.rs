@@ -97,9 +97,7 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
-    let frame = page_frame(scene, size);
-    let page = (size.width, size.height);
-    let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
+    let (camera, frame) = framed_camera(scene, view, size)?;
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend)?;
@@ -113,6 +111,21 @@ pub fn page_frame(scene: &SceneModel, size: PictureSize) -> Option<SheetFrame> {
     let has_title = furniture.title && (scene.title.is_some() || scene.subtitle.is_some());
     let page = (size.width, size.height);
     SheetFrame::new(furniture.layout, page, has_title, furniture.classification.is_some())
+}
+
+/// How a view is seen on a page of `size`, and the page's frame where the picture is not the page.
+///
+/// # Errors
+/// See [`CameraError`].
+pub fn framed_camera(
+    scene: &SceneModel,
+    view: &SceneView,
+    size: PictureSize,
+) -> Result<(Camera, Option<SheetFrame>), CameraError> {
+    let frame = page_frame(scene, size);
+    let page = (size.width, size.height);
+    let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
+    Ok((camera, frame))
 }
 
 /// The second half of [`render_view`]: paints the annotations.

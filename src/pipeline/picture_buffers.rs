@@ -12,11 +12,11 @@ use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::files::{self, WriteFileError};
-use crate::pipeline::picture::{PictureError, PictureSize, page_frame};
+use crate::pipeline::picture::{PictureError, PictureSize, framed_camera};
 use crate::pipeline::raster_file::{self, WriteRasterError};
 use crate::render::cpu::render_buffers;
 use crate::render::picture::Rendering;
-use crate::scene::picture::{build_shapes, camera};
+use crate::scene::picture::build_shapes;
 use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::Camera;
 
@@ -56,9 +56,7 @@ pub fn pick(
     pixels: &[[u32; 2]],
     progress: &dyn Fn(&'static str),
 ) -> Result<Vec<Option<PickedPlace>>, PictureError> {
-    let frame = page_frame(scene, size);
-    let page = (size.width, size.height);
-    let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
+    let (camera, frame) = framed_camera(scene, view, size)?;
     let (left, top) = frame.as_ref().map_or((0, 0), SheetFrame::picture_corner);
     let list = build_shapes(scene, &camera, progress);
     progress("drawing");

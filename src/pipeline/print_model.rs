@@ -18,7 +18,7 @@ use crate::mesh::write::{Remarks, stl};
 use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::files::{self, WriteFileError};
 use crate::render::cpu::{CpuRenderError, render_buffers};
-use crate::scene::picture::build_shapes;
+use crate::scene::picture::build_relief;
 use crate::scene::{FeatureKind, SceneModel};
 use crate::terrain::lattice::{Lattice, LatticeError};
 use crate::view::axes::DirectionAxes;
@@ -233,7 +233,7 @@ impl Relief {
         let [columns, rows] = [span_m.x, span_m.y]
             .map(|span| libm::round(f64::from(span / span_m.max_element()) * rays).max(4.0) as u32);
         let camera = from_above(scene, (columns, rows))?;
-        let list = build_shapes(scene, &camera, progress);
+        let list = build_relief(scene, &camera, progress);
         progress("measuring what is seen from above");
         let seen = render_buffers(&list, &camera)?;
         // The lowest ground is a step above the base, which leaves water room below it.

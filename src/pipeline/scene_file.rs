@@ -32,23 +32,24 @@ pub enum OpenSceneError {
 }
 
 fn no_phase(name: &str, names: &[String]) -> String {
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let remedy = match names[..] {
-        [] => "it has no [[phase]]".to_owned(),
-        _ => remedy(name, &names, "its phases are").replace(" or ", " and "),
-    };
-    format!("the scene has no phase '{}'; {remedy}", quoted(name))
+    match names {
+        [] => format!("the scene has no phase '{}'; it has no [[phase]]", quoted(name)),
+        names => none_named("phase", name, names),
+    }
 }
 
 fn no_flight(name: Option<&str>, names: &[String]) -> String {
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    match (name, &names[..]) {
-        (Some(name), [_, ..]) => {
-            let remedy = remedy(name, &names, "its flights are").replace(" or ", " and ");
-            format!("the scene has no flight '{}'; {remedy}", quoted(name))
-        }
+    match (name, names) {
+        (Some(name), [_, ..]) => none_named("flight", name, names),
         _ => "the scene has no [[flight]]; add one with a name and `points`".to_owned(),
     }
+}
+
+/// No `noun` is called `name`, but these are there.
+fn none_named(noun: &str, name: &str, names: &[String]) -> String {
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let remedy = remedy(name, &names, &format!("its {noun}s are")).replace(" or ", " and ");
+    format!("the scene has no {noun} '{}'; {remedy}", quoted(name))
 }
 
 /// Reads, parses and builds the scene file at `path`. The scene reads files under the parent of its own folder and
@@ -63,6 +64,22 @@ pub fn open_scene(
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed, None)?;
+    Ok(build(&document, &assets, progress)?)
+}
+
+/// Parses and builds a scene that has no file, of the text `text`; it reads files as one at `path` would.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn build_scene_text(
+    path: &Path,
+    text: &str,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
+    let assets = Assets::new(path, allowed)?;
+    let load = |name: &str| assets.read(name).map_err(Into::into);
+    let document = parse_in_phase(&path.to_string_lossy(), text.as_bytes(), &load, None)?;
     Ok(build(&document, &assets, progress)?)
 }
 
@@ -142,9 +159,22 @@ pub fn open_scene_true_to_scale(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
+    open_scene_exaggerated(path, allowed, 1.0, progress)
+}
+
+/// [`open_scene`] with heights drawn `factor` times as high, above 0, whatever exaggeration the scene file states.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_scene_exaggerated(
+    path: &Path,
+    allowed: &[PathBuf],
+    factor: f64,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed, None)?;
-    document.terrain.vertical_exaggeration = 1.0;
+    document.terrain.vertical_exaggeration = factor;
     Ok(build(&document, &assets, progress)?)
 }
 

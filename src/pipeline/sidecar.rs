@@ -8,8 +8,7 @@ use serde_json::{Value, json};
 
 use crate::annotate::report::{AnnotationReport, LabelMove, SheetBox};
 use crate::annotate::sheet_frame::SheetFrame;
-use crate::pipeline::files::{self, ReadFileError};
-use crate::pipeline::fingerprint::fingerprint;
+use crate::pipeline::files;
 use crate::pipeline::picture::DrawnView;
 use crate::pipeline::picture_buffers::{PictureBuffers, ShownFeature};
 use crate::scene::{SceneModel, SceneView};
@@ -19,16 +18,13 @@ use crate::view::camera::{Camera, ViewProjection};
 pub struct SidecarDraft(Value);
 
 impl SidecarDraft {
-    /// The scene of `scene_file`, the camera, and the features that the picture shows.
-    ///
-    /// # Errors
-    /// A file of the scene cannot be read, whose hash is part of the sidecar.
+    /// The scene of a file with this fingerprint, the camera, and the features that the picture shows.
     pub fn new(
         scene: &SceneModel,
-        scene_file: &Path,
+        (scene_file, fingerprint): (&Path, &str),
         view: &SceneView,
         drawn: &DrawnView,
-    ) -> Result<Self, ReadFileError> {
+    ) -> Self {
         let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
         let (width, height) = drawn.camera.size();
         let all = f64::from(width) * f64::from(height);
@@ -43,11 +39,11 @@ impl SidecarDraft {
             })
         };
         let corner = drawn.frame.as_ref().map_or((0, 0), SheetFrame::picture_corner);
-        Ok(Self(json!({
+        Self(json!({
             "program": concat!("sandtable ", env!("CARGO_PKG_VERSION")),
             "scene": {
                 "file": files::file_name(scene_file),
-                "sha256": fingerprint(scene_file, &scene.files)?,
+                "sha256": fingerprint,
                 "files": scene.files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
                 "title": scene.title,
                 "phase": scene.phase,
@@ -57,7 +53,7 @@ impl SidecarDraft {
             "picture": { "width": width, "height": height, "at": [corner.0, corner.1] },
             "camera": camera(scene, &view.name, &drawn.camera),
             "features": buffers.shown_features().iter().map(feature).collect::<Vec<_>>(),
-        })))
+        }))
     }
 
     /// The whole, with what became of labels: boxes in pixels of the picture that the camera sees, left, top, right and

@@ -1,8 +1,8 @@
 //! From a document and its assets to a scene, pass by pass, in two stages.
 //!
 //! ```text
-//!  elevation ─► lakes, rivers, roads, pads, trenches, bridges ─┬─► pads of models ─► SceneGround: heights
-//!                                                              └─► networks, fences, buildings, models, views ─► Scene
+//!  elevation ─► lakes, rivers, roads, pads, trenches, bridges ─► earthworks ─┬─► pads of models ─► SceneGround: heights
+//!                                                                            └─► networks, fences, models, views ─► Scene
 //! ```
 //!
 //! Neither stage computes what only a picture needs: see [`SceneModel::map`] and [`SceneModel::ground`].
@@ -14,6 +14,7 @@ use glam::DVec2;
 use crate::dem::raster::Raster;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
 use crate::scene::areas;
@@ -22,6 +23,7 @@ use crate::scene::attributes;
 use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
+use crate::scene::earthworks;
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
 use crate::scene::graphics;
@@ -108,6 +110,7 @@ pub fn build(
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     let surroundings = Surroundings::new(document);
+    collected.notes.extend(style::missing_place_note(document, &crs, lattice.map_extent().center()));
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
@@ -134,6 +137,7 @@ pub fn build(
         tolerance_px: document.terrain.tolerance_px as f32,
         layout,
         ground: OnceLock::new(),
+        held: Arc::new(shaped.held),
         ribbons: collected.ribbons,
         symbols: collected.symbols,
         graphics: collected.graphics,
@@ -163,6 +167,7 @@ struct ShapedFeatures {
     roads: Vec<Centerline>,
     plots: Vec<Plot>,
     lines: Vec<FenceLine>,
+    held: HeldPosts,
 }
 
 /// Shapes the ground for everything but models, and builds the decks over it.
@@ -175,13 +180,15 @@ fn shape(
     let extent = lattice.extent();
     lakes::lay(document, sources, lattice, collected)?;
     rivers::lay(document, sources, lattice, collected)?;
+    let held = HeldPosts::pinned(lattice);
     areas::lay(document, sources, &extent, collected)?;
     let mut roads = centerline::collect(document, sources, &extent, collected)?;
     conform::conform(document, lattice, &mut roads, collected)?;
     let plots = buildings::lay_out(document, sources, lattice, collected)?;
     let lines = fences::lay_out(document, sources, lattice, collected)?;
     bridges::build(document, sources, lattice, &mut roads, collected)?;
-    Ok(ShapedFeatures { roads, plots, lines })
+    earthworks::build(document, sources, lattice, &held, collected)?;
+    Ok(ShapedFeatures { roads, plots, lines, held })
 }
 
 fn height_service(

@@ -13,6 +13,7 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
+pub mod earthworks;
 mod facade;
 pub mod feature_labels;
 pub mod fences;
@@ -61,6 +62,7 @@ use crate::draw::ground::{ColorRamp, Contours, GroundMap};
 use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::list::{DrawMesh, FeatureId};
+use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
@@ -110,6 +112,8 @@ pub struct SceneModel {
     pub tolerance_px: f32,
     layout: PatchLayout,
     ground: OnceLock<MeasuredGround>,
+    /// The posts under water, which earthworks leave as they are.
+    pub held: Arc<HeldPosts>,
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
     ramp: RampSource,

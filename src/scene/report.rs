@@ -174,6 +174,15 @@ report! {
         cut: f64, "m3" => "Earth cut.";
     }
 
+    /// Earthworks of the scene file.
+    earthworks: EarthworkRow {
+        name: String => "The earthwork.";
+        kind: &'static str => "`crater`, `trench`, `track`, `level` or `raise`.";
+        area: f64, "m2" => "Area in which the ground changed.";
+        cut: f64, "m3" => "Earth cut.";
+        fill: f64, "m3" => "Earth filled.";
+    }
+
     /// Bridges and tunnels.
     bridges_and_tunnels: SpanRow {
         name: String => "The road or the bridge.";

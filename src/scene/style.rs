@@ -1,14 +1,16 @@
 //! How the ground looks: ramp and contours.
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 use crate::description::color::{Color, RampChoice};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
-use crate::description::words::{GridName, RampName, StylePreset, TableTop};
+use crate::description::words::{GridName, RampName, SheetLayout, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::ground::{ColorRamp, Contours};
+use crate::geom::crs::Crs;
 use crate::geom::declination::CalendarDay;
+use crate::message::choice::Choice;
 use crate::message::suggest::quoted;
 use crate::scene::ramps::{TintedGround, named};
 
@@ -136,6 +138,21 @@ impl Surroundings {
 pub fn grid(document: &Document) -> GridName {
     let is_military = document.style.preset == Some(StylePreset::Military);
     document.furniture.grid.unwrap_or(if is_military { GridName::Mgrs } else { GridName::None })
+}
+
+/// What the sheet lacks because nobody knows where on Earth `middle` is, the scene's middle in map coordinates; `None` where
+/// it lacks nothing.
+pub fn missing_place_note(document: &Document, crs: &Crs, middle: DVec2) -> Option<String> {
+    let grid = grid(document);
+    let of_earth = matches!(grid, GridName::Utm | GridName::Mgrs | GridName::Geographic)
+        .then(|| format!("the {} grid", grid.word()));
+    let norths = (document.furniture.layout == SheetLayout::Military).then(|| "the three norths".to_owned());
+    let missing: Vec<String> = of_earth.into_iter().chain(norths).collect();
+    let error = crs.transform(&Crs::wgs84(), middle).err().filter(|_| !missing.is_empty())?;
+    let missing = missing.join(" and ");
+    Some(format!(
+        "{missing} are not drawn, because the scene has no place on Earth: {error}; state `[terrain] crs`"
+    ))
 }
 
 /// The day that the document's furniture names.

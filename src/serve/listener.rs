@@ -14,10 +14,12 @@
 //! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits
 //! its body and [`router`](crate::serve::router) its answer.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::pin::Pin;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::Duration;
 
@@ -42,16 +44,31 @@ const FULL: &[u8] =
     connection: close\r\ncontent-length: 72\r\n\r\n\
     {\"status\":\"SERVER_ERROR\",\"error\":\"too many open connections; try again\"}";
 
-/// Accepts connections, as many as may be open.
+/// Accepts connections, as many as may be open, and of one client no more than half of them.
 pub struct Gate {
     listener: TcpListener,
     permits: Arc<Semaphore>,
+    most_of_one: usize,
+    clients: Arc<Mutex<BTreeMap<IpAddr, usize>>>,
 }
 
 impl Gate {
     /// Accepts at most `most` connections at a time; more are refused and closed.
     pub fn new(listener: TcpListener, most: usize) -> Self {
-        Self { listener, permits: Arc::new(Semaphore::new(most)) }
+        let most_of_one = most.div_ceil(2);
+        Self { listener, permits: Arc::new(Semaphore::new(most)), most_of_one, clients: Arc::default() }
+    }
+
+    /// The permit of a connection from `address`; `None` where too many are open, of all clients or of this one.
+    fn admit(&self, address: IpAddr) -> Option<ConnectionPermit> {
+        let permit = Arc::clone(&self.permits).try_acquire_owned().ok()?;
+        let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
+        let open = clients.entry(address).or_default();
+        if *open >= self.most_of_one {
+            return None;
+        }
+        *open += 1;
+        Some(ConnectionPermit { _permit: permit, address, clients: Arc::clone(&self.clients) })
     }
 }
 
@@ -63,10 +80,10 @@ impl Listener for Gate {
         use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
         loop {
             match self.listener.accept().await {
-                Ok((stream, from)) => match Arc::clone(&self.permits).try_acquire_owned() {
-                    Ok(permit) => return (TimedStream::new(stream, permit), from),
+                Ok((stream, from)) => match self.admit(from.ip()) {
+                    Some(permit) => return (TimedStream::new(stream, permit), from),
                     // Does not block on a client that does not read.
-                    Err(_) => drop(stream.try_write(FULL)),
+                    None => drop(stream.try_write(FULL)),
                 },
                 // The error concerns one connection, which is closed.
                 Err(error)
@@ -78,6 +95,25 @@ impl Listener for Gate {
 
     fn local_addr(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
+    }
+}
+
+/// An open connection among those of its client.
+struct ConnectionPermit {
+    _permit: OwnedSemaphorePermit,
+    address: IpAddr,
+    clients: Arc<Mutex<BTreeMap<IpAddr, usize>>>,
+}
+
+impl Drop for ConnectionPermit {
+    fn drop(&mut self) {
+        let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Entry::Occupied(mut open) = clients.entry(self.address) {
+            *open.get_mut() -= 1;
+            if *open.get() == 0 {
+                open.remove();
+            }
+        }
     }
 }
 
@@ -95,11 +131,11 @@ pub struct TimedStream {
     /// The end of the phase; not used while busy.
     end: Instant,
     alarm: Pin<Box<Sleep>>,
-    _permit: OwnedSemaphorePermit,
+    _permit: ConnectionPermit,
 }
 
 impl TimedStream {
-    fn new(stream: TcpStream, permit: OwnedSemaphorePermit) -> Self {
+    fn new(stream: TcpStream, permit: ConnectionPermit) -> Self {
         // An answer is written at once; waiting to fill a packet would only delay it.
         let _ = stream.set_nodelay(true);
         let end = Instant::now() + QUIET;

@@ -43,6 +43,7 @@ use crate::pipeline::dataset::OpenError;
 use crate::pipeline::service::ServiceOptions;
 use crate::serve::datasets::Datasets;
 use crate::serve::listener::Gate;
+use crate::serve::parameters::LONG_BODIES;
 use crate::serve::query::Service;
 
 /// Why the service cannot start or continue.
@@ -71,6 +72,7 @@ pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
         limits: options.limits,
         wgs84: Crs::wgs84(),
         requests: Arc::new(Semaphore::new(options.limits.max_requests as usize)),
+        long_bodies: Semaphore::new(LONG_BODIES),
         viewsheds: Semaphore::new(viewsheds_at_once()),
         log: options.log,
         write_line: options.write_line,

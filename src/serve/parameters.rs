@@ -18,7 +18,6 @@ use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 use crate::message::choice::Choice;
-use crate::pipeline::service::ServiceLimits;
 use crate::serve::query::Service;
 use crate::serve::reply::{HttpError, quoted};
 
@@ -86,6 +85,13 @@ impl<'de> Deserialize<'de> for Parameters {
     }
 }
 
+/// The most bytes of a body that all clients may send at once, as many as hold a connection.
+const SHORT_BODY: u64 = 32 * 1024;
+
+/// The most longer bodies, or such of unstated length, that are received at once: each may take a megabyte of memory for
+/// as long as its client likes to send.
+pub const LONG_BODIES: usize = 64;
+
 impl FromRequest<Arc<Service>> for Parameters {
     type Rejection = HttpError;
 
@@ -102,7 +108,7 @@ impl FromRequest<Arc<Service>> for Parameters {
         let Query(mut parameters) = query.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
         if request.method() == Method::POST {
             let is_json = is_json(request.headers())?;
-            let body = read_body(request, &service.limits).await?;
+            let body = read_body(request, service).await?;
             parameters.0.append(&mut Self::from_body(body, is_json).await?.0);
         }
         Ok(parameters)
@@ -220,7 +226,8 @@ fn is_json(headers: &HeaderMap) -> Result<Option<bool>, HttpError> {
 }
 
 /// The whole body, within the limits of size and time.
-async fn read_body(request: Request, limits: &ServiceLimits) -> Result<Bytes, HttpError> {
+async fn read_body(request: Request, service: &Service) -> Result<Bytes, HttpError> {
+    let limits = &service.limits;
     // 128 bytes a point hold both coordinates at full precision with the quotes and escapes of any notation.
     let most = limits.max_points as usize * 128 + 65_536;
     let too_long = || {
@@ -231,6 +238,12 @@ async fn read_body(request: Request, limits: &ServiceLimits) -> Result<Bytes, Ht
     if stated.is_some_and(|length: u64| length > most as u64) {
         return Err(too_long());
     }
+    let _permit = match stated {
+        Some(..=SHORT_BODY) => None,
+        _ => Some(service.long_bodies.try_acquire().map_err(|_| {
+            HttpError::busy(1, format!("{LONG_BODIES} long bodies are being received; try again")).closing()
+        })?),
+    };
     let timeout = Duration::from_secs(limits.timeout_s.into());
     match tokio::time::timeout(timeout, to_bytes(request.into_body(), most)).await {
         Ok(Ok(bytes)) => Ok(bytes),

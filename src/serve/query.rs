@@ -29,6 +29,8 @@ pub struct Service {
     pub wgs84: Crs,
     /// Permits for requests that are being answered.
     pub requests: Arc<Semaphore>,
+    /// Permits for long bodies that are being received.
+    pub long_bodies: Semaphore,
     /// Permits for viewsheds that are being computed: each takes all cores and a byte a post.
     pub viewsheds: Semaphore,
     pub log: RequestLog,

@@ -1,9 +1,11 @@
 //! Dispatches requests: from address to query, and from query to thread.
 //!
 //! ```text
-//! request ─► permit ─► parameters (query, body) ─► read ─► light? ─► answer ─► response
-//!              │ 503     │ 414 413 415 408 400       │ 400   └ no ─► another thread ────┘ 503 in the end
+//! request ─► parameters (query, body) ─► permit ─► read ─► light? ─► answer ─► response
+//!              │ 414 413 415 408 400 503    │ 503    │ 400   └ no ─► another thread ────┘ 503 in the end
 //! ```
+//!
+//! A request takes its permit when all of it is there: clients that send slowly keep nobody from being answered.
 //!
 //! A query of a few points takes less time than moving it to another thread, so the thread that parsed it executes it.
 //! Longer work must not block the threads that listen.
@@ -122,11 +124,11 @@ async fn answer<Q: Query>(
     datasets: &str,
     request: Request,
 ) -> Result<Response, HttpError> {
+    let parameters = Parameters::from_request(request, service).await?;
     let permit = Arc::clone(&service.requests).try_acquire_owned().map_err(|_| {
         let most = service.limits.max_requests;
         HttpError::busy(1, format!("{most} requests are being answered; try again"))
     })?;
-    let parameters = Parameters::from_request(request, service).await?;
     if parameters.len() > LIGHT_BYTES {
         let datasets = datasets.to_owned();
         let work = move |service: &Service| Q::read(service, &datasets, &parameters)?.answer(service);

@@ -248,6 +248,11 @@ impl Lattice {
         self.doublings
     }
 
+    /// This part of `whole` with as many doublings.
+    pub fn with_doublings_of(self, whole: &Self) -> Self {
+        Self { doublings: whole.doublings, ..self }
+    }
+
     pub(in crate::terrain) fn set_doublings(&mut self, doublings: u32) {
         self.doublings = doublings;
     }

@@ -30,7 +30,7 @@ impl PostRect {
 
     /// The posts within a rectangle in world space; `None` for none.
     pub fn within(lattice: &Lattice, rect: &Rect) -> Option<Self> {
-        Self::between(lattice, rect.min / lattice.cell(), rect.max / lattice.cell())
+        Self::between(lattice, lattice.grid_at(rect.min), lattice.grid_at(rect.max))
     }
 
     /// Extended by posts east and west, north and south, as far as the lattice reaches.

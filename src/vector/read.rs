@@ -25,6 +25,12 @@ use crate::vector::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
 /// Bytes at the start of a document in which its outermost element is searched.
 const XML_HEAD_BYTES: usize = 4096;
 
+/// How many times as long as a packed file its content is. Coordinates and tags in XML deflate to a tenth or a twentieth.
+const MOST_EXPANSION: u64 = 64;
+
+/// The bytes that a packed file of any size unpacks to.
+const SMALL_BYTES: u64 = 16 << 20;
+
 /// Reads all features of a vector file, or of one of its layers.
 ///
 /// The content decides the format; `name` is used where it does not, for the names of companions and in
@@ -35,9 +41,14 @@ const XML_HEAD_BYTES: usize = 4096;
 pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     if archive::is_gzip(bytes) {
         let inner = name.strip_suffix(".gz").unwrap_or(name);
-        return read_unpacked(inner, &archive::gunzip(bytes, MAX_VECTOR_BYTES)?, hints);
+        return read_unpacked(inner, &archive::gunzip(bytes, most_unpacked(bytes))?, hints);
     }
     if archive::is_zip(bytes) { read_zip(name, bytes, hints) } else { read_unpacked(name, bytes, hints) }
+}
+
+/// The most bytes that a packed file or one of its members unpacks to.
+fn most_unpacked(packed: &[u8]) -> u64 {
+    (SMALL_BYTES + MOST_EXPANSION * packed.len() as u64).min(MAX_VECTOR_BYTES)
 }
 
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
@@ -98,25 +109,26 @@ fn companion(name: &str, extension: &str, hints: &VectorHints) -> Option<Vec<u8>
 /// Reads an archive: a KMZ, zipped shapefiles, or one file of another format.
 fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     const OTHERS: [&str; 6] = [".geojson", ".json", ".gpkg", ".fgb", ".gpx", ".osm"];
-    let zip = ZipReader::open(bytes, MAX_VECTOR_BYTES)?;
+    let zip = ZipReader::open(bytes)?;
+    let limit = most_unpacked(bytes);
     let members = |extensions: &[&str]| {
         let is_wanted = |member: &&str| has_extension(member, extensions);
         zip.names().filter(is_wanted).collect::<Vec<_>>()
     };
     // A KMZ's document is the first .kml in it (OGC 07-147r2, section 8.1).
     if let Some(document) = members(&[".kml"]).first() {
-        return read_unpacked(document, &zip.read(document)?, hints);
+        return read_unpacked(document, &zip.read(document, limit)?, hints);
     }
     let shapefiles = members(&[".shp"]);
     if !shapefiles.is_empty() {
         let names: Vec<&str> = shapefiles.iter().map(|member| stem(member)).collect();
         let member = shapefiles[hints.choose_layer(&names)?];
-        let companions = |name: &str| zip.read(name).ok();
+        let companions = |name: &str| zip.read(name, limit).ok();
         let hints = VectorHints { layer: None, companions: &companions, ..*hints };
-        return read_unpacked(member, &zip.read(member)?, &hints);
+        return read_unpacked(member, &zip.read(member, limit)?, &hints);
     }
     match members(&OTHERS)[..] {
-        [only] => read_unpacked(only, &zip.read(only)?, hints),
+        [only] => read_unpacked(only, &zip.read(only, limit)?, hints),
         _ => Err(VectorError::OtherFormat {
             format: "a zip archive without a .kml, a .shp or one other vector file",
             command: format!("unzip \"{name}\""),

@@ -1,1 +1,43 @@
 //! The window that walks through a scene.
+//!
+//! ```text
+//! window ─► keys, pointer ─► app ─► panels ─► commands        egui; no adapter needed: tests run it without a window
+//!   │                         │
+//!   │                         ├─ loading ─► scene              on a thread, with progress
+//!   │                         └─ opened scene: walk, camera
+//!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
+//! ```
+//!
+//! `app` is all of the window but its surface: `show` draws panels and takes input, `advance` moves the camera and asks the
+//! walk what changed. `window` lends it a surface and the clock.
+
+mod app;
+mod commands;
+mod drawing_job;
+pub mod error;
+mod frame_times;
+mod graphics;
+mod labels;
+mod layout;
+mod loading;
+mod notices;
+mod opened;
+mod panels;
+mod place;
+mod recent;
+mod scene_graphics;
+mod view_area;
+mod watch;
+mod window;
+
+use crate::pipeline::viewing::ViewerOptions;
+use crate::viewer::error::ViewerError;
+
+/// Opens a window on what `options` name; returns when it is closed.
+///
+/// # Errors
+/// [`ViewerError`]: no window or no graphics adapter can be had here. A file that cannot be opened is not an error: the
+/// window says so.
+pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
+    window::run(options)
+}

@@ -7,6 +7,7 @@ mod areas;
 mod bridges;
 mod buildings;
 mod conform;
+mod earthworks;
 mod fences;
 mod roads;
 mod vector_files;

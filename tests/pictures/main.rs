@@ -9,5 +9,7 @@ mod grid;
 mod overlaps;
 mod render_cpu;
 mod render_gpu;
+mod render_live;
 mod render_parity;
+mod shaders;
 mod symbols;

@@ -104,3 +104,17 @@ fn a_lake_without_an_area_leaves_the_ground_alone() {
     assert!(scene.features.is_empty());
     assert!(scene.notes.iter().any(|note| note.contains("encloses no area")), "{:?}", scene.notes);
 }
+
+#[test]
+fn a_sheet_without_a_place_on_earth_says_what_it_lacks() {
+    let furniture = "[furniture]\ngrid = \"mgrs\"\nlayout = \"military\"\n";
+    let notes = |test: &str, crs: &str| {
+        let text = format!("crs = \"{crs}\"\n{furniture}");
+        scene(test, (40, 40), &text).unwrap_or_else(|error| panic!("{error}")).notes
+    };
+    let unknown = "+proj=tmerc +lat_0=36 +lon_0=-84 +ellps=bessel +units=m";
+    let said = notes("unplaced", unknown).join("\n");
+    assert!(said.contains("the mgrs grid and the three norths are not drawn"), "{said}");
+    let placed = notes("placed", "EPSG:32616").join("\n");
+    assert!(!placed.contains("not drawn"), "{placed}");
+}

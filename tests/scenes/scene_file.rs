@@ -371,7 +371,7 @@ const BROKEN: &[(&str, &[&str])] = &[
         "[style.contours]\ninterval = 9\nmajor_every = 2.5\n",
         &["hill.toml:5:15:", "a whole number from 1 to 1000"],
     ),
-    ("[[road]]\nfile = \"r\"\nwidth = -6\n", &["hill.toml:5:9:", "`width` must be greater than 0"]),
+    ("[[road]]\nfile = \"r\"\nwidth = -6\n", &["hill.toml:5:9:", "`width` must be from 0.01 to 10000"]),
     (
         "[[lake]]\npoints = [[0, 0], [1, 1e300], [2, 2]]\n",
         &["hill.toml:4:23:", "must be from -1e9 to 1e9, but this is 1e300"],

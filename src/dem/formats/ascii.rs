@@ -27,6 +27,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "ncols" },
     reader: read,
+    most_bytes,
     writer: Some(write),
 };
 
@@ -48,6 +49,19 @@ fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
 fn recognizes(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(64)];
     TextWords::new(without_byte_order_mark(start)).next().is_some_and(is_key)
+}
+
+/// The keys, and for each sample all the digits that a writer gives it, padded to a column.
+fn most_bytes(head: &[u8]) -> u64 {
+    const KEYS: u64 = 64 << 10;
+    const SAMPLE: u64 = 64;
+    let mut words = TextWords::new(without_byte_order_mark(head));
+    let size =
+        header(&mut words).and_then(|header| Ok((header.required("ncols")?, header.required("nrows")?)));
+    // What is wrong with the keys is said when they are read.
+    size.map_or(KEYS, |(width, height)| {
+        width.saturating_mul(height).saturating_mul(SAMPLE).saturating_add(KEYS)
+    })
 }
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
@@ -129,7 +143,7 @@ fn values(words: &mut TextWords, count: usize, nodata: f64) -> Result<AsciiValue
 
 fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     let nodata = nodata_to_write(raster)?;
     let (cell, south_west) = (raster.spacing(), raster.extent().min);
     let sides = if cell.x == cell.y {

@@ -45,6 +45,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "'binterr1.' and a digit",
     },
     reader: read,
+    most_bytes,
     writer: Some(write),
 };
 
@@ -55,6 +56,14 @@ const NODATA: f64 = -32768.0;
 
 /// EPSG's number of the datum WGS 84.
 const WGS84_DATUM: i16 = 6326;
+
+/// The header and the samples; some writers add a trailer.
+fn most_bytes(head: &[u8]) -> u64 {
+    const TRAILER: u64 = 64 << 10;
+    let samples = |header: BtHeader| u64::from(header.columns) * u64::from(header.rows);
+    let bytes = BtHeader::read(head).map_or(0, |header| 4 * samples(header));
+    HEADER as u64 + bytes + TRAILER
+}
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let header = BtHeader::read(file.bytes)?;
@@ -211,7 +220,7 @@ fn geographic_code(datum: i16) -> Result<u32, DemErrorKind> {
 }
 
 fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     if raster.width.min(raster.height) < 2 {
         let found = format!("{} x {}", raster.width, raster.height);
         return Err(WriteError::Shape { format: FORMAT.name, wanted: "at least 2 x 2 samples", found });

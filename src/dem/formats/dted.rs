@@ -17,7 +17,7 @@ use glam::DVec2;
 
 use crate::bytes::ByteFields;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
@@ -29,6 +29,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: |bytes| label_at(bytes).is_some(), start: "UHL1" },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

@@ -11,7 +11,7 @@ use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::raster::{Raster, north_up, north_up_nodes};
 use crate::dem::read::DemFile;
@@ -23,6 +23,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["bip", "bsq"],
     recognition: Recognition::HeaderFile { matches: is_header },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

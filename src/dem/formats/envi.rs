@@ -10,7 +10,7 @@ use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef::{self, utm_code};
 use crate::dem::raster::{Raster, north_up};
 use crate::dem::read::DemFile;
@@ -23,6 +23,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::HeaderFile { matches: |header| header.starts_with(b"ENVI") },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

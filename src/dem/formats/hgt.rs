@@ -21,6 +21,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Extension,
     reader: read,
+    most_bytes,
     writer: Some(write),
 };
 
@@ -31,6 +32,12 @@ const SIZES: [(u32, u32); 4] = [(1201, 1201), (3601, 3601), (1801, 3601), (7201,
 
 /// How far, in samples, the nodes of a raster may lie from those of the tile that is written.
 const OFF_SAMPLES: f64 = 1e-3;
+
+/// The largest tile.
+fn most_bytes(_: &[u8]) -> u64 {
+    let bytes = SIZES.map(|(width, height)| 2 * u64::from(width) * u64::from(height));
+    bytes.into_iter().fold(0, u64::max)
+}
 
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let corner = corner(file.stem()).ok_or_else(|| DemErrorKind::Georeference {
@@ -83,7 +90,7 @@ fn name(corner: DVec2) -> String {
 
 fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
     let raster = &raster.in_meters();
-    FORMAT.check_place(raster)?;
+    let raster = &FORMAT.north_up(raster)?;
     let size = (raster.width, raster.height);
     let is_wgs84 = raster.crs.as_ref().is_none_or(|crs| crs.epsg() == Some(4326));
     let nodes = raster.node_extent();

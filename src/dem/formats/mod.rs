@@ -20,8 +20,10 @@ pub(crate) mod text;
 mod usgs;
 mod xyz;
 
+use std::borrow::Cow;
 use std::error::Error;
 
+use crate::archive::MAX_RASTER_BYTES;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
@@ -61,6 +63,8 @@ pub struct DemFormat {
     pub shared_extensions: &'static [&'static str],
     pub(crate) recognition: Recognition,
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
+    /// The most bytes that a file has which starts with these: a packed one is unpacked no further.
+    pub(crate) most_bytes: fn(&[u8]) -> u64,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<DemWriter>,
 }
@@ -81,6 +85,11 @@ pub(crate) enum Recognition {
     },
     /// By a statement of the caller.
     Statement,
+}
+
+/// The limit for files whose first bytes do not tell their size.
+pub(crate) fn any_size(_: &[u8]) -> u64 {
+    MAX_RASTER_BYTES
 }
 
 impl DemFormat {
@@ -112,12 +121,13 @@ impl DemFormat {
         DemErrorKind::Unsupported { format: self.name, what: what.into(), remedy }
     }
 
-    /// Checks that a raster has north up and a georeference, for formats that hold no other.
-    pub(crate) fn check_place(&self, raster: &Raster) -> Result<(), WriteError> {
-        match (raster.georeferenced, raster.is_north_up()) {
+    /// A raster that has a georeference, with north up, for formats that hold no other; one that only runs the other way
+    /// along an axis is mirrored.
+    pub(crate) fn north_up<'a>(&self, raster: &'a Raster) -> Result<Cow<'a, Raster>, WriteError> {
+        match (raster.georeferenced, raster.is_axis_aligned()) {
             (false, _) => Err(WriteError::NoPlace(self.name)),
             (_, false) => Err(WriteError::NotNorthUp(self.name)),
-            _ => Ok(()),
+            _ => Ok(raster.turned_north_up()),
         }
     }
 }

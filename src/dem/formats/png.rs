@@ -12,7 +12,7 @@ use png::{BitDepth, ColorType, Transformations};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef::{self, projection_file_of, world_file_of};
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, Samples};
@@ -28,6 +28,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "the signature of a PNG file",
     },
     reader: read,
+    most_bytes: any_size,
     writer: Some(write),
 };
 

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
@@ -20,6 +20,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["raw", "r16"],
     recognition: Recognition::Statement,
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

@@ -18,7 +18,7 @@ use crate::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
 use crate::dem::formats::text::{TextWords, number};
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
@@ -33,6 +33,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "DSAA, DSBB or DSRB",
     },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

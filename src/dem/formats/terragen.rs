@@ -15,7 +15,7 @@ use glam::{DAffine2, DMat2, DVec2, DVec3};
 use crate::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::sample_type::SampleType;
@@ -26,6 +26,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: |bytes| bytes.starts_with(START), start: "TERRAGENTERRAIN" },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

@@ -15,7 +15,7 @@
 use glam::DVec2;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef::utm_code;
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
@@ -29,6 +29,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "a record A" },
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::point_text::PointText;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
@@ -19,6 +19,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["csv", "txt", "tsv"],
     recognition: Recognition::Extension,
     reader: read,
+    most_bytes: any_size,
     writer: None,
 };
 

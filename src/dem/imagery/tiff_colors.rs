@@ -17,7 +17,7 @@ use crate::dem::imagery::reduce::{Reducer, Rgba};
 use crate::dem::imagery::{ColorRaster, ImageryErrorKind};
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
-use crate::dem::tiff::geotiff::{GeoTiffHeader, LARGEST_BLOCK, limits};
+use crate::dem::tiff::geotiff::{GeoTiffHeader, limits};
 use crate::dem::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
 use crate::dem::tiff::unpack::Unpacker;
 use crate::dem::tiff::windows::MOST_WINDOWED;
@@ -72,7 +72,7 @@ impl TiffColors {
     pub fn open(file: &DemFile) -> Result<(Self, Raster), ImageryErrorKind> {
         let bytes = file.bytes;
         let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
-        let mut decoder = decoder.with_limits(limits(bytes.len(), LARGEST_BLOCK));
+        let mut decoder = decoder.with_limits(limits(bytes.len()));
         let full = Storage::read(&mut decoder, bytes.len(), MOST_WINDOWED)?;
         let layout = ColorLayout::read(&mut decoder, &full)?;
         let jpeg_tables = decoder.find_tag(Tag::JPEGTables).map_err(decode_error)?;

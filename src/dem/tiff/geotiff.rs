@@ -12,7 +12,7 @@ use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition};
+use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples};
@@ -31,17 +31,18 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "the signature of a TIFF file" },
     reader: read,
+    most_bytes: any_size,
     writer: Some(write),
 };
 
 /// The most bytes of one tag: the offsets of a million blocks.
 const LARGEST_TAG: usize = 16 << 20;
 
+/// The most values of one tag.
+const MOST_TAG_VALUES: usize = LARGEST_TAG / 8;
+
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
 const LARGEST_TEXT: u64 = 1 << 20;
-
-/// The most bytes that one block of an image in memory decodes to.
-pub(crate) const LARGEST_BLOCK: usize = 2 << 30;
 
 /// Whether the content starts as TIFF or BigTIFF does.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
@@ -52,7 +53,7 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = file.bytes;
     let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
-    let mut decoder = decoder.with_limits(limits(bytes.len(), LARGEST_BLOCK));
+    let mut decoder = decoder.with_limits(limits(bytes.len()));
     let storage = Storage::read(&mut decoder, bytes.len(), MOST_SAMPLES)?;
     let GeoTiffHeader { raster, scale, offset } = GeoTiffHeader::read(&mut decoder, &storage, file)?;
     let mut samples = blocks::decode(bytes, &storage, raster.nodata)?;
@@ -65,12 +66,12 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     Ok(Raster { samples: samples.scaled(scale, offset), ..raster })
 }
 
-/// The most that the decoder may allocate for a file of `file_bytes` bytes.
-pub(crate) fn limits(file_bytes: usize, largest_block: usize) -> Limits {
+/// The most that the decoder may allocate for a file of `file_bytes` bytes. It reads tags; blocks are unpacked elsewhere.
+pub(crate) fn limits(file_bytes: usize) -> Limits {
     let mut limits = Limits::default();
     limits.ifd_value_size = file_bytes.clamp(1024, LARGEST_TAG);
-    limits.intermediate_buffer_size = file_bytes.min(largest_block);
-    limits.decoding_buffer_size = largest_block;
+    // The decoder keeps a value of a tag in 32 bytes, and allocates what a tag claims before it looks whether the file holds it.
+    limits.decoding_buffer_size = 32 * file_bytes.clamp(1024, MOST_TAG_VALUES);
     limits
 }
 

@@ -9,7 +9,7 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::Samples;
 use crate::dem::read::DemFile;
-use crate::dem::tiff::geotiff::{FORMAT, LARGEST_BLOCK, limits};
+use crate::dem::tiff::geotiff::{FORMAT, limits};
 use crate::dem::tiff::storage::{Predictor, Storage, decode_error};
 use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
 use crate::dem::tiff::{MOST_IMAGES, image_kind};
@@ -30,7 +30,7 @@ pub(crate) fn apply_beside(
     samples: &mut Samples,
 ) -> Result<(), DemErrorKind> {
     let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
-    let mut decoder = decoder.with_limits(limits(bytes.len(), LARGEST_BLOCK));
+    let mut decoder = decoder.with_limits(limits(bytes.len()));
     let found = decoder.dimensions().map_err(decode_error)?;
     if found == (width, height) {
         return hide(&mut decoder, bytes, samples);

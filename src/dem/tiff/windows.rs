@@ -218,7 +218,7 @@ impl<R: Read + Seek> SharedFile<R> {
     fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
         file.rewind().map_err(|error| FORMAT.undecodable(error))?;
         let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
-        Ok(decoder.with_limits(geotiff::limits(self.length, LARGEST_BLOCK)))
+        Ok(decoder.with_limits(geotiff::limits(self.length)))
     }
 
     /// How one image of the file is stored.

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 
 use glam::{DVec2, U64Vec2};
 
-use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::raster::{Raster, Samples};
 use crate::dem::warp::crs_transform::CrsTransform;
 use crate::dem::warp::data_extent::{data_extent, outline};
 use crate::dem::warp::resample::Resampler;
@@ -99,7 +99,7 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
     let system = metric_crs(raster, target)?;
     let own = raster.crs.as_ref().or(system.as_ref());
     let north_up = if own == system.as_ref() && raster.is_axis_aligned() {
-        turned_north_up(raster)
+        raster.turned_north_up()
     } else {
         let transform = CrsTransform::new(raster, own, system.as_ref());
         Cow::Owned(Resampler::around(raster, &transform, None)?.bilinear())
@@ -196,33 +196,6 @@ fn utm_zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
     Ok(Crs::utm_at(center.x, center.y))
 }
 
-/// An axis-aligned raster with columns and rows in the order that puts north up.
-fn turned_north_up(raster: &Raster) -> Cow<'_, Raster> {
-    if raster.is_north_up() {
-        return Cow::Borrowed(raster);
-    }
-    let Rect { min, max } = raster.extent();
-    let samples = match &raster.samples {
-        Samples::F32(values) => Samples::F32(mirrored(values, raster)),
-        Samples::F64(values) => Samples::F64(mirrored(values, raster)),
-    };
-    let map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
-    Cow::Owned(Raster { samples, map_from_grid, ..raster.without_samples() })
-}
-
-fn mirrored<T: Copy>(values: &[T], raster: &Raster) -> Vec<T> {
-    let axes = raster.map_from_grid.matrix2;
-    let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
-    let (width, height) = (raster.width as usize, raster.height as usize);
-    let at = |index: usize| {
-        let (row, column) = (index / width, index % width);
-        let row = if mirrors_y { height - 1 - row } else { row };
-        let column = if mirrors_x { width - 1 - column } else { column };
-        values[row * width + column]
-    };
-    (0..values.len()).map(at).collect()
-}
-
 /// The raster with another name for its system; cloned only where that changes.
 fn with_crs<'a>(mut raster: Cow<'a, Raster>, crs: Option<&Crs>) -> Cow<'a, Raster> {
     if raster.crs.as_ref() != crs {
@@ -234,6 +207,7 @@ fn with_crs<'a>(mut raster: Cow<'a, Raster>, crs: Option<&Crs>) -> Cow<'a, Raste
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dem::raster::north_up;
     use crate::dem::raster::tests::small;
     use glam::{DAffine2, DMat2};
 

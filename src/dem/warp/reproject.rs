@@ -13,7 +13,7 @@ use glam::DVec2;
 use crate::dem::raster::Raster;
 use crate::dem::warp::crs_transform::CrsTransform;
 use crate::dem::warp::resample::{CellSize, Resampler};
-use crate::dem::warp::{WarpError, check_source, turned_north_up, with_crs};
+use crate::dem::warp::{WarpError, check_source, with_crs};
 use crate::geom::crs::Crs;
 
 /// From this many times the source's cells on, cells hold the average: only that keeps the mean height.
@@ -61,7 +61,7 @@ pub fn reproject<'a>(
     let own = raster.crs.as_ref().or(target);
     let system = target.or(own);
     let stays = own == system && raster.is_axis_aligned();
-    let source = if stays { turned_north_up(raster) } else { Cow::Borrowed(raster) };
+    let source = if stays { raster.turned_north_up() } else { Cow::Borrowed(raster) };
     let Some(cell) = cell.filter(|&cell| !stays || DVec2::splat(cell) != source.spacing()) else {
         if stays {
             return Ok(Warped { raster: with_crs(source, own), method: Resampling::Kept });

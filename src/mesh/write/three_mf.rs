@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::archive;
 use crate::mesh::trimesh::TriMesh;
 use crate::mesh::write::Remarks;
+use crate::message::xml::escaped;
 
 /// A solid and its place on the printer's bed.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,21 +78,6 @@ fn add_object(text: &mut String, number: u32, solid: &PlacedSolid) {
     text.push_str("</triangles></mesh></object>\n");
 }
 
-/// `text` as XML holds it.
-fn escaped(text: &str) -> String {
-    let legal = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
-    legal.fold(String::new(), |mut escaped, letter| {
-        match letter {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            letter => escaped.push(letter),
-        }
-        escaped
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,8 +89,9 @@ mod tests {
         let solid =
             PlacedSolid { name: "a <b> & \"c\"".into(), mesh: square(), at_mm: Vec3::new(1.5, 0.0, 0.0) };
         let bytes = bytes(&[solid.clone(), solid], &remarks()).expect("memory");
-        let zip = ZipReader::open(&bytes, 1 << 20).expect("intact");
-        let model = String::from_utf8(zip.read("3D/3dmodel.model").expect("there").to_vec()).expect("text");
+        let zip = ZipReader::open(&bytes).expect("intact");
+        let model =
+            String::from_utf8(zip.read("3D/3dmodel.model", 1 << 20).expect("there").to_vec()).expect("text");
         assert!(
             model.contains("unit=\"millimeter\"")
                 && model.contains("name=\"a &lt;b&gt; &amp; &quot;c&quot;\"")

@@ -9,6 +9,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::render::gpu::error::{DriverError, GpuError};
 use crate::render::gpu::pipelines::{COLOR, DEPTH};
 
+/// The label of devices in the messages of drivers and debuggers.
+const DEVICE_LABEL: &str = "sandtable";
+
 /// Samples per pixel, where the adapter supports them; every WebGPU adapter has one and four, nothing else is common.
 const SAMPLES: u32 = 4;
 
@@ -22,13 +25,15 @@ pub enum GpuApi {
 }
 
 /// An open device; drawing with it again saves the 0.1 to 0.3 seconds that opening takes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Gpu {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) limits: wgpu::Limits,
     pub(super) samples: u32,
     pub(super) anisotropy: u16,
+    /// Whether the processor draws.
+    pub(super) is_software: bool,
     api: GpuApi,
     name: String,
     failure: DeviceFailure,
@@ -53,6 +58,35 @@ impl Gpu {
         Err(GpuError::NoAdapter(tried))
     }
 
+    /// A device of an adapter that was chosen for a window's surface.
+    ///
+    /// # Errors
+    /// [`GpuError::NoAdapter`] where the adapter gives no device.
+    pub fn of_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let api = api_of(adapter);
+        let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(open_device(adapter))));
+        let opened = opened.unwrap_or(Err(DriverError::Crash));
+        opened.map_err(|error| GpuError::NoAdapter(vec![(api, error)]))
+    }
+
+    /// A device that a window has opened; its errors outside of error scopes are recorded here from now on.
+    pub fn from_parts(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let flags = adapter.get_downlevel_capabilities().flags;
+        let info = adapter.get_info();
+        let api = api_of(adapter);
+        Self {
+            failure: watch(&device),
+            limits: device.limits(),
+            device,
+            queue,
+            samples: if supports_samples(adapter) { SAMPLES } else { 1 },
+            anisotropy: if flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING) { 16 } else { 1 },
+            is_software: info.device_type == wgpu::DeviceType::Cpu,
+            api,
+            name: format!("{} ({api:?})", info.name),
+        }
+    }
+
     /// The adapter's name as its driver gives it, with the interface.
     pub fn name(&self) -> &str {
         &self.name
@@ -61,6 +95,25 @@ impl Gpu {
     /// The interface.
     pub fn api(&self) -> GpuApi {
         self.api
+    }
+
+    /// The device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// The queue of its commands.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.queue
+    }
+
+    /// The same device, with at most so many readings of a texture along a pixel.
+    pub(super) fn with_anisotropy(&self, anisotropy: u16) -> Self {
+        Self { anisotropy, ..self.clone() }
+    }
+
+    pub(super) fn encoder(&self, label: &'static str) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
     }
 
     /// Runs `work`; returns the errors of the device and its driver.
@@ -80,7 +133,11 @@ impl Gpu {
             return Err(GpuError::OutOfMemory { doing, adapter: self.name.clone() });
         }
         if let Some(failure) = self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone() {
-            return Err(GpuError::Driver { doing, adapter: self.name.clone(), source: failure });
+            let adapter = self.name.clone();
+            return Err(match &*failure {
+                DriverError::Lost(reason) => GpuError::DeviceLost { doing, adapter, reason: reason.clone() },
+                _ => GpuError::Driver { doing, adapter, source: failure },
+            });
         }
         match error {
             Some(error) => Err(self.driver_error(doing, error)),
@@ -107,21 +164,24 @@ async fn open(api: GpuApi) -> Result<Gpu, DriverError> {
         ..Default::default()
     };
     let adapter = instance.request_adapter(&options).await?;
+    open_device(&adapter).await
+}
+
+async fn open_device(adapter: &wgpu::Adapter) -> Result<Gpu, DriverError> {
     // Exactly the adapter's own limits: within downlevel limits wherever the adapter is.
-    let limits = adapter.limits();
-    let descriptor = wgpu::DeviceDescriptor { required_limits: limits.clone(), ..Default::default() };
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some(DEVICE_LABEL),
+        required_features: adapter.features() & wgpu::Features::POLYGON_MODE_LINE,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    };
     let (device, queue) = adapter.request_device(&descriptor).await?;
-    let flags = adapter.get_downlevel_capabilities().flags;
-    Ok(Gpu {
-        failure: watch(&device),
-        device,
-        queue,
-        limits,
-        samples: if supports_samples(&adapter) { SAMPLES } else { 1 },
-        anisotropy: if flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING) { 16 } else { 1 },
-        api,
-        name: format!("{} ({api:?})", adapter.get_info().name),
-    })
+    Ok(Gpu::from_parts(adapter, device, queue))
+}
+
+/// OpenGL's adapters say so; whatever else there is reads depth as Vulkan does.
+fn api_of(adapter: &wgpu::Adapter) -> GpuApi {
+    if adapter.get_info().backend == wgpu::Backend::Gl { GpuApi::Gl } else { GpuApi::Vulkan }
 }
 
 /// Where the failure of `device` will be recorded; also keeps stray errors from ending the program.
@@ -144,4 +204,37 @@ fn watch(device: &wgpu::Device) -> DeviceFailure {
 fn supports_samples(adapter: &wgpu::Adapter) -> bool {
     let flags = |format| adapter.get_texture_format_features(format).flags;
     [COLOR, DEPTH].into_iter().all(|format| flags(format).sample_count_supported(SAMPLES))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device of this machine; `None` with a loud line where there is none.
+    fn gpu() -> Option<Gpu> {
+        let opened = Gpu::open(&[GpuApi::Vulkan, GpuApi::Gl]);
+        assert!(opened.is_ok() || std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{opened:?}");
+        opened.inspect_err(|error| eprintln!("SKIPPED: no GPU adapter: {error}")).ok()
+    }
+
+    #[test]
+    fn a_lost_device_and_exhausted_memory_are_errors_of_their_own() {
+        let Some(gpu) = gpu() else { return };
+        let exhausted = gpu.guarded("testing", || {
+            let usage = wgpu::BufferUsages::STORAGE;
+            let size = 1 << 60;
+            let descriptor = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+            gpu.device.create_buffer(&descriptor);
+            Ok(())
+        });
+        let error = exhausted.expect_err("no device holds an exbibyte");
+        assert!(matches!(error, GpuError::OutOfMemory { .. } | GpuError::Driver { .. }), "{error}");
+        assert!(gpu.guarded("testing", || Ok(())).is_ok(), "the device still works");
+        let lost = Arc::new(DriverError::Lost("unplugged".into()));
+        *gpu.failure.lock().expect("not poisoned") = Some(lost);
+        let error = gpu.guarded("drawing a frame", || Ok(())).expect_err("it is lost");
+        assert!(matches!(error, GpuError::DeviceLost { .. }), "{error}");
+        let text = error.to_string();
+        assert!(text.contains("drawing a frame") && text.contains("unplugged"), "{text}");
+    }
 }

@@ -27,6 +27,8 @@ pub enum GpuError {
     },
     #[error("{adapter} ran out of memory while {doing}; ask for a smaller picture or use --backend cpu")]
     OutOfMemory { doing: &'static str, adapter: String },
+    #[error("{adapter} was lost while {doing} ({reason}); open it anew, or use --backend cpu")]
+    DeviceLost { doing: &'static str, adapter: String, reason: String },
     #[error("{adapter} failed while {doing}: {source}; use --backend cpu")]
     Driver { doing: &'static str, adapter: String, source: Arc<DriverError> },
 }

@@ -21,9 +21,8 @@ use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{PostCount, coarser_levels};
-use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::memory::texture;
+use crate::render::gpu::memory::{Loader, texture};
 
 /// More levels than the largest texture has; the length of the shader's array.
 pub const MOST_LEVELS: usize = 24;
@@ -56,7 +55,7 @@ pub fn levels(size: PostCount) -> Vec<PlacedLevel> {
 
 impl GroundTextures {
     /// Sends a checked map to the device; without a map, one texel that nothing reads.
-    pub fn upload(gpu: &Gpu, map: Option<&GroundMap>) -> Result<Self, GpuError> {
+    pub fn upload(loader: &Loader<'_>, map: Option<&GroundMap>) -> Result<Self, GpuError> {
         let levels = map.map_or_else(Vec::new, |map| levels(PostCount::from_map(map)));
         let one = PostCount { columns: 1, rows: 1 };
         let posts = levels.first().map_or(one, |level| level.size);
@@ -67,22 +66,27 @@ impl GroundTextures {
             _ => one,
         };
         let what = || format!("the {}×{} posts of the ground map", posts.columns, posts.rows);
-        gpu.check_sides(what, [posts.columns.max(coarse.columns), posts.rows])?;
         let create = |PostCount { columns, rows }| {
-            gpu.device.create_texture(&texture(columns, rows, wgpu::TextureFormat::Rgba32Uint))
+            let format = wgpu::TextureFormat::Rgba32Uint;
+            loader.texture(what, &texture("ground posts", columns, rows, format))
         };
-        let textures = Self { posts: create(posts), coarse: create(coarse) };
+        let textures = Self { posts: create(posts)?, coarse: create(coarse)? };
         if let Some(map) = map {
-            write(gpu, &textures.posts, &levels[0], &map.posts);
+            write(loader, &textures.posts, &levels[0], &map.posts)?;
             for (place, level) in levels[1..].iter().zip(coarser_levels(map)) {
-                write(gpu, &textures.coarse, place, &level.posts);
+                write(loader, &textures.coarse, place, &level.posts)?;
             }
         }
         Ok(textures)
     }
 }
 
-fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[GroundPost]) {
+fn write(
+    loader: &Loader<'_>,
+    texture: &wgpu::Texture,
+    place: &PlacedLevel,
+    posts: &[GroundPost],
+) -> Result<(), GpuError> {
     let stride = place.size.columns as usize;
     let portion = (PORTION_BYTES / (stride * size_of::<[u32; 4]>())).max(1);
     let mut to = texture.as_image_copy();
@@ -90,9 +94,11 @@ fn write(gpu: &Gpu, texture: &wgpu::Texture, place: &PlacedLevel, posts: &[Groun
     for posts in posts.chunks(portion * stride) {
         let texels: Vec<[u32; 4]> = posts.par_iter().with_min_len(1024).map(packed).collect();
         let rows = (posts.len() / stride) as u32;
-        gpu.write(to, place.size.columns, rows, cast_slice(&texels));
+        loader.gpu.write(to, place.size.columns, rows, cast_slice(&texels));
+        loader.count_sent((texels.len() * size_of::<[u32; 4]>()) as u64)?;
         to.origin.y += rows;
     }
+    Ok(())
 }
 
 /// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10, from −1 (woods) to 1.

@@ -1,11 +1,12 @@
-//! The fixed part of drawing: shader, bindings and one pipeline for each kind of draw call.
+//! The fixed part of drawing: shaders, bindings and one pipeline for each kind of draw call.
 
 use std::collections::BTreeMap;
 
 use crate::draw::list::{DRAPE_TOLERANCE, DrawVertex};
 use crate::render::gpu::adapter::{Gpu, GpuApi};
-use crate::render::gpu::plan::{DepthRule, PipelineKey, Plan};
-use crate::render::gpu::uniforms::{FrameUniforms, Instance, SurfaceConstants};
+use crate::render::gpu::geometry::MergedVertex;
+use crate::render::gpu::plan::{DepthRule, PipelineKey, VertexSource};
+use crate::render::gpu::uniforms::{FrameUniforms, Instance};
 
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.
@@ -22,8 +23,17 @@ const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
 const SHADER: &str = concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
 
-/// Vertices and instances.
-const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
+/// Corners with their owners.
+const MERGED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
+    array_stride: size_of::<MergedVertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4, 4 => Uint32, 5 => Uint32,
+    ],
+})];
+
+/// Corners, and instances.
+const PLACED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
     Some(wgpu::VertexBufferLayout {
         array_stride: size_of::<DrawVertex>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,
@@ -35,19 +45,24 @@ const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout>; 2] = [
         array_stride: size_of::<Instance>() as u64,
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &wgpu::vertex_attr_array![
-            4 => Float32x4, 5 => Float32x4, 6 => Float32x4, 7 => Float32x4, 8 => Uint32,
+            4 => Uint32, 5 => Uint32, 6 => Float32x4, 7 => Float32x4, 8 => Float32x4, 9 => Float32x4,
         ],
     }),
 ];
+
+/// Positions.
+const PATCH_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
+    array_stride: size_of::<[f32; 3]>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+})];
 
 #[derive(Debug)]
 pub struct Layouts {
     /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler.
     pub frame: wgpu::BindGroupLayout,
-    /// Group 1: a material's constants, at a dynamic offset.
-    pub surface: wgpu::BindGroupLayout,
-    /// Group 2: the base color texture and its sampler.
-    pub texture: wgpu::BindGroupLayout,
+    /// Group 1: the table of materials, an array of textures and its sampler.
+    pub materials: wgpu::BindGroupLayout,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,9 +73,22 @@ pub enum GpuPass {
     Feature,
 }
 
+/// What pipelines draw to.
+#[derive(Clone, Copy, Debug)]
+pub struct PassTarget {
+    pub pass: GpuPass,
+    pub format: wgpu::TextureFormat,
+    pub samples: u32,
+}
+
+/// The pipelines of a pass, each made when it is first asked for.
 #[derive(Debug)]
 pub struct Pipelines {
-    by_key: BTreeMap<(GpuPass, PipelineKey), wgpu::RenderPipeline>,
+    target: PassTarget,
+    shader: wgpu::ShaderModule,
+    items: wgpu::PipelineLayout,
+    sky: wgpu::PipelineLayout,
+    by_key: BTreeMap<PipelineKey, wgpu::RenderPipeline>,
 }
 
 impl Layouts {
@@ -72,12 +100,12 @@ impl Layouts {
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
-        let uniform = |size: usize, has_dynamic_offset| wgpu::BindingType::Buffer {
+        let uniform = |size: usize| wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset,
+            has_dynamic_offset: false,
             min_binding_size: wgpu::BufferSize::new(size as u64),
         };
-        let group = |bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
+        let group = |label: &'static str, bindings: &[(wgpu::ShaderStages, wgpu::BindingType)]| {
             let entry = |(binding, &(visibility, ty))| wgpu::BindGroupLayoutEntry {
                 binding,
                 visibility,
@@ -85,106 +113,126 @@ impl Layouts {
                 count: None,
             };
             let entries: Vec<_> = (0..).zip(bindings).map(entry).collect();
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+            let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
             gpu.device.create_bind_group_layout(&descriptor)
         };
         Self {
-            frame: group(&[
-                (both, uniform(size_of::<FrameUniforms>(), false)),
-                (fragment, texture(wgpu::TextureSampleType::Uint)),
-                (fragment, texture(wgpu::TextureSampleType::Uint)),
-                (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
-                (fragment, texture(wgpu::TextureSampleType::Uint)),
-                (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
-                (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
-                (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            ]),
-            surface: group(&[(both, uniform(size_of::<SurfaceConstants>(), true))]),
-            texture: group(&[
-                (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
-                (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-            ]),
+            frame: group(
+                "frame",
+                &[
+                    (both, uniform(size_of::<FrameUniforms>())),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
+                    (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
+                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                ],
+            ),
+            materials: group(
+                "materials",
+                &[
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
+                    (
+                        fragment,
+                        wgpu::BindingType::Texture {
+                            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                            view_dimension: wgpu::TextureViewDimension::D2Array,
+                            multisampled: false,
+                        },
+                    ),
+                    (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                ],
+            ),
         }
     }
 }
 
 impl Pipelines {
-    pub fn new(gpu: &Gpu, layouts: &Layouts, plan: &Plan) -> Self {
-        let shader = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("sandtable"),
-            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
-        });
-        let layout = |bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
-            let immediate_size = 0;
+    pub fn new(gpu: &Gpu, layouts: &Layouts, shader: &wgpu::ShaderModule, target: PassTarget) -> Self {
+        let layout = |label, bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
             let descriptor =
-                wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts, immediate_size };
+                wgpu::PipelineLayoutDescriptor { label: Some(label), bind_group_layouts, immediate_size: 0 };
             gpu.device.create_pipeline_layout(&descriptor)
         };
-        let items = layout(&[Some(&layouts.frame), Some(&layouts.surface), Some(&layouts.texture)]);
-        let sky = layout(&[Some(&layouts.frame)]);
-        let mut by_key = BTreeMap::new();
-        by_key.insert(
-            (GpuPass::Color, PipelineKey::SKY),
-            pipeline(gpu, &sky, &shader, GpuPass::Color, PipelineKey::SKY),
-        );
-        let color = plan.color.iter().map(|call| (GpuPass::Color, call.key));
-        let features = plan.features.iter().map(|call| (GpuPass::Feature, call.key));
-        for (pass, key) in color.chain(features) {
-            by_key.entry((pass, key)).or_insert_with(|| pipeline(gpu, &items, &shader, pass, key));
+        Self {
+            target,
+            shader: shader.clone(),
+            items: layout("items", &[Some(&layouts.frame), Some(&layouts.materials)]),
+            sky: layout("sky", &[Some(&layouts.frame)]),
+            by_key: BTreeMap::new(),
         }
-        Self { by_key }
     }
 
-    pub fn get(&self, pass: GpuPass, key: PipelineKey) -> Option<&wgpu::RenderPipeline> {
-        self.by_key.get(&(pass, key))
+    /// Makes those pipelines that are missing.
+    pub fn make(&mut self, gpu: &Gpu, keys: impl IntoIterator<Item = PipelineKey>) {
+        for key in keys {
+            if !self.by_key.contains_key(&key) {
+                let made = self.pipeline(gpu, key);
+                self.by_key.insert(key, made);
+            }
+        }
+    }
+
+    /// The pipeline of a key; `None` before it is made.
+    pub fn get(&self, key: PipelineKey) -> Option<&wgpu::RenderPipeline> {
+        self.by_key.get(&key)
+    }
+
+    fn pipeline(&self, gpu: &Gpu, key: PipelineKey) -> wgpu::RenderPipeline {
+        let Self { target, shader, .. } = self;
+        let nearer = if key.rule == DepthRule::Drape { DRAPE_NEARER } else { 1.0 };
+        let nearer_px = if key.rule == DepthRule::Drape { f64::from(DRAPE_NEARER_PX) } else { 0.0 };
+        let vertex_constants = [("nearer", nearer)];
+        let textured = f64::from(u8::from(key.textured));
+        let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px), ("textured", textured)];
+        let is_sky = key.source == VertexSource::None;
+        let (vertex, buffers) = match key.source {
+            VertexSource::Merged => ("merged_vertex", &MERGED_BUFFERS[..]),
+            VertexSource::Placed => ("placed_vertex", &PLACED_BUFFERS[..]),
+            VertexSource::Patch => ("patch_vertex", &PATCH_BUFFERS[..]),
+            VertexSource::None => ("sky_vertex", &[][..]),
+        };
+        let fragment = match (target.pass, gpu.api()) {
+            _ if is_sky => "sky_color",
+            (GpuPass::Feature, _) => "feature",
+            (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
+            (GpuPass::Color, GpuApi::Vulkan) if key.masked && target.samples == 4 => "masked_color",
+            (GpuPass::Color, GpuApi::Vulkan) => "color",
+        };
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(&format!("{vertex}, {fragment}, {:?}", key.rule)),
+            layout: Some(if is_sky { &self.sky } else { &self.items }),
+            vertex: wgpu::VertexState {
+                module: shader,
+                entry_point: Some(vertex),
+                compilation_options: options(if is_sky { &[] } else { &vertex_constants }),
+                buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: Some(depth_state(key.rule)),
+            multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: shader,
+                entry_point: Some(fragment),
+                compilation_options: options(if is_sky { &[] } else { &fragment_constants }),
+                targets: &[Some(color_target(target, key.rule))],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     }
 }
 
-fn pipeline(
-    gpu: &Gpu,
-    layout: &wgpu::PipelineLayout,
-    shader: &wgpu::ShaderModule,
-    pass: GpuPass,
-    key: PipelineKey,
-) -> wgpu::RenderPipeline {
-    let (nearer, nearer_px) =
-        if key.rule.is_drape_color() { (DRAPE_NEARER, f64::from(DRAPE_NEARER_PX)) } else { (1.0, 0.0) };
-    let vertex_constants = [("nearer", nearer)];
-    let fragment_constants = [("nearer", nearer), ("nearer_px", nearer_px)];
-    let is_sky = key.rule == DepthRule::Sky;
-    let entry_point = match (pass, gpu.api()) {
-        _ if is_sky => "sky_color",
-        (GpuPass::Feature, _) => "feature",
-        (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
-        (GpuPass::Color, GpuApi::Vulkan) if key.masked && gpu.samples == 4 => "masked_color",
-        (GpuPass::Color, GpuApi::Vulkan) => "color",
-    };
-    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(layout),
-        vertex: wgpu::VertexState {
-            module: shader,
-            entry_point: Some(if is_sky { "sky_vertex" } else { "vertex" }),
-            compilation_options: options(if is_sky { &[] } else { &vertex_constants }),
-            buffers: if is_sky { &[] } else { &VERTEX_BUFFERS },
-        },
-        primitive: wgpu::PrimitiveState {
-            cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
-            ..Default::default()
-        },
-        depth_stencil: Some(depth_state(key.rule)),
-        multisample: wgpu::MultisampleState {
-            count: if pass == GpuPass::Color { gpu.samples } else { 1 },
-            ..Default::default()
-        },
-        fragment: Some(wgpu::FragmentState {
-            module: shader,
-            entry_point: Some(entry_point),
-            compilation_options: options(if is_sky { &[] } else { &fragment_constants }),
-            targets: &target(pass, key.rule),
-        }),
-        multiview_mask: None,
-        cache: None,
+/// The shaders, compiled by the driver where a pipeline uses them.
+pub fn shader(gpu: &Gpu) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("sandtable"),
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
     })
 }
 
@@ -198,11 +246,10 @@ fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
         DepthRule::Sky => (false, wgpu::CompareFunction::Always),
         DepthRule::Solid => (true, wgpu::CompareFunction::Greater),
         DepthRule::Blend => (false, wgpu::CompareFunction::Greater),
-        DepthRule::Drape | DepthRule::DrapeBlend => (false, wgpu::CompareFunction::GreaterEqual),
-        DepthRule::DrapeDepth => (true, wgpu::CompareFunction::GreaterEqual),
+        DepthRule::Drape => (false, wgpu::CompareFunction::GreaterEqual),
     };
     // Where the shader writes the depth this has no effect, and `nearer_px` does the same.
-    let slope_scale = if rule.is_drape_color() { DRAPE_NEARER_PX } else { 0.0 };
+    let slope_scale = if rule == DepthRule::Drape { DRAPE_NEARER_PX } else { 0.0 };
     wgpu::DepthStencilState {
         format: DEPTH,
         depth_write_enabled: Some(writes),
@@ -212,18 +259,13 @@ fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
     }
 }
 
-fn target(pass: GpuPass, rule: DepthRule) -> [Option<wgpu::ColorTargetState>; 1] {
-    let write_mask = match rule {
-        DepthRule::DrapeDepth => wgpu::ColorWrites::empty(),
-        _ => wgpu::ColorWrites::ALL,
-    };
-    let blends = matches!(rule, DepthRule::Blend | DepthRule::DrapeBlend) && pass == GpuPass::Color;
-    let blend = blends.then_some(wgpu::BlendState::ALPHA_BLENDING);
-    let format = match pass {
-        GpuPass::Color => COLOR,
-        GpuPass::Feature => FEATURE,
-    };
-    [Some(wgpu::ColorTargetState { format, blend, write_mask })]
+fn color_target(target: &PassTarget, rule: DepthRule) -> wgpu::ColorTargetState {
+    let blends = matches!(rule, DepthRule::Blend | DepthRule::Drape) && target.pass == GpuPass::Color;
+    wgpu::ColorTargetState {
+        format: target.format,
+        blend: blends.then_some(wgpu::BlendState::ALPHA_BLENDING),
+        write_mask: wgpu::ColorWrites::ALL,
+    }
 }
 
 #[cfg(test)]
@@ -231,6 +273,7 @@ mod tests {
     use wgpu::naga;
 
     use super::*;
+    use crate::render::gpu::uniforms::SurfaceConstants;
 
     #[test]
     fn the_shader_is_valid_without_any_gpu() {
@@ -243,7 +286,17 @@ mod tests {
         let names: Vec<&str> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(
             names,
-            ["vertex", "color", "masked_color", "color_and_depth", "feature", "sky_vertex", "sky_color",]
+            [
+                "merged_vertex",
+                "placed_vertex",
+                "patch_vertex",
+                "color",
+                "masked_color",
+                "color_and_depth",
+                "feature",
+                "sky_vertex",
+                "sky_color",
+            ]
         );
     }
 

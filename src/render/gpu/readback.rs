@@ -11,7 +11,7 @@ use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::{DriverError, GpuError};
-use crate::render::gpu::memory::texture;
+use crate::render::gpu::memory::{Loader, texture};
 use crate::render::gpu::pipelines::{COLOR, DEPTH, FEATURE};
 use crate::render::picture::Rendering;
 
@@ -31,7 +31,7 @@ pub struct Targets {
     pub depth: wgpu::Texture,
 }
 
-struct TextureCopy {
+pub struct TextureCopy {
     buffer: wgpu::Buffer,
     /// Bytes from row to row, with padding.
     bytes_per_row: u32,
@@ -40,22 +40,24 @@ struct TextureCopy {
 }
 
 impl Targets {
-    pub fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Result<Self, GpuError> {
-        gpu.check_sides(|| format!("the {width}×{height} pixels of the picture"), [width, height])?;
-        let create = |format, sample_count, usage| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
+    pub fn new(loader: &Loader<'_>, (width, height): (u32, u32)) -> Result<Self, GpuError> {
+        let what = || format!("the {width}×{height} pixels of the picture");
+        let create = |label, format, sample_count, usage| {
+            let descriptor = wgpu::TextureDescriptor {
                 sample_count,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | usage,
-                ..texture(width, height, format)
-            })
+                ..texture(label, width, height, format)
+            };
+            loader.texture(what, &descriptor)
         };
+        let samples = loader.gpu.samples;
         let (kept, read) = (wgpu::TextureUsages::empty(), wgpu::TextureUsages::COPY_SRC);
         Ok(Self {
-            samples: create(COLOR, gpu.samples, kept),
-            sample_depth: create(DEPTH, gpu.samples, kept),
-            color: create(COLOR, 1, read),
-            feature: create(FEATURE, 1, read),
-            depth: create(DEPTH, 1, kept),
+            samples: create("color samples", COLOR, samples, kept)?,
+            sample_depth: create("depth samples", DEPTH, samples, kept)?,
+            color: create("colors", COLOR, 1, read)?,
+            feature: create("features", FEATURE, 1, read)?,
+            depth: create("depths", DEPTH, 1, kept)?,
         })
     }
 
@@ -63,7 +65,7 @@ impl Targets {
         let color = TextureCopy::record(gpu, &mut encoder, &self.color)?;
         let feature = TextureCopy::record(gpu, &mut encoder, &self.feature)?;
         gpu.queue.submit([encoder.finish()]);
-        let picture = wait(gpu, [&color, &feature]).and_then(|()| self.picture(&color, &feature));
+        let picture = wait(gpu, &[&color, &feature]).and_then(|()| self.picture(&color, &feature));
         picture.map_err(|error| gpu.driver_error("reading the picture back", error))
     }
 
@@ -78,7 +80,7 @@ impl Targets {
 }
 
 /// Waits until the processor can read `copies`.
-fn wait(gpu: &Gpu, copies: [&TextureCopy; 2]) -> Result<(), DriverError> {
+pub fn wait(gpu: &Gpu, copies: &[&TextureCopy]) -> Result<(), DriverError> {
     let (sender, mapped) = mpsc::channel();
     for copy in copies {
         let sender = sender.clone();
@@ -96,7 +98,8 @@ fn wait(gpu: &Gpu, copies: [&TextureCopy; 2]) -> Result<(), DriverError> {
 }
 
 impl TextureCopy {
-    fn record(
+    /// Records the copying of a texture.
+    pub fn record(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         texture: &wgpu::Texture,
@@ -105,8 +108,11 @@ impl TextureCopy {
         let row_bytes = width * texture.format().block_copy_size(None).unwrap_or(16);
         let bytes_per_row = wgpu::util::align_to(row_bytes, wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        let what = || format!("a picture of {width}×{height} pixels");
-        let buffer = gpu.buffer(what, usage, u64::from(bytes_per_row) * u64::from(height))?;
+        let size = u64::from(bytes_per_row) * u64::from(height);
+        gpu.check_size(|| format!("a picture of {width}×{height} pixels"), size)?;
+        let label = Some("copy of a picture");
+        let descriptor = wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false };
+        let buffer = gpu.device.create_buffer(&descriptor);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(bytes_per_row),
@@ -118,7 +124,7 @@ impl TextureCopy {
     }
 
     /// The texels, of `N` bytes each, without padding.
-    fn texels<const N: usize>(&self) -> Result<Vec<[u8; N]>, wgpu::MapRangeError> {
+    pub fn texels<const N: usize>(&self) -> Result<Vec<[u8; N]>, wgpu::MapRangeError> {
         let view = self.buffer.get_mapped_range(..)?;
         let rows = view.chunks_exact(self.bytes_per_row as usize);
         Ok(rows.flat_map(|row| row[..self.row_bytes as usize].as_chunks().0).copied().collect())
@@ -126,7 +132,7 @@ impl TextureCopy {
 }
 
 /// The content of a texel of the feature texture; a depth of 0 is infinite.
-fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
+pub fn feature_and_depth([a, b, c, d, e, f, g, h]: [u8; 8]) -> (FeatureId, f32) {
     let depth_m = f32::from_ne_bytes([e, f, g, h]);
     let feature = FeatureId(u32::from_ne_bytes([a, b, c, d]));
     (feature, if depth_m > 0.0 { depth_m } else { f32::INFINITY })

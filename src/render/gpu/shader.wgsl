@@ -37,6 +37,8 @@ struct Frame {
 
 // ShadowMap.
 struct ShadowView {
+    eye: vec4f,              // xyz of the eye that the map was made for: a map outlives frames
+    forward: vec4f,          // xyz of its viewing direction
     across: array<vec4f, 2>, // xyz of the axes across the light; texel per depth, base-2 logarithm of level 0's texel
     toward: vec4f,           // xyz toward the light, number of levels; 0 where there is no map
     levels: array<vec4f, 8>, // corner of the first texel, texel in meters
@@ -45,7 +47,7 @@ struct ShadowView {
 
 struct Surface {
     base_color: vec4f, // linear rgb, straight alpha
-    flags: vec4u,      // x: bits of the constants below
+    flags: vec4u,      // x: bits of the constants below; y: layer of its texture
     cutoff: vec4f,     // x: alpha below it is a hole, for the color where MASK is set, for the feature too where BLEND is
 }
 
@@ -57,6 +59,11 @@ const WATER = 16u;
 const IN_ALL_LIGHT = 32u;
 const HATCHING = 64u;
 const NATURAL = 128u;
+const TEXTURED = 256u;
+
+// Materials in a row of their table, and texels of each.
+const TABLE_MATERIALS = 256u;
+const MATERIAL_TEXELS = 3u;
 
 // The most readings of the ground along the longer side of a pixel seen at a grazing angle.
 const MOST_TAPS = 8.0;
@@ -78,10 +85,14 @@ const MASK_LEVEL_BIAS = -1.0;
 // The draped picture, colors multiplied by alpha.
 @group(0) @binding(6) var imagery_texture: texture_2d<f32>;
 @group(0) @binding(7) var imagery_sampler: sampler;
-@group(1) @binding(0) var<uniform> material: Surface;
+// The bits of every material's `Surface`; the first is the bare ground's.
+@group(1) @binding(0) var material_table: texture_2d<u32>;
 // Colors multiplied by alpha where the item is not opaque, so that unseen colors count for nothing.
-@group(2) @binding(0) var base_texture: texture_2d<f32>;
-@group(2) @binding(1) var base_sampler: sampler;
+@group(1) @binding(1) var base_texture: texture_2d_array<f32>;
+@group(1) @binding(2) var base_sampler: sampler;
+
+// The material of the fragment that is drawn.
+var<private> material: Surface;
 
 // The part of `nearer − 1` that counts with parallel rays: that of the CPU renderer's tolerances.
 const PARALLEL_NEARER = 0.05;
@@ -91,6 +102,8 @@ override nearer: f32 = 1.0;
 // The same as a part of a pixel: what its depth changes by over that part is added. Covers the grid that
 // hardware moves corners to, which tilts a drape against the ground where both are seen edge-on.
 override nearer_px: f32 = 0.0;
+// Whether any of the materials drawn has a texture: reading one costs even where it is not shown.
+override textured: bool = true;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -99,13 +112,18 @@ struct Corner {
     @location(3) color: vec4f,
 }
 
-// The values that differ between items.
-struct Instance {
-    @location(4) x_axis: vec4f,
-    @location(5) y_axis: vec4f,
-    @location(6) z_axis: vec4f,
-    @location(7) origin: vec4f,
-    @location(8) feature: u32,
+// Whose a corner is.
+struct Owner {
+    @location(4) feature: u32,
+    @location(5) material: u32,
+}
+
+// The place of an item.
+struct Place {
+    @location(6) x_axis: vec4f,
+    @location(7) y_axis: vec4f,
+    @location(8) z_axis: vec4f,
+    @location(9) origin: vec4f,
 }
 
 struct Varying {
@@ -115,6 +133,7 @@ struct Varying {
     @location(2) uv: vec2f,
     @location(3) color: vec4f,
     @location(4) @interpolate(flat) feature: u32,
+    @location(5) @interpolate(flat) material: u32,
 }
 
 fn linear_from_srgb(value: vec3f) -> vec3f {
@@ -132,10 +151,8 @@ fn from_eye(world: vec3f) -> vec3f {
     return select(world - frame.eye.xyz, frame.forward.xyz, is_parallel());
 }
 
-@vertex
-fn vertex(corner: Corner, instance: Instance) -> Varying {
-    let world_from_mesh = mat4x4f(instance.x_axis, instance.y_axis, instance.z_axis, instance.origin);
-    let world = (world_from_mesh * vec4f(corner.position, 1.0)).xyz;
+// A corner in world space as the picture has it.
+fn projected(world: vec3f) -> Varying {
     // Relative to the eye first: far from the origin a product of matrices would lose the low digits.
     let offset = world - frame.eye.xyz;
     let depth = dot(offset, frame.forward.xyz);
@@ -148,11 +165,52 @@ fn vertex(corner: Corner, instance: Instance) -> Varying {
         out.clip = vec4f(across, frame.depth.x * nearer - frame.depth.y * depth, depth);
     }
     out.world = world;
-    out.normal = (world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
+    return out;
+}
+
+fn with_surface(seen: Varying, normal: vec3f, corner: Corner, owner: Owner) -> Varying {
+    var out = seen;
+    out.normal = normal;
     out.uv = corner.uv;
     out.color = vec4f(linear_from_srgb(corner.color.rgb), corner.color.a);
-    out.feature = instance.feature;
+    out.feature = owner.feature;
+    out.material = owner.material;
     return out;
+}
+
+// Corners of many items in world space.
+@vertex
+fn merged_vertex(corner: Corner, owner: Owner) -> Varying {
+    return with_surface(projected(corner.position), corner.normal, corner, owner);
+}
+
+// Corners of a mesh that is drawn at many places.
+@vertex
+fn placed_vertex(corner: Corner, owner: Owner, place: Place) -> Varying {
+    let world_from_mesh = mat4x4f(place.x_axis, place.y_axis, place.z_axis, place.origin);
+    let world = (world_from_mesh * vec4f(corner.position, 1.0)).xyz;
+    let normal = (world_from_mesh * vec4f(corner.normal, 0.0)).xyz;
+    return with_surface(projected(world), normal, corner, owner);
+}
+
+// Corners of a patch of bare ground: the first material, FeatureId::GROUND.
+@vertex
+fn patch_vertex(@location(0) position: vec3f) -> Varying {
+    var out = projected(position);
+    out.normal = vec3f(0.0, 0.0, 1.0);
+    out.color = vec4f(1.0);
+    out.feature = 1u;
+    return out;
+}
+
+fn material_bits(index: u32, texel: u32) -> vec4u {
+    let column = index % TABLE_MATERIALS * MATERIAL_TEXELS + texel;
+    return textureLoad(material_table, vec2u(column, index / TABLE_MATERIALS), 0);
+}
+
+fn material_of(index: u32) -> Surface {
+    let color = bitcast<vec4f>(material_bits(index, 0u));
+    return Surface(color, material_bits(index, 1u), bitcast<vec4f>(material_bits(index, 2u)));
 }
 
 struct Post {
@@ -406,7 +464,7 @@ fn turned(map: u32, v: vec3f) -> vec3f {
 }
 
 fn shadow_place(map: u32, offset: vec3f) -> ShadowPlace {
-    let texel = max(dot(offset, frame.forward.xyz) * frame.shadows[map].across[0].w, 1.17549435e-38);
+    let texel = max(dot(offset, frame.shadows[map].forward.xyz) * frame.shadows[map].across[0].w, 1.17549435e-38);
     let exponent = i32(bitcast<u32>(texel) >> 23u) - 127;
     let above = exponent - i32(frame.shadows[map].across[1].w);
     let index = clamp(above, 0, i32(frame.shadows[map].toward.w) - 1);
@@ -475,7 +533,7 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
     if frame.shadows[0].toward.w == 0.0 {
         return 1.0;
     }
-    let offset = world - frame.eye.xyz;
+    let offset = world - frame.shadows[0].eye.xyz;
     let place = shadow_place(0u, offset);
     let highest = shadow_height(shadow_highest(place), on_solid) - place.height;
     if highest <= 0.0 {
@@ -506,7 +564,7 @@ fn contact_share(world: vec3f, on_solid: bool) -> f32 {
     if frame.shadows[1].toward.w == 0.0 {
         return 1.0;
     }
-    let place = shadow_place(1u, world - frame.eye.xyz);
+    let place = shadow_place(1u, world - frame.shadows[1].eye.xyz);
     let highest = shadow_highest(place);
     let reach = CONTACT_RADIUS * place.texel_m;
     if select(highest.x <= place.height, highest.y <= place.height - reach, on_solid) {
@@ -633,11 +691,19 @@ fn hatching_cover(at: vec2f) -> f32 {
     return clamp(1.1 / 2.0 + 0.5 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0);
 }
 
+fn texture_at(uv: vec2f) -> vec4f {
+    if !textured {
+        return vec4f(1.0);
+    }
+    let texel = textureSample(base_texture, base_sampler, uv, material.flags.y);
+    return select(vec4f(1.0), texel, (material.flags.x & TEXTURED) != 0u);
+}
+
 fn surface(in: Varying) -> vec4f {
+    var texel = texture_at(in.uv);
     if (material.flags.x & HATCHING) != 0u {
         return vec4f(material.base_color.rgb, material.base_color.a * hatching_cover(in.clip.xy));
     }
-    var texel = textureSample(base_texture, base_sampler, in.uv);
     if !is_opaque() {
         texel = vec4f(texel.rgb / max(texel.a, 1e-4), texel.a);
     }
@@ -721,6 +787,7 @@ fn reversed_depth(in: Varying) -> f32 {
 }
 
 fn shade_or_discard(in: Varying, front: bool) -> vec4f {
+    material = material_of(in.material);
     let shaded = shade(in, front);
     let alpha = surface(in).a;
     if (material.flags.x & MASK) != 0u && alpha < material.cutoff.x {
@@ -741,13 +808,17 @@ struct ColorAndSamples {
 
 fn is_solid_at(in: Varying, offset: vec2f) -> bool {
     let uv = in.uv + dpdx(in.uv) * offset.x + dpdy(in.uv) * offset.y;
-    let texel = textureSampleBias(base_texture, base_sampler, uv, MASK_LEVEL_BIAS);
+    var texel = textureSampleBias(base_texture, base_sampler, uv, material.flags.y, MASK_LEVEL_BIAS);
+    if (material.flags.x & TEXTURED) == 0u {
+        texel = vec4f(1.0);
+    }
     return material.base_color.a * in.color.a * texel.a >= material.cutoff.x;
 }
 
 // A masked item with its alpha tested at each of the four standard sample places, for smooth borders.
 @fragment
 fn masked_color(in: Varying, @builtin(front_facing) front: bool) -> ColorAndSamples {
+    material = material_of(in.material);
     let shaded = shade(in, front);
     let solid = vec4<bool>(
         is_solid_at(in, vec2f(-0.125, -0.375)),
@@ -778,6 +849,7 @@ struct FeatureAndDepth {
 
 @fragment
 fn feature(in: Varying) -> FeatureAndDepth {
+    material = material_of(in.material);
     let depth = reversed_depth(in);
     let alpha = surface(in).a;
     if !is_opaque() && alpha < material.cutoff.x {

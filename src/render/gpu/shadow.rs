@@ -2,9 +2,8 @@
 
 use bytemuck::{Pod, Zeroable, cast_slice};
 
-use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::memory::texture;
+use crate::render::gpu::memory::{Loader, texture};
 use crate::render::shadow::{MOST_LEVELS, PAGE, ShadowMap, ShadowTexel, Shadows};
 
 /// Table entries in a row of their texture; the shader's constant of the same name.
@@ -17,6 +16,8 @@ const PAGE_COLUMNS: u32 = 64;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct ShadowView {
+    eye: [f32; 4],
+    forward: [f32; 4],
     across: [[f32; 4]; 2],
     toward: [f32; 4],
     levels: [[f32; 4]; MOST_LEVELS],
@@ -42,6 +43,8 @@ impl ShadowView {
     fn new(map: &ShadowMap, first: u32) -> Self {
         let [right, ahead] = map.axes.across;
         let mut view = Self {
+            eye: map.eye.extend(0.0).to_array(),
+            forward: map.forward.extend(0.0).to_array(),
             across: [
                 right.extend(map.scale.texel_per_depth).to_array(),
                 ahead.extend(map.scale.least as f32).to_array(),
@@ -59,7 +62,7 @@ impl ShadowView {
 
 impl ShadowTextures {
     /// Sends the maps to the device; without any, one texel each that nothing reads.
-    pub fn upload(gpu: &Gpu, shadows: &Shadows) -> Result<Self, GpuError> {
+    pub fn upload(loader: &Loader<'_>, shadows: &Shadows) -> Result<Self, GpuError> {
         let maps = || [&shadows.sun, &shadows.sky].into_iter().flatten();
         let mut table: Vec<[u32; 4]> = Vec::new();
         let mut before = 0;
@@ -71,26 +74,28 @@ impl ShadowTextures {
             before += map.texels.len() as u32 / (PAGE * PAGE);
         }
         let texels: Vec<&[ShadowTexel]> = maps().map(|map| map.texels.as_slice()).collect();
-        Ok(Self { pages: page_table(gpu, table)?, texels: page_texels(gpu, &texels.concat())? })
+        Ok(Self { pages: page_table(loader, table)?, texels: page_texels(loader, &texels.concat())? })
     }
 }
 
-fn page_table(gpu: &Gpu, mut table: Vec<[u32; 4]>) -> Result<wgpu::Texture, GpuError> {
+fn page_table(loader: &Loader<'_>, mut table: Vec<[u32; 4]>) -> Result<wgpu::Texture, GpuError> {
     let rows = table.len().div_ceil(TABLE_COLUMNS as usize).max(1);
     table.resize(rows * TABLE_COLUMNS as usize, [0; 4]);
     let size = [TABLE_COLUMNS, rows as u32];
-    gpu.check_sides(|| format!("the table of {} shadow pages", table.len()), size)?;
-    let texture = gpu.device.create_texture(&texture(size[0], size[1], wgpu::TextureFormat::Rgba32Uint));
-    gpu.write(texture.as_image_copy(), size[0], size[1], cast_slice(&table));
+    let what = || format!("the table of {} shadow pages", table.len());
+    let format = wgpu::TextureFormat::Rgba32Uint;
+    let texture = loader.texture(what, &texture("table of shadow pages", size[0], size[1], format))?;
+    loader.gpu.write(texture.as_image_copy(), size[0], size[1], cast_slice(&table));
     Ok(texture)
 }
 
 /// The pages beside each other, [`PAGE_COLUMNS`] in a row.
-fn page_texels(gpu: &Gpu, texels: &[ShadowTexel]) -> Result<wgpu::Texture, GpuError> {
+fn page_texels(loader: &Loader<'_>, texels: &[ShadowTexel]) -> Result<wgpu::Texture, GpuError> {
     let pages = texels.len() as u32 / (PAGE * PAGE);
     let size = [PAGE_COLUMNS * PAGE, pages.div_ceil(PAGE_COLUMNS).max(1) * PAGE];
-    gpu.check_sides(|| format!("{pages} shadow pages"), size)?;
-    let texture = gpu.device.create_texture(&texture(size[0], size[1], wgpu::TextureFormat::Rg32Float));
+    let format = wgpu::TextureFormat::Rg32Float;
+    let descriptor = texture("shadow pages", size[0], size[1], format);
+    let texture = loader.texture(|| format!("{pages} shadow pages"), &descriptor)?;
     let row_of_pages = (PAGE_COLUMNS * PAGE * PAGE) as usize;
     for (row, texels) in texels.chunks(row_of_pages).enumerate() {
         let mut lines = vec![ShadowTexel::EMPTY; row_of_pages];
@@ -101,7 +106,7 @@ fn page_texels(gpu: &Gpu, texels: &[ShadowTexel]) -> Result<wgpu::Texture, GpuEr
         }
         let mut to = texture.as_image_copy();
         to.origin.y = row as u32 * PAGE;
-        gpu.write(to, size[0], PAGE, cast_slice(&lines));
+        loader.gpu.write(to, size[0], PAGE, cast_slice(&lines));
     }
     Ok(texture)
 }

@@ -5,16 +5,17 @@ use glam::Vec3;
 
 use crate::draw::backdrop::Backdrop;
 use crate::draw::bathymetry::{STOP_COUNT, bathymetry};
+use crate::draw::ground::GroundMap;
 use crate::draw::ground_levels::PostCount;
-use crate::draw::lighting::ReliefShading;
-use crate::draw::list::{DrawItem, DrawList};
+use crate::draw::lighting::{Lighting, ReliefShading};
+use crate::draw::list::DrawItem;
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::WaterColor;
+use crate::render::gpu::geometry::SurfaceOwner;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
-use crate::render::shadow::Shadows;
 use crate::view::camera::{Camera, ViewProjection};
 
 /// Ramp stops in one row of their texture; any number below the smallest texture limit works.
@@ -28,6 +29,7 @@ const WATER: u32 = 16;
 const IN_ALL_LIGHT: u32 = 32;
 const HATCHING: u32 = 64;
 const NATURAL: u32 = 128;
+const TEXTURED: u32 = 256;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -71,12 +73,20 @@ pub struct SurfaceConstants {
     cutoff: [f32; 4],
 }
 
-/// The constants of an item: `Instance` in the shader.
+/// The constants of an item: `Owner` and `Place` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct Instance {
+    owner: SurfaceOwner,
     world_from_mesh: [[f32; 4]; 4],
-    feature: u32,
+}
+
+/// What the constants of a picture are made from, besides the camera.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameScene<'a> {
+    pub ground: Option<&'a GroundMap>,
+    pub lighting: &'a Lighting,
+    pub shadows: [ShadowView; 2],
 }
 
 fn with(vector: Vec3, w: f32) -> [f32; 4] {
@@ -84,7 +94,7 @@ fn with(vector: Vec3, w: f32) -> [f32; 4] {
 }
 
 impl FrameUniforms {
-    pub fn new(list: &DrawList, camera: &Camera, shadows: &Shadows) -> Self {
+    pub fn new(scene: FrameScene<'_>, camera: &Camera) -> Self {
         let (near, far) = camera.planes();
         let (half, is_parallel, depth) = match camera.projection() {
             // near · far may exceed f32; the ratio cannot.
@@ -96,7 +106,7 @@ impl FrameUniforms {
             }
         };
         let (width, height) = camera.size();
-        let light = &list.lighting;
+        let light = scene.lighting;
         let relief = ReliefShading::new(light.to_sun);
         Self {
             eye: with(camera.eye(), is_parallel),
@@ -104,7 +114,7 @@ impl FrameUniforms {
             up: with(camera.up(), 1.0 / half.y),
             forward: with(camera.forward(), 0.0),
             depth: [depth[0], depth[1], width as f32, height as f32],
-            to_sun: with(light.to_sun, list.ground.as_ref().map_or(1.0, |map| map.z_factor)),
+            to_sun: with(light.to_sun, scene.ground.map_or(1.0, |map| map.z_factor)),
             sun: with(light.sun, 0.0),
             sky: with(light.sky, 0.0),
             bounce: with(light.bounce, 0.0),
@@ -123,15 +133,21 @@ impl FrameUniforms {
             undergrowth: with(Undergrowth::COLOR.linear(), Undergrowth::MOST),
             shallow: with(WaterColor::SHALLOW.linear(), WaterColor::OFF_SHORE),
             open: with(WaterColor::OPEN.linear(), 1.0),
-            shadows: ShadowView::both(shadows),
-            ..Self::ground(list)
+            shadows: scene.shadows,
+            ..Self::ground(scene.ground)
         }
     }
 
+    /// The same for a picture of another size.
+    pub fn with_size(mut self, (width, height): (u32, u32)) -> Self {
+        [self.depth[2], self.depth[3]] = [width as f32, height as f32];
+        self
+    }
+
     /// The constants of the ground map; all others are zero.
-    fn ground(list: &DrawList) -> Self {
+    fn ground(map: Option<&GroundMap>) -> Self {
         let mut frame = Self::zeroed();
-        let Some(map) = &list.ground else { return frame };
+        let Some(map) = map else { return frame };
         let levels = levels(PostCount::from_map(map));
         for (slot, level) in frame.ground_levels.iter_mut().zip(&levels) {
             *slot = [level.size.columns, level.size.rows, level.first, 0];
@@ -163,12 +179,14 @@ impl FrameUniforms {
 
 impl Instance {
     pub fn new(item: &DrawItem) -> Self {
-        Self { world_from_mesh: item.world_from_mesh.to_cols_array_2d(), feature: item.feature.0 }
+        let owner = SurfaceOwner { feature: item.feature, material: item.material.into() };
+        Self { owner, world_from_mesh: item.world_from_mesh.to_cols_array_2d() }
     }
 }
 
 impl SurfaceConstants {
-    pub fn new(material: &Material) -> Self {
+    /// The constants of a material whose texture, if it shows any, lies in `layer` of its array.
+    pub fn new(material: &Material, layer: Option<u32>) -> Self {
         let normal = if material.normals == NormalSource::Ground { FROM_GROUND_NORMAL } else { 0 };
         let albedo = match material.albedo {
             Albedo::Surface => 0,
@@ -177,6 +195,7 @@ impl SurfaceConstants {
         };
         let water = if material.is_water { WATER } else { 0 };
         let light = if material.receives_shadows { 0 } else { IN_ALL_LIGHT };
+        let textured = if layer.is_some() { TEXTURED } else { 0 };
         let natural = if material.is_natural { NATURAL } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
@@ -185,7 +204,7 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha | water | light | natural, 0, 0, 0],
+            flags: [normal | albedo | alpha | water | light | natural | textured, layer.unwrap_or(0), 0, 0],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

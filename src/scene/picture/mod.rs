@@ -1,6 +1,7 @@
 //! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
 
 mod airspace;
+pub mod all_round;
 mod detail;
 mod drapes;
 mod fit;
@@ -40,7 +41,6 @@ use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
-use crate::scene::picture::models::PlacementMoves;
 use crate::scene::picture::parallel_view::parallel_camera;
 use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::setting::PictureSetting;
@@ -89,6 +89,14 @@ pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'sta
     listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
 }
 
+/// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as
+/// symbols, tactical graphics and viewsheds.
+pub fn build_relief(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Relief, progress).list
+}
+
 /// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
 /// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
 pub fn draw_list(
@@ -114,6 +122,8 @@ enum ListPurpose {
     Picture,
     /// To be measured: nobody asks how the ground is lit.
     Shapes,
+    /// To be modeled: as to be measured, without what is only drawn on it or beside it.
+    Relief,
 }
 
 /// Whether `camera` shows the scene as a block on a table.
@@ -140,7 +150,7 @@ fn listed(
     let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
     let map = match purpose {
         ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
-        ListPurpose::Shapes => Arc::new(GroundMap::level()),
+        ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
     };
     let lighting = match camera {
         Some(camera) => lighting(scene, camera, to_sun),
@@ -152,19 +162,20 @@ fn listed(
     let ground_triangles = list.triangle_count();
     progress("draping features");
     drapes::add(&mut list, scene, displayed, viewer);
-    let graphic_texts = camera.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
+    let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
+    let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
     progress("setting models");
     ground::add_plinth(&mut list, scene, walls);
-    if setting.is_some_and(|setting| has_table(scene, setting)) {
+    if annotated.is_some() && setting.is_some_and(|setting| has_table(scene, setting)) {
         table::add(&mut list, scene);
     }
     solids::add(&mut list, scene);
-    if camera.is_some() {
+    if annotated.is_some() {
         voids::add(&mut list, scene);
     }
     uprights::add(&mut list, scene, displayed);
-    models::add(&mut list, scene, displayed, viewer, &PlacementMoves::new());
-    if camera.is_some() {
+    models::add(&mut list, scene, displayed, viewer);
+    if annotated.is_some() {
         airspace::add(&mut list, scene);
     }
     ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }

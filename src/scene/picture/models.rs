@@ -37,6 +37,16 @@ pub(super) fn add(
     scene: &SceneModel,
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
+) {
+    add_moved(list, scene, displayed, viewer, &PlacementMoves::new());
+}
+
+/// [`add`] with some models elsewhere.
+pub(super) fn add_moved(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    displayed: &dyn TriangleSurface,
+    viewer: Viewer<'_>,
     moves: &PlacementMoves,
 ) {
     let finest = scene.scale.ground(&scene.lattice);

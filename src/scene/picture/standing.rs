@@ -60,7 +60,7 @@ pub fn standing(
     solids::add(&mut list, scene);
     voids::add(&mut list, scene);
     uprights::add(&mut list, scene, &surface);
-    models::add(&mut list, scene, &surface, Viewer::Around(camera), walked.moves);
+    models::add_moved(&mut list, scene, &surface, Viewer::Around(camera), walked.moves);
     airspace::add(&mut list, scene);
     list
 }

@@ -143,11 +143,31 @@ pub(super) fn symbols<'a>(
     Symbols { draped, shows }
 }
 
+/// What the texture coordinates of symbols say.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum SymbolUv {
+    /// U of a fill how much of a symbol each place is, see [`SymbolVertex::symbolic_share`].
+    Share,
+    /// U how far across the line each place is: 0 and 1 at the edges, 0.5 in the middle.
+    Across,
+}
+
 /// What `finish` makes of each symbol that `camera` sees by `scale`, and how the ribbons beside them show.
 pub(super) fn planned<'a, T: Send>(
     scene: &'a SceneModel,
     camera: &Camera,
     scale: LineScale<'_>,
+    finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
+) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
+    planned_with(scene, camera, scale, SymbolUv::Share, finish)
+}
+
+/// [`planned`] with texture coordinates of another meaning.
+pub(super) fn planned_with<'a, T: Send>(
+    scene: &'a SceneModel,
+    camera: &Camera,
+    scale: LineScale<'_>,
+    uv: SymbolUv,
     finish: impl Fn(PlannedSymbol<'a>) -> T + Sync,
 ) -> (Vec<T>, BTreeMap<FeatureId, RibbonShow>) {
     let view = SymbolView::new(scene, camera, scale);
@@ -175,7 +195,7 @@ pub(super) fn planned<'a, T: Send>(
         };
         let strokes = |part: SymbolPart| {
             let mut plan = PlanMesh::default();
-            runs.iter().for_each(|run| stroke_run(run, part, &mut plan));
+            runs.iter().for_each(|run| stroke_run(run, part, uv, &mut plan));
             plan
         };
         let casing = if symbol.widest_px() >= LEAST_CASED_PX {
@@ -479,10 +499,8 @@ fn dashes(run: &[SymbolVertex], least_px: f64) -> Vec<Vec<SymbolVertex>> {
     dashes
 }
 
-/// Strokes a part of a run of vertices, its ends round; the casing of a mouth is open toward the water.
-/// Strokes the part of a symbol along a run; U of a fill says how much of a symbol each place is, see
-/// [`SymbolVertex::symbolic_share`].
-fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
+/// Strokes a part of a symbol along a run of vertices, its ends round; the casing of a mouth is open toward the water.
+fn stroke_run(run: &[SymbolVertex], part: SymbolPart, uv: SymbolUv, plan: &mut PlanMesh) {
     let options = StrokeOptions::default();
     let first = plan.vertices.len();
     let Some(line) = Polyline::new(run.iter().map(|vertex| vertex.at), 0.0) else { return };
@@ -501,11 +519,15 @@ fn stroke_run(run: &[SymbolVertex], part: SymbolPart, plan: &mut PlanMesh) {
         }
         let outward = (points[end] - points[inner]).normalize_or_zero();
         let lengths = line.stations()[end] / options.texture_length_m;
+        let middle = plan.vertices.len();
         cap(points[end], outward * widths.values()[end] / 2.0, lengths, plan);
+        if uv == SymbolUv::Across {
+            plan.vertices[middle].uv.x = 0.5;
+        }
     }
     let alignment = Alignment { line, level: None, width: Width::Varying(widths), support: Support::Ground };
     stroke(&StrokePath::alone(&alignment), &options, plan);
-    let Some(shares) = shares else { return };
+    let Some(shares) = shares.filter(|_| uv == SymbolUv::Share) else { return };
     for vertex in &mut plan.vertices[first..] {
         let station_m = f64::from(vertex.uv.y) * options.texture_length_m;
         vertex.uv = Vec2::new(shares.at(station_m) as f32, 0.5);

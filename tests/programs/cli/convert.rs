@@ -69,7 +69,7 @@ fn a_cell_in_meters_for_a_raster_in_degrees_is_refused_with_its_zone() {
 fn a_shift_between_datums_is_told_and_one_that_needs_a_grid_refused() {
     let scratch = grid();
     let to = |source: &str, target: &str| {
-        convert(&scratch, &["grid.asc", "out.tif", "--source-crs", source, "--crs", target])
+        convert(&scratch, &["grid.asc", "-o", "out.tif", "--source-crs", source, "--crs", target])
     };
     let out = to("EPSG:27700", "EPSG:4326").ok();
     assert!(out.contains("datum shift  towgs84 446.448,-125.157,542.06"), "{out}");
@@ -118,4 +118,27 @@ fn a_picture_says_how_it_is_to_be_read() {
     let again = std::fs::read_to_string(scratch.at("again.asc")).expect("it was written");
     // Gray value 0 stood for no data, and no height is 0.
     assert!(again.ends_with("NODATA_value 0\n10 20 30 40\n50 0 70 80\n90 100 110 120\n"), "{again}");
+}
+
+#[test]
+fn a_file_that_may_be_an_input_is_not_written_over_unasked() {
+    let scratch = grid();
+    scratch.write("second.asc", GRID);
+    let before = std::fs::read(scratch.at("second.asc")).expect("there");
+    let refused = convert(&scratch, &["grid.asc", "second.asc"]).failed(1);
+    assert!(
+        refused.contains("second.asc") && refused.contains("-o") && refused.contains("--force"),
+        "{refused}"
+    );
+    assert!(std::fs::read(scratch.at("second.asc")).expect("there") == before);
+    for arguments in [&["grid.asc", "second.asc", "--force"][..], &["grid.asc", "-o", "second.asc"]] {
+        convert(&scratch, &[arguments, &["--cell", "5"]].concat()).ok();
+        assert!(std::fs::read(scratch.at("second.asc")).expect("there") != before);
+        scratch.write("second.asc", &before);
+    }
+    // What is no elevation is nobody's input.
+    scratch.write("notes.asc", "not a grid");
+    convert(&scratch, &["grid.asc", "notes.asc"]).ok();
+    let refused = convert(&scratch, &["grid.asc"]).failed(2);
+    assert!(refused.contains("the file to write"), "{refused}");
 }

@@ -123,3 +123,25 @@ fn the_same_scene_gives_the_same_bytes_and_options_of_others_are_refused() {
     assert!(refused(&["a.stl", "--side", "5"]).contains("from 20 to 4000"));
     assert_eq!(scratch.names(), ["one.3mf", "two.3mf"]);
 }
+
+#[test]
+fn what_is_only_drawn_on_a_picture_is_not_printed() {
+    let scratch = Scratch::new();
+    let text = std::fs::read_to_string(project("scenes/operation.toml")).expect("there");
+    let mut bare = text.parse::<toml_edit::DocumentMut>().expect("TOML");
+    for table in ["graphic", "symbol", "viewshed", "sight", "range"] {
+        bare.remove(table);
+    }
+    assert!(bare.to_string().len() < text.len());
+    let here = |text: &str| text.replace("../assets", &project("assets"));
+    for (name, text) in [("whole", here(&text)), ("bare", here(&bare.to_string()))] {
+        std::fs::write(scratch.at(&format!("{name}.toml")), text).expect("a file");
+        let (scene, model) = (format!("{name}.toml"), format!("{name}.stl"));
+        let assets = project("assets");
+        run_in(scratch.folder(), &["export", &scene, "-o", &model, "--side", "60", "--allow", &assets]).ok();
+    }
+    let [whole, bare] =
+        ["whole.stl", "bare.stl"].map(|name| std::fs::read(scratch.at(name)).expect("written"));
+    // The remarks in the head name the scene.
+    assert!(whole[80..] == bare[80..], "{} and {} bytes", whole.len(), bare.len());
+}

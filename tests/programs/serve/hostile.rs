@@ -112,33 +112,62 @@ fn one_connection_too_many_is_told_so() {
     still_answers(&server);
 }
 
+/// A request for as many heights as there may be.
+fn long_request() -> String {
+    let body = format!("locations={}", vec!["50.0123456789,10.0123456789"; 10_000].join("|"));
+    format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {}\r\n\r\n{body}", body.len())
+}
+
 #[test]
 fn requests_beyond_those_at_once_are_told_to_come_back() {
-    let (_scratch, server) = server(&["--max-requests", "1", "--timeout", "5"]);
-    // The slow one may itself come while another is being answered, and is then the one to be refused.
-    let occupied = (0..50).find_map(|_| {
-        let mut slow = server.connect();
-        slow.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 25\r\n\r\nlocations=")
-            .expect("it reads");
-        std::thread::sleep(Duration::from_millis(100));
-        let refused = server.get("/v1/grid?locations=50,10");
-        (refused.status == 503).then_some((slow, refused))
+    let (_scratch, server) = server(&["--max-requests", "1"]);
+    let request = long_request();
+    let ask = || server.raw(request.as_bytes());
+    let refused = (0..50).find_map(|_| {
+        let answers: Vec<_> = std::thread::scope(|scope| {
+            let asking: Vec<_> = (0..8).map(|_| scope.spawn(ask)).collect();
+            asking.into_iter().map(|asked| asked.join().expect("answered")).collect()
+        });
+        assert!(answers.iter().any(|answer| answer.status == 200), "one at a time is answered");
+        answers.into_iter().find(|answer| answer.status != 200)
     });
-    let (mut slow, refused) = occupied.expect("the second is refused");
+    let refused = refused.expect("of eight at once one is refused");
     refused.refused(503);
     assert_eq!(refused.header("retry-after"), "1");
-    slow.write_all(b"50.005,10.005  ").expect("it reads");
-    assert_eq!(read_answer(&mut BufReader::new(&slow), true).status, 200, "the one before is answered");
     still_answers(&server);
+}
+
+#[test]
+fn clients_whose_bodies_do_not_come_keep_nobody_from_being_answered() {
+    let (_scratch, server) = server(&[]);
+    let begin = |length: u32| {
+        let mut silent = server.connect();
+        let head = format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {length}\r\n\r\nl");
+        silent.write_all(head.as_bytes()).expect("it reads");
+        silent
+    };
+    let _held: Vec<_> = (0..300).map(|_| begin(100)).chain((0..64).map(|_| begin(200_000))).collect();
+    // All of them have been read when one long body more is refused.
+    let deadline = Instant::now() + Duration::from_secs(10);
+    let refused = loop {
+        let answer = server.raw(long_request().as_bytes());
+        if answer.status == 503 {
+            break answer.refused(503);
+        }
+        assert!(Instant::now() < deadline, "{answer:?}");
+    };
+    assert!(refused.contains("long bodies"), "{refused}");
+    for _ in 0..20 {
+        still_answers(&server);
+    }
+    let form = "application/x-www-form-urlencoded";
+    server.post("/v1/grid", form, "locations=50.005,10.005").ok();
 }
 
 #[test]
 fn memory_stays_what_it_was_under_thousands_of_requests() {
     let (_scratch, server) = server(&[]);
-    let locations = vec!["50.0123456789,10.0123456789"; 10_000].join("|");
-    let body = format!("locations={locations}");
-    let request =
-        format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {}\r\n\r\n{body}", body.len());
+    let request = long_request();
     let mut stream = server.connect();
     let mut ask = |count: usize| {
         let mut reader = BufReader::new(stream.try_clone().expect("a clone"));

@@ -185,7 +185,7 @@ fn words_ranges_and_defaults_are_stated() {
     let schema = schema();
     let road = &schema["$defs"]["road"]["properties"];
     assert_eq!(road["surface"]["anyOf"][0]["enum"], json!(["asphalt", "gravel", "track"]));
-    assert_eq!(road["width"]["anyOf"][0]["exclusiveMinimum"], json!(0));
+    assert_eq!(road["width"]["anyOf"][0]["minimum"], json!(0.01));
     assert_eq!(road["width"]["default"], json!(6));
     let description = road["width"]["description"].as_str().expect("described");
     assert!(

@@ -1,0 +1,405 @@
+// The shaders: the formulas of draw/lighting, draw/ground and the modules beside them, in GLSL ES 3.00.
+
+const VERTEX_SHADER = `#version 300 es
+precision highp float;
+uniform vec3 eye;
+uniform vec4 right, up;   // w: 1 / what half of the picture spans
+uniform vec3 forward;
+uniform vec4 depth;       // A and B of the depth buffer, by how much it counts as nearer, 1 with parallel rays
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) in vec4 color;
+layout(location = 4) in uint feature;
+layout(location = 5) in vec4 row0;
+layout(location = 6) in vec4 row1;
+layout(location = 7) in vec4 row2;
+out vec3 world;
+out vec3 side;
+out vec2 at_texture;
+out vec4 tint;
+flat out uint feature_id;
+out float along;
+
+vec3 linear_from_srgb(vec3 c) {
+  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
+}
+
+void main() {
+  world = vec3(dot(row0, vec4(position, 1.0)), dot(row1, vec4(position, 1.0)), dot(row2, vec4(position, 1.0)));
+  side = vec3(dot(row0.xyz, normal), dot(row1.xyz, normal), dot(row2.xyz, normal));
+  at_texture = uv;
+  tint = vec4(linear_from_srgb(color.rgb), color.a);
+  feature_id = feature;
+  vec3 offset = world - eye;
+  along = dot(offset, forward);
+  vec2 across = vec2(dot(offset, right.xyz) * right.w, dot(offset, up.xyz) * up.w);
+  gl_Position = depth.w > 0.5
+    ? vec4(across, depth.x * along + depth.y - (depth.z - 1.0) * 0.05, 1.0)
+    : vec4(across, depth.x * along + depth.y * depth.z, along);
+}`;
+
+const COMMON = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler2DShadow;
+uniform vec3 eye, forward;
+uniform vec4 depth;
+uniform vec3 to_sun, sun, sky, bounce;
+uniform vec4 haze;        // rgb, 1 / distance
+uniform vec4 zenith;      // rgb, distance at which haze begins
+uniform float horizon;
+uniform vec4 base_color;
+uniform sampler2D base_texture;
+uniform int alpha_mode;   // 0 opaque, 1 mask, 2 blend
+uniform float cutoff;
+uniform float is_water, is_natural, is_hatching;
+uniform vec4 band;        // of a line symbol: meters in a pixel that it is wide enough for, the most, the least that it shows
+                          // at; meters in a pixel at unit depth
+uniform mat4 shadow_from_world;
+uniform vec4 shadow;      // 1 where there is a map, its texel in meters, 1 / its side, bias
+uniform sampler2DShadow shadow_map;
+in vec3 world;
+in vec3 side;
+in vec2 at_texture;
+in vec4 tint;
+flat in uint feature_id;
+in float along;
+
+vec3 srgb_from_linear(vec3 c) {
+  c = clamp(c, 0.0, 1.0);
+  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+}
+
+float hash(uvec2 at) {
+  uint x = at.x * 1664525u + 1013904223u;
+  uint y = at.y * 1664525u + 1013904223u;
+  x += y * 1664525u;
+  y += x * 1664525u;
+  x ^= x >> 16;
+  y ^= y >> 16;
+  x += y * 1664525u;
+  x ^= x >> 16;
+  return float(x >> 8) / 8388608.0 - 1.0;
+}
+
+float noise(vec2 at) {
+  vec2 cell = floor(at);
+  vec2 part = at - cell;
+  vec2 smoothed = part * part * (3.0 - 2.0 * part);
+  uvec2 corner = uvec2(ivec2(cell));
+  float south = mix(hash(corner), hash(corner + uvec2(1u, 0u)), smoothed.x);
+  float north = mix(hash(corner + uvec2(0u, 1u)), hash(corner + uvec2(1u, 1u)), smoothed.x);
+  return mix(south, north, smoothed.y);
+}
+
+float wave(vec2 at, float pixel_m, float wave_m, float share) {
+  float shown = clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+  return shown <= 0.0 ? 0.0 : share * shown * noise(at / wave_m);
+}
+
+vec3 from_eye() {
+  return depth.w > 0.5 ? forward : world - eye;
+}
+
+vec3 sky_at(vec3 ray) {
+  float rise = max(ray.z, 0.0);
+  return mix(haze.rgb, zenith.rgb, rise * (2.0 - rise) * (rise * (1.0 + horizon) / (rise + horizon)));
+}
+
+vec2 ripple(vec2 at, float pixel_m, float low, float wave_m, float steepness) {
+  float shown = low * clamp(2.0 * wave_m / (8.0 * pixel_m) - 1.0, 0.0, 1.0);
+  if (shown <= 0.0) return vec2(0.0);
+  vec2 place = at / wave_m;
+  return vec2(noise(place), noise(place + vec2(37.5, 17.25))) * (shown * steepness);
+}
+
+vec3 mirror_sky(vec3 color, float water, float pixel_m) {
+  if (water <= 0.0) return color;
+  vec3 ray = normalize(from_eye());
+  float low = clamp((1.0 + ray.z - 0.3) / 0.4, 0.0, 1.0);
+  vec2 ripples = ripple(world.xy, pixel_m, low, 1.9, 0.030) + ripple(world.xy, pixel_m, low, 7.3, 0.035)
+    + ripple(world.xy, pixel_m, low, 29.0, 0.030);
+  vec3 normal = normalize(vec3(-ripples, 1.0));
+  float facing = -dot(ray, normal);
+  float grazing = 1.0 - clamp(facing, 0.0, 1.0);
+  float share = 0.02 + 0.48 * pow(grazing, 5.0);
+  return mix(color, sky_at(ray + normal * (2.0 * facing)), share * water);
+}
+
+// The share of the sun that solids let through.
+float sun_share(vec3 normal) {
+  if (shadow.x < 0.5) return 1.0;
+  vec3 place = (shadow_from_world * vec4(world + normal * shadow.y * 1.5, 1.0)).xyz;
+  if (any(lessThan(place, vec3(0.0))) || any(greaterThan(place, vec3(1.0)))) return 1.0;
+  float sum = 0.0;
+  for (int y = -1; y <= 1; y += 1) {
+    for (int x = -1; x <= 1; x += 1) {
+      sum += texture(shadow_map, vec3(place.xy + vec2(x, y) * shadow.z, place.z - shadow.w));
+    }
+  }
+  return sum / 9.0;
+}
+
+vec4 surface() {
+  if (is_hatching > 0.5) {
+    float across = (gl_FragCoord.x - gl_FragCoord.y) * 0.70710678 / 8.0;
+    return vec4(base_color.rgb, base_color.a * clamp(1.05 - abs(fract(across) - 0.5) * 8.0, 0.0, 1.0));
+  }
+  return base_color * tint * texture(base_texture, at_texture);
+}
+
+// The share of a pixel that a line symbol covers; 1 for all else.
+float symbol_cover() {
+  float pixel = band.w * (depth.w > 0.5 ? 1.0 : along);
+  float across = abs(at_texture.y * 2.0 - 1.0);
+  float edge = max(fwidth(across), 1e-4);
+  if (band.x == 0.0) return 1.0;
+  if (pixel > band.y || pixel <= band.z) return 0.0;
+  return clamp((min(pixel / band.x, 1.0) - across) / edge + 0.5, 0.0, 1.0);
+}
+
+vec4 seen(vec3 light, float alpha) {
+  float clear = exp(-max(distance(world, eye) - zenith.w, 0.0) * haze.w);
+  vec3 shown = depth.w > 0.5 ? light : mix(haze.rgb, light, clear);
+  return vec4(srgb_from_linear(shown), alpha);
+}
+`;
+
+const GROUND_SHADER = `${COMMON}
+uniform float is_map;       // 1 where the color is the map's, 0 for what is draped
+uniform vec4 grid;          // origin of the ground map, 1 / cell
+uniform vec4 grid_size;     // columns, rows, the level of the generalized ground, the coarsest level
+uniform sampler2D heights;
+uniform sampler2D slopes;   // slope east, slope north, share of the sun, water
+uniform sampler2D skies;
+uniform sampler2D ramp;     // colors by height
+uniform vec4 ramp_range;    // lowest height, 1 / range, 1 where contours are drawn, 1 where the ground has a grain
+uniform vec4 bathymetry[9]; // height, rgb
+uniform vec4 undergrowth, shallow, open_water;
+uniform vec4 cover;         // tree line, snow line, true rise over drawn (0: no cover), 1 where the north is shady
+uniform vec4 contour;       // rgb, strength
+uniform vec4 contour_shape; // interval, width, every how many is heavy, z factor
+uniform vec4 imagery;       // corner, 1 / size
+uniform vec4 imagery_size;  // texel, 1 where there is one, 1 where it is shaded
+uniform sampler2D imagery_texture;
+uniform vec3 sides[4];
+uniform vec4 side_shares;
+out vec4 shown;
+
+struct Reading { float height; vec2 gradient; };
+
+Reading height_on(vec2 place, int level) {
+  ivec2 size = textureSize(heights, level);
+  vec2 at = clamp(place * vec2(size) - 0.5, vec2(0.0), vec2(size - 1));
+  ivec2 first = min(ivec2(at), max(size - 2, ivec2(0)));
+  ivec2 next = min(first + 1, size - 1);
+  vec2 part = at - vec2(first);
+  float sw = texelFetch(heights, first, level).r;
+  float se = texelFetch(heights, ivec2(next.x, first.y), level).r;
+  float nw = texelFetch(heights, ivec2(first.x, next.y), level).r;
+  float ne = texelFetch(heights, next, level).r;
+  vec2 rise = vec2(mix(se - sw, ne - nw, part.y), mix(nw - sw, ne - se, part.x));
+  return Reading(mix(mix(sw, se, part.x), mix(nw, ne, part.x), part.y), rise * grid.zw * vec2(size) / grid_size.xy);
+}
+
+vec3 water_at(float height) {
+  int above = 1;
+  while (above < 8 && bathymetry[above].x <= height) above += 1;
+  vec4 low = bathymetry[above - 1];
+  vec4 high = bathymetry[above];
+  return mix(low.yzw, high.yzw, clamp((height - low.x) / (high.x - low.x), 0.0, 1.0));
+}
+
+vec3 covered_by(vec3 color, vec3 own, vec3 hue, float light, float share) {
+  vec3 luminance = vec3(0.2126, 0.7152, 0.0722);
+  return mix(color, hue * (dot(own, luminance) * light / dot(hue, luminance)), 0.8 * share);
+}
+
+vec3 with_cover(vec3 own, float height_m, vec2 slope, float uneven) {
+  slope *= cover.z;
+  float shade = clamp(-slope.y * cover.w, -1.0, 1.0);
+  float height = height_m + 160.0 * uneven + 150.0 * shade;
+  float rise = length(slope) + 0.2 * uneven;
+  float above_trees = smoothstep(cover.x - 300.0, cover.x, height);
+  float meadow = above_trees * (1.0 - smoothstep(cover.y - 500.0, cover.y, height));
+  float scree = above_trees * smoothstep(0.50, 0.66, rise);
+  float rock = smoothstep(0.78, 1.05, rise);
+  float snow = smoothstep(cover.y - 200.0, cover.y + 200.0, height) * (1.0 - rock);
+  vec3 color = covered_by(own, own, vec3(0.42, 0.55, 0.25), 0.92, meadow);
+  color = covered_by(color, own, vec3(0.56, 0.53, 0.48), 0.97, scree);
+  color = covered_by(color, own, vec3(0.45, 0.43, 0.42), 0.80, rock);
+  return covered_by(color, own, vec3(0.86, 0.90, 0.97), 1.2, snow);
+}
+
+float contour_fade(float spacing, float per_pixel) {
+  return clamp((spacing / per_pixel - 4.0) / 6.0, 0.0, 1.0);
+}
+
+float contour_cover(float height, float per_pixel) {
+  float interval = contour_shape.x;
+  if (ramp_range.z < 0.5 || !(per_pixel > interval * 1e-6)) return 0.0;
+  float line = round(height / interval);
+  float every = contour_shape.z;
+  bool heavy = line - every * floor(line / every) < 0.5;
+  float minor = contour_fade(interval, per_pixel);
+  float width = contour_shape.y * (heavy ? 1.0 + minor : 1.0);
+  float strength = heavy ? contour_fade(interval * every, per_pixel) : minor;
+  return clamp(width * 0.5 + 0.5 - abs(height - line * interval) / per_pixel, 0.0, 1.0) * strength;
+}
+
+float soft_brightness(float brightness) {
+  if (brightness < 0.5) return 0.08 + 0.42 * 0.42 / (0.42 + 0.5 - brightness);
+  if (brightness > 1.35) return 1.9 - 0.55 * 0.55 / (0.55 + brightness - 1.35);
+  return brightness;
+}
+
+vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 place, float received) {
+  float z_factor = contour_shape.w;
+  vec3 normal = normalize(vec3(-post.xy * z_factor, 1.0));
+  vec3 form = normalize(vec3(-textureLod(slopes, place, grid_size.z).xy * z_factor, 1.0));
+  float side_light = 0.0;
+  for (int index = 0; index < 4; index += 1) side_light += max(dot(normal, sides[index]), 0.0) * side_shares[index];
+  float facing = max(dot(normal, to_sun), 0.0);
+  float shade = 0.55 * facing * post.z * received + 0.20 * side_light + 0.25 * max(dot(form, to_sun), 0.0);
+  float level = 0.80 * max(to_sun.z, 0.0) + 0.10;
+  float elevation = (height - ramp_range.x) * ramp_range.y;
+  float relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
+  float brightness = soft_brightness(1.0 + 2.4 * relief);
+  vec3 cool = vec3(0.80, 0.90, 1.12);
+  vec3 warm = vec3(1.06, 1.0, 0.90);
+  vec3 hue = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
+  return albedo * hue * (brightness * mix(0.5, 1.0, sky_share));
+}
+
+void main() {
+  vec2 right_m = dFdx(world.xy);
+  vec2 down_m = dFdy(world.xy);
+  float pixel_m = max(length(right_m), length(down_m));
+  vec2 at = (world.xy - grid.xy) * grid.zw;
+  vec2 place = (clamp(at, vec2(0.0), grid_size.xy - 1.0) + 0.5) / grid_size.xy;
+  float across = length(right_m * grid.zw);
+  float down = length(down_m * grid.zw);
+  float lod = clamp(log2(max(sqrt(across * down), 1e-6)), 0.0, grid_size.w);
+  int level = int(lod);
+  Reading reading = height_on(place, level);
+  float part = lod - float(level);
+  if (part > 0.0) {
+    Reading coarse = height_on(place, min(level + 1, int(grid_size.w)));
+    reading.height = mix(reading.height, coarse.height, part);
+    reading.gradient = mix(reading.gradient, coarse.gradient, part);
+  }
+  vec4 post = texture(slopes, place);
+  float sky_share = texture(skies, place).r;
+  vec2 wet_change = vec2(dFdx(post.w), dFdy(post.w));
+  float covered = symbol_cover();
+  vec4 color = surface();
+  float grain = 1.0;
+  if ((is_map > 0.5 || is_natural > 0.5) && ramp_range.w > 0.5) {
+    float sum = wave(world.xy, pixel_m, 1.7, 0.3) + wave(world.xy, pixel_m, 6.1, 0.35) + wave(world.xy, pixel_m, 23.0, 0.35);
+    grain = 1.0 + (0.10 + 0.10 * clamp(length(post.xy), 0.0, 1.0)) * sum;
+  }
+  float water_share = is_water;
+  float unlit = 0.0;
+  if (is_map > 0.5) {
+    float per_pixel = length(vec2(dot(reading.gradient, right_m), dot(reading.gradient, down_m)));
+    float lines = contour_cover(reading.height, per_pixel) * contour.a;
+    float away = (post.w - 0.5) / max(length(wet_change), 1e-4);
+    float water = clamp(away + 0.5, 0.0, 1.0);
+    float shore = 1.0 - 0.4 * clamp(1.25 - abs(away), 0.0, 1.0);
+    float off_shore = clamp((post.w - 0.75) * 4.0, 0.0, 1.0);
+    vec3 deep = water_at(reading.height);
+    vec3 blue = mix(mix(shallow.rgb, deep, clamp(off_shore / shallow.w, 0.0, 1.0)), min(deep, open_water.rgb),
+      clamp((off_shore - shallow.w) / (1.0 - shallow.w), 0.0, 1.0));
+    vec3 land = texture(ramp, vec2((reading.height - ramp_range.x) * ramp_range.y, 0.5)).rgb;
+    if (cover.z > 0.0) {
+      float uneven = wave(world.xy, pixel_m, 60.0, 0.25) + wave(world.xy, pixel_m, 170.0, 0.35)
+        + wave(world.xy, pixel_m, 480.0, 0.4);
+      land = with_cover(land, reading.height, post.xy, uneven);
+    }
+    land = mix(land, undergrowth.rgb, clamp(-post.w, 0.0, 1.0) * undergrowth.w) * grain;
+    vec3 bare = mix(land, blue, water) * shore;
+    vec2 part_of = (world.xy - imagery.xy) * imagery.zw;
+    vec4 draped = texture(imagery_texture,
+      clamp(vec2(part_of.x, 1.0 - part_of.y), imagery_size.xy * 0.5, 1.0 - imagery_size.xy * 0.5));
+    bool within = imagery_size.z > 0.5 && all(greaterThanEqual(part_of, vec2(0.0))) && all(lessThanEqual(part_of, vec2(1.0)));
+    float share = within ? draped.a : 0.0;
+    color = vec4(mix(mix(bare, draped.rgb, share), contour.rgb, lines * (1.0 - water)), 1.0);
+    water_share = water * (1.0 - share);
+    unlit = imagery_size.w > 0.5 ? share : 0.0;
+  } else {
+    color.rgb *= is_natural > 0.5 ? grain : 1.0;
+    if (alpha_mode == 1 && color.a < cutoff) discard;
+  }
+  vec3 light = mix(relief_lit(color.rgb, reading.height, post, sky_share, place, sun_share(vec3(0.0, 0.0, 1.0))), color.rgb, unlit);
+  if (is_hatching > 0.5) light = color.rgb;
+  light = mirror_sky(light, water_share, pixel_m);
+  shown = seen(light, (alpha_mode == 2 ? color.a : 1.0) * covered);
+}`;
+
+const SOLID_SHADER = `${COMMON}
+uniform float in_all_light;
+out vec4 shown;
+
+void main() {
+  vec4 color = surface();
+  if (alpha_mode == 1) {
+    // Sharpened, so that each of a pixel's samples is either inside or outside.
+    color.a = clamp((color.a - cutoff) / max(fwidth(color.a), 1e-3) + 0.5, 0.0, 1.0);
+    if (color.a <= 0.0) discard;
+  }
+  vec3 face = cross(dFdx(world), dFdy(world));
+  face *= dot(face, from_eye()) > 0.0 ? -1.0 : 1.0;
+  vec3 given = gl_FrontFacing ? side : -side;
+  vec3 normal = normalize(dot(given, given) > 0.0 ? given : face);
+  vec3 light = color.rgb;
+  if (is_hatching < 0.5) {
+    float received = in_all_light > 0.5 || dot(normal, to_sun) <= 0.0 ? 1.0 : sun_share(normalize(face));
+    vec3 direct = sun * (max(dot(normal, to_sun), 0.0) * received);
+    light = color.rgb * (direct + mix(bounce, sky, normal.z * 0.5 + 0.5));
+  }
+  light = mirror_sky(light, is_water, max(length(dFdx(world.xy)), length(dFdy(world.xy))));
+  shown = seen(light, alpha_mode == 0 ? 1.0 : color.a);
+}`;
+
+// The feature, and the depth in meters as bits.
+const PICK_SHADER = `${COMMON}
+out uvec2 shown;
+
+void main() {
+  if (symbol_cover() < 0.5 || (alpha_mode != 0 && surface().a < (alpha_mode == 1 ? cutoff : 0.5))) discard;
+  shown = uvec2(feature_id, floatBitsToUint(along));
+}`;
+
+const SHADOW_SHADER = `${COMMON}
+void main() {
+  if (alpha_mode == 1 && surface().a < cutoff) discard;
+}`;
+
+const BACKDROP_VERTEX = `#version 300 es
+out vec2 place;
+void main() {
+  place = vec2(float((gl_VertexID << 1) & 2), float(gl_VertexID & 2)) * 2.0 - 1.0;
+  gl_Position = vec4(place, 0.9999999, 1.0);
+}`;
+
+const BACKDROP_SHADER = `#version 300 es
+precision highp float;
+uniform vec3 forward;
+uniform vec4 right, up, haze, zenith;
+uniform vec3 studio_top, studio_bottom;
+uniform float horizon, studio;
+in vec2 place;
+out vec4 shown;
+
+vec3 srgb_from_linear(vec3 c) {
+  return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+}
+
+void main() {
+  vec3 ray = normalize(forward + right.xyz * (place.x / right.w) + up.xyz * (place.y / up.w));
+  float rise = max(ray.z, 0.0);
+  vec3 sky = mix(haze.rgb, zenith.rgb, rise * (2.0 - rise) * (rise * (1.0 + horizon) / (rise + horizon)));
+  shown = vec4(mix(srgb_from_linear(sky), mix(studio_bottom, studio_top, place.y * 0.5 + 0.5), studio), 1.0);
+}`;

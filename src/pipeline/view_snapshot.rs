@@ -1,0 +1,249 @@
+//! A picture of what a window shows, and the `[[camera]]` that draws it again.
+//!
+//! The picture is made of the scene's text with that camera added, from the beginning: it is the picture of `render` by
+//! construction, not by care.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DVec2, Vec3};
+
+use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::picture::{PictureError, PictureSize, render_view};
+use crate::pipeline::scene_file::{OpenSceneError, build_scene_text};
+use crate::render::RenderBackend;
+use crate::scene::SceneModel;
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::view::camera::{Camera, ViewProjection};
+
+/// The most pictures of views of a scene beside it.
+const MOST_PICTURES: u32 = 100_000;
+/// Places tried along the viewing direction for one that has ground.
+const TRIED: u16 = 400;
+
+/// A view that is to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewSnapshot {
+    /// The scene file, or the elevation file that the scene is made of.
+    pub file: PathBuf,
+    /// The scene's text, without the camera.
+    pub text: String,
+    /// Folders that it may read besides the parent of its own.
+    pub allowed: Vec<PathBuf>,
+    /// The camera's name, and the picture's.
+    pub name: String,
+    /// The camera, as it is written in a scene file.
+    pub camera: String,
+    /// The picture's size.
+    pub size: PictureSize,
+}
+
+/// Why a view cannot be drawn.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum ViewSnapshotError {
+    #[error("there is no ground where this view looks; turn until some is in the middle")]
+    NoGround,
+    #[error(
+        "a view by parallel rays is not written as a camera with an eye; draw it with `sandtable render`"
+    )]
+    Parallel,
+    #[error("{} already has {MOST_PICTURES} pictures beside it; move some elsewhere", .0.display())]
+    TooMany(PathBuf),
+    #[error("{} is there already; it is not replaced", .0.display())]
+    Exists(PathBuf),
+    #[error(transparent)]
+    Scene(#[from] OpenSceneError),
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    #[error(transparent)]
+    Write(#[from] WriteFileError),
+}
+
+/// The first name `view-N` that neither a camera of `scene` nor a picture beside `file` has.
+///
+/// # Errors
+/// [`ViewSnapshotError::TooMany`].
+pub fn free_name(scene: &SceneModel, file: &Path) -> Result<String, ViewSnapshotError> {
+    let is_free = |name: &String| {
+        !scene.cameras.iter().any(|view| view.name == *name) && !picture_path(file, name).exists()
+    };
+    let mut names = (1..=MOST_PICTURES).map(|number| format!("view-{number}"));
+    names.find(is_free).ok_or_else(|| ViewSnapshotError::TooMany(file.to_owned()))
+}
+
+/// The picture `NAME.png` of a view, beside the scene.
+pub fn picture_path(file: &Path, name: &str) -> PathBuf {
+    file.with_file_name(format!("{}-{name}.png", files::file_stem(file)))
+}
+
+/// A `[[camera]]` that sees what `camera` sees: within a millimeter of its eye, and through the place in the picture's
+/// middle.
+///
+/// # Errors
+/// [`ViewSnapshotError::NoGround`] and [`ViewSnapshotError::Parallel`].
+pub fn camera_table(scene: &SceneModel, camera: &Camera, name: &str) -> Result<String, ViewSnapshotError> {
+    let ViewProjection::Perspective { tan_half_fov } = camera.projection() else {
+        return Err(ViewSnapshotError::Parallel);
+    };
+    let target = ground_ahead(scene, camera).ok_or(ViewSnapshotError::NoGround)?;
+    let origin = scene.lattice.origin();
+    let eye = origin + camera.eye().truncate().as_dvec2();
+    let look_at = origin + target.at.truncate().as_dvec2();
+    let name = toml_edit::Value::from(name);
+    let system = match scene.crs.epsg() {
+        Some(code) => format!("crs = \"EPSG:{code}\"\n"),
+        None => String::new(),
+    };
+    Ok(format!(
+        "[[camera]]\nname = {name}\neye = [{:?}, {:?}]\neye_elevation = {:?}\nlook_at = [{:?}, {:?}]\n\
+         look_at_height = {:?}\n{system}field_of_view = {:?}\n",
+        eye.x,
+        eye.y,
+        scene.scale.elevation_m(f64::from(camera.eye().z)),
+        look_at.x,
+        look_at.y,
+        target.above_m,
+        (2.0 * libm::atan(f64::from(tan_half_fov))).to_degrees(),
+    ))
+}
+
+/// A point on the viewing direction, above or below ground.
+struct AimedPoint {
+    /// In world space.
+    at: Vec3,
+    /// Meters above the ground below it, as drawn.
+    above_m: f64,
+}
+
+/// The point of the viewing direction that is nearest to the ground below it, so that the camera looks at something.
+fn ground_ahead(scene: &SceneModel, camera: &Camera) -> Option<AimedPoint> {
+    let (min, max) = scene.bounds;
+    let reach_m = camera.eye().distance(camera.eye().clamp(min, max)) + (max - min).length();
+    let point = |step: u16| {
+        let share = f32::from(step) / f32::from(TRIED);
+        // Closer together near the eye.
+        let at = camera.eye() + camera.forward() * (reach_m * share * share);
+        let map = scene.lattice.origin() + at.truncate().as_dvec2();
+        let height_m = ground_height(&scene.lattice, Interpolation::Planar, map).height_m()?;
+        let above_m = f64::from(at.z) - f64::from(scene.scale.world_z(height_m as f32));
+        Some(AimedPoint { at, above_m })
+    };
+    // A short line of sight is no direction.
+    let points = (TRIED / 10..=TRIED).filter_map(point);
+    points.min_by(|a, b| a.above_m.abs().total_cmp(&b.above_m.abs()))
+}
+
+impl ViewSnapshot {
+    /// The scene's text with the camera.
+    pub fn scene_text(&self) -> String {
+        format!("{}\n\n{}", self.text.trim_end(), self.camera)
+    }
+
+    /// Draws the picture and writes it beside the scene. `progress` is called with the name of each step as it begins.
+    ///
+    /// # Errors
+    /// See [`ViewSnapshotError`]. A picture that is there is never replaced.
+    pub fn write(&self, progress: &dyn Fn(&'static str)) -> Result<PathBuf, ViewSnapshotError> {
+        let path = picture_path(&self.file, &self.name);
+        let scene = build_scene_text(&self.file, &self.scene_text(), &self.allowed, progress)?;
+        let view = scene.view(Some(&self.name)).ok_or(ViewSnapshotError::NoGround)?;
+        let drawn = render_view(&scene, view, self.size, RenderBackend::Cpu, progress)?;
+        if path.exists() {
+            return Err(ViewSnapshotError::Exists(path));
+        }
+        files::write_picture(&path, &drawn.pixels)?;
+        Ok(path)
+    }
+}
+
+/// The text of the scene in `file`; of an elevation file, a scene of its ground.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn scene_text(file: &Path) -> Result<String, OpenSceneError> {
+    if crate::pipeline::viewing::is_scene_file(file) {
+        return Ok(files::read_text(file)?);
+    }
+    Ok(crate::pipeline::viewing::bare_scene(file))
+}
+
+/// Map coordinates of a point in world space.
+pub fn map_position(scene: &SceneModel, at: Vec3) -> DVec2 {
+    scene.lattice.origin() + at.truncate().as_dvec2()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::picture;
+    use std::env;
+    use std::fs;
+
+    const SCENE: &str = "scenes/road.toml";
+    const SIZE: PictureSize = PictureSize { width: 64, height: 40 };
+
+    fn scene() -> (SceneModel, String) {
+        let text = scene_text(Path::new(SCENE)).expect("readable");
+        (build_scene_text(Path::new(SCENE), &text, &[], &|_| ()).expect("sound"), text)
+    }
+
+    #[test]
+    fn a_camera_that_is_written_and_read_again_sees_the_same() {
+        let (scene, text) = scene();
+        let (min, max) = scene.bounds;
+        for (eye, toward) in [
+            ((min + max) * 0.5 + Vec3::Z * 2_000.0, Vec3::new(0.3, 0.5, -0.6)),
+            ((min + max) * 0.5 + Vec3::Z * 300.0, Vec3::new(-0.7, 0.1, 0.05)),
+            (min + Vec3::new(-3_000.0, 500.0, 2_500.0), Vec3::new(1.0, 0.1, -0.4)),
+        ] {
+            let camera = Camera::new(eye, eye + toward * 100.0, 0.7, (64, 40), (0.5, 1e5)).expect("sound");
+            let table = camera_table(&scene, &camera, "view-1").expect("there is ground");
+            let again = build_scene_text(Path::new(SCENE), &format!("{text}\n{table}"), &[], &|_| ());
+            let again = again.expect("the camera is sound");
+            let view = again.view(Some("view-1")).expect("it was added");
+            let seen = picture::camera(&again, view, (64, 40)).expect("sound");
+            assert!(seen.eye().distance(camera.eye()) < 1e-3, "{} {}", seen.eye(), camera.eye());
+            assert!(
+                seen.forward().distance(camera.forward()) < 1e-3,
+                "{} {}",
+                seen.forward(),
+                camera.forward()
+            );
+            assert!((seen.tan_half_fov() - camera.tan_half_fov()).length() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_view_of_the_sky_beside_the_ground_has_no_camera() {
+        let (scene, _) = scene();
+        let eye = scene.bounds.0 - Vec3::splat(5_000.0);
+        let camera = Camera::new(eye, eye - Vec3::X, 0.7, (64, 40), (0.5, 1e5)).expect("sound");
+        let table = camera_table(&scene, &camera, "view-1");
+        assert!(matches!(table, Err(ViewSnapshotError::NoGround)));
+    }
+
+    #[test]
+    fn a_picture_of_a_view_is_that_of_its_scene_and_never_replaces_another() {
+        let folder = env::temp_dir().join(format!("sandtable-snapshot-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        fs::copy("assets/jacksboro/valley.asc", folder.join("valley.asc")).expect("copied");
+        let file = folder.join("valley.asc");
+        let text = scene_text(&file).expect("made");
+        let scene = build_scene_text(&file, &text, &[], &|_| ()).expect("sound");
+        let view = picture::camera(&scene, &scene.cameras[0], (64, 40)).expect("sound");
+        let mut names = Vec::new();
+        for _ in 0..2 {
+            let name = free_name(&scene, &file).expect("few");
+            let camera = camera_table(&scene, &view, &name).expect("ground");
+            let (file, text) = (file.clone(), text.clone());
+            let snapshot = ViewSnapshot { file, text, allowed: Vec::new(), name, camera, size: SIZE };
+            let path = snapshot.write(&|_| ()).expect("drawn");
+            assert!(matches!(snapshot.write(&|_| ()), Err(ViewSnapshotError::Exists(_))));
+            names.push(path.file_name().expect("named").to_string_lossy().into_owned());
+        }
+        let (first, second) = (fs::read(folder.join(&names[0])), fs::read(folder.join(&names[1])));
+        fs::remove_dir_all(&folder).ok();
+        assert_eq!(names, ["valley-view-1.png", "valley-view-2.png"]);
+        assert_eq!(first.expect("there"), second.expect("there"), "the same view");
+    }
+}

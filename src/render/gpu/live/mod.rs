@@ -1,0 +1,383 @@
+//! The renderer of a window: a scene that stays on the device, of which a frame sends only what changed.
+//!
+//! ```text
+//! load(DrawList) ─► materials, ground map, solids ┐
+//! update(GroundChanges) ─► patches, drapes        ├─► draw: sky ─ ground ─ drapes ─ solids ─ transparent solids
+//! set_shadows(LiveShadows) ─► shadow maps         ┘   pick: the same to a single pixel
+//! ```
+//!
+//! The ground and what lies on it come by patches ([`crate::draw::patches`]); everything else is drawn as in a picture, by
+//! the same shaders and the same rules of depth.
+//!
+//! # Shadows
+//! Shadow maps of solids are made for a camera, by the processor, in some ten milliseconds: too long for every frame. A map
+//! is therefore kept while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye;
+//! only how fine its texels are does. Beyond it nothing is shaded. Whoever moves the camera makes a new map, on another
+//! thread, when the eye has moved a good part of its distance to the ground.
+
+mod arena;
+mod encode;
+mod patches;
+pub mod pick;
+mod targets;
+
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use crate::draw::ground::GroundMap;
+use crate::draw::lighting::Lighting;
+use crate::draw::list::{DepthLayer, DrawList};
+use crate::draw::patches::GroundChanges;
+use crate::render::gpu::adapter::Gpu;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::frame::{FrameGroup, FrameTextures};
+use crate::render::gpu::geometry::Geometry;
+use crate::render::gpu::live::encode::Encoder;
+use crate::render::gpu::live::patches::PatchStore;
+use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
+use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
+use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
+use crate::render::gpu::memory::Loader;
+use crate::render::gpu::passes::{PassViews, ScenePass};
+use crate::render::gpu::pipelines::{FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
+use crate::render::gpu::plan::{DrawCall, PipelineKey, Plan};
+use crate::render::gpu::shadow::ShadowView;
+use crate::render::gpu::uniforms::{FrameScene, FrameUniforms};
+use crate::render::shadow::Shadows;
+use crate::view::camera::Camera;
+
+/// How finely frames are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LiveQuality {
+    /// Samples per pixel: 1, or 4 where the adapter can.
+    pub samples: u32,
+    /// The most readings of a texture along a pixel seen at a grazing angle, 1..=16.
+    pub anisotropy: u16,
+}
+
+/// What of a frame is up to its viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LiveOptions {
+    /// Whether the ground's triangles are outlined.
+    pub wireframe: bool,
+}
+
+/// What was sent to the device for a change, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UploadedBytes {
+    /// Vertices of the ground.
+    pub vertices: u64,
+    /// Triangles of the ground.
+    pub triangles: u64,
+    /// What lies on the ground.
+    pub drapes: u64,
+}
+
+/// What a frame drew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LiveStatistics {
+    /// Patches of ground.
+    pub patches: u32,
+    /// Calls of the device.
+    pub calls: u32,
+    /// Triangles of ground and of what lies on it.
+    pub triangles: u64,
+}
+
+/// Shadow maps of solids.
+#[derive(Clone, Debug, Default)]
+pub struct LiveShadows(Shadows);
+
+/// Draws a scene frame after frame.
+#[derive(Debug)]
+pub struct LiveRenderer {
+    gpu: Gpu,
+    format: LiveFormat,
+    layouts: Layouts,
+    colors: Pipelines,
+    features: Pipelines,
+    encoder: Option<Encoder>,
+    targets: Option<LiveTargets>,
+    scene: Option<LoadedScene>,
+}
+
+/// A scene on the device.
+#[derive(Debug)]
+struct LoadedScene {
+    map: Option<Arc<GroundMap>>,
+    lighting: Lighting,
+    shadows: [ShadowView; 2],
+    textures: FrameTextures,
+    frame: FrameGroup,
+    materials: Materials,
+    geometry: Geometry,
+    plan: Plan,
+    patches: PatchStore,
+    pick: PickTarget,
+}
+
+impl LiveQuality {
+    /// What an adapter draws fluently: a processor that draws itself takes one sample.
+    pub fn of(gpu: &Gpu) -> Self {
+        /// The most readings of a texture that a processor affords.
+        const SOFTWARE_ANISOTROPY: u16 = 4;
+        match gpu.is_software {
+            true => Self { samples: 1, anisotropy: gpu.anisotropy.min(SOFTWARE_ANISOTROPY) },
+            false => Self { samples: gpu.samples, anisotropy: gpu.anisotropy },
+        }
+    }
+}
+
+impl UploadedBytes {
+    /// All together.
+    pub fn total(&self) -> u64 {
+        self.vertices + self.triangles + self.drapes
+    }
+}
+
+impl LiveStatistics {
+    fn count(&mut self, triangles: u32) {
+        self.calls += 1;
+        self.triangles += u64::from(triangles);
+    }
+
+    fn add(&mut self, other: Self) {
+        self.patches += other.patches;
+        self.calls += other.calls;
+        self.triangles += other.triangles;
+    }
+}
+
+impl LiveShadows {
+    /// The maps for what `camera` sees of a list with its ground; takes some ten milliseconds, on any thread.
+    ///
+    /// # Errors
+    /// [`GpuError::List`] where the list is unsound.
+    pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
+        list.check()?;
+        Ok(Self(Shadows::new(list, camera)))
+    }
+}
+
+impl LiveRenderer {
+    /// A renderer for a window's texture of `format`, at the quality that the adapter affords.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        Self::with_quality(gpu, format, LiveQuality::of(gpu))
+    }
+
+    /// A renderer of a chosen quality; what the adapter cannot do is lowered.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn with_quality(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        quality: LiveQuality,
+    ) -> Result<Self, GpuError> {
+        let samples = if quality.samples >= gpu.samples { gpu.samples } else { 1 };
+        let anisotropy = quality.anisotropy.clamp(1, gpu.anisotropy);
+        let gpu = gpu.with_anisotropy(anisotropy);
+        let format = LiveFormat { window: format, samples };
+        let made = gpu.guarded("building its shaders", || {
+            let layouts = Layouts::new(&gpu);
+            let shader = shader(&gpu);
+            let target = |pass, format, samples| {
+                Pipelines::new(&gpu, &layouts, &shader, PassTarget { pass, format, samples })
+            };
+            let colors = target(GpuPass::Color, format.drawn(), samples);
+            let features = target(GpuPass::Feature, FEATURE, 1);
+            let encoder = (format.drawn() != format.window).then(|| Encoder::new(&gpu, format.window));
+            Ok((layouts, colors, features, encoder))
+        });
+        let (layouts, colors, features, encoder) = made?;
+        Ok(Self { gpu, format, layouts, colors, features, encoder, targets: None, scene: None })
+    }
+
+    /// The device that it draws with.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Takes over a scene: its materials, ground map and light, and all items that neither are ground nor lie on it. The
+    /// ground and what lies on it are those of the updates that follow.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the scene loaded before stays.
+    pub fn load(&mut self, list: &DrawList) -> Result<(), GpuError> {
+        list.check()?;
+        let Self { gpu, layouts, colors, features, .. } = self;
+        let scene = gpu.guarded("loading the scene", || {
+            let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
+            let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
+            let patches = PatchStore::new(list, &places);
+            let [color_keys, feature_keys] = plan.keys();
+            colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]));
+            colors.make(gpu, patches.keys(GpuPass::Color));
+            features.make(gpu, feature_keys);
+            features.make(gpu, patches.keys(GpuPass::Feature));
+            let loader = Loader::new(gpu);
+            let shadows = Shadows::default();
+            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
+            Ok(LoadedScene {
+                map: list.ground.clone(),
+                lighting: list.lighting,
+                shadows: ShadowView::both(&shadows),
+                frame: FrameGroup::new(&loader, layouts, &textures)?,
+                textures,
+                materials: Materials::upload(&loader, layouts, list, &places)?,
+                geometry: Geometry::upload(&loader, list, &plan)?,
+                plan,
+                patches,
+                pick: PickTarget::new(&loader)?,
+            })
+        });
+        self.scene = Some(scene?);
+        Ok(())
+    }
+
+    /// Takes over what changed on the ground, and says what was sent for it. Does nothing before a scene is loaded.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn update(&mut self, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(UploadedBytes::default()) };
+        self.gpu.guarded("sending what changed", || scene.patches.update(&self.gpu, changes))
+    }
+
+    /// Lights the scene anew: sun, sky and haze, not the shadows.
+    pub fn set_lighting(&mut self, lighting: Lighting) {
+        if let Some(scene) = &mut self.scene {
+            scene.lighting = lighting;
+        }
+    }
+
+    /// Replaces the map that the ground's color and light are read from.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the map before stays.
+    pub fn set_ground(&mut self, map: Option<Arc<GroundMap>>) -> Result<(), GpuError> {
+        if let Some(map) = &map {
+            map.check().map_err(crate::draw::list::DrawListError::from)?;
+        }
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("sending the ground map", || {
+            let loader = Loader::new(&self.gpu);
+            scene.textures.replace_ground(&loader, map.as_deref())?;
+            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
+            scene.map = map;
+            Ok(())
+        })
+    }
+
+    /// Replaces the shadows of solids.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the shadows before stay.
+    pub fn set_shadows(&mut self, shadows: &LiveShadows) -> Result<(), GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("sending the shadows", || {
+            let loader = Loader::new(&self.gpu);
+            scene.textures.replace_shadows(&loader, &shadows.0)?;
+            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
+            scene.shadows = ShadowView::both(&shadows.0);
+            Ok(())
+        })
+    }
+
+    /// Records a frame to `target`, a texture of the renderer's format and of `size` pixels, as `camera` sees it, whose
+    /// picture should have that size. Nothing is drawn where a side is zero or no scene is loaded. The camera of the last
+    /// frame recorded before a submission counts for all of them.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; after [`GpuError::Driver`] the device is to be opened anew.
+    pub fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+        camera: &Camera,
+        options: &LiveOptions,
+    ) -> Result<LiveStatistics, GpuError> {
+        let Some(scene) = &self.scene else { return Ok(LiveStatistics::default()) };
+        if size.0 == 0 || size.1 == 0 {
+            return Ok(LiveStatistics::default());
+        }
+        let (gpu, format) = (&self.gpu, self.format);
+        let known = self.targets.take().filter(|targets| targets.size == size);
+        let targets = gpu.guarded("resizing its textures", || {
+            known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), format, size), Ok)
+        })?;
+        let drawn = gpu.guarded("drawing a frame", || {
+            scene.frame.write(gpu, &scene.constants(camera, size));
+            let shown = targets.linear.as_ref().unwrap_or(target);
+            let views = PassViews {
+                label: "frame",
+                color: targets.samples.as_ref().unwrap_or(shown),
+                resolved: targets.samples.is_some().then_some(shown),
+                depth: &targets.depth,
+            };
+            let pass = views.begin(encoder, &scene.frame.group);
+            let mut pass = ScenePass::new(pass, &self.colors, &scene.materials);
+            pass.sky();
+            let drawn = scene.draw(&mut pass, GpuPass::Color, camera);
+            drop(pass);
+            if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
+                encode.record(gpu, encoder, linear, target);
+            }
+            Ok(drawn)
+        });
+        self.targets = Some(targets);
+        let _ = options;
+        drawn
+    }
+
+    /// What the picture of `camera` shows at the position `pixel`, in pixels from its upper left corner; `None` for the
+    /// sky, for what lies outside, and before a scene is loaded. Waits for the device.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn pick(&self, camera: &Camera, pixel: Vec2) -> Result<Option<PickedPoint>, GpuError> {
+        let Some(scene) = &self.scene else { return Ok(None) };
+        let size = camera.size();
+        let is_inside = pixel.cmpge(Vec2::ZERO).all() && pixel.x < size.0 as f32 && pixel.y < size.1 as f32;
+        if !is_inside {
+            return Ok(None);
+        }
+        let gpu = &self.gpu;
+        gpu.guarded("picking a pixel", || {
+            scene.frame.write(gpu, &scene.constants(camera, size));
+            let mut encoder = gpu.encoder("pick");
+            let pass = scene.pick.begin(&mut encoder, &scene.frame.group, pixel, size);
+            let mut pass = ScenePass::new(pass, &self.features, &scene.materials);
+            scene.draw(&mut pass, GpuPass::Feature, camera);
+            drop(pass);
+            scene.pick.read(gpu, encoder)
+        })
+    }
+}
+
+impl LoadedScene {
+    fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
+        let scene =
+            FrameScene { ground: self.map.as_deref(), lighting: &self.lighting, shadows: self.shadows };
+        FrameUniforms::new(scene, camera).with_size(size)
+    }
+
+    /// Draws everything but the sky.
+    fn draw(&self, pass: &mut ScenePass<'_, '_>, which: GpuPass, camera: &Camera) -> LiveStatistics {
+        let shown = self.patches.shown(camera);
+        let mut drawn = self.patches.draw_ground(pass, &shown, PipelineKey::PATCH);
+        drawn.add(self.patches.draw_drapes(pass, which, &shown));
+        let calls: Vec<&DrawCall> = match which {
+            GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
+            GpuPass::Feature => self.plan.features.iter().collect(),
+        };
+        drawn.calls += calls.len() as u32;
+        pass.draw(&self.geometry, calls);
+        drawn
+    }
+}

@@ -1,0 +1,225 @@
+//! Earthworks of the scene file: craters, trenches, tracks, level and raised ground.
+//!
+//! They come after lakes, rivers, roads, pads of buildings, trenches along lines and bridges, one after the other in the
+//! order of the file, and before the pads of models. So one that a user adds while the scene is shown changes the ground
+//! on the screen just as it changes that of the scene that is read again, unless a pad lies there.
+
+use glam::DVec2;
+
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::earthworks::EarthworkTable;
+use crate::description::words::EarthworkKind;
+use crate::earthworks::brush::{Crater, TireTrack, Trench};
+use crate::earthworks::earthwork::{CrownHeight, Earthwork, RaisedGround};
+use crate::earthworks::held_posts::HeldPosts;
+use crate::earthworks::level_ground::LevelGround;
+use crate::earthworks::pad::Batters;
+use crate::geom::polyline::Polyline;
+use crate::message::choice::Choice;
+use crate::scene::attributes::{Attributes, DefaultCounts};
+use crate::scene::builder::SceneBuilder;
+use crate::scene::near::MERGE_M;
+use crate::scene::report::EarthworkRow;
+use crate::scene::sources::{Sourced, Sources};
+use crate::terrain::lattice::Lattice;
+
+/// The steps, of some nanoseconds each, that all earthworks of a scene may take together.
+const MAX_COST: f64 = 1e9;
+
+/// Sizes in meters where none are stated: a heavy bomb's crater, a trench to stand in, a truck's track, a bank.
+const RADIUS_M: f64 = 10.0;
+const TRENCH_DEPTH_M: f64 = 1.5;
+const TRENCH_WIDTH_M: f64 = 1.5;
+const TRACK_DEPTH_M: f64 = 0.15;
+const TRACK_GAUGE_M: f64 = 2.0;
+const RUT_M: f64 = 0.5;
+const CROWN_HEIGHT_M: f64 = 3.0;
+const CROWN_WIDTH_M: f64 = 4.0;
+
+/// The depth of a simple crater below the old ground and the height of its rim, as shares of its radius (Pike 1977).
+const CRATER_DEPTH: f64 = 0.32;
+const CRATER_RIM: f64 = 0.07;
+
+/// A trench's bottom as a share of its width.
+const BOTTOM: f64 = 0.55;
+/// The most of its width that a trench's bottom may be; what is left are its sides.
+const MOST_BOTTOM: f64 = 0.99;
+
+/// An earthwork in world space with its name, which may be empty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedEarthwork {
+    /// The name that the scene file or the feature's properties give.
+    pub name: String,
+    /// Its shape and place.
+    pub work: Earthwork,
+}
+
+/// Changes the ground by the document's earthworks, beside the posts that `held` holds, and reports the earth moved.
+///
+/// # Errors
+/// A source cannot be had, or there is more to do than [`MAX_COST`].
+pub fn build(
+    document: &Document,
+    sources: &Sources<'_>,
+    lattice: &mut Lattice,
+    held: &HeldPosts,
+    collected: &mut SceneBuilder,
+) -> Result<(), Diagnostic> {
+    let (mut cost, mut unseen, mut leveled) = (0.0, 0, Vec::new());
+    for table in &document.earthworks {
+        for NamedEarthwork { name, work } in of_table(table, sources, &mut collected.default_counts)? {
+            cost += work.cost(lattice);
+            if cost > MAX_COST {
+                return Err(too_much(document, table));
+            }
+            let changes = work.apply(lattice, held);
+            if matches!(work, Earthwork::Level(_)) {
+                leveled.extend(
+                    changes.pieces.iter().flat_map(|piece| piece.changed(lattice)).map(|(post, _)| post),
+                );
+            }
+            unseen += usize::from(!work.is_resolved(lattice.cell().max_element()));
+            collected.report.earthworks.push(EarthworkRow {
+                name,
+                kind: table.kind.word(),
+                area: changes.area_m2(lattice),
+                cut: changes.volumes.cut_m3,
+                fill: changes.volumes.fill_m3,
+            });
+        }
+    }
+    // Level ground that a feature has shaped is no lake.
+    for post in leveled {
+        lattice.pin(post, lattice.height(post));
+    }
+    note(unseen, lattice, collected);
+    Ok(())
+}
+
+fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
+    let rows = &collected.report.earthworks;
+    let still = rows.iter().filter(|row| row.cut == 0.0 && row.fill == 0.0).count();
+    let works = |count: usize| if count == 1 { "earthwork" } else { "earthworks" };
+    if !rows.is_empty() {
+        let (cut, fill) = rows.iter().fold((0.0, 0.0), |(cut, fill), row| (cut + row.cut, fill + row.fill));
+        let count = rows.len();
+        collected.notes.push(format!("{count} {}: {cut:.0} m³ cut, {fill:.0} m³ filled", works(count)));
+    }
+    if unseen > 0 {
+        let cell_m = lattice.cell().max_element();
+        collected.notes.push(format!(
+            "{unseen} {} narrower than two cells of the elevation model, whose posts are {cell_m:.3} m apart: they show \
+             as pits, or not at all",
+            works(unseen)
+        ));
+    }
+    if still > 0 {
+        collected.notes.push(format!(
+            "{still} {} moved no earth: off the elevation model, between its posts, or under water",
+            works(still)
+        ));
+    }
+}
+
+fn too_much(document: &Document, table: &EarthworkTable) -> Diagnostic {
+    let message = format!("up to this earthwork, moving the earth takes more than {MAX_COST:.0e} steps");
+    document
+        .error_at(table.source.span(), message)
+        .with_help("make it smaller, choose fewer features by `where`, or simplify their lines")
+}
+
+/// The earthworks of a table, in the order of its source.
+///
+/// # Errors
+/// The source cannot be had.
+pub fn of_table(
+    table: &EarthworkTable,
+    sources: &Sources<'_>,
+    counts: &mut DefaultCounts,
+) -> Result<Vec<NamedEarthwork>, Diagnostic> {
+    let source = &table.source;
+    let name = |attributes: &Attributes| attributes.name(table.name.as_deref());
+    let mut sizes = SizeReader { table, counts };
+    let mut works = Vec::new();
+    match *table.kind {
+        EarthworkKind::Crater => {
+            for Sourced { attributes, shape } in sources.points(source)? {
+                let work = Earthwork::Crater(sizes.crater(&attributes, shape));
+                works.push(NamedEarthwork { name: name(&attributes), work });
+            }
+        }
+        EarthworkKind::Level => {
+            for Sourced { attributes, shape } in sources.polygons(source)? {
+                let rings = std::iter::once(shape.exterior).chain(shape.holes).collect();
+                let level_m = attributes.value(table.level.as_ref());
+                let batters = Batters { cut: table.cut_slope, fill: table.fill_slope };
+                let work = Earthwork::Level(LevelGround { rings, level_m, batters });
+                works.push(NamedEarthwork { name: name(&attributes), work });
+            }
+        }
+        kind @ (EarthworkKind::Trench | EarthworkKind::Track | EarthworkKind::Raise) => {
+            for Sourced { attributes, shape } in sources.lines(source)? {
+                let line = match Polyline::new(shape.clone(), MERGE_M) {
+                    Some(line) => line.points().to_vec(),
+                    None => shape.into_iter().take(1).collect(),
+                };
+                let work = match kind {
+                    EarthworkKind::Raise => Earthwork::Raise(sizes.raised(&attributes, line)),
+                    _ if line.len() < 2 => continue,
+                    EarthworkKind::Trench => Earthwork::Trench(sizes.trench(&attributes, line)),
+                    _ => Earthwork::Track(sizes.track(&attributes, line)),
+                };
+                works.push(NamedEarthwork { name: name(&attributes), work });
+            }
+        }
+    }
+    Ok(works)
+}
+
+/// Reads the sizes of one feature after the other.
+struct SizeReader<'a> {
+    table: &'a EarthworkTable,
+    counts: &'a mut DefaultCounts,
+}
+
+impl SizeReader<'_> {
+    fn crater(&mut self, of: &Attributes, center: DVec2) -> Crater {
+        let Self { table, counts } = self;
+        let radius_m = of.number_or(table.radius.as_ref(), RADIUS_M, counts);
+        Crater {
+            center,
+            radius_m,
+            depth_m: of.number_or(table.depth.as_ref(), CRATER_DEPTH * radius_m, counts),
+            rim_m: of.number_or(table.rim.as_ref(), CRATER_RIM * radius_m, counts),
+        }
+    }
+
+    fn trench(&mut self, of: &Attributes, line: Vec<DVec2>) -> Trench {
+        let Self { table, counts } = self;
+        let top_m = of.number_or(table.width.as_ref(), TRENCH_WIDTH_M, counts);
+        let bottom_m = of.number_or(table.bottom.as_ref(), BOTTOM * top_m, counts).min(MOST_BOTTOM * top_m);
+        let depth_m = of.number_or(table.depth.as_ref(), TRENCH_DEPTH_M, counts);
+        Trench { line, bottom_m, top_m, depth_m }
+    }
+
+    fn track(&mut self, of: &Attributes, line: Vec<DVec2>) -> TireTrack {
+        let Self { table, counts } = self;
+        TireTrack {
+            line,
+            gauge_m: of.number_or(table.width.as_ref(), TRACK_GAUGE_M, counts),
+            rut_m: of.number_or(table.rut.as_ref(), RUT_M, counts),
+            depth_m: of.number_or(table.depth.as_ref(), TRACK_DEPTH_M, counts),
+        }
+    }
+
+    fn raised(&mut self, of: &Attributes, line: Vec<DVec2>) -> RaisedGround {
+        let Self { table, counts } = self;
+        let crown = match of.value(table.level.as_ref()) {
+            Some(level_m) => CrownHeight::Elevation(level_m),
+            None => CrownHeight::AboveGround(of.number_or(table.height.as_ref(), CROWN_HEIGHT_M, counts)),
+        };
+        let width_m = of.number_or(table.width.as_ref(), CROWN_WIDTH_M, counts);
+        RaisedGround { line, crown, width_m, run: table.fill_slope }
+    }
+}

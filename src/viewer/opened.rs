@@ -1,0 +1,312 @@
+//! An open scene: its walk, its camera, what of it is shown, and what the renderer has to take over.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+use crate::draw::lighting::Lighting;
+use crate::draw::list::{DrawList, FeatureId};
+use crate::draw::patches::GroundChanges;
+use crate::geom::aabb::Aabb;
+use crate::pipeline::walk::Walk;
+use crate::pipeline::walk::frame::{WalkError, WalkOptions, WalkStatistics};
+use crate::pipeline::walk::pick::{StandingIndex, WalkPick, pixel_ray};
+use crate::scene::picture;
+use crate::scene::{SceneModel, SceneView};
+use crate::terrain::sight::ray::Ray;
+use crate::view::camera::{Camera, CameraError, far_m};
+use crate::view::navigation::pose::{ViewPicture, ViewPose};
+use crate::view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
+
+/// The size that cameras are fitted to before the window has one.
+const FIRST_SIZE: (u32, u32) = (1280, 720);
+/// How much farther the eye may go before models in the form for their distance are made anew, as a share of the scene's
+/// diagonal: less would make them anew on every flight across it.
+const EYE_SHARE: f32 = 0.1;
+/// How near to a label ground may lie that would hide it, as a share of the distance: half a cell of ground far away.
+const LABEL_SLACK: f64 = 0.01;
+/// The nearest that is drawn, in meters, as in pictures.
+const NEAR_M: f32 = 0.5;
+/// The vertical field of view in degrees where a camera by parallel rays has none.
+const FOV_DEG: f32 = 40.0;
+/// The least angle in degrees by which the eye looks down at what it goes to.
+const APPROACH_DEG: f64 = 25.0;
+
+/// An open scene.
+pub struct OpenedScene {
+    /// Its file.
+    pub path: PathBuf,
+    /// The scene.
+    pub scene: Arc<SceneModel>,
+    /// The ground from frame to frame.
+    pub walk: Walk,
+    /// The camera's way.
+    pub navigator: Navigator,
+    /// The vertical field of view, radians.
+    pub fov_y_rad: f32,
+    /// The pose whose triangles are shown while the camera flies on; `None` for the camera's own.
+    pub frozen: Option<ViewPose>,
+    list: Arc<DrawList>,
+    standing: StandingIndex,
+    /// Where the eye was when the list was made.
+    list_eye: Vec3,
+    hidden: BTreeSet<FeatureId>,
+    needs_load: bool,
+}
+
+/// What a frame shows.
+pub struct SceneFrame {
+    /// The list to load before anything else; `None` where the renderer has it.
+    pub load: Option<Arc<DrawList>>,
+    /// What changed on the ground.
+    pub changes: GroundChanges,
+    /// How it is seen.
+    pub camera: Camera,
+    /// The light for that camera.
+    pub lighting: Lighting,
+    /// What the update did.
+    pub statistics: WalkStatistics,
+    /// How long it took.
+    pub update_ms: f32,
+}
+
+/// Why a frame cannot be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneFrameError {
+    /// The camera sees nothing.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The ground cannot be read.
+    #[error(transparent)]
+    Walk(#[from] WalkError),
+}
+
+impl OpenedScene {
+    /// A scene, seen through its first camera. Measures the ground, lights it and sets the models: it is for a thread.
+    ///
+    /// # Errors
+    /// Its first camera sees nothing.
+    pub fn new(
+        path: PathBuf,
+        scene: SceneModel,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<Self, CameraError> {
+        let scene = Arc::new(scene);
+        progress("measuring the ground");
+        let camera = picture::camera(&scene, &scene.cameras[0], FIRST_SIZE)?;
+        let to_sun = Some(scene.sunlight.to_sun(Some(&camera)));
+        let walk = Walk::new(Arc::clone(&scene), WalkOptions { to_sun, ..WalkOptions::default() });
+        let list = Arc::new(walk.static_list(&camera, progress));
+        let (min, max) = scene.bounds;
+        let space = NavigatedSpace { min: min.as_dvec3(), max: max.as_dvec3() };
+        Ok(Self {
+            path,
+            navigator: Navigator::new(ViewPose::of_camera(&camera), space),
+            fov_y_rad: field_of_view(&camera),
+            frozen: None,
+            standing: StandingIndex::new(Arc::clone(&list)),
+            list,
+            list_eye: camera.eye(),
+            hidden: BTreeSet::new(),
+            needs_load: true,
+            scene,
+            walk,
+        })
+    }
+
+    /// The box of the scene in world space.
+    pub fn bounds(&self) -> Aabb {
+        let (min, max) = self.scene.bounds;
+        Aabb { min, max }
+    }
+
+    /// The camera on a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// See [`CameraError`].
+    pub fn camera(&self, size: (u32, u32)) -> Result<Camera, CameraError> {
+        self.camera_from(&self.navigator.pose(), size)
+    }
+
+    fn camera_from(&self, pose: &ViewPose, size: (u32, u32)) -> Result<Camera, CameraError> {
+        let planes = (NEAR_M, far_m(&self.bounds(), pose.eye.as_vec3()));
+        pose.camera(&ViewPicture { fov_y_rad: self.fov_y_rad, size, planes })
+    }
+
+    /// Goes to one of the scene's cameras, on a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// See [`CameraError`].
+    pub fn go_to_view(&mut self, view: &SceneView, size: (u32, u32)) -> Result<(), CameraError> {
+        let camera = picture::camera(&self.scene, view, size)?;
+        self.fov_y_rad = field_of_view(&camera);
+        self.navigator.go_to(ViewPose::of_camera(&camera), TRANSITION_S);
+        Ok(())
+    }
+
+    /// Goes to where `place` lies in the middle of the picture, `distance_m` away, looking down at it.
+    pub fn go_toward(&mut self, place: DVec3, distance_m: f64) {
+        let pose = self.navigator.pose();
+        let pose = ViewPose { pitch_rad: pose.pitch_rad.min(-APPROACH_DEG.to_radians()), ..pose };
+        let eye = place - pose.forward() * distance_m;
+        self.navigator.go_to(ViewPose { eye, ..pose }, TRANSITION_S);
+    }
+
+    /// Lets `seconds` pass with steps; returns whether the camera moved.
+    pub fn advance(&mut self, seconds: f64, steps: NavigationSteps) -> bool {
+        let walk = &self.walk;
+        self.navigator.advance(seconds, steps, &|at| walk.ground_z(at))
+    }
+
+    /// Turns the eye about `pivot`, radians to the right and up over it; or the view alone, where there is no pivot.
+    pub fn turn(&mut self, pivot: Option<DVec3>, turn: DVec2) {
+        let walk = &self.walk;
+        match pivot {
+            Some(pivot) => self.navigator.orbit(pivot, turn, &|at| walk.ground_z(at)),
+            None => self.navigator.look(turn),
+        }
+    }
+
+    /// Moves the ground along, so that `grabbed` lies under a pixel of `camera`'s picture.
+    pub fn drag(&mut self, grabbed: DVec3, camera: &Camera, pixel: Vec2) {
+        let walk = &self.walk;
+        self.navigator.drag(grabbed, camera.ray_through(pixel).as_dvec3(), &|at| walk.ground_z(at));
+    }
+
+    /// Comes nearer to `place`, until it is `factor` times as far away.
+    pub fn zoom(&mut self, place: DVec3, factor: f64) {
+        let walk = &self.walk;
+        self.navigator.zoom(place, factor, &|at| walk.ground_z(at));
+    }
+
+    /// What the renderer has to take over for a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// See [`SceneFrameError`].
+    pub fn frame(&mut self, size: (u32, u32)) -> Result<SceneFrame, SceneFrameError> {
+        let camera = self.camera(size)?;
+        let (min, max) = self.scene.bounds;
+        let has_moved = self.list_eye.distance(camera.eye()) > (max - min).length() * EYE_SHARE;
+        if self.walk.list_depends_on_eye() && has_moved && !self.navigator.is_on_its_way() {
+            self.renew_list(&camera);
+        }
+        let load = std::mem::take(&mut self.needs_load).then(|| Arc::clone(&self.list));
+        if load.is_some() {
+            self.walk.forget_handed();
+        }
+        let started = Instant::now();
+        let refined_for = match self.frozen {
+            Some(pose) => self.camera_from(&pose, size)?,
+            None => camera,
+        };
+        let mut frame = self.walk.update(&refined_for)?;
+        let update_ms = started.elapsed().as_secs_f32() * 1e3;
+        if !self.hidden.is_empty() {
+            for drapes in &mut frame.changes.drapes {
+                drapes.pieces.retain(|piece| !self.hidden.contains(&piece.feature));
+            }
+        }
+        let (changes, statistics) = (frame.changes, frame.statistics);
+        Ok(SceneFrame { load, changes, lighting: self.walk.lighting(&camera), camera, statistics, update_ms })
+    }
+
+    /// Hands everything over again: to a renderer that starts anew.
+    pub fn reload(&mut self) {
+        self.needs_load = true;
+    }
+
+    /// Hides these features and shows all others.
+    pub fn hide(&mut self, hidden: &BTreeSet<FeatureId>) {
+        self.hidden.clone_from(hidden);
+        if let Ok(camera) = self.camera(FIRST_SIZE) {
+            self.renew_list(&camera);
+        }
+    }
+
+    /// Moves the sun, and lights the ground anew.
+    pub fn set_sun(&mut self, to_sun: Vec3) {
+        self.walk.set_sun(to_sun);
+        if let Ok(camera) = self.camera(FIRST_SIZE) {
+            self.renew_list(&camera);
+        }
+    }
+
+    /// Sets what stands anew, where the eye is now.
+    pub fn renew_list(&mut self, camera: &Camera) {
+        let mut list = self.walk.static_list(camera, &|_| ());
+        list.items.retain(|item| !self.hidden.contains(&item.feature));
+        self.list = Arc::new(list);
+        self.standing = StandingIndex::new(Arc::clone(&self.list));
+        self.list_eye = camera.eye();
+        self.needs_load = true;
+    }
+
+    /// What the picture of `camera` shows at a pixel; `None` for the sky.
+    pub fn pick(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
+        self.walk.pick(pixel_ray(camera, pixel), Some(&self.standing))
+    }
+
+    /// What lies on the ground, or the ground, at a pixel; `None` for the sky.
+    pub fn pick_ground(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
+        self.walk.pick(pixel_ray(camera, pixel), None)
+    }
+
+    /// The place in the middle of the picture; without ground there, one ahead at the distance of the scene's middle.
+    pub fn focus(&self, camera: &Camera) -> DVec3 {
+        let (width, height) = camera.size();
+        let middle = Vec2::new(width as f32, height as f32) * 0.5;
+        self.walk.pick_ground(pixel_ray(camera, middle)).unwrap_or_else(|| {
+            let ahead_m = (self.bounds().center() - camera.eye()).dot(camera.forward()).max(100.0);
+            (camera.eye() + camera.forward() * ahead_m).as_dvec3()
+        })
+    }
+
+    /// Whether no ground hides a place from the eye.
+    pub fn is_seen(&self, camera: &Camera, at: Vec3) -> bool {
+        let origin = camera.eye().as_dvec3();
+        let direction = (at + Vec3::Z * 2.0).as_dvec3() - origin;
+        let distance_m = direction.length();
+        if distance_m == 0.0 {
+            return true;
+        }
+        let slack_m = (distance_m * LABEL_SLACK).max(self.walk.lattice().cell().max_element());
+        let hit = self.walk.pick_ground(Ray { origin, direction });
+        hit.is_none_or(|hit| hit.distance(origin) > distance_m - slack_m)
+    }
+
+    /// The box of a feature on the map, in world X and Y; `None` of one that is nowhere.
+    pub fn feature_box(&self, feature: FeatureId) -> Option<(Vec2, Vec2)> {
+        let scene = &self.scene;
+        let ribbons = scene.ribbons.iter().filter(|ribbon| ribbon.feature == feature);
+        let ribbons =
+            ribbons.flat_map(|ribbon| ribbon.plan.vertices.iter().map(|vertex| vertex.at.as_vec2()));
+        let solids = scene.solids.iter().filter(|solid| solid.feature == feature);
+        let solids = solids
+            .flat_map(|solid| &solid.mesh.vertices)
+            .map(|vertex| Vec3::from(vertex.position).truncate());
+        let models = scene.placements.iter().filter(|placement| placement.feature == feature);
+        let points = ribbons.chain(solids).chain(models.map(|placement| placement.at));
+        points.fold(None, |found: Option<(Vec2, Vec2)>, at| {
+            Some(found.map_or((at, at), |(min, max)| (min.min(at), max.max(at))))
+        })
+    }
+
+    /// Goes to where a feature fills a good part of the picture; says whether it is anywhere.
+    pub fn go_to_feature(&mut self, feature: FeatureId) -> bool {
+        let Some((min, max)) = self.feature_box(feature) else { return false };
+        let middle = ((min + max) * 0.5).as_dvec2();
+        let z = self.walk.ground_z(middle).unwrap_or(f64::from(self.bounds().center().z));
+        self.go_toward(middle.extend(z), (f64::from(min.distance(max)) * 1.2).max(60.0));
+        true
+    }
+}
+
+fn field_of_view(camera: &Camera) -> f32 {
+    match camera.parallel_frame() {
+        None => 2.0 * libm::atanf(camera.tan_half_fov().y),
+        Some(_) => FOV_DEG.to_radians(),
+    }
+}

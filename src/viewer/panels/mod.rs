@@ -1,0 +1,8 @@
+//! What lies over the scene: each panel is a function of its state, so that tests draw it without a window.
+
+pub mod detail;
+pub mod help;
+pub mod light;
+pub mod open;
+pub mod timing;
+pub mod tree;

@@ -1,0 +1,100 @@
+//! A place in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
+
+use crate::pipeline::positions::format_position;
+use crate::pipeline::walk::pick::WalkPick;
+use crate::scene::SceneModel;
+
+/// What is known about a place; a text is empty where there is nothing to say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaceText {
+    /// Map coordinates, with the name of their system.
+    pub map: String,
+    /// Longitude and latitude on WGS 84, degrees.
+    pub geographic: String,
+    /// The reference in the military grid.
+    pub grid: String,
+    /// The ground's height, and that of what stands there, where it is another.
+    pub height: String,
+    /// The ground's slope, with the direction that it faces.
+    pub slope: String,
+    /// How far away it is.
+    pub distance: String,
+}
+
+/// What stands less than this over ground, in meters, lies on it.
+const LYING_M: f64 = 0.05;
+
+impl PlaceText {
+    /// What was picked in `scene`.
+    pub fn of(scene: &SceneModel, pick: &WalkPick) -> Self {
+        let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
+        let is_above =
+            pick.ground_m.is_none_or(|ground_m| (pick.place.elevation_m - ground_m).abs() > LYING_M);
+        let top = is_above.then(|| format!("{:.1} m (what stands there)", pick.place.elevation_m));
+        let slope = pick.slope_deg.map(|degrees| {
+            let toward = pick.aspect_deg.map(|aspect| format!(" toward {}", compass(aspect)));
+            format!("{degrees:.0}°{}", toward.unwrap_or_default())
+        });
+        Self {
+            map: format!("{} ({})", format_position(&scene.crs, pick.place.at), scene.crs.name()),
+            geographic: pick
+                .lonlat
+                .map(|place| format!("{:.5}°, {:.5}°", place.x, place.y))
+                .unwrap_or_default(),
+            grid: pick.mgrs.clone().unwrap_or_default(),
+            height: ground.into_iter().chain(top).collect::<Vec<_>>().join(", "),
+            slope: slope.unwrap_or_default(),
+            distance: format!("{:.0} m", pick.place.distance_m),
+        }
+    }
+
+    /// All of it in one line, but for the distance.
+    pub fn line(&self) -> String {
+        let parts = [&self.map, &self.geographic, &self.grid, &self.height];
+        let parts = parts.into_iter().filter(|part| !part.is_empty()).cloned();
+        let slope = (!self.slope.is_empty()).then(|| format!("slope {}", self.slope));
+        parts.chain(slope).collect::<Vec<_>>().join("   ")
+    }
+}
+
+/// The point of the compass nearest to a direction in degrees clockwise from north.
+pub fn compass(degrees: f64) -> &'static str {
+    const POINTS: [&str; 8] = ["N", "NE", "E", "SE", "S", "SW", "W", "NW"];
+    POINTS[((degrees / 45.0).round().rem_euclid(8.0)) as usize % 8]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::viewing::{ViewedHeights, open_to_view};
+    use crate::pipeline::walk::Walk;
+    use crate::pipeline::walk::frame::WalkOptions;
+    use crate::terrain::query::{Interpolation, Surface};
+    use crate::terrain::sight::ray::Ray;
+    use glam::{DVec2, DVec3};
+    use std::path::Path;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_place_is_told_in_every_system_with_height_and_slope() {
+        let scene = open_to_view(Path::new("scenes/road.toml"), &[], ViewedHeights::AsStated, &|_| ());
+        let walk = Walk::new(Arc::new(scene.expect("sound")), WalkOptions::default());
+        let scene = walk.scene();
+        let at = DVec2::new(750_000.0, 4_018_000.0);
+        let origin = (at - scene.lattice.origin()).extend(9_000.0);
+        let pick = walk.pick(Ray { origin, direction: -DVec3::Z }, None).expect("ground");
+        let place = PlaceText::of(scene, &pick);
+        let height_m = scene.heights.height(Surface::Ground, Interpolation::Planar, at).height_m();
+        assert_eq!(place.height, format!("{:.1} m (ground)", height_m.expect("ground")));
+        assert_eq!(place.map, "750000, 4018000 (EPSG:32616)");
+        assert_eq!(place.grid, "16SGF5000018000");
+        assert!(place.geographic.ends_with("°, 36.27477°"), "{place:?}");
+        assert!(place.slope.contains("° toward ") && place.line().contains("slope"), "{place:?}");
+    }
+
+    #[test]
+    fn directions_have_the_nearest_point_of_the_compass() {
+        let named = [0.0, 22.0, 23.0, 180.0, 337.0, 338.0, 359.9].map(compass);
+        assert_eq!(named, ["N", "N", "NE", "S", "NW", "N", "N"]);
+    }
+}

@@ -1,0 +1,106 @@
+//! The scene in a texture that the panels show like any other picture.
+//!
+//! It is as large as the room between the panels, so that the pointer's place on it is a pixel of its camera.
+
+use std::time::Instant;
+
+use egui::TextureId;
+
+use crate::render::gpu::adapter::Gpu;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::{LiveOptions, LiveRenderer};
+use crate::viewer::frame_times::{FrameLoad, FrameTime};
+use crate::viewer::graphics::WindowGraphics;
+use crate::viewer::opened::SceneFrame;
+
+/// What the panels blend: colors as they are shown.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The renderer of scenes and its picture.
+pub struct SceneGraphics {
+    renderer: LiveRenderer,
+    picture: Option<ScenePicture>,
+    /// The picture among the panels' textures.
+    pub texture: Option<TextureId>,
+}
+
+struct ScenePicture {
+    view: wgpu::TextureView,
+    size: (u32, u32),
+}
+
+impl SceneGraphics {
+    /// A renderer on the window's device.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn new(graphics: &WindowGraphics) -> Result<Self, GpuError> {
+        let (device, queue) = (graphics.device.clone(), graphics.queue.clone());
+        let gpu = Gpu::from_parts(graphics.adapter(), device, queue);
+        Ok(Self { renderer: LiveRenderer::new(&gpu, FORMAT)?, picture: None, texture: None })
+    }
+
+    /// Records the picture of a frame; returns what it took and what it showed.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn draw(
+        &mut self,
+        graphics: &mut WindowGraphics,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &SceneFrame,
+        options: &LiveOptions,
+    ) -> Result<(FrameTime, FrameLoad), GpuError> {
+        let uploading = Instant::now();
+        if let Some(list) = &frame.load {
+            self.renderer.load(list)?;
+        }
+        self.renderer.set_lighting(frame.lighting);
+        let sent = self.renderer.update(&frame.changes)?;
+        let upload_ms = milliseconds(uploading);
+        let drawing = Instant::now();
+        let size = frame.camera.size();
+        let view = self.target(graphics, size);
+        let drawn = self.renderer.draw(encoder, &view, size, &frame.camera, options)?;
+        let time = FrameTime {
+            update_ms: frame.update_ms,
+            upload_ms,
+            draw_ms: milliseconds(drawing),
+            panels_ms: 0.0,
+        };
+        let load = FrameLoad {
+            ground_triangles: frame.statistics.triangles,
+            patches: frame.statistics.patches,
+            drawn_triangles: drawn.triangles,
+            calls: drawn.calls,
+            bytes: sent.total(),
+            changed_patches: frame.statistics.changed_patches,
+        };
+        Ok((time, load))
+    }
+
+    fn target(&mut self, graphics: &mut WindowGraphics, size: (u32, u32)) -> wgpu::TextureView {
+        if let Some(picture) = self.picture.as_ref().filter(|picture| picture.size == size) {
+            return picture.view.clone();
+        }
+        let texture = graphics.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture of the scene"),
+            size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.texture = Some(graphics.show_texture(self.texture, &view));
+        self.picture = Some(ScenePicture { view: view.clone(), size });
+        view
+    }
+}
+
+/// Milliseconds since `start`.
+pub fn milliseconds(start: Instant) -> f32 {
+    start.elapsed().as_secs_f32() * 1e3
+}

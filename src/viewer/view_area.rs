@@ -1,0 +1,233 @@
+//! The scene's picture in the window: pointer and keys move the camera; labels lie over it.
+
+use egui::{
+    Color32, EventFilter, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId, Ui,
+    WidgetInfo, pos2,
+};
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+use crate::pipeline::walk::pick::WalkPick;
+use crate::scene::SceneLabel;
+use crate::view::camera::Camera;
+use crate::view::navigation::{NavigationMode, NavigationSteps};
+use crate::viewer::commands::{HeldMotion, held};
+use crate::viewer::labels::{self, LabelLayer, LabelPicture};
+use crate::viewer::opened::OpenedScene;
+
+/// Degrees that dragging over the height of the picture turns.
+const DEG_PER_PICTURE: f64 = 110.0;
+/// Degrees a second that a held key turns.
+const DEG_PER_SECOND: f64 = 50.0;
+/// How many times as near a held key comes in a second.
+const NEARER_PER_SECOND: f64 = 4.0;
+/// How many times as fast keys are with Shift.
+const FAST: f64 = 4.0;
+/// The longest time of one frame that keys count, in seconds: after a pause nothing leaps.
+const LONGEST_STEP_S: f64 = 0.1;
+/// How much nearer a point of the wheel's way comes.
+const ZOOM_PER_POINT: f64 = 0.004;
+/// A double click goes to this share of the distance.
+const APPROACH: f64 = 0.35;
+
+/// The view's state between frames.
+#[derive(Default)]
+pub struct ViewArea {
+    /// The picture's size, in pixels; 0 before the first frame.
+    pub size: (u32, u32),
+    /// The camera of the frame before.
+    pub camera: Option<Camera>,
+    /// The ground under the pointer.
+    pub hovered: Option<WalkPick>,
+    /// What is shown over the picture.
+    pub shows_labels: bool,
+    grabbed: Option<DVec3>,
+    steps: NavigationSteps,
+    pace: f64,
+    labels: LabelLayer,
+}
+
+/// What the user did in the view besides moving.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewEvent {
+    /// Clicked at a pixel.
+    Pick(Vec2),
+}
+
+impl ViewArea {
+    /// A view with labels.
+    pub fn new() -> Self {
+        Self { shows_labels: true, pace: 1.0, ..Self::default() }
+    }
+
+    /// The view's place among what can have the keys.
+    pub fn id() -> Id {
+        Id::unique("view of the scene")
+    }
+
+    /// Draws the picture `texture` over all of what `ui` has left, and moves the camera of `opened`.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        opened: &mut OpenedScene,
+        texture: Option<TextureId>,
+    ) -> Option<ViewEvent> {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.interact(rect, Self::id(), Sense::click_and_drag());
+        ui.advance_cursor_after_rect(rect);
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "View of the scene"));
+        let scale = ui.ctx().pixels_per_point();
+        let side = |points: f32| (points * scale).round().clamp(1.0, 16_384.0) as u32;
+        self.size = (side(rect.width()), side(rect.height()));
+        let event = match opened.camera(self.size) {
+            Ok(camera) => self.take_input(ui, opened, &response, &camera),
+            Err(_) => None,
+        };
+        let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
+        let has_moved = opened.advance(seconds * self.pace, std::mem::take(&mut self.steps));
+        if has_moved || opened.navigator.is_on_its_way() {
+            ui.ctx().request_repaint();
+        }
+        if let Some(texture) = texture {
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture, rect, whole, Color32::WHITE);
+        }
+        if let (true, Ok(camera)) = (self.shows_labels, opened.camera(self.size)) {
+            self.show_labels(ui, rect, opened, &camera);
+        }
+        event
+    }
+
+    fn take_input(
+        &mut self,
+        ui: &Ui,
+        opened: &mut OpenedScene,
+        response: &Response,
+        camera: &Camera,
+    ) -> Option<ViewEvent> {
+        let scale = ui.ctx().pixels_per_point();
+        let to_pixel = |at: Pos2| {
+            let offset = (at - response.rect.min) * scale;
+            Vec2::new(offset.x, offset.y)
+        };
+        let pointer = ui.input(|input| input.pointer.latest_pos());
+        let hovered = response.contains_pointer().then_some(pointer).flatten();
+        self.hovered = hovered.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
+        let is_pressed = ui.input(|input| input.pointer.any_pressed()) && response.contains_pointer();
+        if is_pressed {
+            response.request_focus();
+        }
+        if response.has_focus() {
+            let keys =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+            ui.ctx().memory_mut(|memory| memory.set_focus_lock_filter(Self::id(), keys));
+        }
+        if response.drag_started() {
+            let origin = ui.input(|input| input.pointer.press_origin()).or(pointer);
+            let place = origin.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
+            self.grabbed = Some(place.map_or_else(|| opened.focus(camera), |place| place.world));
+        }
+        if response.dragged()
+            && let (Some(grabbed), Some(at)) = (self.grabbed, pointer)
+        {
+            let is_moved =
+                !response.dragged_by(PointerButton::Primary) || ui.input(|input| input.modifiers.shift);
+            if is_moved {
+                opened.drag(grabbed, camera, to_pixel(at));
+            } else {
+                let drag = ui.input(|input| input.pointer.delta()) * scale;
+                self.turn_by(opened, grabbed, DVec2::new(f64::from(drag.x), f64::from(drag.y)));
+            }
+        }
+        if response.drag_stopped() {
+            self.grabbed = None;
+        }
+        self.take_wheel(ui, opened, hovered.is_some(), camera);
+        self.take_keys(ui, opened, response, camera);
+        if response.double_clicked()
+            && let Some(place) = &self.hovered
+        {
+            opened.go_toward(place.world, place.place.distance_m * APPROACH);
+        }
+        // Enter and the space bar click the middle.
+        let clicked = response.clicked().then(|| response.interact_pointer_pos());
+        clicked.map(|at| ViewEvent::Pick(to_pixel(at.unwrap_or(response.rect.center()))))
+    }
+
+    /// Turns by a drag in pixels: about what was grabbed, which follows the pointer, or the head, which follows it too.
+    fn turn_by(&self, opened: &mut OpenedScene, grabbed: DVec3, drag: DVec2) {
+        let radians = drag / f64::from(self.size.1.max(1)) * DEG_PER_PICTURE.to_radians();
+        match opened.navigator.mode() {
+            NavigationMode::Orbit => opened.turn(Some(grabbed), DVec2::new(radians.x, -radians.y)),
+            NavigationMode::OnFoot | NavigationMode::Flight => {
+                opened.turn(None, DVec2::new(-radians.x, radians.y));
+            }
+        }
+    }
+
+    fn take_wheel(&self, ui: &Ui, opened: &mut OpenedScene, is_hovered: bool, camera: &Camera) {
+        if !is_hovered {
+            return;
+        }
+        let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+        let nearer = libm::exp(f64::from(scroll) * ZOOM_PER_POINT) * f64::from(pinch);
+        if nearer != 1.0 {
+            let place = self.hovered.as_ref().map(|place| place.world);
+            opened.zoom(place.unwrap_or_else(|| opened.focus(camera)), nearer.recip());
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn take_keys(&mut self, ui: &Ui, opened: &mut OpenedScene, response: &Response, camera: &Camera) {
+        if ui.ctx().text_edit_focused() {
+            return;
+        }
+        // Arrows go from button to button where one of them has the keys.
+        let has_others_focus = ui.ctx().memory(|memory| memory.focused()).is_some_and(|id| id != response.id);
+        let (is_fast, seconds) = ui.input(|input| (input.modifiers.shift, f64::from(input.stable_dt)));
+        self.pace = if is_fast { FAST } else { 1.0 };
+        let seconds = seconds.min(LONGEST_STEP_S) * self.pace;
+        let turn = (DEG_PER_SECOND * seconds).to_radians();
+        for motion in ui.input(held) {
+            ui.ctx().request_repaint();
+            let turned = match motion {
+                HeldMotion::TurnLeft => DVec2::new(-turn, 0.0),
+                HeldMotion::TurnRight => DVec2::new(turn, 0.0),
+                HeldMotion::LookUp => DVec2::new(0.0, turn * 0.6),
+                HeldMotion::LookDown => DVec2::new(0.0, -turn * 0.6),
+                _ => DVec2::ZERO,
+            };
+            if turned != DVec2::ZERO && !has_others_focus {
+                opened.turn(None, turned);
+            }
+            match motion {
+                HeldMotion::Forward => self.steps.forward += 1.0,
+                HeldMotion::Backward => self.steps.forward -= 1.0,
+                HeldMotion::Right => self.steps.right += 1.0,
+                HeldMotion::Left => self.steps.right -= 1.0,
+                HeldMotion::Up => self.steps.up += 1.0,
+                HeldMotion::Down => self.steps.up -= 1.0,
+                HeldMotion::ZoomIn => {
+                    opened.zoom(opened.focus(camera), libm::pow(NEARER_PER_SECOND, -seconds))
+                }
+                HeldMotion::ZoomOut => {
+                    opened.zoom(opened.focus(camera), libm::pow(NEARER_PER_SECOND, seconds))
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn show_labels(&mut self, ui: &Ui, rect: Rect, opened: &OpenedScene, camera: &Camera) {
+        let painter: Painter = ui.painter_at(rect);
+        let size = |label: &SceneLabel| {
+            painter.layout_no_wrap(label.text.clone(), labels::font(label.kind), Color32::BLACK).size()
+        };
+        let is_seen = |at: Vec3| opened.is_seen(camera, at);
+        let picture = LabelPicture { camera, rect, is_seen: &is_seen, size: &size };
+        let placed = self.labels.place(&opened.scene.labels, &picture);
+        labels::paint(&painter, &opened.scene.labels, &placed);
+        if self.labels.is_changing() {
+            ui.ctx().request_repaint();
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Frames of a scene that stays on the device, against the picture of the whole scene.
+//!
+//! Without an adapter the tests say so; with `SANDTABLE_REQUIRE_GPU` set they fail instead.
+
+#![cfg(feature = "gpu")]
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
+use sandtable::draw::patches::{
+    DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
+};
+use sandtable::mesh::sink::{MeshSink, VertexId};
+use sandtable::render::gpu::adapter::Gpu;
+use sandtable::render::gpu::live::{LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes};
+use sandtable::render::gpu::render_on;
+use sandtable::view::camera::Camera;
+
+use crate::common::adapters::gpus;
+use crate::common::synthetic::{HOUSE, LAKE, ROAD, camera, scene};
+
+/// Posts along a side of the scene's ground and of a patch of it, and patches along a side.
+const POSTS: usize = 65;
+const PATCH_POSTS: usize = 33;
+const PATCHES: usize = 2;
+
+/// The size of the pictures; 64 pixels in a row make copies without padding.
+const SIZE: (u32, u32) = (640, 480);
+
+/// Which patch holds a place in the plan.
+fn patch_at(at: Vec2) -> usize {
+    let side = (PATCH_POSTS - 1) as f32 * 10.0;
+    let [x, y] = [at.x, at.y].map(|along| ((along / side) as usize).min(PATCHES - 1));
+    y * PATCHES + x
+}
+
+/// The ground and the drapes of a list by patches, as if all were shown for the first time.
+fn changes(list: &DrawList) -> GroundChanges {
+    let mut changes = GroundChanges::default();
+    let ground = &list.meshes[list.items[0].mesh.0 as usize];
+    for patch in 0..PATCHES * PATCHES {
+        let step = PATCH_POSTS - 1;
+        let [first_x, first_y] = [patch % PATCHES * step, patch / PATCHES * step];
+        let row = |y: usize| {
+            (0..PATCH_POSTS).map(move |x| ground.vertices[(first_y + y) * POSTS + first_x + x].position)
+        };
+        let id = PatchId(patch as u32);
+        changes
+            .vertices
+            .push(PatchVertices { patch: id, positions: (0..PATCH_POSTS).flat_map(row).collect() });
+        changes.triangles.push(PatchTriangles { patch: id, triangles: Arc::new(patch_triangles()) });
+        let draped = list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
+        let pieces = draped.map(|item| piece(list, item, patch)).collect();
+        changes.drapes.push(PatchDrapes { patch: id, pieces });
+    }
+    changes
+}
+
+fn patch_triangles() -> Vec<[u16; 3]> {
+    let mut triangles = Vec::new();
+    for y in 0..PATCH_POSTS - 1 {
+        for x in 0..PATCH_POSTS - 1 {
+            let id = |east: usize, north: usize| ((y + north) * PATCH_POSTS + x + east) as u16;
+            triangles.extend([[id(0, 0), id(1, 0), id(1, 1)], [id(0, 0), id(1, 1), id(0, 1)]]);
+        }
+    }
+    triangles
+}
+
+/// Those triangles of an item whose middle lies in a patch.
+fn piece(list: &DrawList, item: &DrawItem, patch: usize) -> DrapedPiece {
+    let whole = &list.meshes[item.mesh.0 as usize];
+    let mut mesh = DrawMesh::default();
+    for corners in &whole.triangles {
+        let corners: [DrawVertex; 3] = corners.map(|id| whole.vertices[id.index()]);
+        let middle = corners.iter().map(|corner| Vec3::from(corner.position)).sum::<Vec3>() / 3.0;
+        if patch_at(middle.truncate()) == patch {
+            let ids: [VertexId; 3] = corners.map(|corner| mesh.vertex(corner));
+            mesh.triangle(ids);
+        }
+    }
+    DrapedPiece { mesh, material: item.material, layer: item.layer, feature: item.feature }
+}
+
+/// A texture to draw frames to, and the bytes of one.
+struct Window {
+    texture: wgpu::Texture,
+}
+
+impl Window {
+    fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("window"),
+            size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        Self { texture }
+    }
+
+    fn frame(&self, renderer: &mut LiveRenderer, camera: &Camera) -> Vec<[u8; 4]> {
+        let gpu = renderer.gpu().clone();
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        let view = self.texture.create_view(&Default::default());
+        renderer
+            .draw(&mut encoder, &view, SIZE, camera, &LiveOptions::default())
+            .unwrap_or_else(|error| panic!("{error}"));
+        let size = u64::from(SIZE.0 * SIZE.1 * 4);
+        let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+            label: Some("copy of a frame"),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE.0 * 4), rows_per_image: None };
+        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        encoder.copy_texture_to_buffer(self.texture.as_image_copy(), to, self.texture.size());
+        gpu.queue().submit([encoder.finish()]);
+        buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: None };
+        gpu.device().poll(wait).expect("drawn");
+        let mapped = buffer.get_mapped_range(..).expect("mapped");
+        mapped.as_chunks().0.to_vec()
+    }
+}
+
+/// A renderer of the best quality with the scene loaded and all its ground shown.
+fn loaded(gpu: &Gpu, list: &DrawList, format: wgpu::TextureFormat) -> LiveRenderer {
+    let quality = LiveQuality { samples: 4, anisotropy: 16 };
+    let mut renderer =
+        LiveRenderer::with_quality(gpu, format, quality).unwrap_or_else(|error| panic!("{error}"));
+    renderer.load(list).unwrap_or_else(|error| panic!("{error}"));
+    renderer.update(&changes(list)).unwrap_or_else(|error| panic!("{error}"));
+    renderer
+}
+
+/// The share of pixels of which a channel differs by more than two steps.
+fn share_apart<'a>(
+    one: impl IntoIterator<Item = &'a [u8; 4]>,
+    other: impl IntoIterator<Item = &'a [u8; 4]>,
+) -> f64 {
+    let apart = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).any(|channel| a[channel].abs_diff(b[channel]) > 2);
+    one.into_iter().zip(other).filter(|&pair| apart(pair)).count() as f64 / f64::from(SIZE.0 * SIZE.1)
+}
+
+const WINDOW: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+#[test]
+fn a_frame_is_the_picture_of_the_same_scene() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let picture: Vec<[u8; 4]> = picture.pixels.data().iter().map(|color| color.0).collect();
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let bare = share_apart(&window.frame(&mut renderer, &camera), &picture);
+        let shadows = LiveShadows::new(&list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        renderer.set_shadows(&shadows).unwrap_or_else(|error| panic!("{error}"));
+        let apart = share_apart(&window.frame(&mut renderer, &camera), &picture);
+        assert!(apart < 1e-3, "{apart} of the pixels differ on {}", gpu.name());
+        assert!(bare > 0.01, "without its shadows a frame differs, {bare} on {}", gpu.name());
+    }
+}
+
+#[test]
+fn a_window_that_does_not_encode_colors_shows_the_same() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    let swapped = |[blue, green, red, alpha]: &[u8; 4]| [*red, *green, *blue, *alpha];
+    for gpu in gpus() {
+        let frame = |format| {
+            let mut renderer = loaded(gpu, &list, format);
+            Window::new(gpu, format).frame(&mut renderer, &camera)
+        };
+        let plain: Vec<_> = frame(wgpu::TextureFormat::Bgra8Unorm).iter().map(swapped).collect();
+        assert_eq!(share_apart(&plain, &frame(WINDOW)), 0.0, "on {}", gpu.name());
+    }
+}
+
+#[test]
+fn what_changes_is_sent_and_nothing_else() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let before = window.frame(&mut renderer, &camera);
+        let nothing = renderer.update(&GroundChanges::default()).expect("nothing can fail");
+        assert_eq!(nothing, UploadedBytes::default());
+
+        let all = changes(&list);
+        let half = Arc::new(all.triangles[3].triangles.iter().step_by(2).copied().collect::<Vec<_>>());
+        let count = half.len() as u64;
+        let triangles = vec![PatchTriangles { patch: PatchId(3), triangles: half }];
+        let sent = renderer.update(&GroundChanges { triangles, ..Default::default() }).expect("it fits");
+        assert_eq!(sent, UploadedBytes { triangles: count * 6, ..Default::default() });
+        let holed = share_apart(&window.frame(&mut renderer, &camera), &before);
+        assert!(holed > 0.01, "holes are seen in {holed} of the pixels on {}", gpu.name());
+
+        let hidden = vec![PatchId(3)];
+        renderer.update(&GroundChanges { hidden, ..Default::default() }).expect("it fits");
+        let at = Vec2::new(500.0, 400.0);
+        let ground = list.ground.as_ref().expect("there is a map").sample(at).height_m;
+        let pixel = camera.project(at.extend(ground)).expect("in view").pixel;
+        assert_eq!(renderer.pick(&camera, pixel).expect("it draws"), None, "nothing is behind it");
+        let triangles = vec![all.triangles[3].clone()];
+        renderer.update(&GroundChanges { triangles, ..Default::default() }).expect("it fits");
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "all is back");
+
+        let dropped = (0..4).map(PatchId).collect();
+        renderer.update(&GroundChanges { dropped, ..Default::default() }).expect("it fits");
+        assert_eq!(renderer.pick(&camera, pixel).expect("it draws"), None, "there is no ground");
+        renderer.update(&all).expect("it fits");
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "all is back again");
+    }
+}
+
+#[test]
+fn a_pixel_picked_shows_the_feature_and_depth_of_the_picture() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let renderer = loaded(gpu, &list, WINDOW);
+        for feature in [FeatureId::NONE, FeatureId::GROUND, HOUSE, LAKE, ROAD] {
+            let seen: Vec<usize> =
+                (0..picture.features.len()).filter(|&index| picture.features[index] == feature).collect();
+            let index = seen[seen.len() / 2];
+            let pixel = Vec2::new((index % 640) as f32, (index / 640) as f32) + 0.3;
+            let picked = renderer.pick(&camera, pixel).unwrap_or_else(|error| panic!("{error}"));
+            let found = picked.map_or(FeatureId::NONE, |picked| picked.feature);
+            assert_eq!(found, feature, "at {pixel} on {}", gpu.name());
+            let depth_m = picked.map_or(f32::INFINITY, |picked| picked.depth_m);
+            let wanted = picture.depth_m[index];
+            assert!(depth_m == wanted || (depth_m - wanted).abs() < 1e-4 * wanted, "{depth_m}, not {wanted}");
+        }
+        for outside in [Vec2::new(-1.0, 5.0), Vec2::new(640.0, 5.0), Vec2::new(5.0, f32::NAN)] {
+            assert_eq!(renderer.pick(&camera, outside).expect("nothing is drawn"), None);
+        }
+    }
+}
+
+#[test]
+fn a_window_without_pixels_and_an_empty_scene_are_no_error() {
+    let camera = camera(SIZE.0, SIZE.1);
+    for gpu in gpus() {
+        let mut renderer = LiveRenderer::new(gpu, WINDOW).unwrap_or_else(|error| panic!("{error}"));
+        let view = Window::new(gpu, WINDOW).texture.create_view(&Default::default());
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        let mut draw = |renderer: &mut LiveRenderer, size| {
+            renderer.draw(&mut encoder, &view, size, &camera, &LiveOptions::default()).expect("no error")
+        };
+        assert_eq!(draw(&mut renderer, SIZE).calls, 0, "nothing is loaded");
+        renderer.load(&DrawList::default()).expect("an empty list is sound");
+        assert_eq!(draw(&mut renderer, (0, 480)).calls, 0);
+        assert_eq!(draw(&mut renderer, SIZE).triangles, 0);
+        let error = renderer.load(&DrawList { ground: None, ..scene() }).expect_err("there is no ground map");
+        assert!(error.to_string().contains("ground map"), "{error}");
+        let piece = changes(&scene()).drapes;
+        let unknown = renderer.update(&GroundChanges { drapes: piece, ..Default::default() });
+        assert!(unknown.is_err(), "the empty scene has no such material");
+    }
+}

@@ -1,0 +1,42 @@
+//! The shaders of the GPU renderer are valid on every machine: this test needs no adapter, nor the renderer itself.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// The folder of the shaders.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/render/gpu");
+
+/// The modules, as files that are joined.
+const MODULES: [&[&str]; 2] = [&["shader.wgsl", "sky.wgsl"], &["encode.wgsl"]];
+
+fn text_of(module: &[&str]) -> String {
+    let read = |file: &&str| {
+        let path = Path::new(FOLDER).join(file);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    module.iter().map(read).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn every_shader_is_valid_without_any_gpu() {
+    for module in MODULES {
+        let text = text_of(module);
+        let parsed = naga::front::wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{module:?}: {}", error.emit_to_string(&text)));
+        Validator::new(ValidationFlags::all(), Capabilities::empty())
+            .validate(&parsed)
+            .unwrap_or_else(|error| panic!("{module:?}: {}", error.emit_to_string(&text)));
+        assert!(!parsed.entry_points.is_empty(), "{module:?} draws nothing");
+    }
+}
+
+#[test]
+fn no_shader_is_left_out() {
+    let files = std::fs::read_dir(FOLDER).unwrap_or_else(|error| panic!("{FOLDER}: {error}"));
+    let names = files.map(|file| file.expect("a folder's entry").file_name().to_string_lossy().into_owned());
+    let found: BTreeSet<String> = names.filter(|name| name.ends_with(".wgsl")).collect();
+    let known: BTreeSet<String> = MODULES.concat().iter().map(|&name| name.to_owned()).collect();
+    assert_eq!(found, known);
+}

@@ -1,0 +1,104 @@
+//! Small files that would cost much: each is refused within a bound on memory.
+
+use std::io::Write;
+use std::process::Command;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use sandtable::archive;
+
+use crate::common::scratch::Scratch;
+
+/// Runs the program where no more than `megabytes` of address space may be had, and returns its exit code and what it says.
+#[cfg(target_os = "linux")]
+fn run_within(megabytes: u32, scratch: &Scratch, arguments: &[&str]) -> (Option<i32>, String) {
+    let limited = format!("ulimit -v {} && exec \"$0\" \"$@\"", megabytes * 1024);
+    let output = Command::new("sh")
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_sandtable")])
+        .args(arguments)
+        .current_dir(scratch.folder())
+        .env("RAYON_NUM_THREADS", "2")
+        .output()
+        .expect("a shell");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+fn gzipped(head: &[u8], zeros: usize) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(head).expect("memory");
+    let block = vec![b'0'; 1 << 20];
+    (0..zeros >> 20).for_each(|_| encoder.write_all(&block).expect("memory"));
+    encoder.finish().expect("memory")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_packed_file_is_unpacked_no_further_than_its_head_promises() {
+    let scratch = Scratch::new();
+    scratch.write("bomb.bt.gz", gzipped(b"", 600 << 20));
+    let grid = "ncols 10\nnrows 10\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+    scratch.write("bomb.asc.gz", gzipped(grid.as_bytes(), 600 << 20));
+    let mut member = grid.as_bytes().to_vec();
+    member.resize(200 << 20, b' ');
+    scratch.write("bomb.zip", archive::zip(&[("a.asc", &member)]).expect("memory"));
+    scratch.write("bomb.hgt.gz", gzipped(b"", 600 << 20));
+    for (name, said) in [
+        ("bomb.bt.gz", "it does not start with 'binterr1.'"),
+        ("bomb.asc.gz", "unpacks to more than"),
+        ("bomb.zip", "unpacks to more than"),
+        ("bomb.hgt.gz", "unpacks to more than"),
+    ] {
+        let (code, text) = run_within(400, &scratch, &["dem", "info", name]);
+        assert_eq!(code, Some(1), "{name}: {text}");
+        assert!(text.contains(name) && text.contains(said), "{name}: {text}");
+    }
+}
+
+/// A TIFF of two by two bytes whose GeoKey directory claims `count` numbers.
+fn tiff(count: u32) -> Vec<u8> {
+    let entries: [(u16, u16, u32, u32); 9] = [
+        (256, 3, 1, 2),
+        (257, 3, 1, 2),
+        (258, 3, 1, 8),
+        (259, 3, 1, 1),
+        (262, 3, 1, 1),
+        (273, 4, 1, 8),
+        (278, 3, 1, 2),
+        (279, 4, 1, 4),
+        (34735, 3, count, 8),
+    ];
+    let mut file = b"II*\0\x0c\0\0\0\x01\x02\x03\x04".to_vec();
+    file.extend((entries.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        file.extend(tag.to_le_bytes());
+        file.extend(kind.to_le_bytes());
+        file.extend(count.to_le_bytes());
+        file.extend(value.to_le_bytes());
+    }
+    file.extend([0; 4]);
+    file
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_tag_that_claims_more_than_the_file_reserves_nothing() {
+    let scratch = Scratch::new();
+    scratch.write("claim.tif", tiff(0x03ff_ffff));
+    let (code, text) = run_within(600, &scratch, &["dem", "info", "claim.tif"]);
+    assert!(code.is_some(), "aborted: {text}");
+    scratch.write("sound.tif", tiff(2));
+    let (code, text) = run_within(600, &scratch, &["dem", "info", "sound.tif"]);
+    assert_eq!(code, Some(0), "{text}");
+}
+
+#[test]
+fn a_road_thinner_than_any_is_refused_at_its_place() {
+    let scratch = Scratch::new();
+    let hill = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3 4 5 6 7 8 9\n";
+    scratch.write("hill.asc", hill);
+    let scene = "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\n[[road]]\nwidth = 1e-9\nprofile = \"conform\"\n\
+                 points = [[100, 1500], [2900, 1500]]\n";
+    scratch.write("thin.toml", scene);
+    let said = crate::cli::run_in(scratch.folder(), &["check", "thin.toml"]).failed(1);
+    assert!(said.contains("thin.toml:5") && said.contains("0.01"), "{said}");
+}
