@@ -298,6 +298,7 @@ pub enum Coat {
 }
 
 /// A model in its place.
+#[derive(Clone, Copy, Debug)]
 pub struct Placement {
     /// Which of the scene's models.
     pub model: usize,

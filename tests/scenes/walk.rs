@@ -4,14 +4,18 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{Mat4, Vec3};
+use glam::{DVec2, Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable::draw::patches::{DrapedPiece, GroundChanges, PatchId};
+use sandtable::earthworks::brush::{Crater, Trench};
 use sandtable::mesh::sink::{MeshSink, VertexId};
+use sandtable::pipeline::picture::PictureSize;
+use sandtable::pipeline::picture_buffers::pick;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::pipeline::walk::Walk;
 use sandtable::pipeline::walk::frame::WalkOptions;
+use sandtable::pipeline::walk::pick::{StandingIndex, pixel_ray};
 use sandtable::render::{RenderBackend, render};
 use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{build_draw_list, camera};
@@ -102,9 +106,17 @@ fn difference(walked: &DrawList, camera: &Camera, scene: &SceneModel, name: &str
 
 #[test]
 fn a_walk_shows_what_a_picture_of_its_camera_shows() {
-    for name in ["jacksboro.toml"] {
+    for (name, views) in [
+        ("jacksboro.toml", 9),
+        ("operation.toml", 1),
+        ("sight.toml", 1),
+        ("lake.toml", 1),
+        ("river.toml", 1),
+        ("models.toml", 1),
+        ("placement.toml", 1),
+    ] {
         let scene = scene(name);
-        for view in &scene.cameras {
+        for view in scene.cameras.iter().take(views) {
             let Ok(camera) = camera(&scene, view, (640, 360)) else { continue };
             let options =
                 WalkOptions { to_sun: Some(scene.sunlight.to_sun(Some(&camera))), ..WalkOptions::default() };
@@ -130,14 +142,13 @@ fn after_a_flight_a_renderer_holds_what_a_walk_that_begins_there_hands_it() {
     let options = WalkOptions { kept_patches: 40, ..WalkOptions::default() };
     let mut walk = Walk::new(Arc::clone(&scene), options);
     let mut held = Held::default();
-    for frame in 0..40 {
-        let part = frame as f32 / 80.0;
+    for frame in 0..27 {
+        let part = frame as f32 / 54.0;
         let eye = first.eye().lerp(last.eye(), part);
         let forward = first.forward().lerp(last.forward(), part).normalize_or(Vec3::Y);
         let camera = Camera::new(eye, eye + forward, 0.7, (960, 540), first.planes()).expect("sound");
-        let frame_out = walk.update(&camera).expect("in memory");
-        held.take(frame_out.changes);
-        if frame % 13 != 0 {
+        held.take(walk.update(&camera).expect("in memory").changes);
+        if frame % 13 != 12 {
             continue;
         }
         walk.check();
@@ -161,4 +172,85 @@ fn after_a_flight_a_renderer_holds_what_a_walk_that_begins_there_hands_it() {
             assert_eq!(features(&held).is_empty(), features(&fresh).is_empty(), "frame {frame}, {patch:?}");
         }
     }
+}
+
+#[test]
+fn a_crater_shows_in_the_next_frame_and_is_gone_when_it_is_taken_back() {
+    let scene = scene("jacksboro.toml");
+    let camera = camera(&scene, &scene.cameras[0], (960, 540)).expect("a sound camera");
+    let mut walk = Walk::new(Arc::clone(&scene), WalkOptions::default());
+    let mut held = Held::default();
+    held.take(walk.update(&camera).expect("in memory").changes);
+    let list = walk.static_list(&camera, &|_| ());
+    let (columns, posts) = list.ground.map(|map| (map.columns, map.posts.clone())).expect("a map");
+    let before = held.vertices.clone();
+    for (pixel, depth_m) in [((480.0, 400.0), 9.0), ((300.0, 330.0), 4.0), ((700.0, 500.0), 15.0)] {
+        let at = walk.pick_ground(pixel_ray(&camera, Vec2::from(pixel))).expect("ground below the cursor");
+        let plan = at.truncate();
+        let ground_z = walk.ground_z(plan).expect("ground");
+        let crater = Crater { center: plan, radius_m: 60.0, depth_m, rim_m: 1.0 };
+        let dug = walk.edit(|lattice| crater.apply(lattice)).expect("in memory").expect("a crater");
+        let trench = Trench {
+            line: vec![plan, plan + DVec2::new(400.0, 90.0)],
+            bottom_m: 20.0,
+            top_m: 40.0,
+            depth_m: 3.0,
+        };
+        let cut = walk.edit(|lattice| trench.apply(lattice)).expect("in memory").expect("a trench");
+        assert!(dug.volumes.cut_m3 > 1000.0 && cut.number == dug.number + 1);
+        let frame = walk.update(&camera).expect("in memory");
+        let shown: Vec<PatchId> = frame.changes.vertices.iter().map(|patch| patch.patch).collect();
+        let in_view = dug.patches.iter().filter(|patch| held.shown.contains(patch));
+        assert!(in_view.clone().count() > 0 && in_view.clone().all(|patch| shown.contains(patch)));
+        assert!(frame.statistics.bytes() < 4_000_000, "{:?}", frame.statistics);
+        held.take(frame.changes);
+        walk.check();
+        let sunk_m = ground_z - walk.ground_z(plan).expect("ground");
+        assert!(sunk_m > 0.35 * depth_m, "{sunk_m} m of {depth_m} m, between posts");
+        for edit in [cut, dug] {
+            walk.take_back(&edit.pieces).expect("in memory").expect("a change back");
+        }
+        let frame = walk.update(&camera).expect("in memory");
+        let last = frame.changes.map.last().expect("the map was changed back");
+        for (row, line) in last.posts.chunks_exact(last.columns as usize).enumerate() {
+            let start = (last.first[1] as usize + row) * columns as usize + last.first[0] as usize;
+            let apart = |(now, then): (&sandtable::draw::ground::GroundPost, _)| {
+                let then: &sandtable::draw::ground::GroundPost = then;
+                (now.height_m - then.height_m).abs()
+            };
+            let most = line.iter().zip(&posts[start..]).map(apart).fold(0.0, f32::max);
+            assert!(most < 2.0, "the map is {most} m off");
+        }
+        held.take(frame.changes);
+        walk.check();
+        assert_eq!(walk.ground_z(plan), Some(ground_z));
+    }
+    assert!(
+        held.vertices.iter().all(|(patch, positions)| before.get(patch).is_none_or(|then| then == positions))
+    );
+}
+
+#[test]
+fn a_ray_finds_what_the_buffers_of_a_picture_show() {
+    let scene = scene("jacksboro.toml");
+    let view = &scene.cameras[0];
+    let size = PictureSize { width: 640, height: 360 };
+    let pixels: Vec<[u32; 2]> = (0..12).flat_map(|x| (2..8).map(move |y| [x * 50 + 20, y * 44])).collect();
+    let places = pick(&scene, view, size, &pixels, &|_| ()).expect("a picture");
+    let camera = camera(&scene, view, (640, 360)).expect("a sound camera");
+    let mut walk = Walk::new(Arc::clone(&scene), WalkOptions::default());
+    walk.update(&camera).expect("in memory");
+    let standing = StandingIndex::new(Arc::new(walk.static_list(&camera, &|_| ())));
+    let (mut same, mut near) = (0, 0);
+    for (&[column, row], place) in pixels.iter().zip(&places) {
+        let ray = pixel_ray(&camera, Vec2::new(column as f32 + 0.5, row as f32 + 0.5));
+        let found = walk.pick(ray, Some(&standing));
+        assert_eq!(found.is_some(), place.is_some(), "{column}, {row}");
+        let Some((found, place)) = found.zip(place.as_ref()) else { continue };
+        same += usize::from(found.place.feature == place.feature);
+        near += usize::from(found.place.at.distance(place.at) < 0.02 * place.distance_m);
+        assert!(found.mgrs.is_some() && found.slope_deg.is_some_and(|slope| slope < 89.0));
+    }
+    let met = places.iter().flatten().count();
+    assert!(met > 30 && same * 100 >= met * 90 && near * 100 >= met * 90, "{same}, {near} of {met}");
 }

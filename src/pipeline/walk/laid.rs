@@ -13,6 +13,7 @@ use crate::roam::patched_ground::PatchedGround;
 use crate::roam::refine::deferred::Deferred;
 use crate::roam::refine::deferred::surface::DeferredSurface;
 use crate::scene::SceneModel;
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::recut::GroundSheets;
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
@@ -68,6 +69,12 @@ impl LaidGround {
         self.patches[patch].is_cut = false;
     }
 
+    /// Marks what lies on some patches as cut to other triangles than they are to display.
+    pub fn forget_cuts(&mut self, is_meant: impl Fn(usize) -> bool) {
+        let patches = self.patches.iter_mut().enumerate();
+        patches.filter(|(patch, _)| is_meant(*patch)).for_each(|(_, laid)| laid.is_cut = false);
+    }
+
     /// What lies uppermost on a patch at a world position; `None` for bare ground.
     pub fn feature_at(&self, patch: usize, at: DVec2) -> Option<FeatureId> {
         self.sheets.feature_at(patch, at)
@@ -87,7 +94,7 @@ impl LaidGround {
         camera: &Camera,
     ) -> Vec<PatchDrapes> {
         let terrain = mesh.source();
-        self.plan_symbols(scene, terrain.lattice(), camera);
+        self.plan_lines(scene, terrain.lattice(), camera);
         mesh.changes().dirty.iter().for_each(|&patch| self.patches[patch].is_cut = false);
         shown.changed().iter().for_each(|&patch| self.patches[patch].eye = None);
         let (mut due, mut renewed) = (Vec::new(), 0);
@@ -124,20 +131,29 @@ impl LaidGround {
             .collect()
     }
 
-    /// Plans symbols for the camera where it has moved by a share of its height above the ground.
-    fn plan_symbols(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
-        if scene.symbols.is_empty() {
+    /// The texts of tactical graphics, as they were planned last.
+    pub fn texts(&self) -> &[PlacedText] {
+        self.sheets.texts()
+    }
+
+    /// Plans symbols and graphics for the camera where it has moved by a share of its height above the ground.
+    fn plan_lines(&mut self, scene: &SceneModel, lattice: &Lattice, camera: &Camera) {
+        let has_graphics = !(scene.graphics.is_empty() && scene.sight.is_empty());
+        if scene.symbols.is_empty() && !has_graphics {
             return;
         }
         let eye = camera.eye();
-        let ground = FullResolution { lattice }.displayed_z(eye.truncate().as_dvec2());
-        let height_m = ground.map_or(eye.z - scene.bounds.0.z, |ground| eye.z - ground as f32);
+        let ground = FullResolution { lattice };
+        let below = ground.displayed_z(eye.truncate().as_dvec2());
+        let height_m = below.map_or(eye.z - scene.bounds.0.z, |z| eye.z - z as f32);
         let stale_m = STALE_SHARE * height_m.max(LEAST_HEIGHT_M);
         if self.planned.is_none_or(|planned| planned.distance(eye) > stale_m) {
             self.planned = Some(eye);
-            for patch in self.sheets.plan_symbols(scene, camera) {
-                self.patches[patch].is_replanned = true;
+            let mut replanned = self.sheets.plan_symbols(scene, camera);
+            if has_graphics {
+                replanned.extend(self.sheets.plan_graphics(scene, camera, &ground));
             }
+            replanned.into_iter().for_each(|patch| self.patches[patch].is_replanned = true);
         }
     }
 

@@ -15,6 +15,7 @@ pub mod edit;
 pub mod frame;
 mod laid;
 pub mod measure;
+pub mod paged;
 pub mod pick;
 mod relief_map;
 mod shown;
@@ -29,12 +30,14 @@ use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::frame::{WalkError, WalkFrame, WalkOptions, WalkStatistics};
 use crate::pipeline::walk::laid::LaidGround;
 use crate::pipeline::walk::relief_map::ReliefMap;
-use crate::pipeline::walk::shown::ShownPatches;
+use crate::pipeline::walk::shown::{ShownPatches, positions};
 use crate::roam::culling::{Culling, InView};
 use crate::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use crate::roam::refine::deferred::Deferred;
 use crate::roam::spheres;
 use crate::scene::SceneModel;
+use crate::scene::picture::models::{PlacementMove, PlacementMoves};
+use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::standing::{self, WalkedGround};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::ground::SightGround;
@@ -50,6 +53,9 @@ const MOST_REACH: f32 = 1.25;
 
 /// Spheres that are made anew because a picture needs larger ones reach by this factor farther than it needs.
 const SPARE_REACH: f32 = 1.1;
+
+/// Meshes of patches that are kept out of view before they are made anew: 140 KB each in patches of 64.
+const MOST_MESHES: usize = 1024;
 
 /// The distance of the eye whose spheres stand for parallel rays, in diagonals of the scene: all of the ground is equally far
 /// from it but for a thousandth.
@@ -68,6 +74,7 @@ pub struct Walk {
     /// The ground for rays and lines of sight, true to scale; `None` until somebody looks.
     sight: OnceLock<SightGround>,
     map: ReliefMap,
+    moves: PlacementMoves,
 }
 
 /// From where the ground is refined, and how far its spheres reach.
@@ -98,7 +105,8 @@ impl Walk {
         let mesh = Deferred::new(terrain, cell_m).expect("a scene's patches have 16-bit indices");
         let elevations = (scene.scale.0 != 1.0).then(|| Arc::clone(&scene.lattice));
         let (view, sight, map) = (InView::default(), OnceLock::new(), ReliefMap::default());
-        Self { scene, options, mesh, view, shown, laid, elevations, sight, map }
+        let moves = PlacementMoves::new();
+        Self { scene, options, mesh, view, shown, laid, elevations, sight, map, moves }
     }
 
     /// The scene.
@@ -142,12 +150,17 @@ impl Walk {
     /// Its first material is that of the ground; those of [`DrapedPiece`](crate::draw::patches::DrapedPiece)s are among those
     /// that follow, with the same numbers in every list of this walk.
     pub fn static_list(&self, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
-        let walked = WalkedGround { lattice: self.lattice(), to_sun: self.to_sun() };
+        let walked = WalkedGround { moves: &self.moves, lattice: self.lattice(), to_sun: self.to_sun() };
         let mut list = standing::standing(&self.scene, walked, camera, self.laid.head(), progress);
         if let Some(map) = &mut list.ground {
             self.map.load(map, self.elevations());
         }
         list
+    }
+
+    /// Lets a model, by its number among the scene's placements, stand elsewhere in the next [`Walk::static_list`].
+    pub fn move_model(&mut self, placement: usize, to: PlacementMove) {
+        self.moves.insert(placement, to);
     }
 
     /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
@@ -173,12 +186,19 @@ impl Walk {
         let refined = self.mesh.update(vantage.eye, visible)?;
         let mut statistics =
             WalkStatistics { splits: refined.splits, merges: refined.merges, ..WalkStatistics::default() };
-        let mut changes = self.shown.update(&self.mesh);
+        let mut changes =
+            self.shown.update(&self.mesh, |corner| positions(self.mesh.source().ground(), corner));
+        self.forget_meshes();
         changes.drapes = self.laid.update(&self.scene, &self.mesh, &self.shown, camera);
         changes.map = self.map.take_new();
         statistics.examined = self.mesh.examined();
         statistics.count(&self.mesh, &changes);
         Ok(WalkFrame { changes, statistics })
+    }
+
+    /// The texts of tactical graphics, as they were planned in the last update.
+    pub fn graphic_texts(&self) -> &[PlacedText] {
+        self.laid.texts()
     }
 
     /// Hands everything over again in the next update: for a renderer that starts anew.
@@ -209,5 +229,18 @@ impl Walk {
         self.mesh.source_mut().set_reach(reach);
         self.mesh.restart();
         self.shown.relist_all();
+        self.laid.forget_cuts(|_| true);
+    }
+
+    /// Forgets the meshes of patches that have been out of view for the longest time where there are too many.
+    fn forget_meshes(&mut self) {
+        let kept = MOST_MESHES.max(self.mesh.visible().len());
+        if self.mesh.meshes() > kept + kept / 4 {
+            self.mesh.forget(kept);
+            // A patch without a mesh begins with two triangles, whatever it was cut to.
+            let mut is_hidden = vec![true; self.mesh.source().ground().layout.patch_count()];
+            self.shown.visible().iter().for_each(|&patch| is_hidden[patch] = false);
+            self.laid.forget_cuts(|patch| is_hidden[patch]);
+        }
     }
 }

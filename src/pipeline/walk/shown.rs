@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::draw::patches::{GroundChanges, PatchId, PatchTriangles, PatchVertices};
-use crate::roam::dynamic::DynamicTerrain;
+use crate::roam::block::BlockSource;
 use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::refine::deferred::Deferred;
@@ -72,20 +72,24 @@ impl ShownPatches {
     }
 
     /// What the renderer needs to show what `mesh` does, but for what lies on the ground.
-    pub fn update(&mut self, mesh: &Deferred<DynamicTerrain>) -> GroundChanges {
-        let (terrain, mut changes) = (mesh.source(), GroundChanges::default());
-        let ground = terrain.ground();
+    /// `positions` are the vertices of a patch with that south-west corner, row by row from there.
+    pub fn update<S: BlockSource>(
+        &mut self,
+        mesh: &Deferred<S>,
+        positions: impl Fn(Vertex) -> Vec<[f32; 3]>,
+    ) -> GroundChanges {
+        let (layout, mut changes) = (*mesh.source().layout(), GroundChanges::default());
         mesh.changes().dirty.iter().for_each(|&patch| self.patches[patch].is_stale = true);
         let last = self.frame;
         self.frame += 1;
         self.changed.clear();
         let mut visible = Vec::with_capacity(mesh.visible().len());
         for &corner in mesh.visible() {
-            let index = ground.layout.patch_index(corner);
+            let index = layout.patch_index(corner);
             let (patch, id) = (&mut self.patches[index], PatchId(index as u32));
             visible.push(index);
             if !patch.is_held || patch.has_moved {
-                changes.vertices.push(PatchVertices { patch: id, positions: positions(ground, corner) });
+                changes.vertices.push(PatchVertices { patch: id, positions: positions(corner) });
                 self.held += usize::from(!patch.is_held);
                 (patch.is_held, patch.has_moved) = (true, false);
             }
@@ -127,7 +131,7 @@ impl ShownPatches {
 }
 
 /// The vertices of a patch, row by row from the south-west; without data at height 0.
-fn positions(ground: PatchedGround<'_>, corner: Vertex) -> Vec<[f32; 3]> {
+pub(super) fn positions(ground: PatchedGround<'_>, corner: Vertex) -> Vec<[f32; 3]> {
     let side = ground.layout.patch();
     let row = |y: i32| (0..=side).map(move |x| ground.position(corner.moved(x, y)).to_array());
     (0..=side).flat_map(row).collect()

@@ -40,7 +40,7 @@ const LINE_PX: f64 = 3.0;
 const CASING_PX: f64 = 1.2;
 
 /// The casing's color: as light as paper, and seen through.
-const CASING: Srgba = Srgba([255, 255, 250, 170]);
+pub const CASING: Srgba = Srgba([255, 255, 250, 170]);
 
 /// A dash and the gap after it, in pixels of a picture 1080 lines high.
 const DASH_PX: [f64; 2] = [10.0, 6.0];
@@ -79,6 +79,16 @@ impl GraphicPen {
         &mut self.drawn.entry((feature, color.0)).or_default()[1]
     }
 
+    /// The plans of casings, and of lines.
+    pub fn into_plans(self) -> [Vec<LinePlan>; 2] {
+        let (mut casings, mut lines) = (Vec::new(), Vec::new());
+        for ((feature, color), [casing, line]) in self.drawn {
+            casings.push(LinePlan { plan: casing, color: CASING, feature });
+            lines.push(LinePlan { plan: line, color: Srgba(color), feature });
+        }
+        [casings, lines]
+    }
+
     /// What the lines become on the displayed ground: casings, then lines.
     pub fn draped(&self, displayed: &dyn TriangleSurface) -> [Vec<DrapedPart>; 2] {
         let part = |plan: &PlanMesh, color: Srgba, feature: FeatureId| {
@@ -91,6 +101,16 @@ impl GraphicPen {
             self.drawn.iter().map(|((feature, color), plans)| part(&plans[1], Srgba(*color), *feature));
         [casings.collect(), lines.collect()]
     }
+}
+
+/// Lines of one color in plan.
+pub struct LinePlan {
+    /// Their triangles.
+    pub plan: PlanMesh,
+    /// Their color.
+    pub color: Srgba,
+    /// Whose they are.
+    pub feature: FeatureId,
 }
 
 /// A part of a draw list: what is draped with one color.
@@ -126,17 +146,20 @@ impl Materials<'_> {
         if part.mesh.triangles.is_empty() {
             return;
         }
-        let material = *self.made.entry(part.color.0).or_insert_with(|| {
-            self.list.add_material(Material {
-                name: "graphic".into(),
-                base_color: part.color,
-                alpha: if part.color.0[3] == 255 { AlphaMode::Opaque } else { AlphaMode::Blend },
-                normals: NormalSource::Ground,
-                ..Material::default()
-            })
-        });
+        let material = *self.made.entry(part.color.0).or_insert_with(|| add_material(self.list, part.color));
         add_mesh(self.list, part.mesh, material, DepthLayer::Draped(LAYER), part.feature);
     }
+}
+
+/// Adds the material of lines of a color.
+pub fn add_material(list: &mut DrawList, color: Srgba) -> MaterialId {
+    list.add_material(Material {
+        name: "graphic".into(),
+        base_color: color,
+        alpha: if color.0[3] == 255 { AlphaMode::Opaque } else { AlphaMode::Blend },
+        normals: NormalSource::Ground,
+        ..Material::default()
+    })
 }
 
 /// A vertex of a line in view.
@@ -155,7 +178,8 @@ pub struct GraphicView<'a> {
     /// The displayed ground.
     pub displayed: &'a dyn TriangleSurface,
     ground: FullResolution<'a>,
-    frustum: Frustum,
+    /// `None` where the eye turns around.
+    frustum: Option<Frustum>,
     extent: Rect,
     z: [f32; 2],
     /// The pixels of the picture.
@@ -164,16 +188,30 @@ pub struct GraphicView<'a> {
 
 impl<'a> GraphicView<'a> {
     pub fn new(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
+        Self::by(scene, camera, displayed, LineScale::new(camera))
+    }
+
+    /// For an eye that turns around where `camera` is: each place as if it were in the picture's middle.
+    pub fn around(scene: &'a SceneModel, camera: &'a Camera, displayed: &'a dyn TriangleSurface) -> Self {
+        Self::by(scene, camera, displayed, LineScale::around(camera))
+    }
+
+    fn by(
+        scene: &'a SceneModel,
+        camera: &'a Camera,
+        displayed: &'a dyn TriangleSurface,
+        scale: LineScale<'a>,
+    ) -> Self {
         let lattice = scene.ground().lattice();
         let (min, max) = scene.bounds;
         Self {
             camera,
             displayed,
             ground: FullResolution { lattice },
-            frustum: Frustum::new(camera),
+            frustum: scale.frustum(),
             extent: lattice.extent(),
             z: [min.z, max.z],
-            scale: LineScale::new(camera),
+            scale,
         }
     }
 
@@ -188,8 +226,6 @@ impl<'a> GraphicView<'a> {
 
     /// The height of a text at places, in meters: that of their mean distance. `None` where all are behind the eye.
     pub fn em_m(&self, places: &[DVec2]) -> Option<f64> {
-        let forward = self.camera.forward().as_dvec3();
-        let eye = self.camera.eye().as_dvec3();
         let near = f64::from(self.camera.planes().0);
         if self.camera.parallel_frame().is_some() {
             return Some(EM_PX * self.scale.px * self.scale.meters_per_px_at(1.0));
@@ -197,15 +233,17 @@ impl<'a> GraphicView<'a> {
         let places: Vec<Vec3> = places.iter().map(|&at| self.on_ground(at)).collect();
         let (width, height) = self.camera.size();
         let is_shown = |place: &&Vec3| {
-            self.camera.project(**place).is_some_and(|seen| {
-                let shares = [seen.pixel.x / width as f32, seen.pixel.y / height as f32];
-                shares.iter().all(|share| (0.0..=1.0).contains(share))
-            })
+            let turns = self.frustum.is_none();
+            !turns
+                && self.camera.project(**place).is_some_and(|seen| {
+                    let shares = [seen.pixel.x / width as f32, seen.pixel.y / height as f32];
+                    shares.iter().all(|share| (0.0..=1.0).contains(share))
+                })
         };
         // Of what is partly in view, that part counts.
         let shown: Vec<&Vec3> = places.iter().filter(is_shown).collect();
         let counted = if shown.is_empty() { places.iter().collect() } else { shown };
-        let depths = counted.into_iter().map(|place| (place.as_dvec3() - eye).dot(forward));
+        let depths = counted.into_iter().map(|place| self.depth_m(place.as_dvec3()));
         let logs: Vec<f64> = depths
             .filter(|&depth_m| depth_m > near)
             .map(|depth_m| libm::log(self.scale.meters_per_px_at(depth_m)))
@@ -227,13 +265,10 @@ impl<'a> GraphicView<'a> {
 
     /// Upward on the picture at a place, in the plane, as long as an upright figure is to be stretched there.
     pub fn up(&self, at: DVec2) -> DVec2 {
-        let (forward, up) = (self.camera.forward().as_dvec3(), self.camera.up().as_dvec3());
+        let offset = self.on_ground(at).as_dvec3() - self.camera.eye().as_dvec3();
+        let [_, up, forward] = self.scale.axes(offset);
         let way = (forward.truncate() + up.truncate()).try_normalize().unwrap_or(DVec2::Y);
-        let ray = if self.camera.parallel_frame().is_some() {
-            forward
-        } else {
-            (self.on_ground(at).as_dvec3() - self.camera.eye().as_dvec3()).normalize_or(forward)
-        };
+        let ray = if self.camera.parallel_frame().is_some() { forward } else { offset.normalize_or(forward) };
         let seen = -ray.z * f64::from(self.camera.stretch());
         way * (1.0 / seen.max(1.0 / MOST_STRETCH)).clamp(1.0, MOST_STRETCH)
     }
@@ -287,6 +322,9 @@ impl<'a> GraphicView<'a> {
     /// across the line. On a slope that faces the eye that is less than on level ground.
     fn px_m(&self, at: DVec3, along: DVec2) -> f64 {
         let square_m = self.scale.px * self.scale.meters_per_px_at(self.depth_m(at));
+        if self.frustum.is_none() {
+            return self.scale.px * self.scale.meters_per_px(at, along);
+        }
         let reach_m = PROBE_PX * square_m;
         let pixel = |way: DVec2| {
             let place = at.truncate() + way * reach_m;
@@ -305,7 +343,8 @@ impl<'a> GraphicView<'a> {
 
     /// How far a place is from the eye along the view.
     fn depth_m(&self, at: DVec3) -> f64 {
-        (at - self.camera.eye().as_dvec3()).dot(self.camera.forward().as_dvec3())
+        let offset = at - self.camera.eye().as_dvec3();
+        if self.frustum.is_none() { offset.length() } else { offset.dot(self.camera.forward().as_dvec3()) }
     }
 
     /// Calls `visit` with the parts of a leg that may be in view, in order, each short on the picture.
@@ -316,7 +355,8 @@ impl<'a> GraphicView<'a> {
         let reach = Rect::around([from.truncate(), to.truncate()]).grown(MARGIN_PX * px_m);
         let [low, high] = self.z;
         let [min, max] = [(reach.min, low), (reach.max, high)].map(|(at, z)| at.as_vec2().extend(z));
-        if !(reach.meets(&self.extent) && self.frustum.may_see(min, max)) {
+        let is_out = self.frustum.is_some_and(|frustum| !frustum.may_see(min, max));
+        if is_out || !reach.meets(&self.extent) {
             return;
         }
         if from.distance(to) > LONGEST_PX * px_m && halves < MOST_HALVES {

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use glam::DVec2;
 
 use crate::description::words::GraphicStatus;
+use crate::draw::color::Srgba;
 use crate::geom::polygon::doubled_area;
 use crate::geom::rect::Rect;
 use crate::ribbon::area;
@@ -28,14 +29,7 @@ pub(super) fn draped(
     view: &GraphicView<'_>,
     displayed: &dyn TriangleSurface,
 ) -> ([Vec<DrapedPart>; 2], Vec<PlacedText>) {
-    let drawn: Vec<_> = scene
-        .graphics
-        .par_iter()
-        .filter_map(|graphic| {
-            let (pen, texts) = drawn(graphic, view)?;
-            Some((pen.draped(displayed), texts))
-        })
-        .collect();
+    let drawn = each(scene, view, |pen| pen.draped(displayed));
     let (mut parts, mut texts) = ([Vec::new(), Vec::new()], Vec::new());
     for ([casings, lines], more) in drawn {
         parts[0].extend(casings);
@@ -43,6 +37,23 @@ pub(super) fn draped(
         texts.extend(more);
     }
     (parts, texts)
+}
+
+/// What `finish` makes of each graphic in view, and its texts.
+pub(super) fn each<T: Send>(
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    finish: impl Fn(GraphicPen) -> T + Sync,
+) -> Vec<(T, Vec<PlacedText>)> {
+    let finished = |graphic| drawn(graphic, view).map(|(pen, texts)| (finish(pen), texts));
+    scene.graphics.par_iter().filter_map(finished).collect()
+}
+
+/// The colors that graphics are drawn in.
+pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
+    scene.graphics.iter().flat_map(|graphic| {
+        [graphic.side, opposing(graphic.side)].map(|side| graphic_color(side, graphic.kind.tint))
+    })
 }
 
 /// One graphic in plan; `None` where all of it is behind the eye.

@@ -36,7 +36,7 @@ impl<'a> LineScale<'a> {
     }
 
     /// Rightward, upward and forward for a place `offset` from the eye.
-    fn axes(&self, offset: DVec3) -> [DVec3; 3] {
+    pub fn axes(&self, offset: DVec3) -> [DVec3; 3] {
         let own = [self.camera.right(), self.camera.up(), self.camera.forward()].map(|axis| axis.as_dvec3());
         let Some(forward) = offset.try_normalize().filter(|_| self.turns) else { return own };
         let right = forward.cross(DVec3::Z).try_normalize().unwrap_or(DVec3::X);

@@ -14,7 +14,7 @@ mod haze;
 mod lake_tint;
 mod line_scale;
 mod markings;
-mod models;
+pub mod models;
 mod overlay;
 mod parallel_view;
 pub mod placed_text;

@@ -1,5 +1,7 @@
 //! Models, each in its pose.
 
+use std::collections::BTreeMap;
+
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -17,6 +19,18 @@ use crate::terrain::triangle_surface::TriangleSurface;
 /// The seed of tints: any other gives others.
 const TINT_SEED: u64 = 0x7ea5;
 
+/// Where a model stands instead, while a user moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacementMove {
+    /// World X and Y of its origin.
+    pub at: Vec2,
+    /// The heading of its front, radians clockwise from north.
+    pub heading_rad: f32,
+}
+
+/// Models that stand elsewhere, by their number among the scene's placements.
+pub type PlacementMoves = BTreeMap<usize, PlacementMove>;
+
 /// Adds every placement that has ground under it and may be seen, and the plinths.
 pub(super) fn add(
     list: &mut DrawList,
@@ -24,7 +38,18 @@ pub(super) fn add(
     displayed: &dyn TriangleSurface,
     viewer: Viewer<'_>,
 ) {
-    let placed = place(list, scene, displayed);
+    add_moved(list, scene, displayed, viewer, &PlacementMoves::new());
+}
+
+/// [`add`] with some models elsewhere.
+pub(super) fn add_moved(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    displayed: &dyn TriangleSurface,
+    viewer: Viewer<'_>,
+    moves: &PlacementMoves,
+) {
+    let placed = place(list, scene, displayed, moves);
     detail::add(list, scene, &placed, viewer);
 }
 
@@ -34,16 +59,25 @@ pub(super) fn add_forms(
     scene: &SceneModel,
     displayed: &dyn TriangleSurface,
 ) -> Vec<ListedForm> {
-    let placed = place(list, scene, displayed);
+    let placed = place(list, scene, displayed, &PlacementMoves::new());
     detail::add_forms(list, scene, &placed)
 }
 
 /// Adds the plinths of all placements that have ground under them, and returns these.
-fn place(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurface) -> Vec<PlacedModel> {
+fn place(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    displayed: &dyn TriangleSurface,
+    moves: &PlacementMoves,
+) -> Vec<PlacedModel> {
     let finest = scene.scale.ground(&scene.lattice);
     let ground = SupportSurface { displayed, ground: &finest };
     let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
-    let set = |placement: &Placement| -> Option<(PlacedModel, Option<DrawMesh>)> {
+    let set = |(number, placement): (usize, &Placement)| -> Option<(PlacedModel, Option<DrawMesh>)> {
+        let placement = &match moves.get(&number) {
+            Some(&PlacementMove { at, heading_rad }) => Placement { at, heading_rad, ..*placement },
+            None => *placement,
+        };
         let footprint = &footprints[placement.model];
         let stand = stand(placement, footprint, ground)?;
         let Placement { model, feature, .. } = *placement;
@@ -52,7 +86,7 @@ fn place(list: &mut DrawList, scene: &SceneModel, displayed: &dyn TriangleSurfac
         Some((PlacedModel { model, world_from_model: stand.world_from_model, tint, feature }, plinth))
     };
     let (placed, plinths): (Vec<PlacedModel>, Vec<Option<DrawMesh>>) =
-        scene.placements.par_iter().filter_map(set).unzip();
+        scene.placements.par_iter().enumerate().filter_map(set).unzip();
     let mut concrete = None;
     for (block, placed) in
         plinths.into_iter().zip(&placed).filter_map(|(block, placed)| Some((block?, placed)))

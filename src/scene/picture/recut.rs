@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
+use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::patches::DrapedPiece;
 use crate::geom::convex;
@@ -21,11 +22,14 @@ use crate::roam::patched_ground::PatchedGround;
 use crate::scene::picture::drapes::{
     BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
 };
-use crate::scene::picture::ground;
+use crate::scene::picture::graphic_lines::{self, LinePlan};
 use crate::scene::picture::lake_tint::{LakeTint, longest_lakes};
 use crate::scene::picture::line_scale::LineScale;
 use crate::scene::picture::markings::faded;
+use crate::scene::picture::placed_text::PlacedText;
+use crate::scene::picture::sight::{self, TintPlan};
 use crate::scene::picture::symbols::{PlannedSymbol, RibbonShow, planned};
+use crate::scene::picture::{ground, overlay};
 use crate::scene::symbols::LineSymbol;
 use crate::scene::{Ribbon, SceneModel};
 use crate::terrain::triangle_surface::TriangleSurface;
@@ -56,6 +60,12 @@ pub struct GroundSheets {
     borders: Borders,
     ribbons: Sheet,
     symbols: Sheet,
+    /// Tints of sight.
+    tints: Sheet,
+    /// Lines of sight and tactical graphics.
+    graphics: Sheet,
+    graphic_colors: BTreeMap<[u8; 4], MaterialId>,
+    texts: Vec<PlacedText>,
     /// The features whose ribbons their symbols take the place of.
     replaced: BTreeSet<FeatureId>,
 }
@@ -87,6 +97,10 @@ impl GroundSheets {
             borders: borders(ground),
             ribbons: Sheet::EMPTY,
             symbols: Sheet::EMPTY,
+            tints: Sheet::EMPTY,
+            graphics: Sheet::EMPTY,
+            graphic_colors: BTreeMap::new(),
+            texts: Vec::new(),
             replaced: BTreeSet::new(),
         };
         let sources = sources(scene);
@@ -113,7 +127,27 @@ impl GroundSheets {
             sheets.material(RibbonLook::Casing(symbol.surface));
             sheets.material(RibbonLook::Fill(symbol.surface, fill_color(symbol)));
         }
+        let (mut plans, mut shapes) = (Vec::new(), Vec::new());
+        for TintPlan { plan, color, texture, feature } in sight::tints(scene) {
+            let material = sight::add_material(&mut sheets.head, color, texture);
+            plans.push(SheetPlan { material, markings: None, lake: None, layer: sight::TINT_LAYER, feature });
+            shapes.push(plan);
+        }
+        sheets.tints = Sheet { drapes: Drapes::new(&sheets.borders, &shapes), plans };
+        for color in overlay::colors(scene) {
+            let material = graphic_lines::add_material(&mut sheets.head, Srgba(color));
+            sheets.graphic_colors.insert(color, material);
+        }
         sheets
+    }
+
+    /// The texts of tactical graphics, as they were planned last.
+    pub fn texts(&self) -> &[PlacedText] {
+        &self.texts
+    }
+
+    fn sheets(&self) -> [&Sheet; 4] {
+        [&self.ribbons, &self.symbols, &self.tints, &self.graphics]
     }
 
     /// The materials of the ground, which is the first, and of all that lies on it, and their textures.
@@ -123,13 +157,43 @@ impl GroundSheets {
 
     /// Whether something lies in a patch.
     pub fn is_occupied(&self, patch: usize) -> bool {
-        self.ribbons.drapes.is_occupied(patch) || self.symbols.drapes.is_occupied(patch)
+        self.sheets().iter().any(|sheet| sheet.drapes.is_occupied(patch))
     }
 
     /// Cuts what lies in `patches` to what is displayed there.
     pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
-        self.ribbons.drapes.recut(patches, ground);
-        self.symbols.drapes.recut(patches, ground);
+        for sheet in [&mut self.ribbons, &mut self.symbols, &mut self.tints, &mut self.graphics] {
+            sheet.drapes.recut(patches, ground);
+        }
+    }
+
+    /// Plans the lines of sight and the tactical graphics for an eye that turns around where `camera` is, over the finest
+    /// ground. They are not cut yet; returns the patches in which what lies has changed.
+    pub fn plan_graphics(
+        &mut self,
+        scene: &SceneModel,
+        camera: &Camera,
+        ground: &dyn TriangleSurface,
+    ) -> Vec<usize> {
+        let (lines, texts) = overlay::planned(scene, camera, ground);
+        self.texts = texts;
+        let (mut plans, mut shapes) = (Vec::new(), Vec::new());
+        for LinePlan { plan, color, feature } in lines {
+            let Some(&material) = self.graphic_colors.get(&color.0) else { continue };
+            plans.push(SheetPlan {
+                material,
+                markings: None,
+                lake: None,
+                layer: graphic_lines::LAYER,
+                feature,
+            });
+            shapes.push(plan);
+        }
+        let drapes = Drapes::new(&self.borders, &shapes);
+        let before = std::mem::replace(&mut self.graphics, Sheet { drapes, plans });
+        let is_held =
+            |&patch: &usize| before.drapes.is_occupied(patch) || self.graphics.drapes.is_occupied(patch);
+        (0..self.borders.patch_count()).filter(is_held).collect()
     }
 
     /// Plans the symbols of the lines that are too narrow for an eye that turns around where `camera` is. They are not cut
@@ -208,6 +272,10 @@ impl GroundSheets {
             }
         }
         symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
+        for sheet in [&self.tints, &self.graphics] {
+            let cut = sheet.drapes.in_patch(patch);
+            cut.for_each(|(at, mesh)| sheet.plans[at].add(mesh.clone(), &mut pieces));
+        }
         pieces
     }
 
@@ -228,14 +296,18 @@ impl GroundSheets {
             });
             found.last().map(|(plan, _)| ((sheet.plans[plan].layer, is_symbol), sheet.plans[plan].feature))
         };
-        let uppermost = [of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten().max();
+        let graphics = of(&self.graphics, true).or_else(|| of(&self.tints, true));
+        let uppermost = graphics
+            .into_iter()
+            .chain([of(&self.ribbons, false), of(&self.symbols, true)].into_iter().flatten())
+            .max();
         uppermost.map(|(_, feature)| feature)
     }
 
     /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
     pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
         let of = |sheet: &Sheet| sheet.drapes.check_in(&self.borders, patches, ground);
-        of(&self.ribbons).max(of(&self.symbols))
+        self.sheets().into_iter().map(of).fold(0.0, f64::max)
     }
 
     fn ribbon(&mut self, ribbon: &Ribbon, lake: Option<LakeTint>) -> SheetPlan {

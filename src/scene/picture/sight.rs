@@ -10,7 +10,7 @@ use glam::{DVec2, UVec2, Vec2, Vec4};
 
 use crate::description::words::{RangeExtent, ViewshedTint};
 use crate::draw::color::Srgba;
-use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::material::{AlphaMode, Material, NormalSource};
 use crate::draw::pixels::Pixels;
 use crate::mesh::sink::MeshSink;
@@ -29,10 +29,9 @@ use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use crate::terrain::sight::outlook::visible_stretches;
 use crate::terrain::sight::viewshed::PostVisibility;
-use crate::terrain::triangle_surface::TriangleSurface;
 
 /// Tints lie under lines.
-const TINT_LAYER: u8 = LAYER - 1;
+pub(super) const TINT_LAYER: u8 = LAYER - 1;
 
 /// Lines of sight to seen and to hidden ground.
 const SEEN_LINE: LineLook = LineLook { color: graphic_colors::SEEN_LINE, is_dashed: false };
@@ -53,6 +52,52 @@ const RING_PIECES: f64 = 180.0;
 /// The radius of the ring about a target and an observer, in text heights.
 const MARK_EM: f64 = 0.6;
 
+/// A tint in plan.
+pub(super) struct TintPlan {
+    /// Its triangles.
+    pub plan: PlanMesh,
+    /// Its color, or a factor of its texture's.
+    pub color: Srgba,
+    /// What it shows where.
+    pub texture: Option<Pixels>,
+    /// Whose it is.
+    pub feature: FeatureId,
+}
+
+/// The tints of seen and hidden ground and of ranges, in drawing order; they are the same for every camera.
+pub(super) fn tints(scene: &SceneModel) -> Vec<TintPlan> {
+    let (layers, lattice) = (&scene.sight, &*scene.lattice);
+    let of_viewsheds = layers.viewsheds.iter().filter_map(|layer| {
+        let colors = match layer.tint {
+            ViewshedTint::Both => [Some(SEEN), Some(HIDDEN)],
+            ViewshedTint::Seen => [Some(SEEN), None],
+            ViewshedTint::Hidden => [None, Some(HIDDEN)],
+        };
+        viewshed_tint(layer, lattice, colors)
+    });
+    let of_ranges = layers.ranges.iter().filter_map(|range| {
+        let Srgba([red, green, blue, _]) = side_color(range.side);
+        let fill = Srgba([red, green, blue, FILL_ALPHA]);
+        match range.fill {
+            RangeExtent::Seen => viewshed_tint(&range.sight, lattice, [Some(fill), None]),
+            RangeExtent::All => Some(TintPlan {
+                plan: sector_plan(range),
+                color: fill,
+                texture: None,
+                feature: range.feature,
+            }),
+            _ => None,
+        }
+    });
+    of_viewsheds.chain(of_ranges).collect()
+}
+
+/// The colors of the lines of sight and of ranges.
+pub(super) fn line_colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
+    let ranges = scene.sight.ranges.iter().map(|range| side_color(range.side));
+    [SEEN_LINE, HIDDEN_LINE, OBSERVER_LINE].map(|look| look.color).into_iter().chain(ranges)
+}
+
 /// Adds the tints of sight that a picture shows, draws its lines and notes their texts.
 pub(super) fn add(
     list: &mut DrawList,
@@ -61,33 +106,27 @@ pub(super) fn add(
     pen: &mut GraphicPen,
     texts: &mut Vec<PlacedText>,
 ) {
-    let displayed = view.displayed;
-    let layers = &scene.sight;
-    let lattice = &*scene.lattice;
-    for layer in &layers.viewsheds {
-        let colors = match layer.tint {
-            ViewshedTint::Both => [Some(SEEN), Some(HIDDEN)],
-            ViewshedTint::Seen => [Some(SEEN), None],
-            ViewshedTint::Hidden => [None, Some(HIDDEN)],
-        };
-        lay_tint(list, layer, lattice, colors, displayed);
-    }
-    for range in &layers.ranges {
-        let Srgba([red, green, blue, _]) = side_color(range.side);
-        let fill = Srgba([red, green, blue, FILL_ALPHA]);
-        if range.fill == RangeExtent::Seen {
-            lay_tint(list, &range.sight, lattice, [Some(fill), None], displayed);
-        } else if range.fill == RangeExtent::All {
-            let plan = sector_plan(range);
-            let mut mesh = DrawMesh::default();
-            drape(&plan, displayed, &mut mesh);
-            add_tint(list, mesh, fill, None, range.feature);
+    for TintPlan { plan, color, texture, feature } in tints(scene) {
+        let mut mesh = DrawMesh::default();
+        drape(&plan, view.displayed, &mut mesh);
+        if !mesh.triangles.is_empty() {
+            let material = add_material(list, color, texture);
+            add_mesh(list, mesh, material, DepthLayer::Draped(TINT_LAYER), feature);
         }
-        draw_range(range, scene, view, pen, texts);
     }
-    for sight in &layers.sights {
-        draw_sight(sight, scene, view, pen);
-    }
+    draw(scene, view, pen, texts);
+}
+
+/// Draws the lines of sight and of ranges and notes their texts.
+pub(super) fn draw(
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    pen: &mut GraphicPen,
+    texts: &mut Vec<PlacedText>,
+) {
+    let layers = &scene.sight;
+    layers.ranges.iter().for_each(|range| draw_range(range, scene, view, pen, texts));
+    layers.sights.iter().for_each(|sight| draw_sight(sight, scene, view, pen));
     for layer in &layers.viewsheds {
         for observer in &layer.observers {
             mark_observer(observer.observer, scene, view, layer.feature, pen);
@@ -95,15 +134,9 @@ pub(super) fn add(
     }
 }
 
-/// Lays seen and hidden posts over the ground in two colors.
-fn lay_tint(
-    list: &mut DrawList,
-    layer: &SceneViewshed,
-    lattice: &Lattice,
-    colors: [Option<Srgba>; 2],
-    displayed: &dyn TriangleSurface,
-) {
-    let Some(seen) = layer.seen(lattice) else { return };
+/// The seen and the hidden posts in two colors; `None` where nobody looked.
+fn viewshed_tint(layer: &SceneViewshed, lattice: &Lattice, colors: [Option<Srgba>; 2]) -> Option<TintPlan> {
+    let seen = layer.seen(lattice)?;
     // Only the posts that somebody looked at.
     let columns = seen.columns as usize;
     let is_looked_at =
@@ -115,7 +148,7 @@ fn lay_tint(
         let (low, high) = (UVec2::new(first as u32, row as u32), UVec2::new(last as u32, row as u32));
         corners = Some(corners.map_or([low, high], |[min, max]| [min.min(low), max.max(high)]));
     }
-    let Some([min, max]) = corners else { return };
+    let [min, max] = corners?;
     let size = max - min + 1;
     let stride = size.max_element().div_ceil(MOST_TEXELS).max(1);
     let texels = size.map(|side| side.div_ceil(stride));
@@ -161,9 +194,7 @@ fn lay_tint(
     let ids = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| plan.vertex(corner(share)));
     plan.triangle([ids[0], ids[1], ids[2]]);
     plan.triangle([ids[0], ids[2], ids[3]]);
-    let mut mesh = DrawMesh::default();
-    drape(&plan, displayed, &mut mesh);
-    add_tint(list, mesh, Srgba::WHITE, Some(pixels), layer.feature);
+    Some(TintPlan { plan, color: Srgba::WHITE, texture: Some(pixels), feature: layer.feature })
 }
 
 /// The mean of colors weighted by their alpha; where there is none, a color of the tint that nothing shows of, so that a
@@ -178,20 +209,17 @@ fn blended(sum: Vec4, count: f32, colors: [Option<Srgba>; 2]) -> Srgba {
     Srgba([red, green, blue, 0])
 }
 
-fn add_tint(list: &mut DrawList, mesh: DrawMesh, color: Srgba, texture: Option<Pixels>, feature: FeatureId) {
-    if mesh.triangles.is_empty() {
-        return;
-    }
+/// Adds the material of a tint.
+pub(super) fn add_material(list: &mut DrawList, color: Srgba, texture: Option<Pixels>) -> MaterialId {
     let texture = texture.map(|pixels| list.add_texture(pixels));
-    let material = list.add_material(Material {
+    list.add_material(Material {
         name: "sight".into(),
         base_color: color,
         texture,
         alpha: AlphaMode::Blend,
         normals: NormalSource::Ground,
         ..Material::default()
-    });
-    add_mesh(list, mesh, material, DepthLayer::Draped(TINT_LAYER), feature);
+    })
 }
 
 /// The direction of an azimuth.

@@ -10,6 +10,7 @@ use crate::draw::list::DrawList;
 use crate::scene::SceneModel;
 use crate::scene::ground_map::GroundMapKey;
 use crate::scene::picture::detail::Viewer;
+use crate::scene::picture::models::PlacementMoves;
 use crate::scene::picture::setting::PictureSetting;
 use crate::scene::picture::{airspace, ground, has_table, lighting, models, solids, table, uprights, voids};
 use crate::terrain::full_resolution::FullResolution;
@@ -19,9 +20,11 @@ use crate::view::camera::Camera;
 /// The most posts of a walk's ground map: a hundred megabytes.
 const MOST_MAP_POSTS: u64 = 1 << 22;
 
-/// How the ground of a walk is drawn, and by what light.
+/// How the ground of a walk is drawn, by what light, and which models stand elsewhere on it.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkedGround<'a> {
+    /// The models that stand elsewhere.
+    pub moves: &'a PlacementMoves,
     /// The heights, as they are drawn.
     pub lattice: &'a Lattice,
     /// Unit vector toward the sun.
@@ -57,7 +60,7 @@ pub fn standing(
     solids::add(&mut list, scene);
     voids::add(&mut list, scene);
     uprights::add(&mut list, scene, &surface);
-    models::add(&mut list, scene, &surface, Viewer::Around(camera));
+    models::add_moved(&mut list, scene, &surface, Viewer::Around(camera), walked.moves);
     airspace::add(&mut list, scene);
     list
 }

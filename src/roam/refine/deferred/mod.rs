@@ -275,6 +275,11 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
+    /// The vertices of the patch with south-west corner `corner`; `None` while it has no mesh.
+    pub fn block(&self, corner: Vertex) -> Option<&Arc<PatchBlock>> {
+        self.mesh(corner).map(PatchMesh::block)
+    }
+
     /// The source of patches.
     pub fn source(&self) -> &S {
         &self.source

@@ -168,6 +168,11 @@ impl PatchMesh {
         &self.indices
     }
 
+    /// Its vertices.
+    pub fn block(&self) -> &Arc<PatchBlock> {
+        &self.block
+    }
+
     /// Whether the vertex is active; patch corners are.
     pub fn is_active(&self, vertex: u16) -> bool {
         self.flags[vertex as usize] & ACTIVE != 0

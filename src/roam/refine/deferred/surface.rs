@@ -27,6 +27,11 @@ impl<'a, S: BlockSource> DeferredSurface<'a, S> {
         Self { mesh, cell, listed }
     }
 
+    /// The surface of all patches, as they were updated last.
+    pub fn everywhere(mesh: &'a Deferred<S>, cell: DVec2) -> Self {
+        Self { mesh, cell, listed: vec![true; mesh.layout.patch_count()] }
+    }
+
     /// Calls `visit` with every displayed triangle of a listed patch that meets the rectangle.
     fn visit_patch(&self, corner: Vertex, rect: &Rect, visit: &mut dyn FnMut(&SurfaceTriangle)) {
         let topology = self.mesh.topology(corner);
