@@ -17,7 +17,7 @@ use crate::pipeline::picture::{ComposedView, PictureSize, compose_view, draw_vie
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
 use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
-use crate::pipeline::sheet_file::write_sheet;
+use crate::pipeline::sheet_file::{picture_description, write_sheet};
 use crate::pipeline::sidecar::SidecarDraft;
 use crate::scene::{SceneModel, SceneView};
 
@@ -155,12 +155,7 @@ fn render_picture(
         PictureOutput::Sheet(sheet.painted())
     } else {
         progress("writing the picture");
-        let description = format!(
-            "camera {}, coordinates {}, heights times {}",
-            camera.name,
-            scene.crs.name(),
-            scene.scale.0
-        );
+        let description = picture_description(scene, camera);
         write_sheet(&path, sheet, camera.dpi(), (scene.title.as_deref(), &description))?;
         if let Some(draft) = draft {
             let text = format!("{:#}\n", draft.finished(&annotations));

@@ -7,6 +7,7 @@ use crate::annotate::pdf::PdfError;
 use crate::export::{PngNotes, encode_png, encode_png_with};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::scene::{SceneModel, SceneView};
 
 /// Pixels per inch where a view has no print in mind.
 const SCREEN_DPI: f64 = 96.0;
@@ -19,6 +20,11 @@ pub enum WriteSheetError {
     File(#[from] WriteFileError),
     #[error(transparent)]
     Pdf(#[from] FileError<PdfError>),
+}
+
+/// How a picture of `scene` was seen, for those who find it later.
+pub fn picture_description(scene: &SceneModel, view: &SceneView) -> String {
+    format!("camera {}, coordinates {}, heights times {}", view.name, scene.crs.name(), scene.scale.0)
 }
 
 /// Writes a sheet: with letters and lines as vectors where the name ends in `.pdf` or `.svg`, otherwise as PNG. `dpi` are

@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 use glam::{DVec2, Vec3};
 
 use crate::pipeline::editing::editor::SceneSource;
-use crate::pipeline::files::{self, WriteFileError};
-use crate::pipeline::picture::{PictureError, PictureSize, render_view};
+use crate::pipeline::files;
+use crate::pipeline::picture::{ComposedView, PictureError, PictureSize, compose_view, draw_view};
 use crate::pipeline::scene_file::OpenSceneError;
+use crate::pipeline::sheet_file::{WriteSheetError, picture_description, write_sheet};
 use crate::render::RenderBackend;
 use crate::scene::SceneModel;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -53,7 +54,7 @@ pub enum ViewSnapshotError {
     #[error(transparent)]
     Picture(#[from] PictureError),
     #[error(transparent)]
-    Write(#[from] WriteFileError),
+    Write(#[from] WriteSheetError),
 }
 
 /// The first name `view-N` that neither a camera of `scene` nor a picture beside `file` has.
@@ -140,11 +141,13 @@ impl ViewSnapshot {
         let text = format!("{}\n\n{}", self.source.text.trim_end(), self.camera);
         let scene = SceneSource { text, ..self.source.clone() }.build(progress)?;
         let view = scene.view(Some(&self.name)).ok_or(ViewSnapshotError::NoGround)?;
-        let drawn = render_view(&scene, view, self.size, RenderBackend::Cpu, progress)?;
+        let drawn = draw_view(&scene, view, self.size, RenderBackend::Cpu, progress)?;
+        let ComposedView { sheet, .. } = compose_view(&scene, drawn, progress);
         if path.exists() {
             return Err(ViewSnapshotError::Exists(path));
         }
-        files::write_picture(&path, &drawn.pixels)?;
+        let description = picture_description(&scene, view);
+        write_sheet(&path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
         Ok(path)
     }
 }

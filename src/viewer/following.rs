@@ -62,6 +62,7 @@ impl ViewerApp {
                 self.recent.add(&path);
             }
         }
+        self.view.forget();
         self.detail.tolerance_px = opened.walk.tolerance_px();
         self.detail.frozen = false;
         self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));

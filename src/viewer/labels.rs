@@ -60,6 +60,8 @@ pub struct LabelPicture<'a> {
     pub camera: &'a Camera,
     /// Where it is, in points of the window.
     pub rect: Rect,
+    /// What labels leave free.
+    pub taken: &'a [Rect],
     /// Whether a place in world space is in sight.
     pub is_seen: &'a dyn Fn(Vec3) -> bool,
     /// The size of a label's letters, in points.
@@ -78,7 +80,7 @@ impl LabelLayer {
             candidates.push((label.rank - bonus, depth_m, index, ground, top));
         }
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-        let mut taken: Vec<Rect> = Vec::new();
+        let mut taken: Vec<Rect> = picture.taken.to_vec();
         let mut placed = Vec::new();
         let mut states = BTreeMap::new();
         for (_, _, index, ground, top) in candidates {
@@ -196,7 +198,7 @@ mod tests {
         let camera = Camera::new(eye, target, 0.8, (800, 600), (1.0, 1e5)).expect("sound");
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
         let size = |_: &SceneLabel| vec2(60.0, 14.0);
-        let picture = LabelPicture { camera: &camera, rect, is_seen, size: &size };
+        let picture = LabelPicture { camera: &camera, rect, taken: &[], is_seen, size: &size };
         let mut placed: Vec<usize> = Vec::new();
         for label in layer.place(labels, &picture) {
             if layer.is_shown(label.index) {

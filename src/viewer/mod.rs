@@ -35,6 +35,7 @@ mod script;
 mod script_run;
 mod session;
 mod snapshots;
+mod symbol_layer;
 mod tool_use;
 mod view_area;
 mod watch;

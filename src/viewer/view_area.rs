@@ -13,6 +13,7 @@ use crate::view::navigation::{NavigationMode, NavigationSteps};
 use crate::viewer::commands::{HeldMotion, held};
 use crate::viewer::labels::{self, LabelLayer, LabelPicture};
 use crate::viewer::opened::OpenedScene;
+use crate::viewer::symbol_layer::SymbolLayer;
 
 /// Degrees that dragging over the height of the picture turns.
 const DEG_PER_PICTURE: f64 = 110.0;
@@ -46,6 +47,7 @@ pub struct ViewArea {
     steps: NavigationSteps,
     pace: f64,
     labels: LabelLayer,
+    symbols: SymbolLayer,
 }
 
 /// What the user did in the view besides moving.
@@ -68,6 +70,12 @@ impl ViewArea {
     /// The view's place among what can have the keys.
     pub fn id() -> Id {
         Id::unique("view of the scene")
+    }
+
+    /// Forgets what was drawn over a scene before.
+    pub fn forget(&mut self) {
+        self.labels = LabelLayer::default();
+        self.symbols.clear();
     }
 
     /// Draws the picture `texture` over all of what `ui` has left, and moves the camera of `opened`.
@@ -234,7 +242,8 @@ impl ViewArea {
             painter.layout_no_wrap(label.text.clone(), labels::font(label.kind), Color32::BLACK).size()
         };
         let is_seen = |at: Vec3| opened.is_seen(camera, at);
-        let picture = LabelPicture { camera, rect, is_seen: &is_seen, size: &size };
+        let taken = self.symbols.show(&painter, rect, opened, camera);
+        let picture = LabelPicture { camera, rect, taken: &taken, is_seen: &is_seen, size: &size };
         let placed = self.labels.place(&opened.scene.labels, &picture);
         labels::paint(&painter, &opened.scene.labels, &placed);
         if self.labels.is_changing() {
