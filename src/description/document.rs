@@ -185,6 +185,8 @@ table! {
         /// Whether meadow, scree, rock and snow tint the ground by its elevation, slope and aspect, by at most 6 of lightness;
         /// the tree line and the snow line are those of the latitude.
         land_cover: Stated<bool> = key::switch(), default false;
+        /// Whether the edges of the drawn triangles of the ground show, as papers on terrain print their meshes.
+        wireframe: bool = key::switch(), default false;
         /// Where the light comes from.
         light: LightTable = key::table::<LightTable>(), default {};
         /// Distance from the near edge of the scene at which 63 % of what is seen is haze; 0 for clear air. Fitted

@@ -76,6 +76,20 @@ pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost
     GroundLevel { size, posts }
 }
 
+/// The post `[column, row]` of the level after one of `size` with `posts`, as [`coarser_levels`] makes it.
+pub fn coarser_post(size: PostCount, posts: &[GroundPost], [column, row]: [u32; 2]) -> GroundPost {
+    // Past the border the border's posts are repeated.
+    let around = |at: u32, count: u32| {
+        [(2 * at).saturating_sub(1), 2 * at, 2 * at + 1].map(|index| index.min(count - 1))
+    };
+    let columns = around(column, size.columns);
+    let rows = around(row, size.rows).map(|row| {
+        let [west, own, east] = columns.map(|column| &posts[(row * size.columns + column) as usize]);
+        smoothed([west, own, east])
+    });
+    smoothed(rows.each_ref())
+}
+
 /// Adds `weight` times `post`.
 pub fn add_weighted(sum: &mut GroundPost, post: &GroundPost, weight: f32) {
     *sum = sum.zip_with(post, |sum, value| sum + value * weight);
@@ -151,6 +165,20 @@ mod tests {
         assert_eq!(sizes(1, 5), [(1, 5), (1, 3), (1, 2)]);
         assert_eq!(sizes(1, 1).len(), 1);
         assert!(sizes(u32::MAX, 2).len() <= 33);
+    }
+
+    #[test]
+    fn a_single_post_is_that_of_its_level() {
+        for (columns, rows) in [(33, 17), (8, 5), (2, 9), (1, 6)] {
+            let from = PostCount { columns, rows };
+            let fine = posts(from, |column, row| ((column * 31 + row * 57) % 83) as f32);
+            let row = |row: usize| fine[row * columns as usize..][..columns as usize].to_vec();
+            let level = level(from, 1, row);
+            for (index, post) in (0..).zip(&level.posts) {
+                let at = [index % level.size.columns, index / level.size.columns];
+                assert_eq!(coarser_post(from, &fine, at), *post, "{at:?} of {:?}", level.size);
+            }
+        }
     }
 
     #[test]

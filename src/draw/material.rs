@@ -61,6 +61,8 @@ pub struct Material {
     pub receives_shadows: bool,
     /// Whether it is natural cover of the ground, whose grain goes through it.
     pub is_natural: bool,
+    /// Whether the edges of its triangles are drawn over it, as [`wireframe`](crate::draw::wireframe) says.
+    pub shows_edges: bool,
 }
 
 impl Material {
@@ -84,6 +86,7 @@ impl Default for Material {
             is_water: false,
             receives_shadows: true,
             is_natural: false,
+            shows_edges: false,
         }
     }
 }

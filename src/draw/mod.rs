@@ -19,3 +19,4 @@ pub mod pixels;
 pub mod print_pattern;
 pub mod undergrowth;
 pub mod water;
+pub mod wireframe;

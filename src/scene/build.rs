@@ -136,6 +136,7 @@ pub fn build(
         scale,
         bounds,
         tolerance_px: document.terrain.tolerance_px as f32,
+        wireframe: document.style.wireframe,
         layout,
         ground: OnceLock::new(),
         held: Arc::new(shaped.held),

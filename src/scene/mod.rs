@@ -112,6 +112,8 @@ pub struct SceneModel {
     pub bounds: (Vec3, Vec3),
     /// The greatest error of the drawn ground in pixels.
     pub tolerance_px: f32,
+    /// Whether the edges of its triangles show.
+    pub wireframe: bool,
     layout: PatchLayout,
     ground: OnceLock<MeasuredGround>,
     /// The posts under water, which earthworks leave as they are.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable::draw::patches::{
-    DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
+    DrapedPiece, GroundChanges, GroundMapPatch, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
 };
 use sandtable::mesh::sink::{MeshSink, VertexId};
 use sandtable::render::gpu::adapter::Gpu;
@@ -18,7 +18,7 @@ use sandtable::render::gpu::render_on;
 use sandtable::view::camera::Camera;
 
 use crate::common::adapters::gpus;
-use crate::common::synthetic::{HOUSE, LAKE, ROAD, camera, scene};
+use crate::common::synthetic::{HOUSE, LAKE, ROAD, camera, ground_of, scene};
 
 /// Posts along a side of the scene's ground and of a patch of it, and patches along a side.
 const POSTS: usize = 65;
@@ -104,12 +104,19 @@ impl Window {
     }
 
     fn frame(&self, renderer: &mut LiveRenderer, camera: &Camera) -> Vec<[u8; 4]> {
+        self.frame_with(renderer, camera, &LiveOptions::default())
+    }
+
+    fn frame_with(
+        &self,
+        renderer: &mut LiveRenderer,
+        camera: &Camera,
+        options: &LiveOptions,
+    ) -> Vec<[u8; 4]> {
         let gpu = renderer.gpu().clone();
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
         let view = self.texture.create_view(&Default::default());
-        renderer
-            .draw(&mut encoder, &view, SIZE, camera, &LiveOptions::default())
-            .unwrap_or_else(|error| panic!("{error}"));
+        renderer.draw(&mut encoder, &view, SIZE, camera, options).unwrap_or_else(|error| panic!("{error}"));
         let size = u64::from(SIZE.0 * SIZE.1 * 4);
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("copy of a frame"),
@@ -216,6 +223,54 @@ fn what_changes_is_sent_and_nothing_else() {
         assert_eq!(renderer.pick(&camera, pixel).expect("it draws"), None, "there is no ground");
         renderer.update(&all).expect("it fits");
         assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "all is back again");
+    }
+}
+
+#[test]
+fn a_changed_ground_map_shows_as_one_loaded_anew() {
+    let (mut list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let before = window.frame(&mut renderer, &camera);
+        let map = ground_of(&mut list);
+        let (first, columns, rows) = ([40, 7], 9, 30);
+        let mut posts = Vec::new();
+        for row in first[1]..first[1] + rows {
+            for column in first[0]..first[0] + columns {
+                let post = &mut map.posts[(row * map.columns + column) as usize];
+                (post.slope_east, post.slope_north) = (post.slope_east + 0.8, -0.4);
+                posts.push(*post);
+            }
+        }
+        let change = GroundMapPatch { first, columns, posts };
+        let sent = renderer.update(&GroundChanges { map: vec![change.clone()], ..Default::default() });
+        let sent = sent.expect("it lies on the map");
+        assert!(sent.map >= 16 * u64::from(columns * rows) && sent.map == sent.total(), "{sent:?}");
+        assert!(sent.map < 3 * 16 * u64::from(columns * rows), "{sent:?}");
+        let after = window.frame(&mut renderer, &camera);
+        assert!(share_apart(&after, &before) > 0.005, "the change is seen on {}", gpu.name());
+        let anew = window.frame(&mut loaded(gpu, &list, WINDOW), &camera);
+        assert_eq!(share_apart(&after, &anew), 0.0, "on {}", gpu.name());
+        let beside = GroundMapPatch { first: [60, 60], ..change };
+        let error = renderer.update(&GroundChanges { map: vec![beside], ..Default::default() });
+        assert!(error.is_err(), "it lies beside the map");
+        list = scene();
+    }
+}
+
+#[test]
+fn a_wireframe_darkens_lines_of_the_ground_and_goes_again() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let before = window.frame(&mut renderer, &camera);
+        let lined = window.frame_with(&mut renderer, &camera, &LiveOptions { wireframe: true });
+        let darker = lined.iter().zip(&before).filter(|(a, b)| a[1].saturating_add(20) < b[1]).count();
+        let lighter = lined.iter().zip(&before).filter(|(a, b)| a[1] > b[1].saturating_add(20)).count();
+        assert!(darker > 20_000 && lighter < 100, "{darker} darker, {lighter} lighter on {}", gpu.name());
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0);
     }
 }
 

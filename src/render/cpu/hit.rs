@@ -74,6 +74,14 @@ impl Barycentric {
         }
     }
 
+    /// The distances from the three edges, and the triangle's heights over them, in pixels.
+    pub fn edges_px(&self) -> [Vec3; 2] {
+        let whole = |pair: Vec2, sum: f32| Vec3::new(sum - pair.x - pair.y, pair.x, pair.y);
+        let (weights, right, down) = (whole(self.at, 1.0), whole(self.right, 0.0), whole(self.down, 0.0));
+        let per_px = (right * right + down * down).map(|square| square.sqrt().max(f32::MIN_POSITIVE));
+        [weights / per_px, per_px.recip()]
+    }
+
     pub fn blend(&self, [a, b, c]: [Vec3; 3]) -> Vec3 {
         a + (b - a) * self.at.x + (c - a) * self.at.y
     }

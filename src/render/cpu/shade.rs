@@ -10,6 +10,7 @@ use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
 use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::water::{WaterMirror, ripples};
+use crate::draw::wireframe::{self, edge_cover};
 use crate::render::cpu::cutout::Cutout;
 use crate::render::cpu::geometry::ScreenFace;
 use crate::render::cpu::ground_shade::GroundShader;
@@ -62,7 +63,8 @@ impl<'a> Shader<'a> {
     /// Whether a face is colored and lit by the ground map alone: all such faces look alike at the same place.
     pub fn is_mapped(&self, face: &ScreenFace) -> bool {
         let material = self.material(self.item(face));
-        material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground
+        let is_ground = material.albedo == Albedo::GroundMap && material.normals == NormalSource::Ground;
+        is_ground && !material.shows_edges
     }
 
     pub fn backdrop(&self, at: [f32; 2]) -> Vec3 {
@@ -127,6 +129,11 @@ impl<'a> Shader<'a> {
             let ray = ray.normalize_or_zero();
             let slope = ripples(hit.world.truncate(), hit.pixel_m(), ray);
             color = lighting.mirror_sky(color, ray, WaterMirror { share: water, slope });
+        }
+        if material.shows_edges {
+            let [from_px, heights_px] = vertices.weights.edges_px();
+            color = color
+                .lerp(wireframe::LINE.linear(), edge_cover(from_px, heights_px) * wireframe::LINE.alpha());
         }
         if lighting.haze.distance_m.is_finite() {
             color = lighting.add_haze(color, hit.distance_m);

@@ -43,6 +43,11 @@ impl FrameTextures {
         })
     }
 
+    /// The ground map on the device.
+    pub fn ground(&self) -> &GroundTextures {
+        &self.ground
+    }
+
     /// Replaces the checked map and what else is read by it.
     pub fn replace_ground(&mut self, loader: &Loader<'_>, map: Option<&GroundMap>) -> Result<(), GpuError> {
         self.ground = GroundTextures::upload(loader, map)?;

@@ -6,13 +6,14 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::{Mat4, Vec3};
 
-use crate::draw::list::{DrawList, DrawMesh, DrawVertex, FeatureId};
+use crate::draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use crate::mesh::sink::VertexId;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::materials::MaterialRow;
 use crate::render::gpu::memory::Loader;
 use crate::render::gpu::plan::{DrawShape, Plan};
 use crate::render::gpu::uniforms::Instance;
+use crate::view::camera::Camera;
 
 /// A corner in world space: `Corner` and `Owner` in the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -28,6 +29,15 @@ pub struct MergedVertex {
 pub struct SurfaceOwner {
     pub feature: FeatureId,
     pub material: MaterialRow,
+}
+
+/// What the texture coordinates of merged corners are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CornerUv {
+    /// Those of the mesh.
+    Own,
+    /// The weights of a triangle's second and third corner, for its edges; no triangles share corners.
+    Weights,
 }
 
 /// Triangles of many items.
@@ -53,18 +63,20 @@ pub struct Geometry {
 }
 
 impl MergedMesh {
-    /// Adds a range of the triangles of `mesh` with the vertices that they use.
+    /// Adds triangles of `mesh` with the vertices that they use.
     pub fn add(
         &mut self,
         mesh: &DrawMesh,
-        triangles: Range<u32>,
+        triangles: impl ExactSizeIterator<Item = u32>,
         world_from_mesh: &Mat4,
         owner: SurfaceOwner,
+        uv: CornerUv,
     ) {
+        let (start, first_vertex) = (self.indices.len(), self.vertices.len());
         let is_moved = *world_from_mesh != Mat4::IDENTITY;
         let mut known = KnownVertices::new(mesh.vertices.len(), triangles.len() * 3);
-        for id in mesh.triangles[triangles.start as usize..triangles.end as usize].iter().flatten() {
-            let index = known.of(*id, || {
+        for id in triangles.flat_map(|triangle| mesh.triangles[triangle as usize]) {
+            let index = known.of(id, || {
                 let mut corner = mesh.vertices[id.index()];
                 if is_moved {
                     let position = Vec3::from(corner.position).extend(1.0);
@@ -76,6 +88,22 @@ impl MergedMesh {
                 self.vertices.len() as u32 - 1
             });
             self.indices.push(index);
+        }
+        if uv == CornerUv::Weights {
+            self.weigh_corners(start, first_vertex);
+        }
+    }
+
+    /// Gives each triangle from index `start` on corners of its own, with their weights, in place of the vertices from
+    /// `first_vertex` on.
+    fn weigh_corners(&mut self, start: usize, first_vertex: usize) {
+        let corners: Vec<MergedVertex> =
+            self.indices.drain(start..).map(|index| self.vertices[index as usize]).collect();
+        self.vertices.truncate(first_vertex);
+        for (corner, weights) in corners.into_iter().zip([[0.0; 2], [1.0, 0.0], [0.0, 1.0]].iter().cycle()) {
+            self.indices.push(self.vertices.len() as u32);
+            let corner = MergedVertex { corner: DrawVertex { uv: *weights, ..corner.corner }, ..corner };
+            self.vertices.push(corner);
         }
     }
 }
@@ -110,15 +138,29 @@ impl KnownVertices {
 }
 
 impl Geometry {
-    /// Sends what `plan` draws of a checked list.
-    pub fn upload(loader: &Loader<'_>, list: &DrawList, plan: &Plan) -> Result<Self, GpuError> {
+    /// Sends what `plan` draws of a checked list for a picture by `camera`, or by many cameras.
+    pub fn upload(
+        loader: &Loader<'_>,
+        list: &DrawList,
+        plan: &Plan,
+        camera: Option<&Camera>,
+    ) -> Result<Self, GpuError> {
         let merged = plan.merged.chunk_by(|a, b| a.chunk == b.chunk).map(|parts| {
             let mut merged = MergedMesh::default();
             for part in parts {
                 let item = &list.items[part.item];
                 let owner = SurfaceOwner { feature: item.feature, material: item.material.into() };
                 let mesh = &list.meshes[item.mesh.0 as usize];
-                merged.add(mesh, part.triangles.clone(), &item.world_from_mesh, owner);
+                let shows_edges = list.materials[item.material.0 as usize].shows_edges;
+                let uv = if shows_edges { CornerUv::Weights } else { CornerUv::Own };
+                let world_from_mesh = &item.world_from_mesh;
+                match camera.filter(|_| item.layer == DepthLayer::Ground) {
+                    Some(camera) => {
+                        let order = nearest_first(mesh, part.triangles.clone(), camera);
+                        merged.add(mesh, order.into_iter(), world_from_mesh, owner, uv);
+                    }
+                    None => merged.add(mesh, part.triangles.clone(), world_from_mesh, owner, uv),
+                }
             }
             let what = || format!("{} triangles", merged.indices.len() / 3);
             MeshBuffers::upload(loader, what, cast_slice(&merged.vertices), cast_slice(&merged.indices))
@@ -156,6 +198,22 @@ impl Geometry {
             }
         }
     }
+}
+
+/// Triangles of the ground from the nearest to the farthest, so that little is shaded that nearer ground hides; those at
+/// about the same depth keep their order, in which neighbors share corners.
+fn nearest_first(mesh: &DrawMesh, triangles: Range<u32>, camera: &Camera) -> Vec<u32> {
+    /// Bands of depth to a doubling: more hide more, and share fewer corners.
+    const BANDS: f32 = 4.0;
+    let band = |triangle: &u32| {
+        let [corner, ..] = mesh.triangles[*triangle as usize];
+        let offset = Vec3::from(mesh.vertices[corner.index()].position) - camera.eye();
+        // Not finite for hostile corners, which any band is right for.
+        (libm::log2f(offset.dot(camera.forward()).max(1.0)) * BANDS) as i32
+    };
+    let mut order: Vec<u32> = triangles.collect();
+    order.sort_by_cached_key(band);
+    order
 }
 
 impl MeshBuffers {
@@ -207,13 +265,52 @@ mod tests {
         let turned =
             Mat4::from_translation(Vec3::Z * 7.0) * Mat4::from_rotation_z(std::f32::consts::FRAC_PI_2);
         let mut merged = MergedMesh::default();
-        merged.add(&mesh, 0..1, &Mat4::IDENTITY, owner);
-        merged.add(&mesh, 1..2, &turned, owner);
+        merged.add(&mesh, 0..1, &Mat4::IDENTITY, owner, CornerUv::Own);
+        merged.add(&mesh, 1..2, &turned, owner, CornerUv::Own);
         assert_eq!(merged.indices, [0, 1, 2, 3, 4, 3]);
         assert_eq!(merged.vertices.len(), 5);
         let last = merged.vertices[3];
         assert!(Vec3::from(last.corner.position).abs_diff_eq(Vec3::new(0.0, 4.0, 7.0), 1e-5));
         assert!(Vec3::from(last.corner.normal).abs_diff_eq(Vec3::Y, 1e-6));
         assert_eq!(last.owner, owner);
+    }
+
+    #[test]
+    fn ground_is_drawn_from_the_nearest_to_the_farthest() {
+        let mut mesh = DrawMesh::default();
+        for y in [900.0, 10.0, 100.0, 11.0] {
+            let [a, b, c] = [[0.0, y, 0.0], [1.0, y, 0.0], [0.0, y, 1.0]].map(|position| {
+                mesh.vertex(DrawVertex { position, normal: [0.0; 3], uv: [0.0; 2], color: Srgba::WHITE })
+            });
+            mesh.triangle([a, b, c]);
+        }
+        let camera = Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (8, 8), (1.0, 1000.0)).expect("sound");
+        assert_eq!(nearest_first(&mesh, 0..4, &camera), [1, 3, 2, 0]);
+    }
+
+    #[test]
+    fn triangles_whose_edges_show_have_corners_of_their_own_with_weights() {
+        let mut mesh = DrawMesh::default();
+        for x in 0..4u8 {
+            let position = [f32::from(x), 0.0, 0.0];
+            mesh.vertex(DrawVertex { position, normal: [0.0; 3], uv: [7.0; 2], color: Srgba::WHITE });
+        }
+        mesh.triangle([VertexId(0), VertexId(1), VertexId(2)]);
+        mesh.triangle([VertexId(1), VertexId(3), VertexId(2)]);
+        let owner = SurfaceOwner { feature: FeatureId(9), material: MaterialId(3).into() };
+        let mut merged = MergedMesh::default();
+        merged.add(&mesh, 0..2, &Mat4::IDENTITY, owner, CornerUv::Weights);
+        let seen: Vec<(f32, [f32; 2])> = merged
+            .indices
+            .iter()
+            .map(|&index| {
+                let corner = merged.vertices[index as usize].corner;
+                (corner.position[0], corner.uv)
+            })
+            .collect();
+        let weights = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let expected: Vec<(f32, [f32; 2])> =
+            [0.0, 1.0, 2.0, 1.0, 3.0, 2.0].into_iter().zip(weights.into_iter().cycle()).collect();
+        assert_eq!(seen, expected);
     }
 }

@@ -22,6 +22,7 @@ use rayon::prelude::*;
 
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{PostCount, coarser_levels};
+use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::memory::{Loader, texture};
 
@@ -89,6 +90,24 @@ impl GroundTextures {
             writer.finish()?;
         }
         Ok(Self { posts })
+    }
+}
+
+impl GroundTextures {
+    /// Replaces the posts from number `first` on; returns the bytes sent.
+    pub fn write(&self, gpu: &Gpu, first: u32, posts: &[GroundPost]) -> u64 {
+        let width = self.posts.width();
+        let texels: Vec<[u32; 4]> = posts.iter().map(packed).collect();
+        let (mut left, mut next) = (texels.as_slice(), first);
+        while !left.is_empty() {
+            let in_row = ((width - next % width) as usize).min(left.len());
+            let mut to = self.posts.as_image_copy();
+            (to.origin.x, to.origin.y) = (next % width, next / width);
+            gpu.write(to, in_row as u32, 1, cast_slice(&left[..in_row]));
+            left = &left[in_row..];
+            next += in_row as u32;
+        }
+        (texels.len() * size_of::<[u32; 4]>()) as u64
     }
 }
 

@@ -95,7 +95,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         let scene = FrameScene { ground, lighting: &list.lighting, shadows, row_bits };
         frame.write(gpu, &FrameUniforms::new(scene, camera));
         let materials = Materials::upload(&loader, &layouts, list, &places)?;
-        Ok((targets, frame, materials, Geometry::upload(&loader, list, &plan)?))
+        Ok((targets, frame, materials, Geometry::upload(&loader, list, &plan, Some(camera))?))
     });
     let (targets, frame, materials, geometry) = loaded?;
     gpu.guarded("drawing the picture", || {

@@ -34,6 +34,8 @@ impl ShaderParts {
     const HAZE: Self = Self(4096);
     /// Water on the ground map.
     const MAP_WATER: Self = Self(8192);
+    /// The edges of triangles.
+    const EDGES: Self = Self(16_384);
 
     /// What bare ground shows.
     pub const GROUND: Self = Self(Self::GROUND_COLOR.0 | Self::GROUND_LIGHT.0);
@@ -66,6 +68,7 @@ impl ShaderParts {
             .with(color)
             .with(Self::WATER.when(material.is_water))
             .with(Self::NATURAL.when(material.is_natural))
+            .with(Self::EDGES.when(material.shows_edges))
     }
 
     /// What a picture shows of a checked map and a light, with these shadow maps of the sun and of the sky.
@@ -102,7 +105,8 @@ impl ShaderParts {
             .with(all(&map).when(colored))
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
             .with(all(&shadows).when(lit));
-        let of_material = all(&[Self::GROUND, Self::OWN_LIGHT, Self::HATCHING, Self::WATER, Self::NATURAL]);
+        let of_material =
+            all(&[Self::GROUND, Self::OWN_LIGHT, Self::HATCHING, Self::WATER, Self::NATURAL, Self::EDGES]);
         Self(wanted.0 & picture.with(of_material).0)
     }
 }

@@ -17,6 +17,10 @@ pub const FEATURE: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// The factor by which a drape counts as nearer than it is.
 const DRAPE_NEARER: f64 = 1.0 + DRAPE_TOLERANCE;
 
+/// The factor by which lines along the ground count as nearer: a line passes the centers of pixels at up to half a pixel's
+/// distance, where slopes are nearer or farther than it is.
+const LINES_NEARER: f64 = 1.0 + 1.0 / 1000.0;
+
 /// The same as a part of a pixel. Hardware snaps corners to a grid of 1/256 pixel, moving each by up to 0.7 of half a
 /// step. A drape has corners that the ground lacks; four times that covers both.
 const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
@@ -181,7 +185,11 @@ impl Pipelines {
 
     fn pipeline(&self, gpu: &Gpu, key: PipelineKey) -> wgpu::RenderPipeline {
         let Self { target, shader, .. } = self;
-        let nearer = if key.rule == DepthRule::Drape { DRAPE_NEARER } else { 1.0 };
+        let nearer = match key.rule {
+            DepthRule::Drape => DRAPE_NEARER,
+            DepthRule::Lines => LINES_NEARER,
+            DepthRule::Solid | DepthRule::Blend | DepthRule::Sky => 1.0,
+        };
         let nearer_px = if key.rule == DepthRule::Drape { f64::from(DRAPE_NEARER_PX) } else { 0.0 };
         let vertex_constants = [("nearer", nearer)];
         let textured = f64::from(u8::from(key.textured));
@@ -197,6 +205,7 @@ impl Pipelines {
         };
         let fragment = match (target.pass, gpu.api()) {
             _ if is_sky => "sky_color",
+            _ if key.rule == DepthRule::Lines => "line_color",
             (GpuPass::Feature, _) => "feature",
             (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
             (GpuPass::Color, GpuApi::Vulkan) if key.masked && target.samples == 4 => "masked_color",
@@ -212,6 +221,10 @@ impl Pipelines {
                 buffers,
             },
             primitive: wgpu::PrimitiveState {
+                topology: match key.rule {
+                    DepthRule::Lines => wgpu::PrimitiveTopology::LineList,
+                    _ => wgpu::PrimitiveTopology::TriangleList,
+                },
                 cull_mode: (!key.two_sided).then_some(wgpu::Face::Back),
                 ..Default::default()
             },
@@ -247,7 +260,7 @@ fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
         DepthRule::Sky => (false, wgpu::CompareFunction::Always),
         DepthRule::Solid => (true, wgpu::CompareFunction::Greater),
         DepthRule::Blend => (false, wgpu::CompareFunction::Greater),
-        DepthRule::Drape => (false, wgpu::CompareFunction::GreaterEqual),
+        DepthRule::Drape | DepthRule::Lines => (false, wgpu::CompareFunction::GreaterEqual),
     };
     // Where the shader writes the depth this has no effect, and `nearer_px` does the same.
     let slope_scale = if rule == DepthRule::Drape { DRAPE_NEARER_PX } else { 0.0 };
@@ -261,7 +274,8 @@ fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
 }
 
 fn color_target(target: &PassTarget, rule: DepthRule) -> wgpu::ColorTargetState {
-    let blends = matches!(rule, DepthRule::Blend | DepthRule::Drape) && target.pass == GpuPass::Color;
+    let blends = matches!(rule, DepthRule::Blend | DepthRule::Drape | DepthRule::Lines)
+        && target.pass == GpuPass::Color;
     wgpu::ColorTargetState {
         format: target.format,
         blend: blends.then_some(wgpu::BlendState::ALPHA_BLENDING),
@@ -291,6 +305,7 @@ mod tests {
                 "merged_vertex",
                 "placed_vertex",
                 "patch_vertex",
+                "line_color",
                 "color",
                 "masked_color",
                 "color_and_depth",

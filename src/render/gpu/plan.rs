@@ -35,6 +35,8 @@ pub enum DepthRule {
     Blend,
     /// Blended where not farther by more than the drape tolerance; writes no depth.
     Drape,
+    /// Lines blended where not farther than a little behind; writes no depth.
+    Lines,
     /// Drawn everywhere; writes no depth.
     Sky,
 }
@@ -133,6 +135,9 @@ impl PipelineKey {
         textured: false,
         parts: ShaderParts::NONE,
     };
+
+    /// The edges of bare ground by patches.
+    pub const PATCH_LINES: Self = Self { rule: DepthRule::Lines, two_sided: true, ..Self::PATCH };
 
     /// The same with parts of the shading.
     pub fn with_parts(self, parts: ShaderParts) -> Self {

@@ -60,6 +60,7 @@ const IN_ALL_LIGHT = 32u;
 const HATCHING = 64u;
 const NATURAL = 128u;
 const TEXTURED = 256u;
+const EDGES = 512u;
 
 // Materials in a row of their table, and texels of each.
 const TABLE_MATERIALS = 256u;
@@ -120,6 +121,7 @@ const SUN_SHADOWS_PART = 1024u;
 const SKY_SHADOWS_PART = 2048u;
 const HAZE_PART = 4096u;
 const MAP_WATER_PART = 8192u;
+const EDGES_PART = 16384u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -728,6 +730,23 @@ fn has(part: u32) -> bool {
     return (parts & part) != 0u;
 }
 
+// src/draw/wireframe.rs: the linear color of lines, their alpha.
+const LINE_COLOR = vec3f(0.00913406, 0.00913406, 0.01298303);
+const LINE_ALPHA = 0.78431374;
+
+// wireframe::edge_cover, by the weights of a triangle's second and third corner.
+fn edge_cover(weights: vec2f) -> f32 {
+    let right = dpdx(weights);
+    let down = dpdy(weights);
+    let across = vec3f(-right.x - right.y, right);
+    let along = vec3f(-down.x - down.y, down);
+    let per_px = max(sqrt(across * across + along * along), vec3f(1e-30));
+    let height = 1.0 / max(max(per_px.x, per_px.y), per_px.z);
+    let away = max(vec3f(1.0 - weights.x - weights.y, weights), vec3f(0.0)) / per_px;
+    let shown = clamp((height - 2.0) / 5.0, 0.0, 1.0);
+    return clamp(1.0 - min(min(away.x, away.y), away.z), 0.0, 1.0) * shown;
+}
+
 // The color of bare ground; water_share is that of the water that mirrors the sky, unlit that of an unshaded picture.
 struct GroundColor {
     color: vec3f,
@@ -821,6 +840,10 @@ fn shade(in: Varying, front: bool) -> vec4f {
     if has(WATER_PART | MAP_WATER_PART) {
         light = mirror_sky(light, from_eye(in.world), water_share, in.world.xy, pixel);
     }
+    if has(EDGES_PART) {
+        let cover = edge_cover(in.uv);
+        light = mix(light, LINE_COLOR, select(0.0, cover * LINE_ALPHA, (flags & EDGES) != 0u));
+    }
     if has(HAZE_PART) {
         let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
         light = mix(frame.haze.rgb, light, clear);
@@ -847,6 +870,13 @@ fn shade_or_discard(in: Varying, front: bool) -> vec4f {
         discard;
     }
     return shaded;
+}
+
+// A line of the ground's wireframe in a window.
+@fragment
+fn line_color(in: Varying) -> @location(0) vec4f {
+    let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
+    return vec4f(mix(frame.haze.rgb, LINE_COLOR, clear), LINE_ALPHA);
 }
 
 @fragment

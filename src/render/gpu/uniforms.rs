@@ -30,6 +30,7 @@ const IN_ALL_LIGHT: u32 = 32;
 const HATCHING: u32 = 64;
 const NATURAL: u32 = 128;
 const TEXTURED: u32 = 256;
+const EDGES: u32 = 512;
 
 /// The constants of a picture: `Frame` in the shader.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -199,6 +200,7 @@ impl SurfaceConstants {
         let light = if material.receives_shadows { 0 } else { IN_ALL_LIGHT };
         let textured = if layer.is_some() { TEXTURED } else { 0 };
         let natural = if material.is_natural { NATURAL } else { 0 };
+        let edges = if material.shows_edges { EDGES } else { 0 };
         let (alpha, cutoff) = match material.alpha {
             AlphaMode::Opaque => (0, 0.0),
             AlphaMode::Mask(cutoff) => (MASK, cutoff),
@@ -206,7 +208,12 @@ impl SurfaceConstants {
         };
         Self {
             base_color: with(material.base_color.linear(), material.base_color.alpha()),
-            flags: [normal | albedo | alpha | water | light | natural | textured, layer.unwrap_or(0), 0, 0],
+            flags: [
+                normal | albedo | alpha | water | light | natural | textured | edges,
+                layer.unwrap_or(0),
+                0,
+                0,
+            ],
             cutoff: [cutoff, 0.0, 0.0, 0.0],
         }
     }

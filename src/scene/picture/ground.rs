@@ -56,6 +56,7 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, displayed: &Displayed
     displayed.emit(&mut sink);
     let walls = plinth(&sink.0, scene.ground().lattice(), scene.bounds);
     let material = add_material(list);
+    list.materials[material.0 as usize].shows_edges = scene.wireframe;
     add_mesh(list, sink.0, material, DepthLayer::Ground, FeatureId::GROUND);
     walls
 }

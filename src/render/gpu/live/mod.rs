@@ -17,6 +17,7 @@
 
 mod arena;
 mod encode;
+mod ground_map;
 mod patches;
 pub mod pick;
 mod targets;
@@ -35,6 +36,7 @@ use crate::render::gpu::frame::{FrameGroup, FrameTextures};
 use crate::render::gpu::geometry::Geometry;
 use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::live::encode::Encoder;
+use crate::render::gpu::live::ground_map::EditedMap;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
@@ -74,6 +76,8 @@ pub struct UploadedBytes {
     pub triangles: u64,
     /// What lies on the ground.
     pub drapes: u64,
+    /// Posts of the ground map.
+    pub map: u64,
 }
 
 /// What a frame drew.
@@ -107,7 +111,7 @@ pub struct LiveRenderer {
 /// A scene on the device.
 #[derive(Debug)]
 struct LoadedScene {
-    map: Option<Arc<GroundMap>>,
+    map: EditedMap,
     lighting: Lighting,
     shadows: [ShadowView; 2],
     row_bits: u32,
@@ -136,7 +140,7 @@ impl LiveQuality {
 impl UploadedBytes {
     /// All together.
     pub fn total(&self) -> u64 {
-        self.vertices + self.triangles + self.drapes
+        self.vertices + self.triangles + self.drapes + self.map
     }
 }
 
@@ -222,7 +226,7 @@ impl LiveRenderer {
             let shadows = Shadows::default();
             let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
             let scene = LoadedScene {
-                map: list.ground.clone(),
+                map: EditedMap::new(list.ground.clone()),
                 lighting: list.lighting,
                 parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, [false; 2]),
                 shadows: ShadowView::both(&shadows),
@@ -230,7 +234,7 @@ impl LiveRenderer {
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
                 materials: Materials::upload(&loader, layouts, list, &places)?,
-                geometry: Geometry::upload(&loader, list, &plan)?,
+                geometry: Geometry::upload(&loader, list, &plan, None)?,
                 plan,
                 patches,
                 pick: PickTarget::new(&loader)?,
@@ -248,7 +252,13 @@ impl LiveRenderer {
     /// See [`GpuError`].
     pub fn update(&mut self, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
         let Some(scene) = &mut self.scene else { return Ok(UploadedBytes::default()) };
-        self.gpu.guarded("sending what changed", || scene.patches.update(&self.gpu, changes))
+        self.gpu.guarded("sending what changed", || {
+            let mut sent = scene.patches.update(&self.gpu, changes)?;
+            for change in &changes.map {
+                sent.map += scene.map.change(&self.gpu, scene.textures.ground(), change)?;
+            }
+            Ok(sent)
+        })
     }
 
     /// Lights the scene anew: sun, sky and haze, not the shadows.
@@ -275,7 +285,7 @@ impl LiveRenderer {
             scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
             let shadows = scene.parts.shadows();
             scene.parts = ShaderParts::of_picture(map.as_deref(), &scene.lighting, shadows);
-            scene.map = map;
+            scene.map = EditedMap::new(map);
             scene.make(&self.gpu, &mut self.colors, &mut self.features);
             Ok(())
         })
@@ -313,7 +323,7 @@ impl LiveRenderer {
         camera: &Camera,
         options: &LiveOptions,
     ) -> Result<LiveStatistics, GpuError> {
-        let Some(scene) = &self.scene else { return Ok(LiveStatistics::default()) };
+        let Some(scene) = &mut self.scene else { return Ok(LiveStatistics::default()) };
         if size.0 == 0 || size.1 == 0 {
             return Ok(LiveStatistics::default());
         }
@@ -324,6 +334,11 @@ impl LiveRenderer {
         })?;
         let drawn = gpu.guarded("drawing a frame", || {
             scene.frame.write(gpu, &scene.constants(camera, size));
+            if options.wireframe {
+                let shown = scene.patches.shown(camera);
+                scene.patches.store_lines(gpu, &shown)?;
+                self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
+            }
             let shown = targets.linear.as_ref().unwrap_or(target);
             let views = PassViews {
                 label: "frame",
@@ -334,7 +349,7 @@ impl LiveRenderer {
             let pass = views.begin(encoder, &scene.frame.group);
             let mut pass = ScenePass::new(pass, &self.colors, &scene.materials);
             pass.sky();
-            let drawn = scene.draw(&mut pass, GpuPass::Color, camera);
+            let drawn = scene.draw(&mut pass, GpuPass::Color, camera, *options);
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
                 encode.record(gpu, encoder, linear, target);
@@ -342,7 +357,6 @@ impl LiveRenderer {
             Ok(drawn)
         });
         self.targets = Some(targets);
-        let _ = options;
         drawn
     }
 
@@ -364,7 +378,7 @@ impl LiveRenderer {
             let mut encoder = gpu.encoder("pick");
             let pass = scene.pick.begin(&mut encoder, &scene.frame.group, pixel, size);
             let mut pass = ScenePass::new(pass, &self.features, &scene.materials);
-            scene.draw(&mut pass, GpuPass::Feature, camera);
+            scene.draw(&mut pass, GpuPass::Feature, camera, LiveOptions::default());
             drop(pass);
             scene.pick.read(gpu, encoder)
         })
@@ -387,16 +401,25 @@ impl LoadedScene {
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
         let Self { shadows, row_bits, .. } = *self;
-        let scene = FrameScene { ground: self.map.as_deref(), lighting: &self.lighting, shadows, row_bits };
+        let scene = FrameScene { ground: self.map.map(), lighting: &self.lighting, shadows, row_bits };
         FrameUniforms::new(scene, camera).with_size(size)
     }
 
     /// Draws everything but the sky.
-    fn draw(&self, pass: &mut ScenePass<'_, '_>, which: GpuPass, camera: &Camera) -> LiveStatistics {
+    fn draw(
+        &self,
+        pass: &mut ScenePass<'_, '_>,
+        which: GpuPass,
+        camera: &Camera,
+        options: LiveOptions,
+    ) -> LiveStatistics {
         let shown = self.patches.shown(camera);
         let parts = self.parts;
         let mut drawn = self.patches.draw_ground(pass, &shown, patch_key(which, parts));
         drawn.add(self.patches.draw_drapes(pass, which, &shown, parts));
+        if options.wireframe {
+            drawn.add(self.patches.draw_lines(pass, &shown));
+        }
         let calls: Vec<&DrawCall> = match which {
             GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
             GpuPass::Feature => self.plan.features.iter().collect(),

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use bytemuck::cast_slice;
 use glam::{Mat4, Vec3};
@@ -14,7 +15,7 @@ use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::patches::{DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::geometry::{MergedMesh, SurfaceOwner};
+use crate::render::gpu::geometry::{CornerUv, MergedMesh, SurfaceOwner};
 use crate::render::gpu::live::arena::{Arena, StoredRange};
 use crate::render::gpu::live::{LiveStatistics, UploadedBytes};
 use crate::render::gpu::materials::{ArrayId, TexturePlaces};
@@ -50,6 +51,10 @@ struct StoredPatch {
 struct StoredTriangles {
     indices: StoredRange,
     count: u32,
+    /// As they were handed over, for their edges.
+    handed: Arc<Vec<[u16; 3]>>,
+    /// Their edges and how many indices these have, from when they are first shown.
+    lines: Option<(StoredRange, u32)>,
 }
 
 #[derive(Debug)]
@@ -145,7 +150,7 @@ impl PatchStore {
         }
         for id in &changes.hidden {
             let shown = self.patches.get_mut(id).and_then(|patch| patch.triangles.take());
-            shown.into_iter().for_each(|shown| self.triangles.release(shown.indices));
+            shown.into_iter().for_each(|shown| release_triangles(&mut self.triangles, shown));
         }
         for vertices in &changes.vertices {
             sent.vertices += self.store_vertices(gpu, vertices)?;
@@ -195,6 +200,37 @@ impl PatchStore {
         drawn
     }
 
+    /// Sends the edges of patches that have none yet.
+    pub fn store_lines(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<(), GpuError> {
+        for id in shown {
+            let triangles = self.patches.get_mut(id).and_then(|patch| patch.triangles.as_mut());
+            let Some(triangles) = triangles.filter(|triangles| triangles.lines.is_none()) else { continue };
+            let lines = edges(&triangles.handed);
+            let stored = self.triangles.store(gpu, cast_slice(&lines))?;
+            triangles.lines = Some((stored, lines.len() as u32 * 2));
+        }
+        Ok(())
+    }
+
+    /// Draws the edges of patches.
+    pub fn draw_lines(&self, pass: &mut ScenePass<'_, '_>, shown: &[PatchId]) -> LiveStatistics {
+        let mut drawn = LiveStatistics::default();
+        if !pass.set(PipelineKey::PATCH_LINES, ArrayId::NONE) {
+            return drawn;
+        }
+        for patch in shown.iter().filter_map(|id| self.patches.get(id)) {
+            let lines = patch.triangles.as_ref().and_then(|triangles| triangles.lines.as_ref());
+            let (Some(positions), Some((lines, count))) = (&patch.positions, lines) else { continue };
+            let slices = self.positions.slice(positions).zip(self.triangles.slice(lines));
+            let Some((vertices, indices)) = slices else { continue };
+            pass.pass.set_vertex_buffer(0, vertices);
+            pass.pass.set_index_buffer(indices, wgpu::IndexFormat::Uint16);
+            pass.pass.draw_indexed(0..*count, 0, 0..1);
+            drawn.calls += 1;
+        }
+        drawn
+    }
+
     /// Draws what lies on patches.
     pub fn draw_drapes(
         &self,
@@ -224,7 +260,7 @@ impl PatchStore {
 
     fn release(&mut self, patch: StoredPatch) {
         patch.positions.into_iter().for_each(|range| self.positions.release(range));
-        patch.triangles.into_iter().for_each(|shown| self.triangles.release(shown.indices));
+        patch.triangles.into_iter().for_each(|shown| release_triangles(&mut self.triangles, shown));
         patch.drapes.into_iter().for_each(|drapes| self.release_drapes(drapes));
     }
 
@@ -249,13 +285,14 @@ impl PatchStore {
 
     fn store_triangles(&mut self, gpu: &Gpu, new: &PatchTriangles) -> Result<u64, GpuError> {
         let patch = self.patches.entry(new.patch).or_default();
-        patch.triangles.take().into_iter().for_each(|old| self.triangles.release(old.indices));
+        patch.triangles.take().into_iter().for_each(|old| release_triangles(&mut self.triangles, old));
         if new.triangles.is_empty() {
             return Ok(0);
         }
         let bytes = cast_slice(&new.triangles);
         let indices = self.triangles.store(gpu, bytes)?;
-        patch.triangles = Some(StoredTriangles { indices, count: new.triangles.len() as u32 });
+        let (count, handed) = (new.triangles.len() as u32, Arc::clone(&new.triangles));
+        patch.triangles = Some(StoredTriangles { indices, count, handed, lines: None });
         Ok(bytes.len() as u64)
     }
 
@@ -286,7 +323,7 @@ impl PatchStore {
             let owner = SurfaceOwner { feature: piece.feature, material: piece.material.into() };
             let start = merged.indices.len() as u32;
             let triangles = 0..piece.mesh.triangles.len() as u32;
-            merged.add(&piece.mesh, triangles, &Mat4::IDENTITY, owner);
+            merged.add(&piece.mesh, triangles, &Mat4::IDENTITY, owner, CornerUv::Own);
             let indices = start..merged.indices.len() as u32;
             let joined = calls.last().and_then(|last| last.material.joined(material));
             match (calls.last_mut(), joined) {
@@ -297,5 +334,30 @@ impl PatchStore {
             }
         }
         Ok((merged, calls))
+    }
+}
+
+fn release_triangles(arena: &mut Arena, triangles: StoredTriangles) {
+    arena.release(triangles.indices);
+    triangles.lines.into_iter().for_each(|(lines, _)| arena.release(lines));
+}
+
+/// The edges of triangles, each once.
+fn edges(triangles: &[[u16; 3]]) -> Vec<[u16; 2]> {
+    let sides =
+        |&[a, b, c]: &[u16; 3]| [[a, b], [b, c], [c, a]].map(|[from, to]| [from.min(to), from.max(to)]);
+    let mut edges: Vec<[u16; 2]> = triangles.iter().flat_map(sides).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_that_triangles_share_is_one_line() {
+        assert_eq!(edges(&[[0, 1, 2], [2, 1, 3]]), [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]);
     }
 }
