@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, Vec3};
 
+use crate::pipeline::editing::editor::SceneSource;
 use crate::pipeline::files::{self, WriteFileError};
 use crate::pipeline::picture::{PictureError, PictureSize, render_view};
-use crate::pipeline::scene_file::{OpenSceneError, build_scene_text};
+use crate::pipeline::scene_file::OpenSceneError;
 use crate::render::RenderBackend;
 use crate::scene::SceneModel;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -23,12 +24,8 @@ const TRIED: u16 = 400;
 /// A view that is to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewSnapshot {
-    /// The scene file, or the elevation file that the scene is made of.
-    pub file: PathBuf,
-    /// The scene's text, without the camera.
-    pub text: String,
-    /// Folders that it may read besides the parent of its own.
-    pub allowed: Vec<PathBuf>,
+    /// The scene as it is edited now, without the camera.
+    pub source: SceneSource,
     /// The camera's name, and the picture's.
     pub name: String,
     /// The camera, as it is written in a scene file.
@@ -134,18 +131,14 @@ fn ground_ahead(scene: &SceneModel, camera: &Camera) -> Option<AimedPoint> {
 }
 
 impl ViewSnapshot {
-    /// The scene's text with the camera.
-    pub fn scene_text(&self) -> String {
-        format!("{}\n\n{}", self.text.trim_end(), self.camera)
-    }
-
     /// Draws the picture and writes it beside the scene. `progress` is called with the name of each step as it begins.
     ///
     /// # Errors
     /// See [`ViewSnapshotError`]. A picture that is there is never replaced.
     pub fn write(&self, progress: &dyn Fn(&'static str)) -> Result<PathBuf, ViewSnapshotError> {
-        let path = picture_path(&self.file, &self.name);
-        let scene = build_scene_text(&self.file, &self.scene_text(), &self.allowed, progress)?;
+        let path = picture_path(&self.source.path, &self.name);
+        let text = format!("{}\n\n{}", self.source.text.trim_end(), self.camera);
+        let scene = SceneSource { text, ..self.source.clone() }.build(progress)?;
         let view = scene.view(Some(&self.name)).ok_or(ViewSnapshotError::NoGround)?;
         let drawn = render_view(&scene, view, self.size, RenderBackend::Cpu, progress)?;
         if path.exists() {
@@ -156,17 +149,6 @@ impl ViewSnapshot {
     }
 }
 
-/// The text of the scene in `file`; of an elevation file, a scene of its ground.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn scene_text(file: &Path) -> Result<String, OpenSceneError> {
-    if crate::pipeline::viewing::is_scene_file(file) {
-        return Ok(files::read_text(file)?);
-    }
-    Ok(crate::pipeline::viewing::bare_scene(file))
-}
-
 /// Map coordinates of a point in world space.
 pub fn map_position(scene: &SceneModel, at: Vec3) -> DVec2 {
     scene.lattice.origin() + at.truncate().as_dvec2()
@@ -175,21 +157,21 @@ pub fn map_position(scene: &SceneModel, at: Vec3) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pipeline::viewing::open_to_view;
     use crate::scene::picture;
     use std::env;
     use std::fs;
 
-    const SCENE: &str = "scenes/road.toml";
     const SIZE: PictureSize = PictureSize { width: 64, height: 40 };
 
-    fn scene() -> (SceneModel, String) {
-        let text = scene_text(Path::new(SCENE)).expect("readable");
-        (build_scene_text(Path::new(SCENE), &text, &[], &|_| ()).expect("sound"), text)
+    fn scene() -> (SceneModel, SceneSource) {
+        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        (editor.source().build(&|_| ()).expect("sound"), editor.source().clone())
     }
 
     #[test]
     fn a_camera_that_is_written_and_read_again_sees_the_same() {
-        let (scene, text) = scene();
+        let (scene, source) = scene();
         let (min, max) = scene.bounds;
         for (eye, toward) in [
             ((min + max) * 0.5 + Vec3::Z * 2_000.0, Vec3::new(0.3, 0.5, -0.6)),
@@ -198,8 +180,8 @@ mod tests {
         ] {
             let camera = Camera::new(eye, eye + toward * 100.0, 0.7, (64, 40), (0.5, 1e5)).expect("sound");
             let table = camera_table(&scene, &camera, "view-1").expect("there is ground");
-            let again = build_scene_text(Path::new(SCENE), &format!("{text}\n{table}"), &[], &|_| ());
-            let again = again.expect("the camera is sound");
+            let text = format!("{}\n{table}", source.text);
+            let again = SceneSource { text, ..source.clone() }.build(&|_| ()).expect("the camera is sound");
             let view = again.view(Some("view-1")).expect("it was added");
             let seen = picture::camera(&again, view, (64, 40)).expect("sound");
             assert!(seen.eye().distance(camera.eye()) < 1e-3, "{} {}", seen.eye(), camera.eye());
@@ -228,15 +210,14 @@ mod tests {
         fs::create_dir_all(&folder).expect("a folder");
         fs::copy("assets/jacksboro/valley.asc", folder.join("valley.asc")).expect("copied");
         let file = folder.join("valley.asc");
-        let text = scene_text(&file).expect("made");
-        let scene = build_scene_text(&file, &text, &[], &|_| ()).expect("sound");
+        let source = open_to_view(&file, &[]).expect("readable").source().clone();
+        let scene = source.build(&|_| ()).expect("sound");
         let view = picture::camera(&scene, &scene.cameras[0], (64, 40)).expect("sound");
         let mut names = Vec::new();
         for _ in 0..2 {
             let name = free_name(&scene, &file).expect("few");
             let camera = camera_table(&scene, &view, &name).expect("ground");
-            let (file, text) = (file.clone(), text.clone());
-            let snapshot = ViewSnapshot { file, text, allowed: Vec::new(), name, camera, size: SIZE };
+            let snapshot = ViewSnapshot { source: source.clone(), name, camera, size: SIZE };
             let path = snapshot.write(&|_| ()).expect("drawn");
             assert!(matches!(snapshot.write(&|_| ()), Err(ViewSnapshotError::Exists(_))));
             names.push(path.file_name().expect("named").to_string_lossy().into_owned());

@@ -2,22 +2,23 @@
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use egui::{CentralPanel, Context, Frame, TextureId, Ui};
 use glam::{DVec2, Vec2};
 
 use crate::draw::list::FeatureId;
+use crate::pipeline::editing::edit::{EditValue, SceneEdit};
+use crate::pipeline::editing::editor::OnConflict;
+use crate::pipeline::editing::tool::{DrawingTool, ToolKind};
 use crate::pipeline::files;
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::view_snapshot::{self, ViewSnapshot};
-use crate::pipeline::viewing::{ViewedHeights, ViewerOptions};
+use crate::pipeline::viewing::ViewerOptions;
 use crate::view::navigation::pose::{ViewPose, wrapped};
 use crate::view::navigation::{NavigationMode, TRANSITION_S};
 use crate::viewer::commands::{ViewCommand, pressed};
 use crate::viewer::drawing_job::DrawingJob;
 use crate::viewer::frame_times::FrameTimes;
-use crate::viewer::loading::{SceneLoading, opening_error};
+use crate::viewer::loading::{LoadingTask, SceneLoading, opening_error};
+use crate::viewer::measuring::{MeasureKind, Measuring};
 use crate::viewer::notices::ViewerNotices;
 use crate::viewer::opened::{OpenedScene, SceneFrame};
 use crate::viewer::panels::detail::DetailSettings;
@@ -26,8 +27,11 @@ use crate::viewer::panels::open::OpenPanel;
 use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::place::PlaceText;
 use crate::viewer::recent::RecentFiles;
-use crate::viewer::view_area::{ViewArea, ViewEvent};
-use crate::viewer::watch::{FileWatch, WatchState};
+use crate::viewer::saving::{Leaving, SavingQuestion};
+use crate::viewer::session::EditingSession;
+use crate::viewer::tool_use::{ActiveTool, ToolPreview};
+use crate::viewer::view_area::ViewArea;
+use crate::viewer::watch::FileWatch;
 
 /// What the window has to do for the app.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +82,7 @@ pub struct ViewerApp {
     /// How long frames took.
     pub frames: FrameTimes,
     pub(super) options: ViewerOptions,
-    context: Context,
+    pub(super) context: Context,
     pub(super) recent: RecentFiles,
     pub(super) open_panel: OpenPanel,
     pub(super) shows_open: bool,
@@ -94,10 +98,18 @@ pub struct ViewerApp {
     pub(super) detail: DetailSettings,
     pub(super) picked: Option<PickedText>,
     pub(super) drawing: Option<DrawingJob>,
-    camera_number: usize,
-    heights: ViewedHeights,
-    watch: Option<FileWatch>,
-    requests: Vec<WindowRequest>,
+    /// The camera of the picture that was drawn last.
+    pub(super) snapshot_camera: Option<String>,
+    pub(super) camera_number: usize,
+    pub(super) session: Option<EditingSession>,
+    pub(super) tool: Option<ActiveTool>,
+    pub(super) preview: Option<ToolPreview>,
+    pub(super) question: Option<SavingQuestion>,
+    /// What the files of the scene held when they were read or saved last.
+    pub(super) fingerprint: Option<String>,
+    pub(super) watch: Option<FileWatch>,
+    title: String,
+    pub(super) requests: Vec<WindowRequest>,
 }
 
 impl ViewerApp {
@@ -106,7 +118,8 @@ impl ViewerApp {
         Self::with_recent(options, context, RecentFiles::of_user())
     }
 
-    fn with_recent(options: &ViewerOptions, context: &Context, recent: RecentFiles) -> Self {
+    /// The same with a list of files opened last.
+    pub(super) fn with_recent(options: &ViewerOptions, context: &Context, recent: RecentFiles) -> Self {
         let folder = options.file.as_deref().and_then(Path::parent);
         let folder = folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut app = Self {
@@ -129,9 +142,15 @@ impl ViewerApp {
             detail: DetailSettings { tolerance_px: 1.0, wireframe: false, frozen: false },
             picked: None,
             drawing: None,
+            snapshot_camera: None,
             camera_number: 0,
-            heights: ViewedHeights::AsStated,
+            session: None,
+            tool: None,
+            preview: None,
+            question: None,
+            fingerprint: None,
             watch: None,
+            title: String::new(),
             requests: Vec::new(),
         };
         if let Some(file) = &options.file {
@@ -182,6 +201,26 @@ impl ViewerApp {
         }
     }
 
+    /// Whether a file is being opened or a picture drawn.
+    pub fn is_busy(&self) -> bool {
+        self.loading.is_some() || self.drawing.is_some()
+    }
+
+    /// What is said in the window, the oldest first.
+    pub fn notice_texts(&self) -> impl Iterator<Item = &str> {
+        self.notices.texts()
+    }
+
+    /// Why the file cannot be opened; empty where it can.
+    pub fn failure_text(&self) -> &str {
+        self.failure.as_ref().map_or("", |failure| failure.message.as_str())
+    }
+
+    /// Lets each frame count as long as in a script, however long it takes.
+    pub fn keep_step(&mut self, seconds: f64) {
+        self.view.fixed_step_s = Some(seconds);
+    }
+
     /// Says something that went wrong in the window.
     pub fn warn(&mut self, text: impl Into<String>) {
         self.notices.warn(text);
@@ -189,21 +228,27 @@ impl ViewerApp {
 
     /// The user closes the window.
     pub fn ask_to_close(&mut self) {
-        self.requests.push(WindowRequest::Close);
+        self.leave(Leaving::Close);
     }
 
-    /// Opens a file; the scene from before stays until it is there.
+    /// Opens a file; the scene from before stays until it is there. Edits of it that are not saved are lost.
     pub fn open(&mut self, path: &Path) {
-        self.heights = ViewedHeights::AsStated;
-        self.start_loading(path);
+        self.start_loading(LoadingTask::File(path.to_owned(), self.options.allowed.clone()));
+        self.shows_open = false;
     }
 
-    fn start_loading(&mut self, path: &Path) {
+    fn start_loading(&mut self, task: LoadingTask) {
         let context = self.context.clone();
-        let wake = move || context.request_repaint();
-        self.loading = Some(SceneLoading::start(path, &self.options.allowed, self.heights, wake));
+        self.loading = Some(SceneLoading::start(task, move || context.request_repaint()));
         self.failure = None;
-        self.shows_open = false;
+    }
+
+    /// Builds the scene anew as it is edited now.
+    pub(super) fn rebuild(&mut self) {
+        if let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_ref()) {
+            let (path, source) = (opened.path.clone(), session.editor.source().clone());
+            self.start_loading(LoadingTask::Edited(path, source));
+        }
     }
 
     /// Draws the window of one frame; `texture` is the scene's picture.
@@ -213,7 +258,7 @@ impl ViewerApp {
         self.follow_files(ui);
         if !ui.ctx().text_edit_focused() {
             let commands = ui.input_mut(pressed);
-            commands.into_iter().for_each(|command| self.run(command, ui));
+            commands.into_iter().for_each(|command| self.run(command));
         }
         self.show_menu(ui);
         self.show_status(ui);
@@ -223,127 +268,41 @@ impl ViewerApp {
             self.notices.show(ui);
         });
         self.show_windows(ui.ctx());
+        self.follow_title();
     }
 
-    fn follow_loading(&mut self, ui: &Ui) {
-        let Some(loading) = &mut self.loading else { return };
-        let Some(result) = loading.poll() else { return };
-        let path = loading.path.clone();
-        self.loading = None;
-        match result {
-            Ok(opened) => self.take_over(path, opened, ui),
-            // The last good scene stays, and the error with it.
-            Err(message) if self.opened.is_some() => {
-                self.notices.warn(format!("{} cannot be opened:\n{message}", files::file_name(&path)));
-            }
-            Err(message) => self.failure = Some(OpeningFailure { path, message }),
-        }
-    }
-
-    /// Shows a scene; the camera stays where the same file was shown before.
-    fn take_over(&mut self, path: PathBuf, mut opened: Box<OpenedScene>, ui: &Ui) {
-        self.notices.clear();
-        self.recent.add(&path);
-        self.requests.push(WindowRequest::Title(format!("{} · sandtable", files::file_name(&path))));
-        match self.opened.as_ref().filter(|before| before.path == path) {
-            Some(before) => {
-                let mut pose = before.navigator.pose();
-                pose.eye.z *= f64::from(opened.scene.scale.0 / before.scene.scale.0);
-                opened.navigator.set_mode(before.navigator.mode());
-                opened.navigator.place(pose, &|_| None);
-                opened.fov_y_rad = before.fov_y_rad;
-                let is_there =
-                    |id: &FeatureId| id.index().is_some_and(|index| index < opened.scene.features.len());
-                self.tree.hidden.retain(is_there);
-                if !self.tree.hidden.is_empty() {
-                    opened.hide(&self.tree.hidden);
-                }
-                self.notices.tell(ui.input(|input| input.time), "read again");
-            }
-            None => {
-                self.camera_number = 0;
-                self.tree = TreePanel::default();
-                self.picked = None;
-            }
-        }
-        self.detail.tolerance_px = opened.walk.tolerance_px();
-        self.detail.frozen = false;
-        self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));
-        let context = self.context.clone();
-        let watched: Vec<PathBuf> = opened.scene.files.iter().cloned().chain([path]).collect();
-        self.watch = FileWatch::start(&watched, move || context.request_repaint());
-        self.opened = Some(opened);
-    }
-
-    fn follow_files(&mut self, ui: &Ui) {
-        let Some(watch) = &mut self.watch else { return };
-        match watch.poll(Instant::now()) {
-            WatchState::Unchanged => {}
-            WatchState::Changing(rest) => ui.ctx().request_repaint_after(rest),
-            WatchState::Changed => self.reload(),
-        }
-    }
-
-    fn reload(&mut self) {
+    /// Reads the file again.
+    pub(super) fn reload(&mut self) {
         let opened = self.opened.as_ref().map(|opened| opened.path.clone());
         let failed = self.failure.as_ref().map(|failure| failure.path.clone());
         if let Some(path) = opened.or(failed) {
-            self.start_loading(&path);
+            self.open(&path);
         }
     }
 
-    /// Draws heights another number of times as high: the scene is made anew.
+    /// Draws heights another number of times as high: an edit of the scene.
     pub(super) fn exaggerate(&mut self, factor: f64) {
-        self.heights = ViewedHeights::Times(factor);
-        self.reload();
+        let factor = EditValue::Number(factor);
+        self.edit(&SceneEdit::set_value("terrain.vertical_exaggeration", factor));
     }
 
-    fn follow_drawing(&mut self, ui: &Ui) {
-        let Some(result) = self.drawing.as_ref().and_then(DrawingJob::poll) else { return };
-        let Some(drawing) = self.drawing.take() else { return };
-        match result {
-            Ok(path) => {
-                let ViewSnapshot { name, camera, size, .. } = drawing.snapshot;
-                let PictureSize { width, height } = size;
-                let text = format!(
-                    "{} is the picture of this camera; its table is copied. `sandtable render --camera {name} --size \
-                     {width}x{height}` draws it again once the table is in the scene file:",
-                    path.display()
-                );
-                self.notices.tell_with_text(text, camera);
-            }
-            Err(error) => self.notices.warn(error),
-        }
-        ui.ctx().request_repaint();
-    }
-
-    fn take_snapshot(&mut self, ui: &Ui) {
-        let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
-        if self.drawing.is_some() {
-            self.notices.tell(ui.input(|input| input.time), "the picture before is still being drawn");
-            return;
-        }
-        let (width, height) = camera.size();
-        let snapshot = || -> Result<ViewSnapshot, String> {
-            let told = |error: view_snapshot::ViewSnapshotError| opening_error(&error);
-            let name = view_snapshot::free_name(&opened.scene, &opened.path).map_err(told)?;
-            let camera = view_snapshot::camera_table(&opened.scene, &camera, &name).map_err(told)?;
-            let text = view_snapshot::scene_text(&opened.path).map_err(|error| opening_error(&error))?;
-            let size = PictureSize { width: width.clamp(16, 16_384), height: height.clamp(16, 16_384) };
-            let (file, allowed) = (opened.path.clone(), self.options.allowed.clone());
-            Ok(ViewSnapshot { file, text, allowed, name, camera, size })
-        };
-        match snapshot() {
-            Ok(snapshot) => {
-                ui.ctx().copy_text(snapshot.camera.clone());
-                let context = self.context.clone();
-                self.drawing = Some(DrawingJob::start(snapshot, move || context.request_repaint()));
-            }
-            Err(error) => self.notices.warn(error),
+    /// Writes the sun's direction into the scene, as it is shown already.
+    pub(super) fn keep_light(&mut self) {
+        let angle =
+            |name, degrees: f32| SceneEdit::set_value(name, EditValue::Number(f64::from(degrees).round()));
+        let edit = SceneEdit::Together(vec![
+            angle("style.light.azimuth", self.light.azimuth_deg),
+            angle("style.light.altitude", self.light.altitude_deg.max(1.0)),
+        ]);
+        let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_mut()) else { return };
+        if let Err(error) = session.editor.apply(&edit, &opened.scene) {
+            self.notices
+                .warn(format!("the sun is shown here but not kept in the scene: {}", opening_error(&error)));
         }
     }
 
-    fn pick(&mut self, pixel: Vec2) {
+    /// Says what the picture shows at a pixel.
+    pub(super) fn pick(&mut self, pixel: Vec2) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
         self.picked = Some(match opened.pick(&camera, pixel) {
             Some(pick) => PickedText {
@@ -355,23 +314,28 @@ impl ViewerApp {
     }
 
     /// Carries out a command.
-    pub(super) fn run(&mut self, command: ViewCommand, ui: &Ui) {
+    pub(super) fn run(&mut self, command: ViewCommand) {
         match command {
             ViewCommand::Help => self.shows_help = !self.shows_help,
             ViewCommand::Open => self.shows_open = true,
-            ViewCommand::Cancel => {
+            ViewCommand::Cancel if self.question.take().is_some() => {}
+            ViewCommand::Cancel if self.shows_help || self.shows_open => {
                 (self.shows_help, self.shows_open) = (false, false);
-                self.notices.clear();
+            }
+            ViewCommand::Cancel => {
+                if !self.leave_tool() {
+                    self.notices.clear();
+                }
             }
             ViewCommand::FullScreen => self.requests.push(WindowRequest::FullScreen),
             ViewCommand::Quit => self.ask_to_close(),
-            ViewCommand::Reload => self.reload(),
+            ViewCommand::Reload => self.leave(Leaving::Reload),
             ViewCommand::Panels => self.shows_panels = !self.shows_panels,
             ViewCommand::Labels => self.view.shows_labels = !self.view.shows_labels,
             ViewCommand::Wireframe => self.detail.wireframe = !self.detail.wireframe,
             ViewCommand::Freeze => self.set_frozen(!self.detail.frozen),
             ViewCommand::Find => (self.shows_panels, self.tree.focuses_find) = (true, true),
-            ViewCommand::Snapshot => self.take_snapshot(ui),
+            ViewCommand::Snapshot => self.take_snapshot(),
             ViewCommand::Home => self.go_to_camera(0),
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),
@@ -380,13 +344,17 @@ impl ViewerApp {
             ViewCommand::Walk => self.set_mode(NavigationMode::OnFoot),
             ViewCommand::North => self.look(Some(0.0), None),
             ViewCommand::Down => self.look(None, Some(-FRAC_PI_2)),
-            ViewCommand::Save
-            | ViewCommand::Undo
-            | ViewCommand::Redo
-            | ViewCommand::MeasureLine
-            | ViewCommand::MeasureArea => {}
+            ViewCommand::Save => self.save(OnConflict::Refuse),
+            ViewCommand::Undo => self.step_back(),
+            ViewCommand::Redo => self.step_forward(),
+            ViewCommand::Crater => {
+                self.shows_panels = true;
+                self.take_tool(Some(ActiveTool::Draw(DrawingTool::new(ToolKind::Crater))));
+            }
+            ViewCommand::MeasureLine => self.measure(MeasureKind::Line),
+            ViewCommand::MeasureArea => self.measure(MeasureKind::Area),
         }
-        ui.ctx().request_repaint();
+        self.context.request_repaint();
     }
 
     pub(super) fn set_mode(&mut self, mode: NavigationMode) {
@@ -427,9 +395,34 @@ impl ViewerApp {
         opened.navigator.go_to(ViewPose { eye, ..after }, TRANSITION_S);
     }
 
-    pub(super) fn note_view_event(&mut self, event: ViewEvent) {
-        match event {
-            ViewEvent::Pick(pixel) => self.pick(pixel),
+    fn measure(&mut self, kind: MeasureKind) {
+        self.shows_panels = true;
+        self.take_tool(Some(ActiveTool::Measure(Measuring::new(kind))));
+    }
+
+    fn step_back(&mut self) {
+        let Some((opened, session)) = self.opened.as_mut().zip(self.session.as_mut()) else { return };
+        if let Some(outcome) = session.undo(opened) {
+            self.note_outcome(outcome);
+        }
+    }
+
+    fn step_forward(&mut self) {
+        let Some((opened, session)) = self.opened.as_mut().zip(self.session.as_mut()) else { return };
+        if let Some(outcome) = session.redo(opened) {
+            self.note_outcome(outcome);
+        }
+    }
+
+    /// Says in the title what is open, and whether it is saved.
+    fn follow_title(&mut self) {
+        let Some(opened) = &self.opened else { return };
+        let is_changed = self.session.as_ref().is_some_and(|session| session.editor.is_changed());
+        let mark = if is_changed { "* " } else { " " };
+        let title = format!("{}{mark}· sandtable", files::file_name(&opened.path));
+        if title != self.title {
+            self.requests.push(WindowRequest::Title(title.clone()));
+            self.title = title;
         }
     }
 }

@@ -45,6 +45,8 @@ pub enum ViewCommand {
     Freeze,
     /// Puts the cursor into the field that finds features.
     Find,
+    /// Digs a crater where the user clicks.
+    Crater,
     /// Measures a distance.
     MeasureLine,
     /// Measures an area.
@@ -143,6 +145,7 @@ pub const KEYS: &[KeyBinding] = &[
     press(NONE, Key::N, ViewCommand::North, "Look north"),
     press(NONE, Key::V, ViewCommand::Down, "Look straight down"),
     press(NONE, Key::P, ViewCommand::Snapshot, "Save a picture of this view"),
+    press(NONE, Key::K, ViewCommand::Crater, "Dig a crater"),
     press(NONE, Key::M, ViewCommand::MeasureLine, "Measure a line"),
     press(Modifiers::SHIFT, Key::M, ViewCommand::MeasureArea, "Measure an area"),
     press(NONE, Key::L, ViewCommand::Labels, "Labels on or off"),

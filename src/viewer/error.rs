@@ -1,5 +1,10 @@
 //! Errors that leave no window.
 
+use std::path::PathBuf;
+
+use crate::pipeline::files::ReadFileError;
+use crate::viewer::script::ScriptError;
+
 /// Why no window can be shown. Each message names the command that needs none.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
@@ -12,4 +17,8 @@ pub enum ViewerError {
     NoAdapter(String),
     #[error("the graphics adapter failed while {doing} ({cause}); `sandtable render` draws without one")]
     Adapter { doing: &'static str, cause: String },
+    #[error("{}: {error}", path.display())]
+    Script { path: PathBuf, error: ScriptError },
+    #[error(transparent)]
+    Read(#[from] ReadFileError),
 }

@@ -5,8 +5,10 @@
 //! it is in the way for good.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use egui::text::LayoutJob;
+use egui::{Align, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use crate::description::words::LabelKind;
@@ -146,6 +148,10 @@ fn ink(kind: LabelKind) -> Color32 {
     }
 }
 
+/// Where letters are painted for their halo, in points.
+const HALO: [(f32, f32); 8] =
+    [(-1.2, 0.0), (1.2, 0.0), (0.0, -1.2), (0.0, 1.2), (-0.9, -0.9), (0.9, 0.9), (-0.9, 0.9), (0.9, -0.9)];
+
 /// Paints labels: letters with a halo over a line to their place.
 pub fn paint(painter: &Painter, labels: &[SceneLabel], placed: &[PlacedLabel]) {
     for label in placed {
@@ -155,20 +161,16 @@ pub fn paint(painter: &Painter, labels: &[SceneLabel], placed: &[PlacedLabel]) {
         painter.line_segment([label.ground, label.top], Stroke::new(2.6, halo));
         painter.line_segment([label.ground, label.top], Stroke::new(1.0, ink));
         painter.circle(label.ground, 2.6, ink, Stroke::new(1.2, halo));
-        let at = label.letters.center_bottom();
-        for offset in [
-            (-1.2, 0.0),
-            (1.2, 0.0),
-            (0.0, -1.2),
-            (0.0, 1.2),
-            (-0.9, -0.9),
-            (0.9, 0.9),
-            (-0.9, 0.9),
-            (0.9, -0.9),
-        ] {
-            painter.text(at + vec2(offset.0, offset.1), Align2::CENTER_BOTTOM, text, font(*kind), halo);
+        let letters = |color: Color32| {
+            let mut job = LayoutJob::simple(text.clone(), font(*kind), color, f32::INFINITY);
+            job.halign = Align::Center;
+            painter.layout_job(job)
+        };
+        let (at, around) = (label.letters.center_top(), letters(halo));
+        for offset in HALO {
+            painter.galley(at + vec2(offset.0, offset.1), Arc::clone(&around), halo);
         }
-        painter.text(at, Align2::CENTER_BOTTOM, text, font(*kind), ink);
+        painter.galley(at, letters(ink), ink);
     }
 }
 

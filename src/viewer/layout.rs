@@ -16,6 +16,7 @@ use crate::viewer::panels::open::open_panel;
 use crate::viewer::panels::timing::timing_panel;
 use crate::viewer::panels::tree::{TreeEvent, tree_panel};
 use crate::viewer::place::PlaceText;
+use crate::viewer::saving::Leaving;
 
 /// The width of the sections at the side, in points.
 const SIDE_WIDTH: f32 = 290.0;
@@ -93,7 +94,7 @@ impl ViewerApp {
                 }
             });
         });
-        commands.into_iter().for_each(|command| self.run(command, ui));
+        commands.into_iter().for_each(|command| self.run(command));
         if let Some(number) = camera {
             self.go_to_camera(number);
         }
@@ -105,7 +106,16 @@ impl ViewerApp {
             Some(place) => PlaceText::of(&opened.scene, place).line(),
             None => format!("{}   ? shows the keys", self.adapter),
         };
-        Panel::bottom("status").show(ui, |ui| ui.label(text));
+        let hint = self.tool_hint();
+        Panel::bottom("status").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                if !hint.is_empty() {
+                    ui.strong(hint);
+                    ui.separator();
+                }
+                ui.label(text);
+            });
+        });
     }
 
     pub(super) fn show_sides(&mut self, ui: &mut Ui) {
@@ -119,8 +129,9 @@ impl ViewerApp {
 
     fn show_sections(&mut self, ui: &mut Ui) {
         self.show_picked(ui);
+        self.show_tools(ui);
         let Some(opened) = &mut self.opened else { return };
-        let mut exaggeration = None;
+        let (mut exaggeration, mut light) = (None, None);
         let header = |title: &str| CollapsingHeader::new(RichText::new(title).strong()).id_salt(title);
         header("Scene").default_open(true).show(ui, |ui| {
             match tree_panel(ui, &mut self.tree, &opened.scene.features) {
@@ -138,7 +149,10 @@ impl ViewerApp {
             let (middle, crs) =
                 (map_position(&opened.scene, opened.bounds().center()), opened.scene.crs.clone());
             match light_panel(ui, &mut self.light, &crs, middle) {
-                Some(LightEvent::Sun(to_sun)) => opened.set_sun(to_sun),
+                Some(LightEvent::Sun(to_sun)) => {
+                    opened.set_sun(to_sun);
+                    light = Some(to_sun);
+                }
                 Some(LightEvent::Exaggeration(factor)) => exaggeration = Some(factor),
                 None => {}
             }
@@ -153,6 +167,9 @@ impl ViewerApp {
         header("Frames").show(ui, |ui| timing_panel(ui, &self.frames));
         if is_frozen_anew {
             self.set_frozen(detail.frozen);
+        }
+        if light.is_some() {
+            self.keep_light();
         }
         if let Some(factor) = exaggeration {
             self.exaggerate(factor);
@@ -172,6 +189,7 @@ impl ViewerApp {
                 ("Lon, lat", &place.geographic),
                 ("MGRS", &place.grid),
                 ("Height", &place.height),
+                ("Top", &place.top),
                 ("Slope", &place.slope),
                 ("Distance", &place.distance),
             ] {
@@ -211,8 +229,12 @@ impl ViewerApp {
             }
             ViewerStage::Ready => {
                 let Some(opened) = &mut self.opened else { return };
-                if let Some(event) = self.view.show(ui, opened, texture) {
-                    self.note_view_event(event);
+                let event = self.view.show(ui, opened, texture);
+                if let Some(event) = event {
+                    self.take_view_event(event);
+                }
+                if let Some(rect) = self.view.rect {
+                    self.show_tool(ui, rect);
                 }
             }
         }
@@ -230,7 +252,8 @@ impl ViewerApp {
         let chosen = window.show(context, |ui| open_panel(ui, &mut self.open_panel, &self.recent));
         self.shows_open = shows_open;
         if let Some(path) = chosen.and_then(|window| window.inner).flatten() {
-            self.open(&path);
+            self.leave(Leaving::Open(path));
         }
+        self.show_question(context);
     }
 }

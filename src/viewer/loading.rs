@@ -1,13 +1,14 @@
 //! Opening a file on a thread, so that the window goes on answering.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::Instant;
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::message::chain::error_text;
-use crate::pipeline::viewing::{ViewedHeights, open_to_view};
+use crate::pipeline::editing::editor::{SceneEditor, SceneSource};
+use crate::pipeline::viewing::open_to_view;
 use crate::viewer::opened::OpenedScene;
 
 /// A file that is being opened.
@@ -21,39 +22,49 @@ pub struct SceneLoading {
     news: Receiver<LoadingNews>,
 }
 
+/// What is opened.
+pub enum LoadingTask {
+    /// A file, with the folders that it may read.
+    File(PathBuf, Vec<PathBuf>),
+    /// The scene of the file at a path as it was edited.
+    Edited(PathBuf, SceneSource),
+}
+
+/// A scene that was opened.
+pub struct LoadedFile {
+    /// The scene.
+    pub opened: Box<OpenedScene>,
+    /// What edits its file; `None` where it was edited already.
+    pub editor: Option<SceneEditor>,
+    /// What it was built of.
+    pub source: SceneSource,
+}
+
 enum LoadingNews {
     Step(&'static str),
-    Done(Result<Box<OpenedScene>, String>),
+    Done(Result<LoadedFile, String>),
 }
 
 impl SceneLoading {
-    /// Begins to open the file at `path`. `wake` is called whenever [`SceneLoading::poll`] has news.
-    pub fn start(
-        path: &Path,
-        allowed: &[PathBuf],
-        heights: ViewedHeights,
-        wake: impl Fn() + Send + 'static,
-    ) -> Self {
+    /// Begins to open a scene. `wake` is called whenever [`SceneLoading::poll`] has news.
+    pub fn start(task: LoadingTask, wake: impl Fn() + Send + 'static) -> Self {
         let (sender, news) = channel();
-        let (file, allowed) = (path.to_owned(), allowed.to_vec());
+        let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
+        let path = path.clone();
         thread::spawn(move || {
             let tell = |news| {
                 // Nobody listens any more where another file was opened meanwhile.
                 let _ = sender.send(news);
                 wake();
             };
-            let progress = |step| tell(LoadingNews::Step(step));
-            let opened = open_to_view(&file, &allowed, heights, &progress);
-            let opened = opened.map_err(|error| opening_error(&error)).and_then(|scene| {
-                OpenedScene::new(file.clone(), scene, &progress).map_err(|error| opening_error(&error))
-            });
-            tell(LoadingNews::Done(opened.map(Box::new)));
+            let loaded = load(task, &|step| tell(LoadingNews::Step(step)));
+            tell(LoadingNews::Done(loaded));
         });
-        Self { path: path.to_owned(), step: "starting", since: Instant::now(), news }
+        Self { path, step: "starting", since: Instant::now(), news }
     }
 
     /// The scene, or why there is none; `None` while it is being opened.
-    pub fn poll(&mut self) -> Option<Result<Box<OpenedScene>, String>> {
+    pub fn poll(&mut self) -> Option<Result<LoadedFile, String>> {
         loop {
             match self.news.try_recv() {
                 Ok(LoadingNews::Step(step)) => self.step = step,
@@ -65,6 +76,20 @@ impl SceneLoading {
             }
         }
     }
+}
+
+fn load(task: LoadingTask, progress: &dyn Fn(&'static str)) -> Result<LoadedFile, String> {
+    progress("reading the scene file");
+    let (path, source, editor) = match task {
+        LoadingTask::File(path, allowed) => {
+            let editor = open_to_view(&path, &allowed).map_err(|error| opening_error(&error))?;
+            (path, editor.source().clone(), Some(editor))
+        }
+        LoadingTask::Edited(path, source) => (path, source, None),
+    };
+    let scene = source.build(progress).map_err(|error| opening_error(&error))?;
+    let opened = OpenedScene::new(path, scene, progress).map_err(|error| opening_error(&error))?;
+    Ok(LoadedFile { opened: Box::new(opened), editor, source })
 }
 
 /// The text of an error, beginning with the place in the scene file where there is one.
@@ -81,8 +106,8 @@ mod tests {
     use super::*;
     use std::time::Duration;
 
-    fn opened(path: &str) -> Result<Box<OpenedScene>, String> {
-        let mut loading = SceneLoading::start(Path::new(path), &[], ViewedHeights::AsStated, || ());
+    fn opened(path: &str) -> Result<LoadedFile, String> {
+        let mut loading = SceneLoading::start(LoadingTask::File(path.into(), Vec::new()), || ());
         loop {
             match loading.poll() {
                 Some(result) => return result,
@@ -93,7 +118,10 @@ mod tests {
 
     #[test]
     fn a_scene_arrives_from_its_thread() {
-        assert_eq!(opened("scenes/road.toml").expect("sound").scene.title.as_deref(), Some("Two roads"));
+        assert_eq!(
+            opened("scenes/road.toml").expect("sound").opened.scene.title.as_deref(),
+            Some("Two roads")
+        );
     }
 
     #[test]

@@ -12,20 +12,30 @@
 //! walk what changed. `window` lends it a surface and the clock.
 
 mod app;
+#[cfg(all(test, feature = "viewer-tests"))]
+mod app_tests;
 mod commands;
 mod drawing_job;
 pub mod error;
+mod following;
 mod frame_times;
 mod graphics;
 mod labels;
 mod layout;
 mod loading;
+mod measuring;
 mod notices;
 mod opened;
 mod panels;
 mod place;
 mod recent;
+mod saving;
 mod scene_graphics;
+mod script;
+mod script_run;
+mod session;
+mod snapshots;
+mod tool_use;
 mod view_area;
 mod watch;
 mod window;

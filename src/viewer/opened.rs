@@ -244,6 +244,13 @@ impl OpenedScene {
         self.needs_load = true;
     }
 
+    /// Sets what stands anew where an edit moved ground under it.
+    pub fn follow_ground(&mut self, moves_standing: bool) {
+        if moves_standing && let Ok(camera) = self.camera(FIRST_SIZE) {
+            self.renew_list(&camera);
+        }
+    }
+
     /// What the picture of `camera` shows at a pixel; `None` for the sky.
     pub fn pick(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
         self.walk.pick(pixel_ray(camera, pixel), Some(&self.standing))

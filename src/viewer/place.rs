@@ -13,8 +13,10 @@ pub struct PlaceText {
     pub geographic: String,
     /// The reference in the military grid.
     pub grid: String,
-    /// The ground's height, and that of what stands there, where it is another.
+    /// The ground's height, with its surface.
     pub height: String,
+    /// The height of what stands there, where it is another.
+    pub top: String,
     /// The ground's slope, with the direction that it faces.
     pub slope: String,
     /// How far away it is.
@@ -30,7 +32,7 @@ impl PlaceText {
         let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
         let is_above =
             pick.ground_m.is_none_or(|ground_m| (pick.place.elevation_m - ground_m).abs() > LYING_M);
-        let top = is_above.then(|| format!("{:.1} m (what stands there)", pick.place.elevation_m));
+        let top = is_above.then(|| format!("{:.1} m", pick.place.elevation_m));
         let slope = pick.slope_deg.map(|degrees| {
             let toward = pick.aspect_deg.map(|aspect| format!(" toward {}", compass(aspect)));
             format!("{degrees:.0}°{}", toward.unwrap_or_default())
@@ -42,7 +44,8 @@ impl PlaceText {
                 .map(|place| format!("{:.5}°, {:.5}°", place.x, place.y))
                 .unwrap_or_default(),
             grid: pick.mgrs.clone().unwrap_or_default(),
-            height: ground.into_iter().chain(top).collect::<Vec<_>>().join(", "),
+            height: ground.unwrap_or_default(),
+            top: top.unwrap_or_default(),
             slope: slope.unwrap_or_default(),
             distance: format!("{:.0} m", pick.place.distance_m),
         }
@@ -66,7 +69,7 @@ pub fn compass(degrees: f64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::viewing::{ViewedHeights, open_to_view};
+    use crate::pipeline::viewing::open_to_view;
     use crate::pipeline::walk::Walk;
     use crate::pipeline::walk::frame::WalkOptions;
     use crate::terrain::query::{Interpolation, Surface};
@@ -77,8 +80,9 @@ mod tests {
 
     #[test]
     fn a_place_is_told_in_every_system_with_height_and_slope() {
-        let scene = open_to_view(Path::new("scenes/road.toml"), &[], ViewedHeights::AsStated, &|_| ());
-        let walk = Walk::new(Arc::new(scene.expect("sound")), WalkOptions::default());
+        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let scene = editor.source().build(&|_| ()).expect("sound");
+        let walk = Walk::new(Arc::new(scene), WalkOptions::default());
         let scene = walk.scene();
         let at = DVec2::new(750_000.0, 4_018_000.0);
         let origin = (at - scene.lattice.origin()).extend(9_000.0);

@@ -26,8 +26,6 @@ const FAST: f64 = 4.0;
 const LONGEST_STEP_S: f64 = 0.1;
 /// How much nearer a point of the wheel's way comes.
 const ZOOM_PER_POINT: f64 = 0.004;
-/// A double click goes to this share of the distance.
-const APPROACH: f64 = 0.35;
 
 /// The view's state between frames.
 #[derive(Default)]
@@ -36,8 +34,12 @@ pub struct ViewArea {
     pub size: (u32, u32),
     /// The camera of the frame before.
     pub camera: Option<Camera>,
+    /// Where the picture is, in points of the window.
+    pub rect: Option<Rect>,
     /// The ground under the pointer.
     pub hovered: Option<WalkPick>,
+    /// The time that each frame counts; `None` for the time that it takes.
+    pub fixed_step_s: Option<f64>,
     /// What is shown over the picture.
     pub shows_labels: bool,
     grabbed: Option<DVec3>,
@@ -50,7 +52,11 @@ pub struct ViewArea {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewEvent {
     /// Clicked at a pixel.
-    Pick(Vec2),
+    Click(Vec2),
+    /// Clicked twice at a pixel.
+    DoubleClick(Vec2),
+    /// Pressed Enter or the space bar.
+    Enter,
 }
 
 impl ViewArea {
@@ -72,6 +78,7 @@ impl ViewArea {
         texture: Option<TextureId>,
     ) -> Option<ViewEvent> {
         let rect = ui.available_rect_before_wrap();
+        self.rect = Some(rect);
         let response = ui.interact(rect, Self::id(), Sense::click_and_drag());
         ui.advance_cursor_after_rect(rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "View of the scene"));
@@ -82,7 +89,7 @@ impl ViewArea {
             Ok(camera) => self.take_input(ui, opened, &response, &camera),
             Err(_) => None,
         };
-        let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
+        let seconds = self.step_s(ui);
         let has_moved = opened.advance(seconds * self.pace, std::mem::take(&mut self.steps));
         if has_moved || opened.navigator.is_on_its_way() {
             ui.ctx().request_repaint();
@@ -143,14 +150,13 @@ impl ViewArea {
         }
         self.take_wheel(ui, opened, hovered.is_some(), camera);
         self.take_keys(ui, opened, response, camera);
-        if response.double_clicked()
-            && let Some(place) = &self.hovered
-        {
-            opened.go_toward(place.world, place.place.distance_m * APPROACH);
+        let clicked_at = response.interact_pointer_pos().map(to_pixel);
+        match clicked_at {
+            Some(pixel) if response.double_clicked() => Some(ViewEvent::DoubleClick(pixel)),
+            Some(pixel) if response.clicked_by(PointerButton::Primary) => Some(ViewEvent::Click(pixel)),
+            None if response.clicked() => Some(ViewEvent::Enter),
+            _ => None,
         }
-        // Enter and the space bar click the middle.
-        let clicked = response.clicked().then(|| response.interact_pointer_pos());
-        clicked.map(|at| ViewEvent::Pick(to_pixel(at.unwrap_or(response.rect.center()))))
     }
 
     /// Turns by a drag in pixels: about what was grabbed, which follows the pointer, or the head, which follows it too.
@@ -162,6 +168,12 @@ impl ViewArea {
                 opened.turn(None, DVec2::new(-radians.x, radians.y));
             }
         }
+    }
+
+    /// The seconds that this frame counts.
+    fn step_s(&self, ui: &Ui) -> f64 {
+        let taken = || f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
+        self.fixed_step_s.unwrap_or_else(taken)
     }
 
     fn take_wheel(&self, ui: &Ui, opened: &mut OpenedScene, is_hovered: bool, camera: &Camera) {
@@ -183,9 +195,8 @@ impl ViewArea {
         }
         // Arrows go from button to button where one of them has the keys.
         let has_others_focus = ui.ctx().memory(|memory| memory.focused()).is_some_and(|id| id != response.id);
-        let (is_fast, seconds) = ui.input(|input| (input.modifiers.shift, f64::from(input.stable_dt)));
-        self.pace = if is_fast { FAST } else { 1.0 };
-        let seconds = seconds.min(LONGEST_STEP_S) * self.pace;
+        self.pace = if ui.input(|input| input.modifiers.shift) { FAST } else { 1.0 };
+        let seconds = self.step_s(ui) * self.pace;
         let turn = (DEG_PER_SECOND * seconds).to_radians();
         for motion in ui.input(held) {
             ui.ctx().request_repaint();

@@ -3,6 +3,8 @@
 //! It sleeps until an event, or until the panels ask for a frame; what happens on threads wakes it through `egui`'s request
 //! for a repaint.
 
+use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -15,6 +17,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::{Fullscreen, Window, WindowId};
 
 use crate::message::chain::error_text;
+use crate::pipeline::files;
 use crate::pipeline::viewing::ViewerOptions;
 use crate::render::gpu::live::LiveOptions;
 use crate::viewer::app::{ViewerApp, WindowRequest};
@@ -23,6 +26,8 @@ use crate::viewer::frame_times::{FrameLoad, FrameTime};
 use crate::viewer::graphics::{FramePresented, PaintedPanels, WindowGraphics};
 use crate::viewer::opened::SceneFrame;
 use crate::viewer::scene_graphics::{SceneGraphics, milliseconds};
+use crate::viewer::script::parse_script;
+use crate::viewer::script_run::{FRAME_S, ScriptRun};
 
 /// The window's first size, in points; what fits on small screens.
 const FIRST_SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
@@ -51,6 +56,8 @@ impl From<egui_winit::accesskit_winit::Event> for WindowNews {
 /// # Errors
 /// See [`ViewerError`].
 pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
+    let started = Instant::now();
+    let script = options.script.as_deref().map(|path| read_script(path, options, started)).transpose()?;
     let no_display = |error: EventLoopError| ViewerError::NoDisplay(reason(&error));
     let event_loop = EventLoop::<WindowNews>::with_user_event().build().map_err(no_display)?;
     let context = Context::default();
@@ -62,14 +69,28 @@ pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
     });
     let mut window = ViewerWindow {
         app: ViewerApp::new(options, &context),
+        script,
         context,
         proxy,
         shown: None,
         due: Some(Instant::now()),
         failure: None,
     };
+    if window.script.is_some() {
+        window.app.keep_step(FRAME_S);
+    }
     event_loop.run_app(&mut window).map_err(no_display)?;
+    if let (Some(script), true) = (&window.script, options.reports) {
+        // Who asked for the report and does not read it gets none.
+        let _ = writeln!(std::io::stdout(), "{:#}", script.report(&window.app.adapter));
+    }
     window.failure.map_or(Ok(()), Err)
+}
+
+fn read_script(path: &Path, options: &ViewerOptions, started: Instant) -> Result<ScriptRun, ViewerError> {
+    let commands = parse_script(&files::read_text(path)?)
+        .map_err(|error| ViewerError::Script { path: path.to_owned(), error })?;
+    Ok(ScriptRun::new(commands, options.frames, started))
 }
 
 /// What the system says, without the place in the source of `winit` that its errors begin with.
@@ -89,6 +110,7 @@ fn reason(error: &EventLoopError) -> String {
 
 struct ViewerWindow {
     app: ViewerApp,
+    script: Option<ScriptRun>,
     context: Context,
     proxy: EventLoopProxy<WindowNews>,
     /// `None` until the system lets windows be made.
@@ -259,6 +281,10 @@ impl ViewerWindow {
         if size.width == 0 || size.height == 0 {
             return Ok(());
         }
+        if let Some(script) = &mut self.script {
+            script.step(&mut self.app);
+            self.context.request_repaint();
+        }
         let laying_out = Instant::now();
         let input = shown.input.take_egui_input(&shown.window);
         let texture = shown.scene.as_ref().and_then(|scene| scene.texture);
@@ -280,7 +306,14 @@ impl ViewerWindow {
         let presented = shown.graphics.present(encoder, panels)?;
         if let Some((mut time, load)) = drawn {
             time.draw_ms += milliseconds(presenting);
-            self.app.frames.add(FrameTime { panels_ms, ..time }, load);
+            let time = FrameTime { panels_ms, ..time };
+            self.app.frames.add(time, load);
+            if let Some(script) = &mut self.script {
+                script.note_frame(time, load);
+            }
+        }
+        if let Some(script) = &mut self.script {
+            script.note_window();
         }
         if shown.scene.as_ref().and_then(|scene| scene.texture) != texture {
             self.context.request_repaint();

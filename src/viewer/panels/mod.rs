@@ -5,4 +5,5 @@ pub mod help;
 pub mod light;
 pub mod open;
 pub mod timing;
+pub mod tools;
 pub mod tree;

@@ -1,0 +1,172 @@
+//! A window that follows a script instead of a user, for tests, and says what it did.
+//!
+//! A command a line; lines that begin with `#` are left out. Each begins when the one before is done: a file is open, a
+//! picture is drawn, an edit is shown. Places are map coordinates.
+//!
+//! | line | what it does |
+//! |---|---|
+//! | `wait N` | lets N frames pass |
+//! | `key NAME` | presses a key of the table, such as `key Ctrl+Z` |
+//! | `fly X,Y,Z X,Y,Z N` | flies to an eye that looks at a place in N frames, heights as elevations |
+//! | `camera NAME` | goes to a camera of the scene |
+//! | `pick X,Y` | says what the picture shows at a pixel |
+//! | `edit crater X,Y RADIUS` | digs |
+//! | `undo`, `redo`, `save`, `snapshot`, `quit` | as the keys do |
+//! | `resize WxH` | gives the window a size in pixels |
+
+use glam::{DVec2, DVec3};
+
+use crate::viewer::commands::{KEYS, KeyAction, ViewCommand, shortcut_text};
+
+/// The most lines of a script.
+const MOST_LINES: usize = 10_000;
+/// The most frames of one command: ten minutes of sixty a second.
+const MOST_FRAMES: u32 = 36_000;
+
+/// A line of a script.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScriptCommand {
+    /// Lets frames pass.
+    Wait(u32),
+    /// A command of the keys.
+    Run(ViewCommand),
+    /// Flies.
+    Fly {
+        /// Map coordinates and elevation of the eye.
+        eye: DVec3,
+        /// Map coordinates and elevation of what it looks at.
+        target: DVec3,
+        /// How many frames it takes.
+        frames: u32,
+    },
+    /// Goes to a camera by its name.
+    Camera(String),
+    /// Picks at a pixel.
+    Pick(DVec2),
+    /// Digs a crater.
+    Crater {
+        /// Map coordinates.
+        at: DVec2,
+        /// Meters.
+        radius_m: f64,
+    },
+    /// Gives the window a size.
+    Resize(u32, u32),
+}
+
+/// A line of a script that says nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: '{text}' is not a command; write {expected}")]
+pub struct ScriptError {
+    line: usize,
+    text: String,
+    expected: &'static str,
+}
+
+const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, edit crater X,Y RADIUS, undo, redo, \
+                        save, snapshot, resize WxH or quit";
+
+/// The commands of a script, each with its line as it is written.
+///
+/// # Errors
+/// The first line that is not a command.
+pub fn parse_script(text: &str) -> Result<Vec<(String, ScriptCommand)>, ScriptError> {
+    let lines = text.lines().enumerate().take(MOST_LINES);
+    let lines = lines.map(|(index, line)| (index + 1, line.trim()));
+    lines
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .map(|(line, text)| {
+            let words: Vec<&str> = text.split_whitespace().collect();
+            let wrong = || ScriptError { line, text: text.chars().take(80).collect(), expected: EXPECTED };
+            Ok((text.to_owned(), command(&words).ok_or_else(wrong)?))
+        })
+        .collect()
+}
+
+fn command(words: &[&str]) -> Option<ScriptCommand> {
+    Some(match *words {
+        ["wait", count] => ScriptCommand::Wait(frames(count)?),
+        ["key", name] => ScriptCommand::Run(command_of_key(name)?),
+        ["fly", eye, target, count] => {
+            ScriptCommand::Fly { eye: point(eye)?, target: point(target)?, frames: frames(count)? }
+        }
+        ["camera", _, ..] => ScriptCommand::Camera(words[1..].join(" ")),
+        ["pick", at] => ScriptCommand::Pick(place(at)?),
+        ["edit", "crater", at, radius] => ScriptCommand::Crater {
+            at: place(at)?,
+            radius_m: radius.parse().ok().filter(|radius: &f64| radius.is_finite() && *radius > 0.0)?,
+        },
+        ["resize", size] => {
+            let (width, height) = size.split_once('x')?;
+            let side = |text: &str| text.parse().ok().filter(|side| (1..=16_384).contains(side));
+            ScriptCommand::Resize(side(width)?, side(height)?)
+        }
+        ["undo"] => ScriptCommand::Run(ViewCommand::Undo),
+        ["redo"] => ScriptCommand::Run(ViewCommand::Redo),
+        ["save"] => ScriptCommand::Run(ViewCommand::Save),
+        ["snapshot"] => ScriptCommand::Run(ViewCommand::Snapshot),
+        ["quit"] => ScriptCommand::Run(ViewCommand::Quit),
+        _ => return None,
+    })
+}
+
+fn frames(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|count| *count <= MOST_FRAMES)
+}
+
+fn numbers<const COUNT: usize>(text: &str) -> Option<[f64; COUNT]> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.parse().ok()).collect();
+    numbers?.try_into().ok().filter(|numbers: &[f64; COUNT]| numbers.iter().all(|number| number.is_finite()))
+}
+
+fn place(text: &str) -> Option<DVec2> {
+    numbers(text).map(DVec2::from_array)
+}
+
+fn point(text: &str) -> Option<DVec3> {
+    numbers(text).map(DVec3::from_array)
+}
+
+fn command_of_key(name: &str) -> Option<ViewCommand> {
+    let binding = KEYS.iter().find(|binding| shortcut_text(&binding.key).eq_ignore_ascii_case(name))?;
+    match binding.action {
+        KeyAction::Press(command) => Some(command),
+        KeyAction::Hold(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_is_read() {
+        let text = "# a comment\n\nwait 3\nkey Ctrl+Shift+Z\nfly 1,2,3 4,5,6 60\ncamera from the south\npick 10,20\n\
+                    edit crater 7,8 30\nresize 640x480\nundo\nquit\n";
+        let commands: Vec<ScriptCommand> =
+            parse_script(text).expect("sound").into_iter().map(|(_, command)| command).collect();
+        assert_eq!(commands.len(), 9);
+        assert_eq!(commands[1], ScriptCommand::Run(ViewCommand::Redo));
+        let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0));
+        assert_eq!(commands[2], ScriptCommand::Fly { eye, target, frames: 60 });
+        assert_eq!(commands[3], ScriptCommand::Camera("from the south".to_owned()));
+        assert_eq!(commands[5], ScriptCommand::Crater { at: DVec2::new(7.0, 8.0), radius_m: 30.0 });
+    }
+
+    #[test]
+    fn a_line_that_is_no_command_is_named() {
+        for line in [
+            "wait",
+            "wait -1",
+            "fly 1,2 3,4 5",
+            "edit crater 1,2 0",
+            "resize 0x5",
+            "pick nan,1",
+            "key W",
+            "jump",
+        ] {
+            let error = parse_script(&format!("wait 1\n{line}\n")).expect_err(line).to_string();
+            assert!(error.starts_with(&format!("line 2: '{line}' is not a command")), "{error}");
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! A script at work: its commands frame by frame, and the report of what they did.
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use crate::pipeline::editing::edit::{EarthworkDraft, SceneEdit};
+use crate::view::navigation::pose::ViewPose;
+use crate::viewer::app::{ViewerApp, ViewerStage, WindowRequest};
+use crate::viewer::commands::ViewCommand;
+use crate::viewer::frame_times::{FrameLoad, FrameTime, percentile};
+use crate::viewer::script::ScriptCommand;
+
+/// The time that each frame of a script counts, in seconds: the same on every machine.
+pub const FRAME_S: f64 = 1.0 / 60.0;
+/// A frame that takes longer is seen to stutter, in milliseconds.
+const DROPPED_MS: f32 = 33.3;
+
+/// A script and what it did.
+pub struct ScriptRun {
+    commands: VecDeque<(String, ScriptCommand)>,
+    most_frames: Option<u32>,
+    started: Instant,
+    first_window_s: Option<f64>,
+    first_picture_s: Option<f64>,
+    waits: u32,
+    frames: u32,
+    times: Vec<FrameTime>,
+    triangles: usize,
+    bytes: u64,
+    done: Vec<Value>,
+    /// A command whose effect is awaited.
+    awaited: Option<(String, usize)>,
+    is_over: bool,
+}
+
+impl ScriptRun {
+    /// A script that begins when its file is open.
+    pub fn new(commands: Vec<(String, ScriptCommand)>, most_frames: Option<u32>, started: Instant) -> Self {
+        Self {
+            commands: commands.into(),
+            most_frames,
+            started,
+            first_window_s: None,
+            first_picture_s: None,
+            waits: 0,
+            frames: 0,
+            times: Vec::new(),
+            triangles: 0,
+            bytes: 0,
+            done: Vec::new(),
+            awaited: None,
+            is_over: false,
+        }
+    }
+
+    /// Notes that a frame without a scene was shown.
+    pub fn note_window(&mut self) {
+        self.first_window_s.get_or_insert(self.started.elapsed().as_secs_f64());
+    }
+
+    /// Notes a frame of the scene.
+    pub fn note_frame(&mut self, time: FrameTime, load: FrameLoad) {
+        self.first_picture_s.get_or_insert(self.started.elapsed().as_secs_f64());
+        self.frames += 1;
+        self.times.push(time);
+        self.triangles = load.ground_triangles;
+        self.bytes += load.bytes;
+    }
+
+    /// Carries out what is due before the next frame.
+    pub fn step(&mut self, app: &mut ViewerApp) {
+        if self.is_over || app.is_busy() {
+            return;
+        }
+        if let Some((line, notices)) = self.awaited.take() {
+            let said: Vec<String> = app.notice_texts().skip(notices).map(str::to_owned).collect();
+            let camera = app.snapshot_camera.take();
+            self.done.push(json!({ "command": line, "said": said, "camera": camera }));
+        }
+        if self.waits > 0 {
+            self.waits -= 1;
+            return;
+        }
+        let is_late = self.most_frames.is_some_and(|most| self.frames >= most);
+        let has_failed = app.stage() == ViewerStage::Failed;
+        match self.commands.pop_front() {
+            Some((line, command)) if !is_late && !has_failed => self.run(line, command, app),
+            next => {
+                if has_failed {
+                    self.done.push(json!({ "failed": app.failure_text() }));
+                }
+                if is_late || has_failed || next.is_none() && self.most_frames.is_none() {
+                    self.is_over = true;
+                    app.requests.push(WindowRequest::Close);
+                }
+            }
+        }
+    }
+
+    fn run(&mut self, line: String, command: ScriptCommand, app: &mut ViewerApp) {
+        let notices = app.notice_texts().count();
+        match command {
+            ScriptCommand::Wait(frames) => self.waits = frames,
+            ScriptCommand::Run(ViewCommand::Quit) => {
+                self.is_over = true;
+                app.ask_to_close();
+            }
+            ScriptCommand::Run(command) => app.run(command),
+            ScriptCommand::Fly { eye, target, frames } => {
+                if let Some(opened) = &mut app.opened {
+                    let origin = opened.scene.lattice.origin().extend(0.0);
+                    let scale = opened.scene.scale;
+                    let world = |at: glam::DVec3| (at - origin).with_z(scale.world_z(at.z));
+                    if let Some(pose) = ViewPose::looking(world(eye), world(target)) {
+                        opened.navigator.go_to(pose, f64::from(frames) * FRAME_S);
+                        self.waits = frames;
+                    }
+                }
+            }
+            ScriptCommand::Camera(name) => {
+                let number = app
+                    .opened
+                    .as_ref()
+                    .and_then(|opened| opened.scene.cameras.iter().position(|view| view.name == name));
+                match number {
+                    Some(number) => app.go_to_camera(number),
+                    None => app.warn(format!("the scene has no camera '{name}'")),
+                }
+                self.waits = 80;
+            }
+            ScriptCommand::Pick(pixel) => {
+                app.pick(pixel.as_vec2());
+                let picked = app.picked.as_ref().map(|picked| {
+                    let place = picked.place.as_ref().map(|place| place.line());
+                    json!({ "feature": picked.feature, "place": place })
+                });
+                self.done.push(json!({ "command": line, "picked": picked }));
+                return;
+            }
+            ScriptCommand::Crater { at, radius_m } => {
+                let draft = EarthworkDraft::Crater { radius_m, depth_m: None };
+                let is_made = app.edit(&SceneEdit::add_earthwork(&draft, vec![at.to_array()]));
+                let moved = app.session.as_ref().and_then(|session| session.moved);
+                let moved = moved.map(|moved| json!({ "cut_m3": moved.cut_m3, "fill_m3": moved.fill_m3 }));
+                self.done.push(json!({ "command": line, "made": is_made, "moved": moved }));
+                return;
+            }
+            ScriptCommand::Resize(width, height) => {
+                app.requests.push(WindowRequest::Resize(width, height));
+                self.waits = 10;
+            }
+        }
+        self.awaited = Some((line, notices));
+    }
+
+    /// What the script did and what its frames took.
+    pub fn report(&self, adapter: &str) -> Value {
+        let part = |part: fn(&FrameTime) -> f32| {
+            let values: Vec<f32> = self.times.iter().map(part).collect();
+            let longest = values.iter().copied().fold(0.0, f32::max);
+            json!({
+                "median": percentile(values.clone(), 0.5),
+                "p99": percentile(values, 0.99),
+                "longest": longest,
+            })
+        };
+        let dropped = self.times.iter().filter(|time| time.total_ms() > DROPPED_MS).count();
+        json!({
+            "adapter": adapter,
+            "window_s": self.first_window_s,
+            "first_picture_s": self.first_picture_s,
+            "commands": self.done,
+            "frames": self.frames,
+            "over_33_ms": dropped,
+            "milliseconds": {
+                "frame": part(FrameTime::total_ms),
+                "update": part(|time| time.update_ms),
+                "upload": part(|time| time.upload_ms),
+                "draw": part(|time| time.draw_ms),
+                "panels": part(|time| time.panels_ms),
+            },
+            "ground_triangles": self.triangles,
+            "bytes_sent": self.bytes,
+        })
+    }
+}

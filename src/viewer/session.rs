@@ -1,0 +1,104 @@
+//! The edits of an open scene: in its file's text, and in the ground that is shown.
+//!
+//! An edit that moves earth is seen in the next frame: it is done in the walk's own ground, and the scene is not built anew.
+//! What else changes the scene builds it anew, on a thread.
+
+use crate::earthworks::earthwork::dig;
+use crate::pipeline::editing::edit::SceneEdit;
+use crate::pipeline::editing::editor::SceneEditor;
+use crate::pipeline::editing::effect::EditEffect;
+use crate::pipeline::editing::tool::ToolSettings;
+use crate::pipeline::walk::edit::WalkEdit;
+use crate::terrain::volumes::Volumes;
+use crate::viewer::loading::opening_error;
+use crate::viewer::opened::OpenedScene;
+
+/// What an edit leaves to be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EditOutcome {
+    /// It is shown.
+    Shown,
+    /// The scene is to be built anew.
+    Rebuild,
+}
+
+/// The edits of an open scene.
+pub struct EditingSession {
+    /// The scene's text with its history.
+    pub editor: SceneEditor,
+    /// The sizes that tools draw with.
+    pub settings: ToolSettings,
+    /// The earth that the last edit moved; `None` where it moved none.
+    pub moved: Option<Volumes>,
+    /// What was dug since the scene was built, the last at the end.
+    dug: Vec<WalkEdit>,
+}
+
+impl EditingSession {
+    /// The edits of a scene that was just opened.
+    pub fn new(editor: SceneEditor, opened: &OpenedScene) -> Self {
+        let cell_m = opened.walk.lattice().cell().max_element();
+        Self { editor, settings: ToolSettings::for_cell(cell_m), moved: None, dug: Vec::new() }
+    }
+
+    /// The scene was built of the text as it is now.
+    pub fn rebuilt(&mut self) {
+        self.dug.clear();
+    }
+
+    /// Makes an edit.
+    ///
+    /// # Errors
+    /// Why it cannot be made, for the user; the scene stays as it was.
+    pub fn apply(&mut self, edit: &SceneEdit, opened: &mut OpenedScene) -> Result<EditOutcome, String> {
+        let effect = self.editor.apply(edit, &opened.scene).map_err(|error| opening_error(&error))?;
+        Ok(self.show(effect, opened))
+    }
+
+    /// Takes back the last edit; `None` where there is none.
+    pub fn undo(&mut self, opened: &mut OpenedScene) -> Option<EditOutcome> {
+        let effect = self.editor.undo()?;
+        Some(self.show(effect, opened))
+    }
+
+    /// Makes the edit again that was taken back last; `None` where there is none.
+    pub fn redo(&mut self, opened: &mut OpenedScene) -> Option<EditOutcome> {
+        let effect = self.editor.redo()?;
+        Some(self.show(effect, opened))
+    }
+
+    fn show(&mut self, effect: EditEffect, opened: &mut OpenedScene) -> EditOutcome {
+        self.moved = None;
+        match effect {
+            EditEffect::Views => EditOutcome::Shown,
+            EditEffect::Dig(works) => {
+                let held = std::sync::Arc::clone(&opened.scene.held);
+                let made = opened.walk.edit(|lattice| dig(&works, lattice, &held));
+                let Ok(made) = made else { return EditOutcome::Rebuild };
+                if let Some(made) = made {
+                    self.moved = Some(made.volumes);
+                    self.dug.push(self.shown(made, opened));
+                }
+                EditOutcome::Shown
+            }
+            EditEffect::TakeBack => {
+                let Some(last) = self.dug.pop() else { return EditOutcome::Rebuild };
+                match opened.walk.take_back(&last.pieces) {
+                    Ok(Some(made)) => {
+                        self.shown(made, opened);
+                        EditOutcome::Shown
+                    }
+                    Ok(None) => EditOutcome::Shown,
+                    Err(_) => EditOutcome::Rebuild,
+                }
+            }
+            EditEffect::Move(_) | EditEffect::Rebuild => EditOutcome::Rebuild,
+        }
+    }
+
+    /// Lets what stands on the ground follow an edit.
+    fn shown(&self, made: WalkEdit, opened: &mut OpenedScene) -> WalkEdit {
+        opened.follow_ground(made.moves_standing);
+        made
+    }
+}

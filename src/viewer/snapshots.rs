@@ -1,0 +1,60 @@
+//! Pictures of the view, drawn on a thread by the renderer of pictures.
+
+use egui::Ui;
+
+use crate::pipeline::picture::PictureSize;
+use crate::pipeline::view_snapshot::{self, ViewSnapshot};
+use crate::viewer::app::ViewerApp;
+use crate::viewer::drawing_job::DrawingJob;
+use crate::viewer::loading::opening_error;
+
+impl ViewerApp {
+    /// Says where a picture is that was drawn meanwhile.
+    pub(super) fn follow_drawing(&mut self, ui: &Ui) {
+        let Some(result) = self.drawing.as_ref().and_then(DrawingJob::poll) else { return };
+        let Some(drawing) = self.drawing.take() else { return };
+        match result {
+            Ok(path) => {
+                let ViewSnapshot { name, camera, size, .. } = drawing.snapshot;
+                let PictureSize { width, height } = size;
+                let text = format!(
+                    "{} is the picture of this camera; its table is copied. `sandtable render --camera {name} --size \
+                     {width}x{height}` draws it again once the table is in the scene file:",
+                    path.display()
+                );
+                self.snapshot_camera = Some(camera.clone());
+                self.notices.tell_with_text(text, camera);
+            }
+            Err(error) => self.notices.warn(error),
+        }
+        ui.ctx().request_repaint();
+    }
+
+    /// Draws a picture of the view on a thread.
+    pub(super) fn take_snapshot(&mut self) {
+        let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        let Some(session) = &self.session else { return };
+        if self.drawing.is_some() {
+            let now = self.context.input(|input| input.time);
+            self.notices.tell(now, "the picture before is still being drawn");
+            return;
+        }
+        let (width, height) = camera.size();
+        let snapshot = || -> Result<ViewSnapshot, String> {
+            let told = |error: view_snapshot::ViewSnapshotError| opening_error(&error);
+            let source = session.editor.source().clone();
+            let name = view_snapshot::free_name(&opened.scene, &source.path).map_err(told)?;
+            let camera = view_snapshot::camera_table(&opened.scene, &camera, &name).map_err(told)?;
+            let size = PictureSize { width: width.clamp(16, 16_384), height: height.clamp(16, 16_384) };
+            Ok(ViewSnapshot { source, name, camera, size })
+        };
+        match snapshot() {
+            Ok(snapshot) => {
+                self.context.copy_text(snapshot.camera.clone());
+                let context = self.context.clone();
+                self.drawing = Some(DrawingJob::start(snapshot, move || context.request_repaint()));
+            }
+            Err(error) => self.notices.warn(error),
+        }
+    }
+}
