@@ -30,8 +30,8 @@ pub struct EditingSession {
     pub settings: ToolSettings,
     /// The earth that the last edit moved; `None` where it moved none.
     pub moved: Option<Volumes>,
-    /// What was dug since the scene was built, the last at the end.
-    dug: Vec<WalkEdit>,
+    /// What was dug since the scene was built, the last at the end; `None` for a digging that changed nothing.
+    dug: Vec<Option<WalkEdit>>,
 }
 
 impl EditingSession {
@@ -75,14 +75,14 @@ impl EditingSession {
                 let held = std::sync::Arc::clone(&opened.scene.held);
                 let made = opened.walk.edit(|lattice| dig(&works, lattice, &held));
                 let Ok(made) = made else { return EditOutcome::Rebuild };
-                if let Some(made) = made {
-                    self.moved = Some(made.volumes);
-                    self.dug.push(self.shown(made, opened));
-                }
+                self.moved = made.as_ref().map(|made| made.volumes);
+                let made = made.map(|made| self.shown(made, opened));
+                self.dug.push(made);
                 EditOutcome::Shown
             }
             EditEffect::TakeBack => {
                 let Some(last) = self.dug.pop() else { return EditOutcome::Rebuild };
+                let Some(last) = last else { return EditOutcome::Shown };
                 match opened.walk.take_back(&last.pieces) {
                     Ok(Some(made)) => {
                         self.shown(made, opened);
