@@ -134,8 +134,11 @@ impl MergedMesh {
         layer: DepthLayer,
         range: ShowRange,
     ) -> Value {
-        let of =
-            |part: fn(&DrawVertex) -> [f32; 3]| -> Vec<f32> { self.vertices.iter().flat_map(part).collect() };
+        let rounded = |value: f32, parts: f32| (value * parts).round() / parts;
+        let is_symbol = matches!(range, ShowRange::Band(_));
+        let place = |value: f32| if is_symbol { rounded(value, SYMBOL_PARTS) } else { value };
+        let positions: Vec<f32> =
+            self.vertices.iter().flat_map(|vertex| vertex.position.map(place)).collect();
         let is_uniform = self.features.windows(2).all(|pair| pair[0] == pair[1]);
         let mut batch = json!({
             "vertices": self.vertices.len(),
