@@ -213,15 +213,27 @@ fn a_tile_is_written_under_its_own_name_alone() {
 fn what_a_format_cannot_hold_is_refused_with_what_can() {
     let mut one = raster(2, Samples::F32(vec![-32768.0, 2.0, 3.0, 4.0]), Some("EPSG:32612"));
     assert!(matches!(write(&one, format("bt"), "a"), Err(WriteError::NoDataTaken { .. })));
-    one.map_from_grid.matrix2.y_axis.y = 5.0;
+    one.map_from_grid.matrix2.y_axis.x = 5.0;
     for format in [format("asc"), format("bt"), format("hgt")] {
-        let refused = write(&one, format, "a").expect_err("south up").to_string();
+        let refused = write(&one, format, "a").expect_err("askew").to_string();
         assert!(refused.contains("GeoTIFF"), "{refused}");
     }
     one.georeferenced = false;
     assert!(matches!(write(&one, format("asc"), "a"), Err(WriteError::NoPlace(_))));
     one.samples = Samples::F32(vec![f32::NAN; 4]);
     assert_eq!(write(&one, format("png"), "a"), Err(WriteError::Empty));
+}
+
+#[test]
+fn rows_from_south_to_north_are_mirrored_where_a_format_has_north_up() {
+    let upright = raster(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]), Some("EPSG:32612"));
+    let mut mirrored = raster(2, Samples::F32(vec![3.0, 4.0, 1.0, 2.0]), Some("EPSG:32612"));
+    mirrored.map_from_grid.translation.y = upright.extent().min.y;
+    mirrored.map_from_grid.matrix2.y_axis.y *= -1.0;
+    for format in [format("asc"), format("bt")] {
+        let [one, other] = [&upright, &mirrored].map(|raster| write(raster, format, "a").expect("written"));
+        assert!(one.bytes == other.bytes, "{}", format.name);
+    }
 }
 
 /// What `gdalinfo -json -stats` says of a file.
