@@ -106,9 +106,8 @@ impl LabelLayer {
 
     /// Whether labels are coming or going, so that a next frame differs though nothing moves.
     pub fn is_changing(&self) -> bool {
-        self.states.values().any(|state| {
-            (state.is_placed && (state.opacity < 1.0 || state.hidden_for > 0)) || !state.is_placed
-        })
+        let changes = |state: &LabelState| !state.is_placed || state.opacity < 1.0 || state.hidden_for > 0;
+        self.states.values().any(changes)
     }
 
     fn is_shown(&self, index: usize) -> bool {

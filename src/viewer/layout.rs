@@ -136,13 +136,11 @@ impl ViewerApp {
         header("Scene").default_open(true).show(ui, |ui| {
             match tree_panel(ui, &mut self.tree, &opened.scene.features) {
                 Some(TreeEvent::Visibility) => opened.hide(&self.tree.hidden),
-                Some(TreeEvent::GoTo(feature)) => {
-                    if !opened.go_to_feature(feature) {
-                        let now = ui.input(|input| input.time);
-                        self.notices.tell(now, "this feature lies nowhere on the ground of the scene");
-                    }
+                Some(TreeEvent::GoTo(feature)) if !opened.go_to_feature(feature) => {
+                    let now = ui.input(|input| input.time);
+                    self.notices.tell(now, "this feature lies nowhere on the ground of the scene");
                 }
-                None => {}
+                Some(TreeEvent::GoTo(_)) | None => {}
             }
         });
         header("Light and heights").show(ui, |ui| {

@@ -42,7 +42,7 @@ pub struct LoadedFile {
 
 enum LoadingNews {
     Step(&'static str),
-    Done(Result<LoadedFile, String>),
+    Done(Box<Result<LoadedFile, String>>),
 }
 
 impl SceneLoading {
@@ -58,7 +58,7 @@ impl SceneLoading {
                 wake();
             };
             let loaded = load(task, &|step| tell(LoadingNews::Step(step)));
-            tell(LoadingNews::Done(loaded));
+            tell(LoadingNews::Done(Box::new(loaded)));
         });
         Self { path, step: "starting", since: Instant::now(), news }
     }
@@ -68,7 +68,7 @@ impl SceneLoading {
         loop {
             match self.news.try_recv() {
                 Ok(LoadingNews::Step(step)) => self.step = step,
-                Ok(LoadingNews::Done(scene)) => return Some(scene),
+                Ok(LoadingNews::Done(loaded)) => return Some(*loaded),
                 Err(TryRecvError::Empty) => return None,
                 Err(TryRecvError::Disconnected) => {
                     return Some(Err("opening it failed without a reason; please report this".to_owned()));

@@ -177,6 +177,14 @@ pub fn area_text(area_m2: f64) -> String {
     }
 }
 
+/// A volume in cubic meters, from a million on in millions.
+pub fn volume_text(volume_m3: f64) -> String {
+    match volume_m3 {
+        ..1e6 => format!("{volume_m3:.0} m³"),
+        _ => format!("{:.2} million m³", volume_m3 / 1e6),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -227,6 +235,10 @@ mod tests {
     fn lengths_and_areas_are_told_in_units_of_their_size() {
         assert_eq!([length_text(12.34), length_text(12_345.0)], ["12.3 m", "12.35 km"].map(str::to_owned));
         assert_eq!(area_text(999.6), "1000 m²");
+        assert_eq!(
+            [volume_text(12.4), volume_text(13.5e6)],
+            ["12 m³", "13.50 million m³"].map(str::to_owned)
+        );
         assert_eq!([area_text(25_000.0), area_text(2.5e6)], ["2.50 ha", "2.500 km²"].map(str::to_owned));
     }
 }

@@ -84,7 +84,7 @@ mod tests {
         let scene = editor.source().build(&|_| ()).expect("sound");
         let walk = Walk::new(Arc::new(scene), WalkOptions::default());
         let scene = walk.scene();
-        let at = DVec2::new(750_000.0, 4_018_000.0);
+        let at = DVec2::new(750_000.3, 4_018_000.3);
         let origin = (at - scene.lattice.origin()).extend(9_000.0);
         let pick = walk.pick(Ray { origin, direction: -DVec3::Z }, None).expect("ground");
         let place = PlaceText::of(scene, &pick);
@@ -92,7 +92,7 @@ mod tests {
         assert_eq!(place.height, format!("{:.1} m (ground)", height_m.expect("ground")));
         assert_eq!(place.map, "750000, 4018000 (EPSG:32616)");
         assert_eq!(place.grid, "16SGF5000018000");
-        assert!(place.geographic.ends_with("°, 36.27477°"), "{place:?}");
+        assert!(place.geographic.starts_with("-84.2") && place.geographic.contains("°, 36.27"), "{place:?}");
         assert!(place.slope.contains("° toward ") && place.line().contains("slope"), "{place:?}");
     }
 

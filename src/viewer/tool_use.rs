@@ -10,7 +10,7 @@ use crate::pipeline::editing::effect::EditPreview;
 use crate::pipeline::editing::tool::{DrawingTool, ToolKind, ToolShape};
 use crate::view::camera::Camera;
 use crate::viewer::app::ViewerApp;
-use crate::viewer::measuring::{MeasureKind, Measuring};
+use crate::viewer::measuring::{MeasureKind, Measuring, volume_text};
 use crate::viewer::opened::OpenedScene;
 use crate::viewer::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
 use crate::viewer::session::EditOutcome;
@@ -39,6 +39,23 @@ pub struct ToolPreview {
     pub preview: EditPreview,
     /// When.
     pub since: Instant,
+}
+
+/// How points are joined over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ToolLine {
+    /// From the first to the last.
+    Line,
+    /// And back to the first.
+    Outline,
+    /// As a line, without its vertices.
+    Ring,
+}
+
+impl ToolLine {
+    fn closed(is_closed: bool) -> Self {
+        if is_closed { Self::Outline } else { Self::Line }
+    }
 }
 
 impl ViewerApp {
@@ -156,8 +173,9 @@ impl ViewerApp {
     pub(super) fn show_tools(&mut self, ui: &mut Ui) {
         let hint = self.tool_hint();
         let Some(session) = &mut self.session else { return };
-        let moved =
-            session.moved.map(|moved| format!("cut {:.0} m³, filled {:.0} m³", moved.cut_m3, moved.fill_m3));
+        let moved = session
+            .moved
+            .map(|moved| format!("cut {}, filled {}", volume_text(moved.cut_m3), volume_text(moved.fill_m3)));
         let history = [session.editor.can_undo(), session.editor.can_redo(), session.editor.is_changed()];
         let mut panel = ToolsPanel {
             drawing: match &self.tool {
@@ -190,27 +208,27 @@ impl ViewerApp {
     pub(super) fn show_tool(&mut self, ui: &Ui, rect: Rect) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
         let hovered = self.view.hovered.as_ref().map(|place| place.place.at);
-        let (points, is_outline, radius_m) = match &mut self.tool {
+        let (points, shape, radius_m) = match &mut self.tool {
             None => return,
             Some(ActiveTool::Draw(tool)) => {
                 tool.hover(hovered.map(|at| at.to_array()));
                 let points: Vec<DVec2> = tool.drawn().into_iter().map(DVec2::from).collect();
                 let radius_m = self.session.as_ref().map(|session| session.settings.radius_m);
                 let radius_m = radius_m.filter(|_| tool.kind == ToolKind::Crater);
-                (points, tool.kind.shape() == ToolShape::Outline, radius_m)
+                (points, ToolLine::closed(tool.kind.shape() == ToolShape::Outline), radius_m)
             }
             Some(ActiveTool::Measure(measuring)) => {
-                (measuring.points.clone(), measuring.kind == MeasureKind::Area, None)
+                (measuring.points.clone(), ToolLine::closed(measuring.kind == MeasureKind::Area), None)
             }
         };
-        draw_line(&ui.painter_at(rect), rect, (opened, &camera), &points, is_outline);
+        draw_line(&ui.painter_at(rect), rect, (opened, &camera), &points, shape);
         if let (Some(radius_m), Some(center)) = (radius_m, points.last()) {
             let ring: Vec<DVec2> = (0..=32u16)
                 .map(|step| {
                     *center + DVec2::from_angle(f64::from(step) * std::f64::consts::TAU / 32.0) * radius_m
                 })
                 .collect();
-            draw_line(&ui.painter_at(rect), rect, (opened, &camera), &ring, false);
+            draw_line(&ui.painter_at(rect), rect, (opened, &camera), &ring, ToolLine::Ring);
         }
         self.foresee(ui);
     }
@@ -239,7 +257,7 @@ fn draw_line(
     rect: Rect,
     (opened, camera): (&OpenedScene, &Camera),
     points: &[DVec2],
-    is_outline: bool,
+    shape: ToolLine,
 ) {
     let origin = opened.scene.lattice.origin();
     let on_screen = |at: DVec2| -> Option<Pos2> {
@@ -249,7 +267,8 @@ fn draw_line(
         let share = vec2(projected.pixel.x / width as f32, projected.pixel.y / height as f32);
         Some(rect.min + share * rect.size())
     };
-    let closing = is_outline.then(|| points.last().copied().zip(points.first().copied())).flatten();
+    let closing =
+        (shape == ToolLine::Outline).then(|| points.last().copied().zip(points.first().copied())).flatten();
     let legs = points.windows(2).map(|pair| (pair[0], pair[1])).chain(closing);
     let strokes =
         [Stroke::new(4.0, Color32::from_black_alpha(150)), Stroke::new(2.0, Color32::from_rgb(255, 214, 64))];
@@ -263,6 +282,9 @@ fn draw_line(
                 }
             }
         }
+    }
+    if shape == ToolLine::Ring {
+        return;
     }
     for place in points.iter().filter_map(|&at| on_screen(at)) {
         painter.circle(place, 4.0, Color32::from_rgb(255, 214, 64), Stroke::new(1.5, Color32::BLACK));

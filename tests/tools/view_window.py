@@ -48,8 +48,8 @@ class Display:
             pass_fds=[write], stderr=subprocess.DEVNULL,
         )
         os.close(write)
-        number = os.read(read, 16).decode().strip()
-        os.close(read)
+        with os.fdopen(read) as number_pipe:
+            number = number_pipe.readline().strip()
         self.environment = dict(
             os.environ, DISPLAY=f":{number}", XDG_RUNTIME_DIR=self.runtime, XDG_CONFIG_HOME=self.runtime,
         )

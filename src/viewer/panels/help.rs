@@ -9,7 +9,7 @@ const POINTER: [(&str, &str); 6] = [
     ("Drag", "Turn about the place under the pointer"),
     ("Shift + drag, or drag with the right button", "Move the ground along"),
     ("Wheel, or two fingers", "Come nearer to the place under the pointer"),
-    ("Pinch", "Come nearer"),
+    ("Pinch", "Come nearer, or go farther off"),
     ("Click", "Say what is there"),
     ("Double click", "Go there"),
 ];

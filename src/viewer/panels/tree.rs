@@ -85,12 +85,7 @@ fn kind_rows(
     let title = format!("{} {}", ids.len(), kind.noun(ids.len()));
     ui.horizontal(|ui| {
         let mut all_shown = !ids.iter().any(|id| panel.hidden.contains(id));
-        if ui
-            .checkbox(&mut all_shown, "")
-            .on_hover_text("")
-            .accessible_name(format!("Show {title}"))
-            .changed()
-        {
+        if ui.checkbox(&mut all_shown, "").accessible_name(format!("Show {title}")).changed() {
             for id in ids {
                 if all_shown {
                     panel.hidden.remove(id)
