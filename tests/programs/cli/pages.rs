@@ -16,7 +16,8 @@ use crate::common::scratch::Scratch;
 use crate::common::skip::skipped;
 
 /// The greatest mean difference of a channel between the page and the CPU renderer, of 255. The page has one shadow map
-/// where the renderer has several, and no contact shade; 1.3 was measured on the demo.
+/// where the renderer has several, and no contact shade; 1.3 was measured on a part of the demo that
+/// has ground alone.
 const MOST_MEAN_DIFFERENCE: f64 = 2.5;
 
 /// What happened in the browser; `None` with a loud line where there is none.
@@ -62,7 +63,7 @@ fn a_browser_opens_the_demo_s_page_without_a_network_and_answers_as_height_does(
     let said = run_in(scratch.folder(), &["export", &scene, "-o", "page.html"]).ok();
     assert!(said.contains("MB") && said.contains("triangles, off by at most 0.5 m"), "{said}");
     let (page, picture) = (scratch.at("page.html"), scratch.at("page.png"));
-    assert!(std::fs::metadata(&page).expect("written").len() < 12_000_000);
+    assert!(std::fs::metadata(&page).expect("written").len() < 18_000_000);
     let Some(told) = in_browser(&page, &picture) else { return };
     assert_eq!(told["complaints"], Value::Array(Vec::new()), "{told:#}");
     let requests = told["requests"].as_array().expect("a list");
