@@ -111,9 +111,6 @@ fn a_walk_shows_what_a_picture_of_its_camera_shows() {
         ("operation.toml", 1),
         ("sight.toml", 1),
         ("lake.toml", 1),
-        ("river.toml", 1),
-        ("models.toml", 1),
-        ("placement.toml", 1),
     ] {
         let scene = scene(name);
         for view in scene.cameras.iter().take(views) {
