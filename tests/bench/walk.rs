@@ -16,9 +16,9 @@ mod rounds;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{DVec2, Vec3};
+use glam::{DAffine2, DMat2, DVec2, Vec3};
 use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples, north_up_nodes};
+use sandtable::dem::raster::{Raster, Samples};
 use sandtable::earthworks::brush::Crater;
 use sandtable::pipeline::raster_file;
 use sandtable::pipeline::scene_file::open_scene;
@@ -47,7 +47,13 @@ fn scene(heights: &[f32]) -> Arc<SceneModel> {
     let north = heights.chunks_exact(side).rev().flatten().copied().collect();
     let cell = DVec2::splat(f64::from(flight::CELL_M));
     let corner = DVec2::new(0.0, cell.y * (side - 1) as f64);
-    let raster = Raster::new(side as u32, Samples::F32(north)).placed(north_up_nodes(corner, cell));
+    // Posts are in the middle of their samples.
+    let map_from_grid = DAffine2 {
+        matrix2: DMat2::from_diagonal(DVec2::new(cell.x, -cell.y)),
+        translation: corner + DVec2::new(-0.5, 0.5) * cell,
+    };
+    let raster =
+        Raster { map_from_grid, georeferenced: true, ..Raster::new(side as u32, Samples::F32(north)) };
     let format = DemFormat::to_write("tif").expect("GeoTIFF is written");
     raster_file::write(&raster, format, &folder.join("ground.tif"), &[]).expect("writable");
     let path = folder.join("ground.toml");

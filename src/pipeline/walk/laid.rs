@@ -117,6 +117,10 @@ impl LaidGround {
                 due.push(patch);
             }
         }
+        if due.is_empty() {
+            // Threads would be woken for nothing.
+            return Vec::new();
+        }
         let is_uncut = |patch: &usize| !self.patches[*patch].is_cut || self.patches[*patch].is_replanned;
         let uncut: Vec<usize> = due.iter().copied().filter(is_uncut).collect();
         if !uncut.is_empty() {
