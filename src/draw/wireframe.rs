@@ -1,8 +1,8 @@
 //! Wireframe: the edges of triangles as thin dark lines over what they are the edges of, as papers on terrain show their
 //! meshes.
 //!
-//! Each triangle draws the half of a line that lies on its own side of the edge. The line of two triangles that meet is
-//! therefore whole and smooth, and needs no look at neighbors. Where triangles are a few pixels high their edges would
+//! A pixel on an edge is a little of each of the two triangles that meet there, and both find the same distance of its center
+//! from their edge. The line is therefore whole and smooth, and needs no look at neighbors. Where triangles are a few pixels high their edges would
 //! blacken the ground; there they fade.
 
 use glam::Vec3;

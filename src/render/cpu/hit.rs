@@ -58,6 +58,13 @@ impl FacePoint {
 impl Barycentric {
     /// The weights at pixel position `at`, clamped to the triangle.
     pub fn new(face: &ScreenFace, at: [f32; 2]) -> Self {
+        let weights = Self::extended(face, at);
+        let second = weights.at.x.clamp(0.0, 1.0);
+        Self { at: Vec2::new(second, weights.at.y.max(0.0).min(1.0 - second)), ..weights }
+    }
+
+    /// The weights at pixel position `at`; outside the triangle some are negative.
+    pub fn extended(face: &ScreenFace, at: [f32; 2]) -> Self {
         let planes = &face.planes;
         let divisor = planes.divisor();
         let depth = 1.0 / divisor.at(at);
@@ -66,9 +73,8 @@ impl Barycentric {
             let change = |slope: f64, weight: f64| ((slope - weight * inverse) * depth) as f32;
             Vec2::new(change(second_slope, second), change(third_slope, third))
         };
-        let second_kept = (second as f32).clamp(0.0, 1.0);
         Self {
-            at: Vec2::new(second_kept, (third as f32).max(0.0).min(1.0 - second_kept)),
+            at: Vec2::new(second as f32, third as f32),
             right: step([divisor.right, planes.second.right, planes.third.right]),
             down: step([divisor.down, planes.second.down, planes.third.down]),
         }
@@ -79,7 +85,7 @@ impl Barycentric {
         let whole = |pair: Vec2, sum: f32| Vec3::new(sum - pair.x - pair.y, pair.x, pair.y);
         let (weights, right, down) = (whole(self.at, 1.0), whole(self.right, 0.0), whole(self.down, 0.0));
         let per_px = (right * right + down * down).map(|square| square.sqrt().max(f32::MIN_POSITIVE));
-        [weights / per_px, per_px.recip()]
+        [weights.abs() / per_px, per_px.recip()]
     }
 
     pub fn blend(&self, [a, b, c]: [Vec3; 3]) -> Vec3 {

@@ -131,7 +131,9 @@ impl<'a> Shader<'a> {
             color = lighting.mirror_sky(color, ray, WaterMirror { share: water, slope });
         }
         if material.shows_edges {
-            let [from_px, heights_px] = vertices.weights.edges_px();
+            // At the center, wherever the samples of the face are: both faces of an edge draw the same line.
+            let center = at.map(|place| place.floor() + 0.5);
+            let [from_px, heights_px] = Barycentric::extended(face, center).edges_px();
             color = color
                 .lerp(wireframe::LINE.linear(), edge_cover(from_px, heights_px) * wireframe::LINE.alpha());
         }

@@ -42,7 +42,7 @@ pub enum CornerUv {
 
 /// Triangles of many items.
 #[derive(Debug, Default, PartialEq)]
-pub struct MergedMesh {
+pub struct MergedTriangles {
     pub vertices: Vec<MergedVertex>,
     pub indices: Vec<u32>,
 }
@@ -55,14 +55,14 @@ pub struct MeshBuffers {
 
 /// The geometry of a plan.
 #[derive(Debug)]
-pub struct Geometry {
+pub struct GpuGeometry {
     merged: Vec<MeshBuffers>,
     /// One per mesh; `None` for one that no instance places.
     placed: Vec<Option<MeshBuffers>>,
     instances: wgpu::Buffer,
 }
 
-impl MergedMesh {
+impl MergedTriangles {
     /// Adds triangles of `mesh` with the vertices that they use.
     pub fn add(
         &mut self,
@@ -137,7 +137,7 @@ impl KnownVertices {
     }
 }
 
-impl Geometry {
+impl GpuGeometry {
     /// Sends what `plan` draws of a checked list for a picture by `camera`, or by many cameras.
     pub fn upload(
         loader: &Loader<'_>,
@@ -146,7 +146,7 @@ impl Geometry {
         camera: Option<&Camera>,
     ) -> Result<Self, GpuError> {
         let merged = plan.merged.chunk_by(|a, b| a.chunk == b.chunk).map(|parts| {
-            let mut merged = MergedMesh::default();
+            let mut merged = MergedTriangles::default();
             for part in parts {
                 let item = &list.items[part.item];
                 let owner = SurfaceOwner { feature: item.feature, material: item.material.into() };
@@ -264,7 +264,7 @@ mod tests {
         let owner = SurfaceOwner { feature: FeatureId(9), material: MaterialId(3).into() };
         let turned =
             Mat4::from_translation(Vec3::Z * 7.0) * Mat4::from_rotation_z(std::f32::consts::FRAC_PI_2);
-        let mut merged = MergedMesh::default();
+        let mut merged = MergedTriangles::default();
         merged.add(&mesh, 0..1, &Mat4::IDENTITY, owner, CornerUv::Own);
         merged.add(&mesh, 1..2, &turned, owner, CornerUv::Own);
         assert_eq!(merged.indices, [0, 1, 2, 3, 4, 3]);
@@ -298,7 +298,7 @@ mod tests {
         mesh.triangle([VertexId(0), VertexId(1), VertexId(2)]);
         mesh.triangle([VertexId(1), VertexId(3), VertexId(2)]);
         let owner = SurfaceOwner { feature: FeatureId(9), material: MaterialId(3).into() };
-        let mut merged = MergedMesh::default();
+        let mut merged = MergedTriangles::default();
         merged.add(&mesh, 0..2, &Mat4::IDENTITY, owner, CornerUv::Weights);
         let seen: Vec<(f32, [f32; 2])> = merged
             .indices

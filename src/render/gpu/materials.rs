@@ -82,7 +82,7 @@ pub enum TextureScope {
 }
 
 #[derive(Debug)]
-pub struct Materials {
+pub struct GpuMaterials {
     /// Group 1 with each array.
     groups: Vec<wgpu::BindGroup>,
 }
@@ -126,7 +126,7 @@ impl TexturePlaces {
     }
 }
 
-impl Materials {
+impl GpuMaterials {
     /// Sends the materials of a checked list and the textures that items use.
     pub fn upload(
         loader: &Loader<'_>,

@@ -37,9 +37,9 @@ use crate::draw::list::DrawList;
 use crate::render::gpu::adapter::{Gpu, GpuApi};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
-use crate::render::gpu::geometry::Geometry;
+use crate::render::gpu::geometry::GpuGeometry;
 use crate::render::gpu::ground::row_bits;
-use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
+use crate::render::gpu::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::{Loader, view};
 use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::{PassViews, ScenePass};
@@ -94,8 +94,8 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
         let scene = FrameScene { ground, lighting: &list.lighting, shadows, row_bits };
         frame.write(gpu, &FrameUniforms::new(scene, camera));
-        let materials = Materials::upload(&loader, &layouts, list, &places)?;
-        Ok((targets, frame, materials, Geometry::upload(&loader, list, &plan, Some(camera))?))
+        let materials = GpuMaterials::upload(&loader, &layouts, list, &places)?;
+        Ok((targets, frame, materials, GpuGeometry::upload(&loader, list, &plan, Some(camera))?))
     });
     let (targets, frame, materials, geometry) = loaded?;
     gpu.guarded("drawing the picture", || {

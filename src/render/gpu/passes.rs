@@ -3,8 +3,8 @@
 //! Colors and features need separate passes: a pixel's color is the mean of its samples, and a mean of two feature
 //! numbers is a third feature.
 
-use crate::render::gpu::geometry::Geometry;
-use crate::render::gpu::materials::{ArrayId, Materials};
+use crate::render::gpu::geometry::GpuGeometry;
+use crate::render::gpu::materials::{ArrayId, GpuMaterials};
 use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::pipelines::Pipelines;
 use crate::render::gpu::plan::{DrawCall, PipelineKey};
@@ -22,7 +22,7 @@ pub struct PassViews<'a> {
 pub struct ScenePass<'e, 'a> {
     pub pass: wgpu::RenderPass<'e>,
     pipelines: &'a Pipelines,
-    materials: &'a Materials,
+    materials: &'a GpuMaterials,
     pipeline: Option<PipelineKey>,
     array: Option<ArrayId>,
 }
@@ -56,7 +56,7 @@ impl PassViews<'_> {
 }
 
 impl<'e, 'a> ScenePass<'e, 'a> {
-    pub fn new(pass: wgpu::RenderPass<'e>, pipelines: &'a Pipelines, materials: &'a Materials) -> Self {
+    pub fn new(pass: wgpu::RenderPass<'e>, pipelines: &'a Pipelines, materials: &'a GpuMaterials) -> Self {
         Self { pass, pipelines, materials, pipeline: None, array: None }
     }
 
@@ -72,7 +72,7 @@ impl<'e, 'a> ScenePass<'e, 'a> {
     /// Draws calls of a picture that has the parts `picture`.
     pub fn draw<'c>(
         &mut self,
-        geometry: &Geometry,
+        geometry: &GpuGeometry,
         calls: impl IntoIterator<Item = &'c DrawCall>,
         picture: ShaderParts,
     ) {

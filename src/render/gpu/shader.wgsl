@@ -742,7 +742,7 @@ fn edge_cover(weights: vec2f) -> f32 {
     let along = vec3f(-down.x - down.y, down);
     let per_px = max(sqrt(across * across + along * along), vec3f(1e-30));
     let height = 1.0 / max(max(per_px.x, per_px.y), per_px.z);
-    let away = max(vec3f(1.0 - weights.x - weights.y, weights), vec3f(0.0)) / per_px;
+    let away = abs(vec3f(1.0 - weights.x - weights.y, weights)) / per_px;
     let shown = clamp((height - 2.0) / 5.0, 0.0, 1.0);
     return clamp(1.0 - min(min(away.x, away.y), away.z), 0.0, 1.0) * shown;
 }

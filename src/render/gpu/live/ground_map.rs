@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use crate::draw::ground::{GroundMap, GroundMapError};
+use crate::draw::ground::{GroundMap, GroundMapError, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, coarser_levels, coarser_post};
 use crate::draw::list::DrawListError;
 use crate::draw::patches::GroundMapPatch;
@@ -22,12 +22,12 @@ pub struct EditedMap {
 
 /// A rectangle of posts: its first column and row, and the ones after its last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct PostWindow {
+struct ChangedPosts {
     from: [u32; 2],
     to: [u32; 2],
 }
 
-impl PostWindow {
+impl ChangedPosts {
     /// Those posts of the next coarser level, of size `coarser`, that depend on these.
     fn halved(self, coarser: PostCount) -> Self {
         let last = [coarser.columns, coarser.rows];
@@ -89,7 +89,7 @@ impl EditedMap {
 }
 
 /// The posts that a change is of; it must be of some, and of the map's.
-fn window(change: &GroundMapPatch, size: PostCount) -> Result<PostWindow, GpuError> {
+fn window(change: &GroundMapPatch, size: PostCount) -> Result<ChangedPosts, GpuError> {
     let GroundMapPatch { first, columns, posts } = change;
     let rows = posts.len() as u64 / u64::from((*columns).max(1));
     let is_whole = *columns > 0 && rows > 0 && rows * u64::from(*columns) == posts.len() as u64;
@@ -99,7 +99,7 @@ fn window(change: &GroundMapPatch, size: PostCount) -> Result<PostWindow, GpuErr
         let error = GroundMapError::PostCount(*columns, rows as u32, posts.len());
         return Err(GpuError::List(DrawListError::GroundMap(error)));
     }
-    Ok(PostWindow { from: *first, to: [first[0] + columns, first[1] + rows as u32] })
+    Ok(ChangedPosts { from: *first, to: [first[0] + columns, first[1] + rows as u32] })
 }
 
 /// Sends a rectangle of the posts of a level whose first post has the number `first`.
@@ -108,8 +108,8 @@ fn send(
     textures: &GroundTextures,
     first: u32,
     size: PostCount,
-    posts: &[crate::draw::ground::GroundPost],
-    window: PostWindow,
+    posts: &[GroundPost],
+    window: ChangedPosts,
 ) -> u64 {
     let rows = window.from[1]..window.to[1];
     let sent = rows.map(|row| {
@@ -123,8 +123,6 @@ fn send(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::ground::GroundPost;
-    use crate::draw::ground_levels::coarser_levels;
 
     fn map(columns: u32, rows: u32, height: impl Fn(u32) -> f32) -> GroundMap {
         let post = |index| GroundPost { height_m: height(index), ..GroundPost::default() };
@@ -139,7 +137,7 @@ mod tests {
         for changed in [0, 5, 36, 37 * 11 + 20, 37 * 21, 37 * 22 - 1] {
             let after = map(37, 22, |index| if index == changed { 500.0 } else { hilly(index) });
             let at = [changed % 37, changed / 37];
-            let mut window = PostWindow { from: at, to: at.map(|place| place + 1) };
+            let mut window = ChangedPosts { from: at, to: at.map(|place| place + 1) };
             for (old, new) in coarser_levels(&before).zip(coarser_levels(&after)) {
                 window = window.halved(new.size);
                 for (index, (old, new_post)) in (0..).zip(old.posts.iter().zip(&new.posts)) {

@@ -28,19 +28,19 @@ use glam::Vec2;
 
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::{DepthLayer, DrawList};
+use crate::draw::list::{DepthLayer, DrawList, DrawListError};
 use crate::draw::patches::GroundChanges;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
-use crate::render::gpu::geometry::Geometry;
+use crate::render::gpu::geometry::GpuGeometry;
 use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::ground_map::EditedMap;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
-use crate::render::gpu::materials::{Materials, TexturePlaces, TextureScope};
+use crate::render::gpu::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::Loader;
 use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::{PassViews, ScenePass};
@@ -118,8 +118,8 @@ struct LoadedScene {
     parts: ShaderParts,
     textures: FrameTextures,
     frame: FrameGroup,
-    materials: Materials,
-    geometry: Geometry,
+    materials: GpuMaterials,
+    geometry: GpuGeometry,
     plan: Plan,
     patches: PatchStore,
     pick: PickTarget,
@@ -233,8 +233,8 @@ impl LiveRenderer {
                 row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
                 frame: FrameGroup::new(&loader, layouts, &textures)?,
                 textures,
-                materials: Materials::upload(&loader, layouts, list, &places)?,
-                geometry: Geometry::upload(&loader, list, &plan, None)?,
+                materials: GpuMaterials::upload(&loader, layouts, list, &places)?,
+                geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
                 plan,
                 patches,
                 pick: PickTarget::new(&loader)?,
@@ -276,7 +276,7 @@ impl LiveRenderer {
     /// See [`GpuError`]; the map before stays.
     pub fn set_ground(&mut self, map: Option<Arc<GroundMap>>) -> Result<(), GpuError> {
         if let Some(map) = &map {
-            map.check().map_err(crate::draw::list::DrawListError::from)?;
+            map.check().map_err(DrawListError::from)?;
         }
         let Some(scene) = &mut self.scene else { return Ok(()) };
         self.gpu.guarded("sending the ground map", || {

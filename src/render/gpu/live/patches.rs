@@ -15,7 +15,7 @@ use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use crate::draw::patches::{DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::geometry::{CornerUv, MergedMesh, SurfaceOwner};
+use crate::render::gpu::geometry::{CornerUv, MergedTriangles, SurfaceOwner};
 use crate::render::gpu::live::arena::{Arena, StoredRange};
 use crate::render::gpu::live::{LiveStatistics, UploadedBytes};
 use crate::render::gpu::materials::{ArrayId, TexturePlaces};
@@ -314,8 +314,8 @@ impl PatchStore {
     }
 
     /// Pieces as one mesh, and what of it each call draws.
-    fn merged(&self, pieces: &[DrapedPiece]) -> Result<(MergedMesh, Vec<DrapeCall>), GpuError> {
-        let mut merged = MergedMesh::default();
+    fn merged(&self, pieces: &[DrapedPiece]) -> Result<(MergedTriangles, Vec<DrapeCall>), GpuError> {
+        let mut merged = MergedTriangles::default();
         let mut calls: Vec<DrapeCall> = Vec::new();
         for (index, piece) in pieces.iter().enumerate() {
             let material = self.materials.get(piece.material.0 as usize).copied();
