@@ -95,12 +95,12 @@ impl ViewPose {
     }
 
     /// A world direction as parts to the right, up and forward.
-    pub fn to_frame(&self, world: DVec3) -> DVec3 {
+    pub fn to_frame(self, world: DVec3) -> DVec3 {
         DVec3::new(world.dot(self.right()), world.dot(self.up()), world.dot(self.forward()))
     }
 
     /// The world direction of parts to the right, up and forward.
-    pub fn from_frame(&self, parts: DVec3) -> DVec3 {
+    pub fn out_of_frame(self, parts: DVec3) -> DVec3 {
         self.right() * parts.x + self.up() * parts.y + self.forward() * parts.z
     }
 }
@@ -127,7 +127,7 @@ mod tests {
             assert!(wrapped(back.azimuth_rad - azimuth_rad).abs() < 2e-4, "{back:?}");
             assert!((back.pitch_rad - pitch_rad).abs() < 2e-3, "{back:?}");
             let parts = DVec3::new(3.0, -2.0, 7.0);
-            assert!((pose.to_frame(pose.from_frame(parts)) - parts).length() < 1e-12);
+            assert!((pose.to_frame(pose.out_of_frame(parts)) - parts).length() < 1e-12);
         }
     }
 
