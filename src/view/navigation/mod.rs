@@ -155,7 +155,7 @@ impl Navigator {
         let before = self.pose;
         self.pose = before.turned(turn);
         // What the turn of the view did, less what the limit of the pitch held back, moves the eye.
-        self.pose.eye = pivot + self.pose.out_of_frame(before.to_frame(before.eye - pivot));
+        self.pose.eye = pivot + self.pose.from_frame(before.to_frame(before.eye - pivot));
         self.keep_above(ground);
     }
 

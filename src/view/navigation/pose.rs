@@ -100,7 +100,8 @@ impl ViewPose {
     }
 
     /// The world direction of parts to the right, up and forward.
-    pub fn out_of_frame(self, parts: DVec3) -> DVec3 {
+    #[allow(clippy::wrong_self_convention, reason = "named as transforms are, to and from")]
+    pub fn from_frame(self, parts: DVec3) -> DVec3 {
         self.right() * parts.x + self.up() * parts.y + self.forward() * parts.z
     }
 }
@@ -127,7 +128,7 @@ mod tests {
             assert!(wrapped(back.azimuth_rad - azimuth_rad).abs() < 2e-4, "{back:?}");
             assert!((back.pitch_rad - pitch_rad).abs() < 2e-3, "{back:?}");
             let parts = DVec3::new(3.0, -2.0, 7.0);
-            assert!((pose.to_frame(pose.out_of_frame(parts)) - parts).length() < 1e-12);
+            assert!((pose.to_frame(pose.from_frame(parts)) - parts).length() < 1e-12);
         }
     }
 
