@@ -95,12 +95,13 @@ impl ViewPose {
     }
 
     /// A world direction as parts to the right, up and forward.
-    pub fn to_frame(&self, world: DVec3) -> DVec3 {
+    pub fn to_frame(self, world: DVec3) -> DVec3 {
         DVec3::new(world.dot(self.right()), world.dot(self.up()), world.dot(self.forward()))
     }
 
     /// The world direction of parts to the right, up and forward.
-    pub fn from_frame(&self, parts: DVec3) -> DVec3 {
+    #[allow(clippy::wrong_self_convention, reason = "named as transforms are, to and from")]
+    pub fn from_frame(self, parts: DVec3) -> DVec3 {
         self.right() * parts.x + self.up() * parts.y + self.forward() * parts.z
     }
 }
