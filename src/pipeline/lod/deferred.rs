@@ -14,13 +14,13 @@ use crate::roam::shown::PatchList;
 use crate::view::camera::Camera;
 
 /// A walk over ground in memory.
-type Walk<'a> = Deferred<WholeGround<'a>>;
+type WholeWalk<'a> = Deferred<WholeGround<'a>>;
 
 /// The deferred refiner at work.
 pub struct DeferredFollower<'a> {
     ground: &'a LodGround,
     spheres: SphereRule,
-    walk: Option<Walk<'a>>,
+    walk: Option<WholeWalk<'a>>,
     lists: PatchLists<()>,
     view: InView,
 }
@@ -38,7 +38,7 @@ impl<'a> DeferredFollower<'a> {
     }
 }
 
-fn start<'a>(ground: &'a LodGround, spheres: SphereRule, camera: &Camera) -> Walk<'a> {
+fn start<'a>(ground: &'a LodGround, spheres: SphereRule, camera: &Camera) -> WholeWalk<'a> {
     let source = WholeGround { ground: ground.measured.patched(), spheres: ground.spheres(spheres, camera) };
     Deferred::new(source, ground.measured.lattice().cell().min_element())
         .expect("patches of the default size are small enough")

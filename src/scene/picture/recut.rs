@@ -58,12 +58,12 @@ pub struct GroundSheets {
     head: DrawList,
     looks: BTreeMap<RibbonLook, MaterialId>,
     borders: Borders,
-    ribbons: Sheet,
-    symbols: Sheet,
+    ribbons: DrapeSheet,
+    symbols: DrapeSheet,
     /// Tints of sight.
-    tints: Sheet,
+    tints: DrapeSheet,
     /// Lines of sight and tactical graphics.
-    graphics: Sheet,
+    graphics: DrapeSheet,
     graphic_colors: BTreeMap<[u8; 4], MaterialId>,
     texts: Vec<PlacedText>,
     /// The features whose ribbons their symbols take the place of.
@@ -71,7 +71,7 @@ pub struct GroundSheets {
 }
 
 /// Plans in drawing order, cut by patch.
-struct Sheet {
+struct DrapeSheet {
     drapes: Drapes,
     plans: Vec<SheetPlan>,
 }
@@ -95,10 +95,10 @@ impl GroundSheets {
             head,
             looks: BTreeMap::new(),
             borders: borders(ground),
-            ribbons: Sheet::EMPTY,
-            symbols: Sheet::EMPTY,
-            tints: Sheet::EMPTY,
-            graphics: Sheet::EMPTY,
+            ribbons: DrapeSheet::EMPTY,
+            symbols: DrapeSheet::EMPTY,
+            tints: DrapeSheet::EMPTY,
+            graphics: DrapeSheet::EMPTY,
             graphic_colors: BTreeMap::new(),
             texts: Vec::new(),
             replaced: BTreeSet::new(),
@@ -122,7 +122,7 @@ impl GroundSheets {
         });
         let plans: Vec<SheetPlan> = plans.collect();
         let shapes = order.iter().zip(&tapers).map(|(ribbon, taper)| taper.as_ref().unwrap_or(&ribbon.plan));
-        sheets.ribbons = Sheet { drapes: Drapes::new(&sheets.borders, shapes), plans };
+        sheets.ribbons = DrapeSheet { drapes: Drapes::new(&sheets.borders, shapes), plans };
         for symbol in &scene.symbols {
             sheets.material(RibbonLook::Casing(symbol.surface));
             sheets.material(RibbonLook::Fill(symbol.surface, fill_color(symbol)));
@@ -133,7 +133,7 @@ impl GroundSheets {
             plans.push(SheetPlan { material, markings: None, lake: None, layer: sight::TINT_LAYER, feature });
             shapes.push(plan);
         }
-        sheets.tints = Sheet { drapes: Drapes::new(&sheets.borders, &shapes), plans };
+        sheets.tints = DrapeSheet { drapes: Drapes::new(&sheets.borders, &shapes), plans };
         for color in overlay::colors(scene) {
             let material = graphic_lines::add_material(&mut sheets.head, Srgba(color));
             sheets.graphic_colors.insert(color, material);
@@ -146,7 +146,7 @@ impl GroundSheets {
         &self.texts
     }
 
-    fn sheets(&self) -> [&Sheet; 4] {
+    fn sheets(&self) -> [&DrapeSheet; 4] {
         [&self.ribbons, &self.symbols, &self.tints, &self.graphics]
     }
 
@@ -190,7 +190,7 @@ impl GroundSheets {
             shapes.push(plan);
         }
         let drapes = Drapes::new(&self.borders, &shapes);
-        let before = std::mem::replace(&mut self.graphics, Sheet { drapes, plans });
+        let before = std::mem::replace(&mut self.graphics, DrapeSheet { drapes, plans });
         let is_held =
             |&patch: &usize| before.drapes.is_occupied(patch) || self.graphics.drapes.is_occupied(patch);
         (0..self.borders.patch_count()).filter(is_held).collect()
@@ -227,7 +227,7 @@ impl GroundSheets {
         }
         let before = std::mem::replace(
             &mut self.symbols,
-            Sheet { drapes: Drapes::new(&self.borders, &shapes), plans },
+            DrapeSheet { drapes: Drapes::new(&self.borders, &shapes), plans },
         );
         let replaced = shows.into_iter().filter(|(_, show)| *show == RibbonShow::Replaced);
         let replaced: BTreeSet<FeatureId> = replaced.map(|(feature, _)| feature).collect();
@@ -290,7 +290,7 @@ impl GroundSheets {
                 convex::contains(&plan, at)
             })
         };
-        let of = |sheet: &Sheet, is_symbol: bool| {
+        let of = |sheet: &DrapeSheet, is_symbol: bool| {
             let found = sheet.drapes.in_patch(patch).filter(|(plan, mesh)| {
                 (is_symbol || !self.replaced.contains(&sheet.plans[*plan].feature)) && holds(mesh)
             });
@@ -306,7 +306,7 @@ impl GroundSheets {
 
     /// The largest clearance in meters between what was cut in `patches` and what is displayed there now.
     pub fn check(&self, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
-        let of = |sheet: &Sheet| sheet.drapes.check_in(&self.borders, patches, ground);
+        let of = |sheet: &DrapeSheet| sheet.drapes.check_in(&self.borders, patches, ground);
         self.sheets().into_iter().map(of).fold(0.0, f64::max)
     }
 
@@ -339,7 +339,7 @@ impl GroundSheets {
     }
 }
 
-impl Sheet {
+impl DrapeSheet {
     const EMPTY: Self = Self { drapes: Drapes::NONE, plans: Vec::new() };
 
     fn features(&self, patch: usize) -> impl Iterator<Item = FeatureId> {
