@@ -82,7 +82,7 @@ fn every_declared_default_is_a_value_of_its_key() {
         "area" => format!("{source}cover = \"forest\"\n"),
         "model" => "file = \"conifer\"\nat = [0, 0]\n".into(),
         "scatter" => format!("{source}of = \"conifer\"\n"),
-        "earthwork" => "kind = \"crater\"\nat = [0, 0]\nradius = 5\n".into(),
+        "earthwork" => "kind = \"crater\"\npoints = [[0, 0]]\nradius = 5\n".into(),
         "graphic" => format!("{source}kind = \"objective\"\n"),
         "viewshed" => "observers = [[0, 0]]\n".into(),
         "sight" => "observer = [0, 0]\ntargets = [[1, 1]]\n".into(),
