@@ -107,6 +107,7 @@ told.isBack = eye(first) === eye(await camera());
 
 // A smaller window, and the loss of the graphics adapter.
 await page.setViewportSize({ width: 420, height: 700 });
+await page.waitForFunction(() => sandtable.page.canvas.width === 420);
 await settled();
 told.canvas = await page.evaluate(() => [sandtable.page.canvas.width, sandtable.page.canvas.height]);
 const frames = await page.evaluate(() => {
