@@ -60,7 +60,7 @@ pub struct NamedEarthwork {
 /// Returns the rectangles of posts that changed, in order, with their heights before.
 ///
 /// # Errors
-/// A source cannot be had, or there is more to do than [`MAX_COST`].
+/// A source cannot be had, or there is more to do than is allowed.
 pub fn build(
     document: &Document,
     sources: &Sources<'_>,

@@ -15,7 +15,7 @@
 //! # Cost
 //! A handful of draw calls for all ground, drapes and solids; one for each set of instances and for each transparent solid.
 //! Memory: 44 bytes a vertex and 12 a triangle, 16 a post of the ground map and a third more for its coarser levels, 72 an
-//! instance, all of a scene at most [`MOST_BYTES`](memory::MOST_BYTES).
+//! instance, all of a scene at most two gibibytes.
 
 pub mod adapter;
 pub mod error;

@@ -1,7 +1,7 @@
 //! Many models: where neither a model nor its shadow is in view it is left out, small ones are drawn in a simpler form,
 //! plants smaller than a pixel or two leave it to the ground to show a wood, and equal ones form runs.
 //!
-//! A picture whose models have no more than [`FULL_TRIANGLES`] draws all of them in full. Past that, [`ModelDetail::form`]
+//! A picture whose models have no more than `FULL_TRIANGLES` draws all of them in full. Past that, [`ModelDetail::form`]
 //! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
 //! [`DrawList::runs`].
 
