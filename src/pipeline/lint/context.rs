@@ -8,6 +8,7 @@ use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
+use crate::scene::sources::Sources;
 
 /// A scene with the document and the files that it was built of.
 pub struct LintContext<'a> {
@@ -17,6 +18,8 @@ pub struct LintContext<'a> {
     pub assets: &'a Assets,
     /// The scene.
     pub scene: &'a SceneModel,
+    /// Reads the vector files of its tables, each once.
+    pub sources: &'a Sources<'a>,
 }
 
 impl LintContext<'_> {
