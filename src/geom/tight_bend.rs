@@ -86,7 +86,8 @@ mod tests {
     /// A half circle of this radius between two straights, at a quarter turn.
     fn hairpin(radius: f64, count: u32, quarter: u32) -> Polyline {
         let arc = (0..=count).map(|index| {
-            let angle = f64::from(index) / f64::from(count) * std::f64::consts::PI - std::f64::consts::FRAC_PI_2;
+            let angle =
+                f64::from(index) / f64::from(count) * std::f64::consts::PI - std::f64::consts::FRAC_PI_2;
             DVec2::from_angle(angle) * radius
         });
         let ends = [DVec2::new(-50.0, -radius), DVec2::new(-50.0, radius)];
@@ -100,7 +101,9 @@ mod tests {
         for quarter in 0..4 {
             for count in [6, 12, 40] {
                 assert_eq!(tight_bends(&hairpin(5.5, count, quarter), |_| 5.0), [], "{count}");
-                let [bend] = tight_bends(&hairpin(4.0, count, quarter), |_| 5.0)[..] else { panic!("one bend") };
+                let [bend] = tight_bends(&hairpin(4.0, count, quarter), |_| 5.0)[..] else {
+                    panic!("one bend")
+                };
                 assert!((bend.radius - 4.0).abs() < 0.1, "{bend:?}");
                 assert!((bend.turn_rad - std::f64::consts::PI).abs() < 0.6, "{bend:?}");
                 assert!((bend.from - 50.0).abs() < 1e-9, "{bend:?}");

@@ -32,7 +32,10 @@ pub fn steepest_over(ground: &Profile, base: f64) -> Option<(f64, f64)> {
     let starts = starts.filter(|&from| from >= first && from + base <= last);
     let grade = |from: f64| (((ground.at(from + base) - ground.at(from)) / base).abs(), from);
     // A NaN is less than any number.
-    starts.map(grade).filter(|(grade, _)| grade.is_finite()).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
+    starts
+        .map(grade)
+        .filter(|(grade, _)| grade.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
 }
 
 #[cfg(test)]

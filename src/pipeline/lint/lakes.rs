@@ -3,6 +3,7 @@
 //! The ground is cut and filled to meet the water, so that no gap shows in the picture; how much it takes says whether the
 //! level is right.
 
+use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::pipeline::lint::context::LintContext;
@@ -34,7 +35,8 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             gaps.add(context.origin(lake), gap_m, || format!("{} {message}", context.name(lake)));
         }
     }
-    let help = "state its `level` as the elevation model has it, or draw its shore where the model has the water";
+    let help =
+        "state its `level` as the elevation model has it, or draw its shore where the model has the water";
     for (span, message) in gaps.into_messages(|more| format!("{more} more lakes of this table do not fit")) {
         sink.add(context.finding(FindingCode::LakeShoreGap, span, message).with_help(help));
     }
@@ -45,7 +47,7 @@ fn absurd(
     lake: FeatureId,
     row: &LakeRow,
     [lowest_m, highest_m]: [f64; 2],
-) -> crate::description::finding::Finding {
+) -> Finding {
     let where_to = if row.level < lowest_m { "below" } else { "above" };
     let off_m = if row.level < lowest_m { lowest_m - row.level } else { row.level - highest_m };
     let message = format!(
@@ -55,7 +57,7 @@ fn absurd(
         row.level
     );
     let help = "state its `level` in meters above what the elevation model counts from, or remove it: the shore gives one";
-    context.about(FindingCode::LakeLevel, lake, message).with_help(help)
+    context.about(FindingCode::LakeLevelWrong, lake, message).with_help(help)
 }
 
 /// How far the water is from where its shore would have it, and what a message says of it; `None` where it fits.

@@ -1,4 +1,5 @@
-//! Roads and rivers whose lines cannot be what they stand for: too narrow, folded, crossing or coming back on themselves.
+//! Roads, rivers and shores whose lines cannot be what they stand for: too narrow, folded, crossing or coming back on
+//! themselves.
 
 use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::Width;
@@ -21,8 +22,12 @@ const NARROWEST_RIVER_M: f64 = 0.1;
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let [mut narrow, mut tight, mut crossed, mut back] = std::array::from_fn(|_| WorstOfTables::default());
     for line in &context.scene.symbols {
+        if line.is_shore() {
+            add_crossed(context, line, &mut crossed);
+            continue;
+        }
         let kind = context.kind(line.feature);
-        if !matches!(kind, Some(FeatureKind::Road | FeatureKind::River)) || line.is_shore() {
+        if !matches!(kind, Some(FeatureKind::Road | FeatureKind::River)) {
             continue;
         }
         let least_m = if kind == Some(FeatureKind::Road) { NARROWEST_ROAD_M } else { NARROWEST_RIVER_M };
@@ -39,8 +44,18 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             "draw the curve wider, or the road narrower: its inner edge folds over itself there",
             "have such a curve",
         ),
-        (crossed, FindingCode::CrossesItself, "split the line there, or mend the order of its points", "cross themselves"),
-        (back, FindingCode::DoublesBack, "remove the point that the line comes back from", "come back on themselves"),
+        (
+            crossed,
+            FindingCode::CrossesItself,
+            "split the line there, or mend the order of its points",
+            "cross themselves",
+        ),
+        (
+            back,
+            FindingCode::DoublesBack,
+            "remove the point that the line comes back from",
+            "come back on themselves",
+        ),
     ] {
         for (span, message) in worst.into_messages(|count| format!("{count} more of this table {more}")) {
             sink.add(context.finding(code, span, message).with_help(help));
@@ -55,7 +70,10 @@ fn add_narrow(context: &LintContext<'_>, line: &LineSymbol, least_m: f64, worst:
     };
     if narrowest_m < least_m {
         worst.add(context.origin(line.feature), -narrowest_m, || {
-            format!("{} is {narrowest_m} m wide; none is narrower than {least_m} m", context.name(line.feature))
+            format!(
+                "{} is {narrowest_m} m wide; none is narrower than {least_m} m",
+                context.name(line.feature)
+            )
         });
     }
 }
@@ -91,7 +109,8 @@ fn add_crossed(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOf
 
 fn add_reversals(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTables) {
     let turns = turns(&line.alignment.line);
-    let sharpest = (0..turns.len()).max_by(|&a, &b| turns[a].abs().total_cmp(&turns[b].abs()).then(b.cmp(&a)));
+    let sharpest =
+        (0..turns.len()).max_by(|&a, &b| turns[a].abs().total_cmp(&turns[b].abs()).then(b.cmp(&a)));
     let Some(vertex) = sharpest.filter(|&vertex| turns[vertex].abs() >= REVERSAL_RAD) else { return };
     worst.add(context.origin(line.feature), turns[vertex].abs(), || {
         let (points, stations) = (line.alignment.line.points(), line.alignment.line.stations());

@@ -1,8 +1,9 @@
-//! Rivers that rise downstream.
+//! Draped rivers that rise downstream.
 //!
-//! The ground is cut along water that falls, so that it never rises but where no cut as deep as `max_cut` would do; there
-//! it is found here. Draped water lies on the ground as that is, and is found where it rises by more than an elevation
-//! model may be off.
+//! The ground is cut along water that falls, and where no cut as deep as `max_cut` would do, building finds that. Draped
+//! water lies on the ground as that is; it is found here where it rises by more than an elevation model may be off.
+
+use std::ops::Range;
 
 use crate::description::finding_code::FindingCode;
 use crate::description::words::Water;
@@ -12,12 +13,9 @@ use crate::pipeline::lint::ground_line::{ground_along, place};
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
 
-/// The rise of draped water that is told, meters: the relative error that the makers of global elevation models promise
+/// A rise up to this is not told, meters: the relative error that the makers of global elevation models promise
 /// (Farr et al. 2007). Less is as likely the model's fault.
-const DRAPED_RISE_M: f64 = 10.0;
-
-/// The rise of water that falls, meters: its bed was cut, so what is left is no error of the model. Less hardly shows.
-const FALLING_RISE_M: f64 = 1.0;
+const MOST_RISE_M: f64 = 10.0;
 
 /// A stretch along which the ground rises.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,19 +25,21 @@ struct Rise {
     rise_m: f64,
 }
 
-/// Finds rivers that rise downstream, with the reach.
+/// Finds draped rivers that rise downstream, with the reach.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let mut worst = WorstOfTables::default();
+    let draped = context.document.rivers.iter().filter(|table| table.water == Water::Drape);
+    let draped: Vec<Range<usize>> = draped.map(|table| table.source.span()).collect();
     for river in scene.symbols.iter().filter(|symbol| symbol.is_river()) {
         let (span, line) = (context.origin(river.feature), &river.alignment.line);
-        let table = context.document.rivers.iter().find(|table| table.source.span() == span);
-        let most_m = match table.map(|table| table.water) {
-            Some(Water::Drape) => DRAPED_RISE_M,
-            _ => FALLING_RISE_M,
-        };
+        if !draped.contains(&span) {
+            continue;
+        }
         let rise = ground_along(scene, line).and_then(|ground| greatest_rise(&ground));
-        let Some(Rise { from_m, to_m, rise_m }) = rise.filter(|rise| rise.rise_m > most_m) else { continue };
+        let Some(Rise { from_m, to_m, rise_m }) = rise.filter(|rise| rise.rise_m > MOST_RISE_M) else {
+            continue;
+        };
         worst.add(span, rise_m, || {
             format!(
                 "{} rises downstream by {rise_m:.1} m between stations {from_m:.0} m at {} and {to_m:.0} m at {}",
@@ -49,7 +49,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             )
         });
     }
-    let help = "draw its line along the valley of the elevation model, or allow a deeper `max_cut` with `water = \"falls\"`";
+    let help = "draw its line along the valley of the elevation model, or say `water = \"falls\"`, which cuts the ground";
     for (span, message) in worst.into_messages(|more| format!("{more} more of this table rise too")) {
         sink.add(context.finding(FindingCode::RiverUphill, span, message).with_help(help));
     }

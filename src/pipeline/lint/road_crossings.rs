@@ -58,7 +58,9 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         }
     }
     let help = "say which lines are bridges with `bridge = \"...\"`, add a [[bridge]], or leave out water in pipes by `where`";
-    for (span, message) in worst.into_messages(|more| format!("{more} more crossings of this table have no bridge")) {
+    for (span, message) in
+        worst.into_messages(|more| format!("{more} more crossings of this table have no bridge"))
+    {
         sink.add(context.finding(FindingCode::RoadInWater, span, message).with_help(help));
     }
 }
@@ -82,7 +84,8 @@ impl<'a> WaterLines<'a> {
     fn of(scene: &'a SceneModel) -> Self {
         let is_water = |symbol: &&LineSymbol| symbol.is_river() || symbol.is_shore();
         let lines: Vec<&LineSymbol> = scene.symbols.iter().filter(is_water).collect();
-        let legs = lines.iter().enumerate().flat_map(|(index, line)| LineLeg::all(index, &line.alignment.line));
+        let legs =
+            lines.iter().enumerate().flat_map(|(index, line)| LineLeg::all(index, &line.alignment.line));
         let legs = LegTree::new(legs.collect());
         let mut lakes: BTreeMap<FeatureId, Vec<&[DVec2]>> = BTreeMap::new();
         for shore in lines.iter().filter(|line| line.is_shore()) {

@@ -75,11 +75,12 @@ fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let mut worst = [WorstOfTables::default(), WorstOfTables::default()];
     for road in &scene.profiles {
-        for (worst, (sign, most_m, what)) in worst.iter_mut().zip([
-            (1.0, HIGHEST_FILL_M, "on an embankment of"),
-            (-1.0, DEEPEST_CUT_M, "in a cutting of"),
-        ]) {
-            let Some((rise_m, station_m)) = greatest(road, sign).filter(|(rise_m, _)| *rise_m > most_m) else {
+        for (worst, (sign, most_m, what)) in worst
+            .iter_mut()
+            .zip([(1.0, HIGHEST_FILL_M, "on an embankment of"), (-1.0, DEEPEST_CUT_M, "in a cutting of")])
+        {
+            let Some((rise_m, station_m)) = greatest(road, sign).filter(|(rise_m, _)| *rise_m > most_m)
+            else {
                 continue;
             };
             worst.add(context.origin(road.feature), rise_m, || {
@@ -106,6 +107,9 @@ fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
 fn greatest(road: &RoadProfile, sign: f64) -> Option<(f64, f64)> {
     let stations = road.design.stations().iter().zip(road.design.values().iter().zip(road.ground.values()));
     let carried = stations.zip(&road.supports).filter(|(_, support)| **support == Support::Ground);
-    let rises = carried.map(|((&station_m, (design_m, ground_m)), _)| ((design_m - ground_m) * sign, station_m));
-    rises.filter(|(rise_m, _)| rise_m.is_finite()).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
+    let rises =
+        carried.map(|((&station_m, (design_m, ground_m)), _)| ((design_m - ground_m) * sign, station_m));
+    rises
+        .filter(|(rise_m, _)| rise_m.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
 }

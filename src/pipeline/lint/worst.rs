@@ -37,7 +37,10 @@ impl WorstOfTables {
     }
 
     /// The span and the message of each table, in the order of the file; `more` words how many others there are.
-    pub fn into_messages(self, more: impl Fn(usize) -> String) -> impl Iterator<Item = (Range<usize>, String)> {
+    pub fn into_messages(
+        self,
+        more: impl Fn(usize) -> String,
+    ) -> impl Iterator<Item = (Range<usize>, String)> {
         self.tables.into_iter().map(move |((start, end), worst)| {
             let others = if worst.count > 1 { format!("; {}", more(worst.count - 1)) } else { String::new() };
             (start..end, worst.message + &others)

@@ -71,6 +71,7 @@ fn is_meant_to_stand(model: &StandingModel<'_>) -> bool {
 }
 
 fn corners(gaps: [f64; 4]) -> String {
-    let each: Vec<String> = CORNERS.iter().zip(gaps).map(|(corner, gap)| format!("{corner} {gap:+.2} m")).collect();
+    let each: Vec<String> =
+        CORNERS.iter().zip(gaps).map(|(corner, gap)| format!("{corner} {gap:+.2} m")).collect();
     each.join(", ")
 }

@@ -40,7 +40,10 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let shapes: Vec<ModelShape> = scene.models.iter().map(ModelShape::of).collect();
     let finest = scene.scale.ground(&scene.lattice);
     let ground = SupportSurface { displayed: &finest, ground: &finest };
-    let own = scene.placements.iter().filter(|placement| context.kind(placement.feature) == Some(FeatureKind::Model));
+    let own = scene
+        .placements
+        .iter()
+        .filter(|placement| context.kind(placement.feature) == Some(FeatureKind::Model));
     let standing = own.take(MOST_MODELS).filter_map(|placement| {
         let shape = &shapes[placement.model];
         let base = stand(placement, &shape.footprint, ground)?.base(&shape.footprint);
@@ -55,11 +58,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
 impl ModelShape {
     fn of(model: &Model) -> Self {
         let is_built_in = matches!(&model.parts[..], [part] if built_in::NAMES.contains(&part.name.as_str()));
-        Self {
-            bounds: model.bounds().unwrap_or_default(),
-            footprint: ModelFootprint::of(model),
-            is_built_in,
-        }
+        Self { bounds: model.bounds().unwrap_or_default(), footprint: ModelFootprint::of(model), is_built_in }
     }
 }
 

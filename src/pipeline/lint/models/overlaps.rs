@@ -1,4 +1,4 @@
-//! Models that stand in one another, in a building, or across the whole width of a road.
+//! Models that stand in one another, in a building, or on a road that they are too large to drive on.
 
 use glam::{DVec2, Vec3};
 
@@ -23,8 +23,8 @@ const SHARED: f64 = 0.2;
 /// Two models share height where the ranges of their heights have this part of the lower one in common.
 const SHARED_HEIGHT: f32 = 0.2;
 
-/// A model stands across a road where it covers all of its width but so much on either side, meters.
-const BESIDE_M: f64 = 0.5;
+/// A foot with sides of at least this belongs to no vehicle, meters: battle tanks are 3.7 m wide.
+const NO_VEHICLE_M: f64 = 4.0;
 
 /// The most models near one that it is compared with.
 const MOST_NEAR: usize = 64;
@@ -51,20 +51,24 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
             let share = shared(outline, &outlines[near]);
             if share > SHARED && share_height(model, other) {
                 let name = || context.name(other.placement.feature);
-                add(share, &|| format!("stands in {}: they share {:.0} % of the smaller foot", name(), share * 100.0));
+                add(share, &|| {
+                    format!("stands in {}: they share {:.0} % of the smaller foot", name(), share * 100.0)
+                });
             }
         }
-        if let Some((building, share)) = buildings.around(outline, rect).filter(|(_, share)| *share > SHARED) {
+        if let Some((building, share)) = buildings.around(outline, rect).filter(|(_, share)| *share > SHARED)
+        {
             let name = || context.name(building);
             add(share, &|| format!("stands in {}: {:.0} % of its foot", name(), share * 100.0));
         }
-        if let Some((road, width_m)) = roads.blocked_by(outline, rect) {
-            let name = || context.name(road);
-            add(1.0, &|| format!("stands across the whole width of {}, {width_m:.1} m", name()));
+        if let Some(road) = roads.under(outline, rect) {
+            add(1.0, &|| format!("stands on the middle of {}", context.name(road)));
         }
     }
     let help = "move one of them, or leave one out";
-    for (span, message) in worst.into_messages(|more| format!("{more} more models of this table stand in something")) {
+    for (span, message) in
+        worst.into_messages(|more| format!("{more} more models of this table stand in something"))
+    {
         sink.add(context.finding(FindingCode::ModelsOverlap, span, message).with_help(help));
     }
 }
@@ -92,8 +96,11 @@ impl<'a> Buildings<'a> {
     fn of(context: &LintContext<'a>) -> Self {
         let is_building = |solid: &&Solid| context.kind(solid.feature) == Some(FeatureKind::Building);
         let solids: Vec<&Solid> = context.scene.solids.iter().filter(is_building).collect();
-        let plan = |mesh: &DrawMesh| mesh.vertices.iter().map(|at| Vec3::from(at.position).truncate().as_dvec2()).collect();
-        let rects: Vec<Rect> = solids.iter().map(|solid| Rect::around::<Vec<DVec2>>(plan(&solid.mesh))).collect();
+        let rect = |solid: &&Solid| {
+            let plan = solid.mesh.vertices.iter().map(|at| Vec3::from(at.position).truncate().as_dvec2());
+            Rect::around(plan)
+        };
+        let rects: Vec<Rect> = solids.iter().map(rect).collect();
         Self { tree: RectTree::new(&rects), solids }
     }
 
@@ -135,22 +142,21 @@ impl<'a> Roads<'a> {
             context.kind(line.feature) == Some(FeatureKind::Road) && line.alignment.is_on_ground()
         };
         let lines: Vec<&LineSymbol> = context.scene.symbols.iter().filter(is_road).collect();
-        let legs = lines.iter().enumerate().flat_map(|(index, line)| LineLeg::all(index, &line.alignment.line));
+        let legs =
+            lines.iter().enumerate().flat_map(|(index, line)| LineLeg::all(index, &line.alignment.line));
         Self { legs: LegTree::new(legs.collect()), lines }
     }
 
-    /// A road of which an outline covers the whole width somewhere, with that width.
-    fn blocked_by(&self, outline: &[DVec2; 4], rect: &Rect) -> Option<(FeatureId, f64)> {
+    /// A road whose centerline runs through an outline that is too large for a vehicle.
+    fn under(&self, outline: &[DVec2; 4], rect: &Rect) -> Option<FeatureId> {
+        let sides = [outline[0].distance(outline[1]), outline[1].distance(outline[2])];
+        if sides[0].min(sides[1]) < NO_VEHICLE_M {
+            return None;
+        }
         let line = Polyline::new([rect.min, rect.max], 0.0)?;
         let window = LineLeg::all(0, &line).next()?;
-        self.legs.near(&window).into_iter().find_map(|near| {
-            let leg = &self.legs.legs()[near];
-            let road = self.lines[leg.line];
-            let width_m = road.alignment.width.at((leg.stations[0] + leg.stations[1]) / 2.0);
-            let aside = (leg.ends[1] - leg.ends[0]).normalize_or_zero().perp() * (width_m / 2.0 - BESIDE_M).max(0.0);
-            let [left, right] = [aside, -aside].map(|by| convex::clip_line(outline, (leg.ends[0] + by, leg.ends[1] + by), 0.0));
-            let is_across = left?.0.max(right?.0) < left?.1.min(right?.1);
-            is_across.then_some((road.feature, width_m))
-        })
+        let through = |leg: &LineLeg| convex::clip_line(outline, (leg.ends[0], leg.ends[1]), 0.0).is_some();
+        let mut near = self.legs.near(&window).into_iter().map(|near| &self.legs.legs()[near]);
+        near.find(|leg| through(leg)).map(|leg| self.lines[leg.line].feature)
     }
 }

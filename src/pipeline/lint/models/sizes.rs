@@ -42,9 +42,13 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         let largest_m = size.max_element();
         let name = || context.name(feature);
         if largest_m > LARGEST_M {
-            sizes.add(context.origin(feature), f64::from(largest_m), || format!("{} is {}", name(), too_large(model)));
+            sizes.add(context.origin(feature), f64::from(largest_m), || {
+                format!("{} is {}", name(), too_large(model))
+            });
         } else if largest_m < SMALLEST_M && largest_m > 0.0 {
-            sizes.add(context.origin(feature), f64::from(1.0 / largest_m), || format!("{} is {}", name(), too_small(model)));
+            sizes.add(context.origin(feature), f64::from(1.0 / largest_m), || {
+                format!("{} is {}", name(), too_small(model))
+            });
         }
         if lies_on_its_side(&model.shape.bounds) {
             sides.add(context.origin(feature), f64::from(size.y / size.z), || {
