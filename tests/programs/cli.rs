@@ -22,6 +22,7 @@ mod series;
 mod serve;
 mod sheets;
 mod viewshed;
+mod web_mercator;
 mod wrong_scenes;
 
 use std::io::Write;
