@@ -21,9 +21,15 @@ fn run_after(shell: &str, scratch: &Scratch, arguments: &[&str]) -> Ran {
 
 /// Every command that writes files, with those that it writes.
 fn writers() -> Vec<(Vec<String>, Vec<&'static str>)> {
-    let (scene, dem) = (project("scenes/areas.toml"), project("assets/jacksboro/dem.tif"));
+    let [scene, cameras] = ["scenes/road.toml", "scenes/areas.toml"].map(project);
+    let dem = project("assets/jacksboro/valley.asc");
     let command = |line: &str, files: &[&'static str]| {
-        let words = line.split(' ').map(|word| word.replace("SCENE", &scene).replace("DEM", &dem));
+        let words = line.split(' ').map(|word| match word {
+            "SCENE" => scene.clone(),
+            "CAMERAS" => cameras.clone(),
+            "DEM" => dem.clone(),
+            word => word.to_owned(),
+        });
         (words.collect(), files.to_vec())
     };
     vec![
@@ -31,7 +37,7 @@ fn writers() -> Vec<(Vec<String>, Vec<&'static str>)> {
         command("render SCENE --size 640x360 --sheet -o out.png", &["out.png"]),
         command("render SCENE --size 640x360 -o out.pdf", &["out.pdf"]),
         command(
-            "render SCENE --size 320x180 --all-cameras -o out.png",
+            "render CAMERAS --size 320x180 --all-cameras -o out.png",
             &["out-south.png", "out-village.png"],
         ),
         command("export SCENE -o out.glb", &["out.glb"]),
@@ -40,7 +46,7 @@ fn writers() -> Vec<(Vec<String>, Vec<&'static str>)> {
         command("export SCENE -o out.3mf", &["out.3mf"]),
         command("dem convert DEM -o out.asc", &["out.asc", "out.prj"]),
         command("dem convert DEM -o out.tif", &["out.tif"]),
-        command("mesh DEM -o out.ply", &["out.ply"]),
+        command("mesh DEM --max-error 5 -o out.ply", &["out.ply"]),
     ]
 }
 
@@ -198,7 +204,7 @@ fn a_missing_font_and_one_that_is_none_are_named() {
     fs::copy(project("assets/jacksboro/valley.asc"), scratch.at("valley.asc")).expect("copied");
     scratch.write("text.ttf", "no font");
     for font in ["missing.ttf", "text.ttf"] {
-        let text = format!("[scene]\nfont = \"{font}\"\n\n[terrain]\ndem = \"valley.asc\"\n");
+        let text = format!("font = \"{font}\"\n\n[terrain]\ndem = \"valley.asc\"\n");
         scratch.write("a.toml", text);
         let said = run_in(scratch.folder(), &["render", "a.toml"]).failed(1);
         assert!(said.contains("a.toml") && said.contains(font), "{said}");
@@ -248,31 +254,31 @@ fn a_batch_goes_on_past_what_is_bad_and_says_so_at_the_end() {
 }
 
 #[test]
-fn cameras_that_cannot_be_drawn_are_left_out_and_named() {
+fn phases_that_cannot_be_built_are_left_out_and_named() {
     let scratch = Scratch::new();
     fs::copy(project("assets/jacksboro/valley.asc"), scratch.at("valley.asc")).expect("copied");
-    scratch.write("two.toml", TWO_CAMERAS);
-    let ran = run_in(scratch.folder(), &["render", "two.toml", "--all-cameras"]);
+    scratch.write("two.toml", TWO_PHASES);
+    let ran = run_in(scratch.folder(), &["render", "two.toml", "--all-phases", "--size", "64x48"]);
     assert_eq!(ran.code, 1, "{ran:?}");
-    assert!(
-        ran.err.ends_with("error: not rendered: camera bad of two.toml; the rest is written\n"),
-        "{ran:?}"
-    );
+    assert!(ran.err.starts_with("two.toml:11:8: error: there is no file"), "{ran:?}");
+    assert!(ran.err.ends_with("error: not rendered: phase bad of two.toml; the rest is written\n"), "{ran:?}");
+    assert_eq!(scratch.names(), ["two-good.png", "two.toml", "valley.asc"]);
+    // A sheet is whole or not there.
+    let sheet = ["render", "two.toml", "--all-phases", "--sheet", "--size", "640x480"];
+    assert!(run_in(scratch.folder(), &sheet).failed(1).starts_with("two.toml:11:8: "));
     assert_eq!(scratch.names(), ["two-good.png", "two.toml", "valley.asc"]);
 }
 
-/// A scene with a camera whose picture would be larger than pictures may be.
-const TWO_CAMERAS: &str = r#"
-[terrain]
+/// A scene with a phase whose road has no file.
+const TWO_PHASES: &str = r#"[terrain]
 dem = "valley.asc"
-[[camera]]
-name = "bad"
-projection = "plan"
-paper = "A0"
-dpi = 10000
-[[camera]]
+crs = "EPSG:32616"
+[[phase]]
 name = "good"
-projection = "plan"
-paper = "A4"
-dpi = 10
+[[phase]]
+name = "bad"
+[[road]]
+name = "nowhere"
+phases = ["bad"]
+file = "none.geojson"
 "#;
