@@ -6,13 +6,14 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
-use crate::cli::check::contents;
+use crate::cli::check::{contents, counted};
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::render_series::{RenderedPicture, RenderedScene, contact_sheet, render};
 use crate::cli::values::{choice, picture_size};
+use crate::description::finding::{Finding, Severity};
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
 use crate::pipeline::picture::PictureSize;
@@ -99,6 +100,9 @@ pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));
     print_lines(&lines)?;
+    for error in scenes.iter().flat_map(RenderedScene::errors) {
+        warn(&error.to_string());
+    }
     for missing in pictures().flat_map(|picture| &picture.annotations.missing_glyphs) {
         warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
     }
@@ -141,7 +145,25 @@ impl RenderedScene {
         let notes = self.scene.inferred_notes();
         let notes = notes.iter().map(|note| row(9, "note", note));
         let summaries = self.pictures.iter().flat_map(RenderedPicture::summary);
-        paths.chain(contents(&self.scene)).chain(notes).chain(summaries).collect()
+        let warnings = self.warnings();
+        let warnings = (warnings > 0).then(|| {
+            row(
+                9,
+                "findings",
+                format!("{}; `sandtable check` shows them", counted(warnings, Severity::Warning)),
+            )
+        });
+        paths.chain(contents(&self.scene)).chain(notes).chain(warnings).chain(summaries).collect()
+    }
+
+    /// What makes the pictures wrong.
+    fn errors(&self) -> impl Iterator<Item = &Finding> {
+        self.scene.findings.iter().filter(|finding| finding.severity() == Severity::Error)
+    }
+
+    /// How many warnings building the scene gave.
+    fn warnings(&self) -> usize {
+        self.scene.findings.iter().filter(|finding| finding.severity() == Severity::Warning).count()
     }
 
     /// Each picture as an object with a member for each fact.
