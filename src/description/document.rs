@@ -170,7 +170,7 @@ table! {
         /// Factor by which heights are stretched when they are drawn.
         vertical_exaggeration: f64 = key::number(Above(0.0, 1000.0), ""), default 1;
         /// Greatest error of the drawn ground; one pixel is what an eye can just see.
-        tolerance_px: f64 = key::number(Above(0.0, 1000.0), "px"), default 1;
+        tolerance_px: Stated<f64> = key::number(Above(0.0, 1000.0), "px"), default 1;
     }
 
     /// `[style]`: how the ground looks.

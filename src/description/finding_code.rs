@@ -197,6 +197,83 @@ finding_codes! {
         "The eye of a camera is under the ground, so that its picture shows the ground from below. Raise `eye_height` or \
          `eye_elevation`.";
 
+    // What no ground carries and nobody builds.
+    RoadSteep = "road-steep", Warning,
+        "A road on the ground is steeper than 35 % over 30 m, or over two cells of the elevation model where these are wider; \
+         the steepest paved street of the world, Baldwin Street in Dunedin, has 34.8 %. No vehicle climbs it. Most often the \
+         road lies on a trace that the elevation model does not show, or its line is shifted. Let the ground follow it with \
+         `profile = \"conform\"`, or mend the line.";
+    DeepEarthwork = "deep-earthwork", Warning,
+        "A road that the ground follows stands on more than 15 m of fill, or lies in a cutting deeper than 25 m. Beyond about \
+         that a viaduct or a tunnel costs less, so that nobody builds it. `max_fill` and `max_cut` let bridges and tunnels \
+         stand there; a higher `max_grade` or a line that winds needs less earth.";
+    RoadInWater = "road-in-water", Warning,
+        "A road on the ground crosses a river at least 3 m wide, or runs more than 10 m through a lake, and no bridge carries \
+         it. The picture shows it in the water. Say by `bridge` which lines are bridges, add a [[bridge]], or leave out water \
+         in pipes by `where`.";
+    LakeLevelWrong = "lake-level-wrong", Error,
+        "A lake's `level` is more than 100 m below or above all ground along its shore: a slip of the pen, or a level in feet \
+         or of another datum. The ground would be cut or filled to it. State it as the elevation model counts, or leave it \
+         out: then it is taken from the shore.";
+    LakeShoreGap = "lake-shore-gap", Warning,
+        "A lake's level and the ground along its shore differ by more than 10 m, the error of global elevation models: the \
+         water stands above its lowest shore, lies below all of it, or half of the shore is higher. The ground is cut and \
+         filled to meet it, so that no gap shows; the scene is not what the model has. Mend `level`, or the outline.";
+    TightCurve = "tight-curve", Warning,
+        "A road or a river turns with a radius smaller than half its width, so that its inner edge folds over itself. Draw the \
+         curve with a greater radius, or state a smaller width.";
+    NarrowWidth = "narrow-width", Warning,
+        "A road is narrower than 0.3 m, or a river than 0.1 m: most often a width in another unit. Widths are meters.";
+    CrossesItself = "crosses-itself", Warning,
+        "A line or an outline crosses itself. A road would meet itself at one level, a river flow through itself, and of an \
+         outline it is not clear what is inside. Mend the order of the points, or split a road where it passes over itself.";
+    DoublesBack = "doubles-back", Warning,
+        "A line comes back on itself: at one of its points it turns by more than 170°. Most often a point was drawn twice or \
+         out of order. Remove it.";
+    JunctionUntrimmed = "junction-untrimmed", Note,
+        "Two roads leave a place at so small an angle that their edges meet farther away than a junction reaches, two and a half \
+         widths: beyond it they lie on one another. Let one begin farther along the other.";
+    ModelSize = "model-size", Warning,
+        "A model is larger than 1000 m, more than any building, or smaller than 0.15 m, less than a brick: its file most likely \
+         has another unit. State in `scale` how many meters a unit of the file has: 0.001 of one in millimeters.";
+    ModelOnSide = "model-on-side", Warning,
+        "A model seems to lie on its side: the box around it begins at its origin toward the front or the back and lies evenly \
+         about it in height, as that of a model whose upright axis is another than its format has. OBJ and glTF have Y, 3DS has \
+         Z. Write the file anew so.";
+    ModelFloats = "model-floats", Warning,
+        "A corner of a model's foot is more than 0.5 m above the ground. The message gives the gap under each corner. Anchor \
+         it at the lowest ground under it, or fill the gap with a `footing`.";
+    ModelBuried = "model-buried", Warning,
+        "A corner of a model's foot is in the ground by more than a third of the model's height. The message gives each corner. \
+         Anchor it at the highest ground under it, on a plinth, or have the ground leveled for it.";
+    ModelsOverlap = "models-overlap", Warning,
+        "A model stands in another, in a building, or on a road that it is too large to drive on. They are drawn through each \
+         other. Move one, or leave one out.";
+
+    CameraSeesNothing = "camera-sees-nothing", Warning,
+        "Nothing of the scene is in the picture of a camera: it looks away from it. Turn it, or leave out `eye` and `look_at`: \
+         then it is fitted to the scene.";
+    CameraFar = "camera-far", Warning,
+        "A camera is so far away that the whole scene is less than 20 pixels wide in its picture. Most often its eye is in \
+         another system or unit.";
+    CameraBlocked = "camera-blocked", Warning,
+        "Within a quarter of the way to the point that a camera looks at, the ground rises before it, or something stands there \
+         that fills most of its picture. Raise the eye, or move it.";
+
+    OutOfView = "out-of-view", Warning,
+        "No camera of the scene has any feature of a table in its picture, whatever hills may hide besides. Turn a camera to \
+         it, or leave it out.";
+    ToleranceBudget = "tolerance-budget", Warning,
+        "`tolerance_px` lets the drawn ground be off by more than 4 pixels, so that roads and models leave their places for \
+         everyone to see, or asks for less than a tenth of a pixel, which costs triangles that change no pixel. 1 is what an \
+         eye can just see.";
+    LabelDropped = "label-dropped", Note,
+        "Labels are not drawn on the picture of the first camera: the ground hides their places, they lie outside the picture, \
+         or no position near them is free. Labels of a lower `rank` come first; one with a `height` stands above what hides it.";
+    LabelIllegible = "label-illegible", Warning,
+        "Labels cannot be read as they are stated: they are cut short because they are too long, or drawn with boxes because \
+         no font has their letters.";
+
     // What the scene states and nothing uses.
     UnusedPhase = "unused-phase", Warning,
         "No table names this phase, so that it shows only what is always there. Add `phases = [\"NAME\"]` to the tables that it is \

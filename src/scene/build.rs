@@ -145,7 +145,7 @@ pub fn build(
         height_range_m,
         scale,
         bounds,
-        tolerance_px: document.terrain.tolerance_px as f32,
+        tolerance_px: *document.terrain.tolerance_px as f32,
         wireframe: document.style.wireframe,
         layout,
         ground: OnceLock::new(),

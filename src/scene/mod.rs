@@ -54,6 +54,7 @@ pub mod water;
 pub mod wood;
 pub mod world_frame;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Vec2, Vec3};
@@ -369,6 +370,8 @@ impl Placement {
 pub struct SceneLabel {
     /// What it says.
     pub text: String,
+    /// The bytes of the scene file that state it; `0..0` for a spot height.
+    pub stated: Range<usize>,
     /// The position on the ground, world space, displayed height.
     pub ground: Vec3,
     /// Where the leader line starts, at or above the ground.

@@ -7,17 +7,30 @@
 //! A check is a function in a file of its subject, and a row of [`CHECKS`]. It computes what no picture needs, so it runs
 //! only where a scene is checked; what building finds out anyway is in [`SceneModel::findings`].
 
+mod cameras;
 pub mod cause_code;
 mod context;
 mod definitions;
 mod elevation;
+mod ground_line;
 mod heights;
 mod imagery;
+mod junctions;
+mod labels;
+mod lakes;
+mod line_shapes;
+mod models;
+mod rivers;
+mod road_crossings;
+mod road_profiles;
 pub mod sink;
 mod systems;
 mod table_sources;
 mod terrain;
+mod tolerance;
+mod unseen;
 mod voids;
+mod worst;
 
 use crate::description::document::Document;
 use crate::description::finding::Finding;
@@ -40,6 +53,17 @@ const CHECKS: &[(&str, LintCheck)] = &[
     ("systems", systems::check),
     ("terrain", terrain::check),
     ("voids", voids::check),
+    ("road profiles", road_profiles::check),
+    ("road crossings", road_crossings::check),
+    ("rivers", rivers::check),
+    ("lakes", lakes::check),
+    ("line shapes", line_shapes::check),
+    ("junctions", junctions::check),
+    ("models", models::check),
+    ("cameras", cameras::check),
+    ("views", unseen::check),
+    ("tolerance", tolerance::check),
+    ("labels", labels::check),
 ];
 
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
