@@ -94,14 +94,16 @@ fn lines(name: &str, scene: &SceneModel, findings: &[Finding]) -> Vec<String> {
 }
 
 /// `1 error, 2 warnings, 3 notes`.
-pub fn counts(findings: &[Finding]) -> String {
+fn counts(findings: &[Finding]) -> String {
     let count = |severity| findings.iter().filter(|finding| finding.severity() == severity).count();
-    let counted = Severity::ALL.map(|severity| (severity.word(), count(severity)));
-    let words = counted.iter().filter(|(_, count)| *count > 0);
-    words
-        .map(|(word, count)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" }))
-        .collect::<Vec<_>>()
-        .join(", ")
+    let each = Severity::ALL.map(|severity| (severity, count(severity)));
+    let present = each.iter().filter(|(_, count)| *count > 0);
+    present.map(|&(severity, count)| counted(count, severity)).collect::<Vec<_>>().join(", ")
+}
+
+/// `3 warnings`.
+pub fn counted(count: usize, severity: Severity) -> String {
+    format!("{count} {}{}", severity.word(), if count == 1 { "" } else { "s" })
 }
 
 fn as_json(name: &str, findings: &[Finding]) -> Value {

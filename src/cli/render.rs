@@ -6,13 +6,14 @@ use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
-use crate::cli::check::contents;
+use crate::cli::check::{contents, counted};
 use crate::cli::error::CliError;
 use crate::cli::options::AccessArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
 use crate::cli::values::{choice, picture_size};
+use crate::description::finding::{Finding, Severity};
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
 use crate::pipeline::picture::PictureSize;
@@ -142,13 +143,18 @@ fn outputs(arguments: &RenderArguments) -> Result<Vec<(&Path, PathBuf)>, CliErro
     Ok(outputs)
 }
 
-/// The lines about the pictures of a scene file; warns of letters that its font lacks.
+/// The lines about the pictures of a scene file; prints its errors, and warns of letters that its font lacks.
 fn summary(
     arguments: &RenderArguments,
     path: &Path,
     scenes: &[RenderedScene],
     times: &[(&'static str, f64)],
 ) -> Vec<String> {
+    let mut errors: Vec<String> =
+        scenes.iter().flat_map(RenderedScene::errors).map(ToString::to_string).collect();
+    // Phases of one scene have most of them in common.
+    errors.dedup();
+    errors.iter().for_each(|error| warn(error));
     for missing in scenes
         .iter()
         .flat_map(|scene| &scene.pictures)
@@ -211,7 +217,25 @@ impl RenderedScene {
         let notes = self.scene.inferred_notes();
         let notes = notes.iter().map(|note| row(9, "note", note));
         let summaries = self.pictures.iter().flat_map(RenderedPicture::summary);
-        paths.chain(contents(&self.scene)).chain(notes).chain(summaries).collect()
+        let warnings = self.warnings();
+        let warnings = (warnings > 0).then(|| {
+            row(
+                9,
+                "findings",
+                format!("{}; `sandtable check` shows them", counted(warnings, Severity::Warning)),
+            )
+        });
+        paths.chain(contents(&self.scene)).chain(notes).chain(warnings).chain(summaries).collect()
+    }
+
+    /// What makes the pictures wrong.
+    fn errors(&self) -> impl Iterator<Item = &Finding> {
+        self.scene.findings.iter().filter(|finding| finding.severity() == Severity::Error)
+    }
+
+    /// How many warnings building the scene gave.
+    fn warnings(&self) -> usize {
+        self.scene.findings.iter().filter(|finding| finding.severity() == Severity::Warning).count()
     }
 
     /// Each picture as an object with a member for each fact.

@@ -100,6 +100,9 @@ pub fn labels(
         let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank };
         named.push(NamedFeature { label, lines: pieces });
     }
+    if named.is_empty() && left_out.off > 0 {
+        sources.measure(&source)?;
+    }
     let labels = named.into_iter().map(|named| named.with_course(frame, lattice)).collect();
     if let Some(sentence) = left_out.note(source.file.as_ref().map_or("", |file| file.as_str()), most) {
         findings.add(FindingCode::LeftOut, source.span(), sentence);

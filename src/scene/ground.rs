@@ -22,6 +22,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
+use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::scene_findings::SceneFindings;
 use crate::terrain::lattice::Lattice;
@@ -189,7 +190,8 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
             HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
         }),
         raw: raw_layout(document)?,
-        vertical_datum: terrain.vertical_datum.clone(),
+        // What the file states is compared with it below.
+        vertical_datum: None,
         cell: terrain.cell,
         crs: terrain.crs.clone(),
         companions: &companions,
@@ -197,14 +199,40 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
     let (dem, mut tiles) = (&terrain.dem, Tiles::default());
     for name in dem.iter() {
         let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-        let tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        if let Some(stated) = &terrain.vertical_datum {
+            find_other_datum(name, &tile, stated, document, findings);
+            tile.vertical_datum = Some(stated.clone());
+        }
         tiles.push(name, tile).map_err(|error| document.error(dem, error))?;
     }
     let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
+    if mosaic.without_datum > 0 {
+        let message = format!(
+            "{} of {} tiles state no vertical datum, beside others that do: they are taken to be the same",
+            mosaic.without_datum, mosaic.tiles
+        );
+        findings.add(FindingCode::VerticalDatumsMixed, dem.span().unwrap_or_default(), message);
+    }
     if dem.len() > 1 {
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
     }
     Ok(mosaic.raster)
+}
+
+/// Finds that a file states another vertical datum than the scene, which is believed.
+fn find_other_datum(
+    name: &str,
+    tile: &Raster,
+    stated: &str,
+    document: &Document,
+    findings: &mut SceneFindings,
+) {
+    if let Some(own) = tile.vertical_datum.as_deref().filter(|own| !own.eq_ignore_ascii_case(stated)) {
+        let message = format!("'{}' counts heights from {own}, and the scene says {stated}", quoted(name));
+        let span = document.terrain.dem.span().unwrap_or_default();
+        findings.add(FindingCode::VerticalDatumsMixed, span, message);
+    }
 }
 
 fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {

@@ -112,6 +112,7 @@ fn read_features(
         }
     }
     let (crs, features) = sources.features(&source)?;
+    let first = symbols.len();
     let mut left_out = LeftOutSymbols::default();
     for attributes in features {
         let code = attributes.evaluated(&sidc).and_then(|code| written(&code)).unwrap_or_default();
@@ -132,6 +133,9 @@ fn read_features(
         if symbols.len() > MOST_SYMBOLS {
             break;
         }
+    }
+    if symbols.len() == first && left_out.off > 0 {
+        sources.measure(&source)?;
     }
     if let Some(sentence) = left_out.note(source.file.as_ref().map_or("", |file| file.as_str())) {
         findings.add(FindingCode::LeftOut, source.span(), sentence);

@@ -115,11 +115,13 @@ impl SourceReach {
             (Some(file), 1) => format!("the only feature of '{}' that is taken lies", quoted(file)),
             (Some(file), shapes) => format!("all {shapes} features of '{}' that are taken lie", quoted(file)),
         };
-        let rect = Rect::around(self.boxes.iter().flat_map(|rect| [rect.min, rect.max]));
+        let boxes = self.boxes.iter().filter(|rect| !rect.is_empty());
+        let rect = Rect::around(boxes.flat_map(|rect| [rect.min, rect.max]));
         let far_km = gap(&rect, extent) / 1000.0;
+        let far = if rect.is_empty() { String::new() } else { format!(", {far_km:.1} km from it") };
         let map = Rect { min: extent.min + frame.origin, max: extent.max + frame.origin };
         let found = misplacement(&self.written, &self.crs, frame.crs, &map);
-        let message = format!("{what} off the elevation model, {far_km:.1} km from it");
+        let message = format!("{what} off the elevation model{far}");
         let (code, help) = match found {
             Some(found) => (found.code(), found.help(&self.crs)),
             None => (FindingCode::OffTerrain, help(&map, frame.crs)),

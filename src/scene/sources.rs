@@ -291,6 +291,27 @@ impl<'a> Sources<'a> {
         Ok(placed)
     }
 
+    /// Measures where the features of a file lie of which none found its place: those that are not placed as lines, polygons
+    /// or points are not measured otherwise. What cannot be transformed is left out.
+    ///
+    /// # Errors
+    /// The file cannot be read or holds no feature that matches.
+    pub fn measure(&self, source: &FeatureSource) -> Result<(), Diagnostic> {
+        let (crs, shapes) = self.geometries(source)?;
+        let file = source.file.as_ref().map(|file| file.to_string());
+        let mut reach = SourceReach::new(source.span(), file, crs.clone());
+        for shape in &shapes {
+            reach.begin_shape();
+            for &at in shape.vertices() {
+                if let Ok(world) = self.frame.world(&crs, at) {
+                    reach.add(at, world);
+                }
+            }
+        }
+        self.reaches.borrow_mut().insert(source.span().start, reach);
+        Ok(())
+    }
+
     /// Where the sources that were read lie, in the order of the scene file.
     pub fn reaches(&self) -> Vec<SourceReach> {
         self.reaches.borrow().values().cloned().collect()

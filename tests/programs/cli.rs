@@ -1,6 +1,7 @@
 //! The program as a user runs it: what it prints, where, and how it ends.
 
 mod attacks;
+mod check;
 mod convert;
 mod export;
 #[cfg(unix)]

@@ -4,5 +4,7 @@
 mod common;
 
 mod cli;
+mod findings_page;
+mod lint;
 mod readme;
 mod serve;

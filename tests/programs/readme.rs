@@ -22,10 +22,11 @@ use crate::serve::client::Server;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The pages whose links are followed.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 7] = [
     "README.md",
     "CHANGELOG.md",
     "assets/README.md",
+    "scenes/FINDINGS.md",
     "scenes/README.md",
     "src/ARCHITECTURE.md",
     "tests/bench/README.md",

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::dem::outliers::{OutlierKind, Outliers, outliers};
 use crate::dem::raster::Raster;
+use crate::dem::undeclared::undeclared_nodata;
 use crate::description::finding_code::FindingCode;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
@@ -22,7 +23,9 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         None => spacing,
     };
     let span = context.document.terrain.dem.span().unwrap_or_default();
-    for found in outliers(raster, cell_m) {
+    let undeclared = undeclared_nodata(raster);
+    let is_told = |found: &Outliers| undeclared.iter().any(|known| known.value == found.value);
+    for found in outliers(raster, cell_m).into_iter().filter(|found| !is_told(found)) {
         let (code, what) = sentence(&found);
         let at = place(raster, found.at);
         let message = format!("{what}, at {at}, where the value is {}", found.value);

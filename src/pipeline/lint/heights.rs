@@ -11,7 +11,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
-use crate::pipeline::lint::table_sources::table_sources;
+use crate::pipeline::lint::table_sources::{SourceRole, table_sources};
 use crate::scene::Placement;
 use crate::scene::attributes::Attributes;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -30,7 +30,7 @@ const MOST_HEIGHTS: usize = 20_000;
 
 /// Finds files with heights, and models at stated elevations, that lie off the ground by a constant.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
-    for table in table_sources(context.document).iter().filter(|table| !table.is_raised) {
+    for table in table_sources(context.document).iter().filter(|table| table.role != SourceRole::Above) {
         let Some(file) = &table.source.file else { continue };
         // What cannot be read was an error of building the scene.
         let Ok((crs, features)) = context.sources.features(&table.source) else { continue };

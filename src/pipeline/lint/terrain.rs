@@ -1,9 +1,12 @@
 //! Features that lie partly off the elevation model.
 
+use std::ops::Range;
+
 use crate::description::finding_code::FindingCode;
 use crate::message::suggest::quoted;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::lint::table_sources::{SourceRole, table_sources};
 use crate::scene::source_reach::SourceOverlap;
 
 /// A smaller share of a feature off the model is the width of a pen.
@@ -11,10 +14,14 @@ const LEAST_SHARE: f64 = 0.01;
 
 /// Finds features whose points the scene file states that lie partly off the model, and files that reach beyond it.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let tables = table_sources(context.document);
+    let covers = |span: &Range<usize>| {
+        tables.iter().any(|table| table.role == SourceRole::Over && table.source.span() == *span)
+    };
     for overlap in context.scene.overlaps.iter().filter(|overlap| overlap.off < overlap.shapes) {
         let SourceOverlap { span, file, shapes, off, partly, share_off } = overlap.clone();
         match file {
-            None if share_off >= LEAST_SHARE => {
+            None if share_off >= LEAST_SHARE && !covers(&span) => {
                 let message =
                     format!("{:.0} % of the feature lies off the elevation model", share_off * 100.0);
                 let finding = context.finding(FindingCode::PartlyOffTerrain, span, message);

@@ -13,7 +13,7 @@ const HEAD: &str = "# Scene files: keys and defaults
 
 Each scene in this folder shows one feature, and says what in its first lines. This page lists every key that a scene file
 may have. `sandtable schema` prints the same as a JSON Schema for editors; `sandtable check SCENE` finds what is wrong in a
-scene file.
+scene file, and [FINDINGS.md](FINDINGS.md) lists what it finds.
 
 A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from north,
 points `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that they stand in, unless a

@@ -1,0 +1,96 @@
+//! `check` and `explain`: findings for people and for programs, and how they end.
+
+use serde_json::Value;
+
+use crate::cli::{bytes_of, run, run_in};
+use crate::common::scratch::Scratch;
+
+/// The commands run in `project`, the scene is `scenes/a.toml`.
+fn scene(more: &str) -> Scratch {
+    let scratch = Scratch::new();
+    scratch.write("project/data/valley.asc", bytes_of("assets/jacksboro/valley.asc"));
+    let head = "[terrain]\ndem = \"../data/valley.asc\"\ncrs = \"EPSG:32616\"\n";
+    scratch.write("project/scenes/a.toml", format!("{head}{more}"));
+    scratch
+}
+
+const UNUSED: &str = "[styles.lane]\nwidth = 3\n";
+const SWAPPED: &str = "[[road]]\npoints = [[4018883, 750500], [4019000, 751000]]\n";
+
+fn json(scratch: &Scratch, code: i32) -> Value {
+    let ran = run_in(&scratch.at("project"), &["check", "scenes/a.toml", "--json"]);
+    assert_eq!((ran.code, ran.err.as_str()), (code, ""), "{ran:?}");
+    serde_json::from_str(&ran.out).expect("JSON")
+}
+
+#[test]
+fn a_warning_is_shown_with_its_line_and_fails_only_where_it_is_denied() {
+    let scratch = scene(UNUSED);
+    let check = |more: &[&str]| run_in(&scratch.at("project"), &[&["check", "scenes/a.toml"], more].concat());
+    let out = check(&[]).ok();
+    for wanted in [
+        "scenes/a.toml:4:9: warning[unused-style]: no table names the style 'lane'\n",
+        "4 | [styles.lane]\n  |         ^^^^\n",
+        "= help: add `style = \"lane\"` to a table, or remove it",
+        "scenes/a.toml is sound\n",
+        "findings  1 warning; `sandtable explain CODE` explains a code\n",
+        "112×112 posts",
+    ] {
+        assert!(out.contains(wanted), "{wanted} in\n{out}");
+    }
+    let denied = check(&["--deny", "warnings"]);
+    assert_eq!((denied.code, denied.err.as_str(), denied.out), (1, "", out));
+    assert!(check(&["--deny", "notes"]).failed(2).contains("warnings"));
+}
+
+#[test]
+fn an_error_fails_the_check_and_render_shows_it_beside_its_picture() {
+    let scratch = scene(SWAPPED);
+    let ran = run_in(&scratch.at("project"), &["check", "scenes/a.toml"]);
+    assert_eq!((ran.code, ran.err.as_str()), (1, ""));
+    assert!(
+        ran.out.contains("a.toml:5:10: error[axes-swapped]: ") && ran.out.contains("[northing, easting]")
+    );
+    assert!(ran.out.contains("scenes/a.toml is wrong\n") && !ran.out.contains("is sound"), "{}", ran.out);
+    let drawn = run_in(&scratch.at("project"), &["render", "scenes/a.toml", "--size", "64x48"]);
+    assert!(drawn.code == 0 && drawn.err.contains("error[axes-swapped]"), "{drawn:?}");
+}
+
+#[test]
+fn the_findings_are_json_for_sound_scenes_and_for_broken_ones() {
+    let warned = json(&scene(UNUSED), 0);
+    assert_eq!((&warned["errors"], &warned["warnings"]), (&0.into(), &1.into()));
+    let finding = &warned["findings"][0];
+    assert_eq!((&finding["code"], &finding["severity"]), (&"unused-style".into(), &"warning".into()));
+    assert_eq!((&finding["line"], &finding["column"]), (&4.into(), &9.into()));
+    assert_eq!(finding["file"], "scenes/a.toml");
+    assert!(finding["help"].as_str().expect("a remedy").contains("or remove it"));
+    let unread = json(&scene("[[road]]\nwdith = 3\n[style]\nwireframe = 2\n"), 1);
+    let codes = unread["findings"].as_array().expect("a list").iter().map(|finding| finding["code"].clone());
+    assert_eq!(codes.collect::<Vec<_>>(), ["missing-key", "unknown-key", "wrong-type"]);
+    let unbuilt = json(&scene("[[road]]\nfile = \"gone.geojson\"\n"), 1);
+    assert_eq!(
+        (&unbuilt["findings"][0]["code"], &unbuilt["findings"][0]["line"]),
+        (&"missing-file".into(), &5.into())
+    );
+}
+
+#[test]
+fn a_scene_that_is_not_there_is_a_finding_too() {
+    let scratch = Scratch::new();
+    let ran = run_in(scratch.folder(), &["check", "none.toml", "--json"]);
+    let value: Value = serde_json::from_str(&ran.out).expect("JSON");
+    assert_eq!((ran.code, &value["findings"][0]["code"]), (1, &"unreadable-file".into()));
+    assert!(value["findings"][0]["line"].is_null());
+}
+
+#[test]
+fn every_code_is_explained_and_an_unknown_one_is_refused_with_what_was_meant() {
+    let list = run(&["explain"]).ok();
+    assert!(list.lines().count() > 40 && list.contains("axes-swapped"), "{list}");
+    for line in list.lines() {
+        let code = line.split_whitespace().next().expect("a code");
+        assert!(run(&["explain", code]).ok().contains(&format!("[{code}]")), "{code}");
+    }
+    assert!(run(&["explain", "axis-swaped"]).failed(2).contains("did you mean 'axes-swapped'?"));
+}
