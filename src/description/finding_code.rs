@@ -70,6 +70,21 @@ finding_codes! {
     CrsMismatch = "crs-mismatch", Error,
         "Coordinates cannot be brought from their system to the scene's: they lie outside what one of the two covers, or are \
          not in the system that is stated for them. State the right one with the key `crs`.";
+    NoSystem = "no-system", Note,
+        "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
+         Earth, so that data in other systems cannot be added.";
+    FarFromZone = "far-from-zone", Warning,
+        "The scene lies far from the zone of its coordinate system. Lengths are off by more than 0.1 % there, or the zone is \
+         wrong and with it every longitude and latitude. The zone that fits is named.";
+    DatumShifted = "datum-shifted", Warning,
+        "Coordinates are brought from one datum to another by three or seven parameters, which are good to some meters for \
+         national datums of the last century. Where meters count, transform the data with a shift grid first.";
+    VerticalDatumsMixed = "vertical-datums-mixed", Warning,
+        "Heights are counted from different zeros: tiles of one model state different vertical datums, or none beside one, or the \
+         scene states another than the file. They differ by up to a hundred meters. Bring them to one, or state it.";
+    GeoidOffset = "geoid-offset", Warning,
+        "Heights in a file, or of models at stated elevations, are off the ground by nearly the same number of meters everywhere. \
+         Most likely one of the two is counted from the ellipsoid and the other from a geoid. Bring both to one datum.";
     NoPlaceOnEarth = "no-place-on-earth", Warning,
         "The scene names no coordinate system, so that a grid, magnetic north or the sun of a date cannot be computed. State \
          `crs` under `[terrain]`.";
@@ -78,6 +93,18 @@ finding_codes! {
     UndeclaredNoData = "undeclared-nodata", Warning,
         "A value occurs in the elevation model as no ground does: far apart from all others, or round and repeated. It most \
          likely means no data, but the file does not say so, and it is drawn as ground. State it as `nodata`.";
+    FlatMargin = "flat-margin", Warning,
+        "Along a side of the elevation model all samples have one value and end in a step: most likely a margin without data \
+         that the file does not declare. State the value as `nodata`, or cut the margin off with `extent`.";
+    UnmarkedVoid = "unmarked-void", Warning,
+        "Inside the elevation model a region of one value ends in a step all around, as holes do that were filled with a number. \
+         It is drawn as ground. State the value as `nodata` where no ground has it, so that the hole is filled.";
+    Spike = "spike", Warning,
+        "Single samples stand far above all that surround them, which agree with one another: most likely errors of measurement. \
+         Each is drawn as a needle, and blocks lines of sight. Correct the file.";
+    Pit = "pit", Warning,
+        "Single samples lie far below all that surround them, which agree with one another: most likely errors, or samples without \
+         data that the file does not declare. Correct the file, or state their value as `nodata`.";
     VoidsFilled = "voids-filled", Note,
         "Samples without data were filled by a membrane from their rims, so that the ground has no holes. Heights there are \
          guesses. `fill_voids` under `[terrain]` switches it.";
@@ -96,6 +123,26 @@ finding_codes! {
          posts. It is drawn as well as the posts allow. A model of a smaller area, or one with smaller cells, shows it.";
 
     // Features and the terrain.
+    OffTerrain = "off-terrain", Error,
+        "A feature lies wholly off the elevation model, so that no picture shows it; of a file, all features do. Most often \
+         its coordinates are in another system than stated, or belong to another scene.";
+    PartlyOffTerrain = "partly-off-terrain", Warning,
+        "A feature whose points the scene file states lies partly off the elevation model, and is cut off at its border. Move \
+         the points, or take a larger model.";
+    ReachesBeyond = "reaches-beyond", Note,
+        "Features of a file reach beyond the elevation model, and are cut off at its border or left out.";
+    AxesSwapped = "axes-swapped", Error,
+        "A feature lies off the elevation model, and on it where its two coordinates are exchanged: they are written as \
+         northing and easting, or as latitude and longitude. Coordinates are `[easting, northing]` or `[longitude, latitude]`.";
+    WrongZone = "wrong-zone", Error,
+        "A feature lies off the elevation model, and on it in another zone of the same kind of system. State that one with the \
+         key `crs` of its table.";
+    OverVoid = "over-void", Warning,
+        "A part of what a table states lies over ground without data. It is left out there. Fill the voids, or take a model \
+         that has data there.";
+    NoDataUnder = "nodata-under", Error,
+        "Something stands where the elevation model holds no data, so that its height is not known. Move it to where there is \
+         ground, or fill the voids.";
     LeftOut = "left-out", Note,
         "Features were left out, for the reason that the message states: most often they lie off the elevation model, since \
          files hold more than a scene shows.";
@@ -136,6 +183,12 @@ finding_codes! {
     UnknownVariant = "unknown-variant", Warning,
         "Points name a variant that the table does not have; the model of `file` stands there. Add the variant, or mend the \
          property.";
+    TextureMissing = "texture-missing", Warning,
+        "A texture of a model is not there, or cannot be read: what it covers has a plain color. Put the picture beside the model, \
+         under the name that the model states.";
+    TextureStretched = "texture-stretched", Warning,
+        "A picture of the ground has so few pixels that one is stretched over several cells of the elevation model: the ground \
+         shows as a blur. Take a picture of finer pixels.";
     ModelRead = "model-read", Warning,
         "A model file was read with a loss that the message states: a texture that is not there, faces that were left out.";
     SymbolIncomplete = "symbol-incomplete", Warning,
@@ -222,6 +275,14 @@ finding_codes! {
          no font has their letters.";
 
     // What the scene states and nothing uses.
+    UnusedPhase = "unused-phase", Warning,
+        "No table names this phase, so that it shows only what is always there. Add `phases = [\"NAME\"]` to the tables that it is \
+         meant for, or remove it.";
+    UnusedInclude = "unused-include", Warning,
+        "An included file states nothing. Remove it from `include`, or write the tables that are meant.";
+    RepeatedName = "repeated-name", Warning,
+        "Two tables give features of one kind the same name, so that reports, legends and messages do not tell them apart. \
+         Rename one.";
     UnusedStyle = "unused-style", Warning,
         "No table names this style, so its keys have no effect. Add `style = \"NAME\"` to the tables that it is meant for, or \
          remove it.";

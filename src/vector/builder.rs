@@ -249,7 +249,11 @@ mod tests {
             let mut parts = FeatureParts::default();
             parts.add_line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::new(x, 0.0, f64::NAN)]);
             let added = LayerBuilder::new(Crs::local()).add(parts, Properties::new());
-            assert_eq!(matches!(added, Err(VectorError::TooFar { feature: 1, .. })), is_refused, "{x}: {added:?}");
+            assert_eq!(
+                matches!(added, Err(VectorError::TooFar { feature: 1, .. })),
+                is_refused,
+                "{x}: {added:?}"
+            );
         }
     }
 

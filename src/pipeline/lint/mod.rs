@@ -11,7 +11,10 @@ mod cameras;
 pub mod cause_code;
 mod context;
 mod definitions;
+mod elevation;
 mod ground_line;
+mod heights;
+mod imagery;
 mod junctions;
 mod labels;
 mod lakes;
@@ -21,8 +24,12 @@ mod rivers;
 mod road_crossings;
 mod road_profiles;
 pub mod sink;
+mod systems;
+mod table_sources;
+mod terrain;
 mod tolerance;
 mod unseen;
+mod voids;
 mod worst;
 
 use crate::description::document::Document;
@@ -31,6 +38,8 @@ use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
+use crate::scene::sources::Sources;
+use crate::scene::world_frame::WorldFrame;
 
 /// A check of one subject.
 type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
@@ -49,12 +58,20 @@ const CHECKS: &[(&str, LintCheck)] = &[
     ("views", unseen::check),
     ("tolerance", tolerance::check),
     ("labels", labels::check),
+    ("elevation", elevation::check),
+    ("heights", heights::check),
+    ("imagery", imagery::check),
+    ("systems", systems::check),
+    ("terrain", terrain::check),
+    ("voids", voids::check),
 ];
 
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
 /// those of every check.
 pub fn lint(document: &Document, assets: &Assets, scene: &SceneModel) -> Vec<Finding> {
-    let context = LintContext { document, assets, scene };
+    let frame = WorldFrame::new(document, &scene.crs, scene.lattice.origin());
+    let sources = Sources::new(&frame, assets);
+    let context = LintContext { document, assets, scene, sources: &sources };
     let mut sink = FindingSink::default();
     scene.findings.iter().cloned().for_each(|finding| sink.add(finding));
     for (_, check) in CHECKS {
