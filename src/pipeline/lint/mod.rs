@@ -47,6 +47,12 @@ type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
 /// All checks, each with what it is about.
 const CHECKS: &[(&str, LintCheck)] = &[
     ("definitions", definitions::check),
+    ("elevation", elevation::check),
+    ("heights", heights::check),
+    ("imagery", imagery::check),
+    ("systems", systems::check),
+    ("terrain", terrain::check),
+    ("voids", voids::check),
     ("road profiles", road_profiles::check),
     ("road crossings", road_crossings::check),
     ("rivers", rivers::check),
@@ -58,20 +64,14 @@ const CHECKS: &[(&str, LintCheck)] = &[
     ("views", unseen::check),
     ("tolerance", tolerance::check),
     ("labels", labels::check),
-    ("elevation", elevation::check),
-    ("heights", heights::check),
-    ("imagery", imagery::check),
-    ("systems", systems::check),
-    ("terrain", terrain::check),
-    ("voids", voids::check),
 ];
 
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
 /// those of every check.
 pub fn lint(document: &Document, assets: &Assets, scene: &SceneModel) -> Vec<Finding> {
-    let frame = WorldFrame::new(document, &scene.crs, scene.lattice.origin());
+    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.origin());
     let sources = Sources::new(&frame, assets);
-    let context = LintContext { document, assets, scene, sources: &sources };
+    let context = LintContext { document, scene, sources: &sources };
     let mut sink = FindingSink::default();
     scene.findings.iter().cloned().for_each(|finding| sink.add(finding));
     for (_, check) in CHECKS {
