@@ -35,6 +35,8 @@ pub struct ExportedScene {
     pub files: Vec<PathBuf>,
     /// The content.
     pub list: DrawList,
+    /// The triangles that they show.
+    pub triangles: usize,
 }
 
 /// Exports a scene that was opened true to scale to `path`. The ground is off by at most `max_error_m` at every post.
@@ -73,7 +75,8 @@ pub fn export(
             files::write_with(path, |out| obj::write(&export, &stem, out))?;
         }
     }
-    Ok(ExportedScene { files: written, list })
+    let triangles = export.triangle_count();
+    Ok(ExportedScene { files: written, triangles, list })
 }
 
 fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {

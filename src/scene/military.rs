@@ -7,6 +7,7 @@ use crate::description::expression::Expression;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::geom::crs::Crs;
+use crate::limits::SCENE_SYMBOLS;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels::{place, written};
 use crate::scene::sources::Sources;
@@ -15,9 +16,6 @@ use crate::symbology::code::SymbolCode;
 use crate::symbology::symbol::MilitarySymbol;
 use crate::symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
 use crate::terrain::lattice::Lattice;
-
-/// More symbols are not read: no picture has room for them.
-const MOST_SYMBOLS: usize = 4096;
 
 /// A symbol at its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,12 +62,12 @@ pub fn symbols(
             None => read_features(table, sources, lattice, &mut symbols, notes)?,
         }
     }
-    if symbols.len() > MOST_SYMBOLS {
+    if symbols.len() > SCENE_SYMBOLS {
         notes.push(format!(
-            "{} symbols beyond the first {MOST_SYMBOLS} are left out",
-            symbols.len() - MOST_SYMBOLS
+            "{} symbols beyond the first {SCENE_SYMBOLS} are left out",
+            symbols.len() - SCENE_SYMBOLS
         ));
-        symbols.truncate(MOST_SYMBOLS);
+        symbols.truncate(SCENE_SYMBOLS);
     }
     Ok(symbols)
 }
@@ -128,7 +126,7 @@ fn read_features(
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
         let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
         symbols.push(found.finished(table, &attributes, notes));
-        if symbols.len() > MOST_SYMBOLS {
+        if symbols.len() > SCENE_SYMBOLS {
             break;
         }
     }
