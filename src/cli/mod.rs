@@ -6,6 +6,7 @@ mod check;
 mod convert;
 mod dem_info;
 mod error;
+mod explain;
 mod export;
 mod fly;
 mod grid;
@@ -27,6 +28,8 @@ mod render_series;
 mod report;
 mod schema;
 mod serve;
+#[cfg(unix)]
+mod signals;
 mod values;
 mod view;
 mod viewshed;
@@ -67,11 +70,17 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 }
 
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
+    // The service ends by itself, when its last answers are read, and writes no files.
+    #[cfg(unix)]
+    if !matches!(arguments.command, Command::Serve(_)) {
+        signals::handle();
+    }
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Pick(arguments) => pick::run(arguments),
         Command::Fly(arguments) => fly::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema => schema::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),

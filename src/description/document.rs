@@ -45,6 +45,7 @@ use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
     RoadTable, ScatterTable,
 };
+use crate::description::finding_code::FindingCode;
 use crate::description::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::description::key;
 use crate::description::reader::TableReader;
@@ -53,6 +54,7 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::description::table::Table;
+use crate::description::unused::UnusedDefinitions;
 use crate::description::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
@@ -65,6 +67,7 @@ table! {
     /// A whole scene file.
     struct Document {
         with source: Arc<SourceText> = TableReader::source, "The text that it was read from; messages point into it.";
+        with unused: UnusedDefinitions = TableReader::unused, "What it defines and no table uses.";
         with phase: Option<String> = TableReader::phase, "The phase that it was read for; `None` where it has none.";
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
@@ -167,7 +170,7 @@ table! {
         /// Factor by which heights are stretched when they are drawn.
         vertical_exaggeration: f64 = key::number(Above(0.0, 1000.0), ""), default 1;
         /// Greatest error of the drawn ground; one pixel is what an eye can just see.
-        tolerance_px: f64 = key::number(Above(0.0, 1000.0), "px"), default 1;
+        tolerance_px: Stated<f64> = key::number(Above(0.0, 1000.0), "px"), default 1;
     }
 
     /// `[style]`: how the ground looks.
@@ -474,14 +477,19 @@ fn check_eye(reader: &mut TableReader<'_, '_>) {
         for key in ["azimuth", "pitch", "shows"] {
             if let Some(span) = reader.key_span(key) {
                 let message = format!("`{key}` has no effect on a camera with an `eye`");
-                reader.error(span, message, "remove it, or remove `eye` and `look_at`");
+                reader.coded(
+                    FindingCode::NoEffect,
+                    span,
+                    message,
+                    "remove it, or remove `eye` and `look_at`",
+                );
             }
         }
     } else {
         for key in ["eye_height", "eye_elevation", "look_at_height"] {
             if let Some(span) = reader.key_span(key) {
                 let message = format!("`{key}` has no effect on a camera without an `eye`");
-                reader.error(span, message, "state `eye` and `look_at`, or remove it");
+                reader.coded(FindingCode::NoEffect, span, message, "state `eye` and `look_at`, or remove it");
             }
         }
     }
@@ -503,6 +511,11 @@ fn check_names<'a>(
         let (line, file) = (source.line_column(first).line, source.name_at(first));
         let other = if file == source.name_at(span.start) { String::new() } else { format!(" of {file}") };
         let message = format!("the {kind} on line {line}{other} already has this name");
-        reader.error(span, message, format!("give each {kind} a name of its own"));
+        reader.coded(
+            FindingCode::DuplicateName,
+            span,
+            message,
+            format!("give each {kind} a name of its own"),
+        );
     }
 }

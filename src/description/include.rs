@@ -21,6 +21,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use crate::description::finding_code::FindingCode;
 use crate::description::source_text::SourceText;
 use crate::limits::INCLUDE_DEPTH;
 use crate::limits::INCLUDED_FILES;
@@ -47,6 +48,15 @@ pub enum IncludeError {
 }
 
 impl IncludeError {
+    /// What is wrong.
+    pub fn code(&self) -> FindingCode {
+        match self {
+            Self::Unreadable(..) => FindingCode::MissingFile,
+            Self::NotText(..) => FindingCode::WrongFormat,
+            Self::Cycle(_) | Self::TooMany | Self::TooLarge(..) => FindingCode::WrongValue,
+        }
+    }
+
     /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {
@@ -63,6 +73,8 @@ pub(super) struct IncludedTexts {
     pub source: SourceText,
     /// The errors, each with the span of the file name.
     pub errors: Vec<(Range<usize>, IncludeError)>,
+    /// For each file but the first, the place that names it.
+    pub named: Vec<Range<usize>>,
     /// For each file, the indices of the files that it includes.
     pub includes: Vec<Vec<usize>>,
 }
@@ -72,6 +84,7 @@ pub(super) fn gather(name: &str, text: &str, load: LoadFile<'_>, max_bytes: usiz
     let gathered = IncludedTexts {
         source: SourceText::alone(name, text),
         errors: Vec::new(),
+        named: Vec::new(),
         includes: vec![Vec::new()],
     };
     let shown_folder = folder_of(name).to_owned();
@@ -98,6 +111,7 @@ impl Gathering<'_> {
         for named in includes_of(text) {
             match self.include(named.get_ref(), start) {
                 Ok(Some((path, text))) => {
+                    self.gathered.named.push(named.span().start + start..named.span().end + start);
                     let start = self.append(&path, &text);
                     let included = self.gathered.includes.len() - 1;
                     self.gathered.includes[file].push(included);

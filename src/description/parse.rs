@@ -8,10 +8,12 @@ use toml::de::DeTable;
 
 use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::include::{LoadFile, gather, merged, moved};
 use crate::description::phases::Phases;
 use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
+use crate::description::stated::Stated;
 use crate::description::styles::Styles;
 use crate::limits::SCENE_BYTES;
 use crate::message::suggest::quoted;
@@ -60,22 +62,24 @@ pub fn parse_in_phase(
         let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
         let at = error.valid_up_to();
         let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
-        wrong.with_help("save the file as UTF-8")
+        wrong.with_help("save the file as UTF-8").with_code(FindingCode::Syntax)
     })?;
     let gathered = gather(file_name, text, load, SCENE_BYTES);
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
     for (span, error) in gathered.errors {
         let help = error.help();
-        report.error(span, error, help);
+        report.coded(error.code(), span, error, help);
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
     let tables: Option<Vec<_>> = tables.into_iter().collect();
+    let empty_includes = empty_includes(&source, tables.as_deref().unwrap_or_default(), &gathered.named);
     let root = tables.map(|mut tables| merged(0, &mut tables, &gathered.includes));
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
-            let mut context = DecodeContext { report, styles, phases: Phases::read(root, phase) };
+            let mut context =
+                DecodeContext { report, styles, phases: Phases::read(root, phase), empty_includes };
             (TableReader::read_root(&mut context, root), context.report)
         }
         None => (None, report),
@@ -89,6 +93,17 @@ pub fn parse_in_phase(
             Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).into())
         }
     }
+}
+
+/// The names of the included files that state nothing, each with its place; `named` holds the places.
+fn empty_includes(
+    source: &SourceText,
+    tables: &[DeTable<'_>],
+    named: &[Range<usize>],
+) -> Vec<Stated<String>> {
+    let empty = tables.iter().skip(1).zip(named).filter(|(table, _)| table.is_empty());
+    let name = |span: &Range<usize>| source.text()[span.clone()].trim_matches(['"', '\'']).to_owned();
+    empty.map(|(_, span)| Stated::new(name(span), span.clone())).collect()
 }
 
 /// The TOML parser's message about a key that is stated twice.
@@ -116,7 +131,7 @@ fn toml_table<'i>(start: usize, text: &'i str, report: &mut DiagnosticSink) -> O
         if line_end.is_none_or(|end| span.start > end) {
             let (message, help) = syntax_message(error.message(), &text[excerpt(&span, text)]);
             let placed = span.start + start..span.end + start;
-            let error = Diagnostic::new(report.source(), placed, message);
+            let error = Diagnostic::new(report.source(), placed, message).with_code(FindingCode::Syntax);
             line_end = Some(report.source().line_at(span.start + start).end - start);
             report.add(if help.is_empty() { error } else { error.with_help(help) });
         }

@@ -12,12 +12,14 @@ use toml::de::{DeString, DeTable, DeValue};
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::key::{Group, Key, Styling};
 use crate::description::phases::{PHASES_KEY, PHASES_TYPE, Phases};
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
 use crate::description::table::{DefaultedField, Field, Table};
+use crate::description::unused::UnusedDefinitions;
 use crate::description::value::{KeyValue, type_name};
 use crate::limits::SCENE_TABLES;
 use crate::message::suggest::{listed, nearest, quoted};
@@ -27,6 +29,8 @@ pub(super) struct DecodeContext<'t> {
     pub report: DiagnosticSink,
     pub styles: Styles<'t>,
     pub phases: Phases<'t>,
+    /// The names of included files that state nothing.
+    pub empty_includes: Vec<Stated<String>>,
 }
 
 /// The name of a table.
@@ -105,12 +109,37 @@ impl<'r, 't> TableReader<'r, 't> {
         self.context.phases.chosen()
     }
 
+    /// What no table uses; of the whole scene once all its tables are read.
+    pub fn unused(&mut self) -> UnusedDefinitions {
+        let DecodeContext { report, styles, phases, empty_includes } = &mut *self.context;
+        let source = report.source();
+        let is_own = |name: &Stated<String>| {
+            name.span().is_some_and(|span| source.name_at(span.start) == source.name())
+        };
+        UnusedDefinitions {
+            styles: styles.unused().into_iter().filter(is_own).collect(),
+            phases: phases.unused(),
+            includes: std::mem::take(empty_includes),
+        }
+    }
+
     pub fn source(&mut self) -> Arc<SourceText> {
         Arc::clone(self.context.report.source())
     }
 
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
         self.context.report.error(span, message.into(), help);
+    }
+
+    /// As [`Self::error`], with a code of its own.
+    pub fn coded(
+        &mut self,
+        code: FindingCode,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.context.report.coded(code, span, message.into(), help);
     }
 
     /// The span of a key; `None` where the key is absent.
@@ -135,7 +164,8 @@ impl<'r, 't> TableReader<'r, 't> {
     pub fn without_effect(&mut self, keys: &[&str], reason: &str, help: &str) {
         for key in keys {
             if let Some(span) = self.key_span(key) {
-                self.error(span, format!("`{key}` has no effect {reason}"), help);
+                let message = format!("`{key}` has no effect {reason}");
+                self.coded(FindingCode::NoEffect, span, message, help);
             }
         }
     }
@@ -146,7 +176,7 @@ impl<'r, 't> TableReader<'r, 't> {
         let is_there = self.key_span(key).or(self.key_span(other)).is_some();
         if !is_there && !self.unknown().into_iter().any(misspelled) {
             let message = format!("{} has neither `{key}` nor `{other}`", self.name.title());
-            self.error(self.span.clone(), message, help);
+            self.coded(FindingCode::MissingKey, self.span.clone(), message, help);
         }
     }
 
@@ -264,7 +294,7 @@ impl<'r, 't> TableReader<'r, 't> {
             misspelled.extend(meant);
             let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.name.title());
             let help = self.help_for_unknown(key.get_ref(), meant);
-            self.error(key.span(), message, help);
+            self.coded(FindingCode::UnknownKey, key.span(), message, help);
         }
         for key in std::mem::take(&mut self.missing) {
             if !misspelled.contains(&key) {
@@ -296,7 +326,7 @@ impl<'r, 't> TableReader<'r, 't> {
         } else {
             (format!("{title} needs the key `{key}`"), format!("add a line `{key} = ...` below it"))
         };
-        self.error(self.span.clone(), message, help);
+        self.coded(FindingCode::MissingKey, self.span.clone(), message, help);
     }
 }
 
@@ -324,7 +354,11 @@ impl KeyValue<'_, '_> {
             }
             DeValue::Table(_) => {
                 let help = format!("write {title} with double brackets: there may be several");
-                self.wrong(format!("`{key}` is a list of tables, not one table"), help)
+                self.wrong_as(
+                    FindingCode::WrongType,
+                    format!("`{key}` is a list of tables, not one table"),
+                    help,
+                )
             }
             _ => self.wrong_type("a list of tables", format!("start each with {title}")),
         }
@@ -334,7 +368,7 @@ impl KeyValue<'_, '_> {
         let DeValue::Table(table) = self.value.get_ref() else {
             let found = type_name(self.value.get_ref());
             let message = format!("`{}` must be a table, but this is {found}", name.dotted);
-            return self.wrong(message, format!("start it with {}", name.title()));
+            return self.wrong_as(FindingCode::WrongType, message, format!("start it with {}", name.title()));
         };
         TableReader::read(self.context, table, (name, self.value.span()), styling)
     }

@@ -5,10 +5,11 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::pipeline::editing::editor::SceneSource;
-use crate::pipeline::files;
+use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::picture::{ComposedView, PictureError, PictureSize, compose_view, draw_view};
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::pipeline::sheet_file::{WriteSheetError, picture_description, write_sheet};
@@ -55,6 +56,8 @@ pub enum ViewSnapshotError {
     Picture(#[from] PictureError),
     #[error(transparent)]
     Write(#[from] WriteSheetError),
+    #[error(transparent)]
+    File(#[from] WriteFileError),
 }
 
 /// The first name `view-N` that neither a camera of `scene` nor a picture beside `file` has.
@@ -121,7 +124,7 @@ fn ground_ahead(scene: &SceneModel, camera: &Camera) -> Option<AimedPoint> {
         let share = f32::from(step) / f32::from(TRIED);
         // Closer together near the eye.
         let at = camera.eye() + camera.forward() * (reach_m * share * share);
-        let map = scene.lattice.origin() + at.truncate().as_dvec2();
+        let map = scene.lattice.map_point(at);
         let height_m = ground_height(&scene.lattice, Interpolation::Planar, map).height_m()?;
         let above_m = f64::from(at.z) - f64::from(scene.scale.world_z(height_m as f32));
         Some(AimedPoint { at, above_m })
@@ -147,14 +150,11 @@ impl ViewSnapshot {
             return Err(ViewSnapshotError::Exists(path));
         }
         let description = picture_description(&scene, view);
-        write_sheet(&path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
+        let mut files = OutputFiles::default();
+        write_sheet(&mut files, &path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
+        files.publish()?;
         Ok(path)
     }
-}
-
-/// Map coordinates of a point in world space.
-pub fn map_position(scene: &SceneModel, at: Vec3) -> DVec2 {
-    scene.lattice.origin() + at.truncate().as_dvec2()
 }
 
 #[cfg(test)]

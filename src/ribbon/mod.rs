@@ -7,6 +7,7 @@ pub mod area;
 pub mod border;
 pub mod chain;
 pub mod crossing;
+mod cut_part;
 mod cutting;
 pub mod drape;
 mod joint;

@@ -9,9 +9,11 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::AreaTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
+use crate::geom::own_crossing::own_crossing;
 use crate::geom::rect::Rect;
 use crate::geom::region::{self, PolygonRings};
 use crate::ribbon::area;
@@ -20,8 +22,9 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
 use crate::scene::FeatureKind;
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::near::Clipped;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::{Sourced, Sources};
 use crate::vector::feature::Polygon;
 
@@ -38,30 +41,49 @@ pub fn lay(
 ) -> Result<(), Diagnostic> {
     for table in &document.areas {
         let (mut bare, mut off) = (0, 0);
+        let mut crossed: Option<(String, DVec2, usize)> = None;
         for Sourced { attributes, shape, crossings } in sources.polygons(&table.source)? {
             let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
                 continue;
             };
-            let Some(patch) = AreaPatch::of(table, cover, (shape, crossings), extent) else {
+            let Some(patch) = AreaPatch::of(table, cover, (&shape, crossings), extent) else {
                 off += 1;
                 continue;
             };
-            let feature = collected.add(FeatureKind::Area, attributes.name(table.name.as_deref()));
+            let name = attributes.name(table.name.as_deref());
+            if crossings > 0
+                && let Some(crossing) = shape.rings().find_map(|ring| own_crossing(ring, true))
+            {
+                crossed.get_or_insert((name.clone(), crossing.at + sources.frame.origin, 0)).2 += 1;
+            }
+            let feature = collected.add(FeatureKind::Area, name, attributes.origin(&table.source));
             patch.lay(feature, collected);
         }
-        let name = table.name.as_deref();
+        if let Some((name, at, count)) = crossed {
+            let others =
+                if count > 1 { format!("; {} more of this table do", count - 1) } else { String::new() };
+            let message = format!(
+                "{} crosses itself at ({:.0}, {:.0}): what an odd number of its turns runs around is covered{others}",
+                described("area", &name),
+                at.x,
+                at.y
+            );
+            collected.findings.add(FindingCode::CrossesItself, table.source.span(), message);
+        }
+        let named =
+            FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
         let why = "off the elevation model or without an area";
-        collected.note_left_out(off, FeatureKind::Area, name, why);
-        collected.note_left_out(bare, FeatureKind::Area, name, "their properties name no cover");
+        collected.findings.left_out(off, &named, why);
+        collected.findings.left_out(bare, &named, "their properties name no cover");
     }
     Ok(())
 }
 
 /// The polygons that the rings of a polygon with so many crossings enclose; they cross nothing.
-fn without_crossings(shape: Polygon, crossings: usize) -> Vec<PolygonRings> {
+fn without_crossings(shape: &Polygon, crossings: usize) -> Vec<PolygonRings> {
     match crossings {
-        0 => vec![std::iter::once(shape.exterior).chain(shape.holes).collect()],
+        0 => vec![shape.rings().cloned().collect()],
         _ => region::even_odd(shape.rings().map(Vec::as_slice)),
     }
 }
@@ -84,7 +106,7 @@ impl AreaPatch {
     fn of(
         table: &AreaTable,
         cover: Cover,
-        (shape, crossings): (Polygon, usize),
+        (shape, crossings): (&Polygon, usize),
         extent: &Rect,
     ) -> Option<Self> {
         if !Rect::around(shape.exterior.iter().copied()).meets(extent) {

@@ -3,9 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use crate::description::expression::Expression;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
+use crate::description::features::FeatureSource;
 use crate::description::scalar::Scalar;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::vector::feature::{Geometry, VectorLayer};
 
 /// The properties of one feature; none for a feature that the scene file itself states.
@@ -40,6 +44,16 @@ impl Attributes {
         Some(&layer.features[*feature].geometry)
     }
 
+    /// The vertices whose elevation its file states, in the file's system, with that elevation in meters.
+    pub fn elevations_m(&self) -> impl Iterator<Item = (DVec2, f64)> + '_ {
+        let feature = self.feature.as_ref().map(|(layer, feature)| &layer.features[*feature]);
+        let elevated = feature.and_then(|feature| Some((feature, feature.elevations.as_ref()?)));
+        let pairs = elevated.into_iter().flat_map(|(feature, elevations)| {
+            feature.geometry.vertices().copied().zip(elevations.iter().copied())
+        });
+        pairs.filter(|(_, elevation)| elevation.is_finite())
+    }
+
     /// The feature's name: the one given in the scene file, else its property `name`, else empty.
     pub fn name(&self, given: Option<&str>) -> String {
         match (given, self.get("name")) {
@@ -47,6 +61,11 @@ impl Attributes {
             (None, Some(Scalar::Text(name))) => name,
             _ => String::new(),
         }
+    }
+
+    /// Where the feature comes from, which `source` states.
+    pub fn origin(&self, source: &FeatureSource) -> FeatureOrigin {
+        FeatureOrigin { span: source.span(), number: self.feature.as_ref().map(|(_, feature)| feature + 1) }
     }
 
     /// The value of a key; `None` where the key is not stated, or the properties give no value in its range.

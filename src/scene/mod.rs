@@ -16,6 +16,7 @@ pub mod buildings;
 pub mod earthworks;
 mod facade;
 pub mod feature_labels;
+pub mod feature_origin;
 pub mod fences;
 pub mod flights;
 mod font;
@@ -27,6 +28,7 @@ pub mod imagery;
 pub mod label_course;
 pub mod land_cover;
 pub mod military;
+pub mod misplacement;
 pub mod models;
 pub mod near;
 pub mod picture;
@@ -36,7 +38,9 @@ pub mod ramps;
 pub mod report;
 pub mod roads;
 pub mod scatter;
+pub mod scene_findings;
 pub mod sight_layers;
+pub mod source_reach;
 pub mod sources;
 mod spot_heights;
 pub mod style;
@@ -50,11 +54,13 @@ pub mod water;
 pub mod wood;
 pub mod world_frame;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
+use crate::description::finding::Finding;
 use crate::description::words::{Anchor, Clamp, Footing, GridName, LabelKind, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
@@ -67,6 +73,7 @@ use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
+use crate::message::suggest::quoted;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
 use crate::ribbon::plan::PlanMesh;
@@ -74,6 +81,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::earthworks::water_beside;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
@@ -83,6 +91,7 @@ use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::sight_layers::SightLayers;
+use crate::scene::source_reach::SourceOverlap;
 use crate::scene::style::RampSource;
 use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
@@ -179,8 +188,10 @@ pub struct SceneModel {
     pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
-    /// Notes for the user: features off the model, missing textures, earth moved.
-    pub notes: Vec<String>,
+    /// What building it found: features off the model, missing textures, earth moved.
+    pub findings: Vec<Finding>,
+    /// How much of each source lies off the ground.
+    pub overlaps: Vec<SourceOverlap>,
     /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
@@ -261,6 +272,20 @@ pub struct SceneFeature {
     pub kind: FeatureKind,
     /// Its name; may be empty.
     pub name: String,
+    /// Where it comes from.
+    pub origin: FeatureOrigin,
+}
+
+impl SceneFeature {
+    /// What a message calls it: its kind with its name, or with its number in its file.
+    pub fn described(&self) -> String {
+        let kind = self.kind.noun(1);
+        match (self.name.as_str(), self.origin.number) {
+            ("", Some(number)) => format!("{kind} {number} of its file"),
+            ("", None) => builder::described(kind, ""),
+            (name, _) => format!("{kind} '{}'", quoted(name)),
+        }
+    }
 }
 
 /// A feature that lies on the ground.
@@ -352,6 +377,8 @@ impl Placement {
 pub struct SceneLabel {
     /// What it says.
     pub text: String,
+    /// The bytes of the scene file that state it; `0..0` for a spot height.
+    pub stated: Range<usize>,
     /// The position on the ground, world space, displayed height.
     pub ground: Vec3,
     /// Where the leader line starts, at or above the ground.
@@ -502,6 +529,11 @@ impl SceneModel {
         })
     }
 
+    /// The sentences of its findings, for the user.
+    pub fn notes(&self) -> Vec<&str> {
+        self.findings.iter().map(|finding| finding.message.as_str()).collect()
+    }
+
     /// What a picture shows that no file states, for the user.
     pub fn inferred_notes(&self) -> Vec<String> {
         let WaterCover { sea_posts, lakes, .. } = self.water();
@@ -541,7 +573,7 @@ impl SceneModel {
             _ => {}
         }
         let feature = feature.index().and_then(|index| self.features.get(index));
-        feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+        feature.map_or_else(String::new, |SceneFeature { kind, name, .. }| match name.as_str() {
             "" => kind.noun(1).to_owned(),
             name => format!("{} {name}", kind.noun(1)),
         })

@@ -3,10 +3,14 @@
 mod attacks;
 mod convert;
 mod export;
+#[cfg(unix)]
+mod faults;
 mod fly;
 mod grid;
 mod heights;
 mod info;
+#[cfg(unix)]
+mod interrupts;
 mod lod;
 mod los;
 mod manners;

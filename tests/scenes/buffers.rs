@@ -6,6 +6,7 @@ use glam::DVec2;
 use sandtable::dem::answer::Answer;
 use sandtable::draw::list::FeatureId;
 use sandtable::pipeline::dem::{self, DemOptions};
+use sandtable::pipeline::output_files::OutputFiles;
 use sandtable::pipeline::picture::{PictureSize, draw_view};
 use sandtable::pipeline::picture_buffers::{PictureBuffers, pick};
 use sandtable::pipeline::scene_file::open_scene;
@@ -38,7 +39,7 @@ fn depths_and_features_are_those_of_the_picture_to_the_bit() {
         let view = &scene.cameras[0];
         let drawn = draw_view(&scene, view, SIZE, RenderBackend::Cpu, &|_| ()).expect("drawn");
         let camera = camera(&scene, view, (SIZE.width, SIZE.height)).expect("sound");
-        let shapes = render_buffers(&build_shapes(&scene, &camera, &|_| ()), &camera).expect("drawn");
+        let shapes = render_buffers(&build_shapes(&scene, &camera, &|_| ()).list, &camera).expect("drawn");
         assert!(shapes.features == drawn.picture.features, "{name}");
         assert!(shapes.depth_m == drawn.picture.depth_m, "{name}");
     }
@@ -85,7 +86,9 @@ fn rasters_of_a_plan_lie_on_the_map() {
     let view = plan(0.4);
     let drawn = draw_view(&scene, &view, SIZE, RenderBackend::Cpu, &|_| ()).expect("drawn");
     let buffers = PictureBuffers { scene: &scene, camera: &drawn.camera, rendering: &drawn.picture };
-    buffers.write(scratch.folder()).expect("written");
+    let mut files = OutputFiles::default();
+    buffers.write(&mut files, scratch.folder()).expect("written");
+    files.publish().expect("put in place");
     assert_eq!(scratch.names(), ["depth.tif", "elevation.tif", "feature.tif", "features.csv", "normal.png"]);
     let raster = |name: &str| dem::open(&scratch.at(name), &DemOptions::default()).expect("GeoTIFF").raster;
     let [elevations, features] = ["elevation.tif", "feature.tif"].map(raster);
