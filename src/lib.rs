@@ -71,7 +71,6 @@
 
 #[doc = include_str!("ARCHITECTURE.md")]
 pub mod architecture {}
-
 #[doc(hidden)]
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -93,6 +92,7 @@ cfg_if::cfg_if! {
         pub mod earthworks;
         pub mod export;
         pub mod geom;
+        pub mod limits;
         pub mod mesh;
         pub mod message;
         pub mod model;
@@ -116,6 +116,7 @@ cfg_if::cfg_if! {
         mod earthworks;
         mod export;
         mod geom;
+        mod limits;
         mod mesh;
         mod message;
         mod model;

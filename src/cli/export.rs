@@ -96,7 +96,7 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
     steps.finish();
     let facts = [
         row(10, "objects", exported.list.items.len()),
-        row(10, "triangles", exported.list.triangle_count()),
+        row(10, "triangles", exported.triangles),
         row(10, "materials", exported.list.materials.len()),
     ];
     print_lines(&summary(&exported.files, &facts, &scene.notes()))

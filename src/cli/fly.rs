@@ -10,13 +10,11 @@ use crate::cli::options::SceneArguments;
 use crate::cli::output::{print_lines, row};
 use crate::cli::progress::StepTimer;
 use crate::cli::values::{choice, number, picture_size};
+use crate::limits::FLIGHT_FRAMES;
 use crate::pipeline::fly::{FlyOptions, fly_to_file, fly_to_folder};
 use crate::pipeline::picture::PictureSize;
 use crate::pipeline::scene_file::open_scene_with_flight;
 use crate::render::RenderBackend;
-
-/// The most frames of a flight: an hour.
-const MOST_FRAMES: f64 = 90_000.0;
 
 #[derive(Debug, Args)]
 #[command(
@@ -55,9 +53,9 @@ pub fn run(arguments: &FlyArguments) -> Result<(), CliError> {
     steps.finish();
     let seconds = arguments.seconds.unwrap_or(flight.seconds);
     let frames = (seconds * f64::from(arguments.fps)).round().max(1.0);
-    if frames > MOST_FRAMES {
+    if frames > FLIGHT_FRAMES {
         return Err(CliError::Usage(format!(
-            "{frames:.0} frames are more than the {MOST_FRAMES} that are drawn; state fewer --seconds or a smaller --fps"
+            "{frames:.0} frames are more than the {FLIGHT_FRAMES} that are drawn; state fewer --seconds or a smaller --fps"
         )));
     }
     let options = FlyOptions {

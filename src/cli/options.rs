@@ -11,6 +11,7 @@ use crate::cli::values::picture_size;
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
 use crate::geom::crs::Crs;
+use crate::geom::datum_shift::DatumShift;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
 use crate::pipeline::dem::DemOptions;
 use crate::pipeline::files;
@@ -111,9 +112,18 @@ impl DatasetArguments {
         Ok(snapshot)
     }
 
-    /// The coordinate system of positions.
+    /// The coordinate system of positions; says how good its datum shift is where that is not exact.
     pub fn crs(&self, dataset: &Dataset) -> Crs {
-        self.crs.clone().unwrap_or_else(|| dataset.crs())
+        let own = dataset.crs();
+        let Some(stated) = &self.crs else { return own };
+        // A shift that is not known is an error of the query.
+        if let Ok(shift @ DatumShift::ByWgs84 { .. }) = stated.datum_shift_to(&own) {
+            let (from, to, most_m) = (stated.name(), own.name(), shift.accuracy_m().unwrap_or_default());
+            warn(&format!(
+                "note: positions are brought from {from} to {to} by the datum shift {shift}, good to about {most_m} m"
+            ));
+        }
+        stated.clone()
     }
 
     /// The title of a chart of the dataset.

@@ -3,14 +3,8 @@
 use glam::{U64Vec2, UVec2};
 
 use crate::dem::error::DemErrorKind;
-
-/// The most samples of a raster in memory: 16,385 a side, a gigabyte of 32-bit floats.
-///
-/// Arbitrary: larger than any terrain that fits a scene, small enough that a forged header cannot exhaust the memory.
-pub const MOST_SAMPLES: u64 = 16_385 * 16_385;
-
-/// Bytes that a packed file of any size may decode to: sparse files hold almost nothing.
-const SPARSE_BYTES: u64 = 64 << 20;
+use crate::limits::RASTER_SAMPLES;
+use crate::limits::SPARSE_BYTES;
 
 /// The size that a header claims, to be held against the bytes of its file.
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +15,15 @@ pub(crate) struct SizeClaim {
     pub bytes_per_sample: u64,
     /// The most bytes that one byte of the file decodes to.
     pub expansion: u64,
+    /// Samples that take no bytes of the file, of those that width and height claim.
+    pub absent: u64,
     pub most_samples: u64,
 }
 
 impl SizeClaim {
     /// A claim on plain, unpacked samples of a raster in memory.
     pub fn new(width: u64, height: u64, bytes_per_sample: u64) -> Self {
-        Self { width, height, bytes_per_sample, expansion: 1, most_samples: MOST_SAMPLES }
+        Self { width, height, bytes_per_sample, expansion: 1, absent: 0, most_samples: RASTER_SAMPLES }
     }
 
     /// Returns width and height, both at least 1.
@@ -44,7 +40,7 @@ impl SizeClaim {
         };
         let sparse = if self.expansion > 1 { SPARSE_BYTES } else { 0 };
         let possible = (file_bytes as u64).saturating_mul(self.expansion).saturating_add(sparse);
-        if samples.saturating_mul(self.bytes_per_sample) > possible {
+        if samples.saturating_sub(self.absent).saturating_mul(self.bytes_per_sample) > possible {
             return Err(DemErrorKind::Truncated { size, file_bytes });
         }
         Ok(UVec2::new(columns, rows))
@@ -63,5 +59,7 @@ mod tests {
         let packed = |side, bytes| SizeClaim { expansion: 4000, ..SizeClaim::new(side, side, bytes) };
         assert!(packed(u64::MAX, 2).check(200).is_err());
         assert!(packed(1 << 14, 4).check(1000).is_err());
+        let absent = |absent| SizeClaim { absent, ..SizeClaim::new(10, 10, 2) };
+        assert!(absent(60).check(80).is_ok() && absent(60).check(79).is_err());
     }
 }

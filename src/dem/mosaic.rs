@@ -10,15 +10,13 @@
 
 use glam::{DVec2, I64Vec2, U64Vec2};
 
-use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::geom::crs::Crs;
+use crate::limits::RASTER_SAMPLES;
+use crate::limits::TILE_SAMPLES;
 
 /// How far, in cells, a tile's samples may lie from the nodes of the first tile's grid.
 pub const ALIGNMENT: f64 = 1e-3;
-
-/// The most samples of all tiles together: twice a raster's, since tiles overlap.
-const MOST_OF_ALL: u64 = 2 * MOST_SAMPLES;
 
 /// Tiles joined to one raster, with statistics of their overlaps and gaps.
 #[derive(Clone, Debug)]
@@ -86,10 +84,10 @@ pub enum MosaicError {
         off: DVec2,
     },
     /// The tiles hold more samples together than are joined; those up to the tile that is too many.
-    #[error("the tiles hold {0} samples, more than the {MOST_OF_ALL} that are joined; join fewer")]
+    #[error("the tiles hold {0} samples, more than the {TILE_SAMPLES} that are joined; join fewer")]
     TooMany(u64),
     #[error(
-        "the tiles span {} x {} samples, more than the {MOST_SAMPLES} of a raster; join fewer", .0.x, .0.y
+        "the tiles span {} x {} samples, more than the {RASTER_SAMPLES} of a raster; join fewer", .0.x, .0.y
     )]
     TooLarge(U64Vec2),
 }
@@ -111,7 +109,7 @@ impl Tiles {
         self.samples += tile.samples.len() as u64;
         self.names.push(name.into());
         self.rasters.push(tile);
-        if self.samples > MOST_OF_ALL { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
+        if self.samples > TILE_SAMPLES { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
     }
 
     /// Joins the tiles.
@@ -200,7 +198,7 @@ impl Tiles {
             let (first, other) = (self.names[0].clone(), self.names[index].clone());
             return Err(MosaicError::Misaligned { first, other, off });
         }
-        if at.abs().max_element() > MOST_SAMPLES as f64 {
+        if at.abs().max_element() > RASTER_SAMPLES as f64 {
             return Err(MosaicError::TooLarge((at.abs() + 1.0).as_u64vec2()));
         }
         Ok(at.round().as_i64vec2())
@@ -252,7 +250,7 @@ impl MosaicFrame {
         let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
         let size = (max - min).as_u64vec2();
         match size.x.checked_mul(size.y) {
-            Some(samples) if samples <= MOST_SAMPLES => {
+            Some(samples) if samples <= RASTER_SAMPLES => {
                 Ok(Self { min, width: size.x as usize, height: size.y as usize })
             }
             _ => Err(MosaicError::TooLarge(size)),

@@ -1,18 +1,17 @@
 //! Reads rasters from bytes. The format follows from the content, else from the extension.
 
-use crate::archive::{self, MAX_RASTER_BYTES, ZipReader};
+use crate::archive::{self, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
 use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
 use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
+use crate::limits::COMPANION_BYTES;
+use crate::limits::UNPACKED_RASTER_BYTES;
 
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
-
-/// The most bytes of a packed companion: a mask of the largest raster, a bit a sample.
-const MOST_COMPANION_BYTES: u64 = 64 << 20;
 
 /// Options for reading an elevation file.
 #[derive(Clone)]
@@ -195,7 +194,7 @@ fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
         .names()
         .find(|name| is_tile_name(name))
         .ok_or_else(|| unknown("it is a zip archive without an .hgt tile or another elevation file in it"))?;
-    let companions = |wanted: &str| zip.read(wanted, MOST_COMPANION_BYTES).ok();
+    let companions = |wanted: &str| zip.read(wanted, COMPANION_BYTES).ok();
     let hints = DemHints { companions: &companions, ..file.hints.clone() };
     let head = zip.read_head(name, HEAD_BYTES)?;
     let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
@@ -209,7 +208,7 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
 
 /// The most bytes that a packed file unpacks to; the bytes of `head` are its first.
 fn most_bytes(head: &DemFile) -> Result<u64, DemErrorKind> {
-    Ok((format_of(head)?.most_bytes)(head.bytes).min(MAX_RASTER_BYTES))
+    Ok((format_of(head)?.most_bytes)(head.bytes).min(UNPACKED_RASTER_BYTES))
 }
 
 /// The format of an unpacked file, of whose content the first bytes are enough.

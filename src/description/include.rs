@@ -23,12 +23,9 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::description::finding_code::FindingCode;
 use crate::description::source_text::SourceText;
+use crate::limits::INCLUDE_DEPTH;
+use crate::limits::INCLUDED_FILES;
 use crate::message::suggest::quoted;
-
-/// The greatest depth of inclusion.
-const MAX_DEPTH: usize = 8;
-/// The most files that a scene includes. Arbitrary: it bounds the work, far above any scene in use.
-const MAX_FILES: usize = 64;
 
 /// Reads a file that is named relative to the scene file.
 pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>>;
@@ -39,7 +36,7 @@ pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send
 pub enum IncludeError {
     #[error("'{0}' includes itself")]
     Cycle(String),
-    #[error("a scene may include {MAX_FILES} files, nested {MAX_DEPTH} deep")]
+    #[error("a scene may include {INCLUDED_FILES} files, nested {INCLUDE_DEPTH} deep")]
     TooMany,
     #[error("'{0}' cannot be included")]
     Unreadable(String, #[source] Box<dyn Error + Send + Sync>),
@@ -139,7 +136,7 @@ impl Gathering<'_> {
         if path == own_name || self.open.contains(&path) {
             return Err(IncludeError::Cycle(quoted(&path)));
         }
-        if self.open.len() >= MAX_DEPTH || self.seen.len() >= MAX_FILES {
+        if self.open.len() >= INCLUDE_DEPTH || self.seen.len() >= INCLUDED_FILES {
             return Err(IncludeError::TooMany);
         }
         if !self.seen.insert(path.clone()) {

@@ -15,11 +15,8 @@ use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::styles::Styles;
+use crate::limits::SCENE_BYTES;
 use crate::message::suggest::quoted;
-
-/// The largest scene file in bytes: enough for some hundred thousand points. Reading costs up to a hundred bytes of
-/// memory for each byte of a hostile file, so this also bounds memory to a few hundred megabytes.
-pub const MAX_BYTES: usize = 4 << 20;
 
 /// The scene that `text` describes; `file_name` is the file's name in messages.
 ///
@@ -55,8 +52,9 @@ pub fn parse_in_phase(
     load: LoadFile<'_>,
     phase: Option<&str>,
 ) -> Result<Document, Diagnostics> {
-    if bytes.len() > MAX_BYTES {
-        let message = format!("the scene file has {} bytes, more than the {MAX_BYTES} allowed", bytes.len());
+    if bytes.len() > SCENE_BYTES {
+        let message =
+            format!("the scene file has {} bytes, more than the {SCENE_BYTES} allowed", bytes.len());
         let help = "put long lists of points in GeoJSON files and name them with `file`";
         return Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).with_help(help).into());
     }
@@ -66,7 +64,7 @@ pub fn parse_in_phase(
         let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
         wrong.with_help("save the file as UTF-8").with_code(FindingCode::Syntax)
     })?;
-    let gathered = gather(file_name, text, load, MAX_BYTES);
+    let gathered = gather(file_name, text, load, SCENE_BYTES);
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
     for (span, error) in gathered.errors {

@@ -21,10 +21,8 @@ use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
 use crate::description::table::{DefaultedField, Field, Table};
 use crate::description::unused::UnusedDefinitions;
 use crate::description::value::{KeyValue, type_name};
+use crate::limits::SCENE_TABLES;
 use crate::message::suggest::{listed, nearest, quoted};
-
-/// The most tables of one kind (`[[road]]`, `[[label]]` …) in a scene; far above what a picture can show.
-const MAX_TABLES: usize = 10_000;
 
 /// The state that the readers of all tables share.
 pub(super) struct DecodeContext<'t> {
@@ -343,8 +341,9 @@ impl KeyValue<'_, '_> {
         let name = self.table.inner(self.key, true);
         let (key, title) = (self.key, name.title());
         match self.value.get_ref() {
-            DeValue::Array(rows) if rows.len() > MAX_TABLES => {
-                let message = format!("{} {title} tables are more than the {MAX_TABLES} allowed", rows.len());
+            DeValue::Array(rows) if rows.len() > SCENE_TABLES => {
+                let message =
+                    format!("{} {title} tables are more than the {SCENE_TABLES} allowed", rows.len());
                 let help = "put them in a GeoJSON file and name it once with `file`";
                 self.context.report.error(self.key_span, message, help);
                 None

@@ -27,6 +27,7 @@ use crate::description::key::{Key, filled_text};
 use crate::description::reader::DecodeContext;
 use crate::description::stated::Stated;
 use crate::description::value::KeyValue;
+use crate::limits::STYLE_BYTES;
 use crate::message::suggest::{quoted, remedy};
 
 pub(super) const STYLE_TYPE: Key<String> = filled_text();
@@ -40,10 +41,6 @@ pub const STYLE_KEY: KeyDeclaration = KeyDeclaration {
     presence: Presence::Otherwise("none"),
     rivals: &[],
 };
-
-/// The most bytes of scene file that styles may add, each style counted as often as it is used: without a limit a long
-/// list in a style of ten thousand tables would fill the memory.
-const MAX_BYTES: usize = 16 << 20;
 
 /// A style with the place of its name, and whether a table has named it.
 struct NamedStyle<'t> {
@@ -82,7 +79,7 @@ impl<'t> Styles<'t> {
                 _ => report.error(name.span(), WRONG_STYLES, help),
             }
         }
-        Self { styles, bytes_left: MAX_BYTES }
+        Self { styles, bytes_left: STYLE_BYTES }
     }
 
     /// The names of the styles that no table has named yet.
@@ -111,7 +108,7 @@ impl<'t> DecodeContext<'t> {
             Some(left) => self.styles.bytes_left = left,
             None => {
                 let help = "put long lists of points in a vector file, and name it once with `file`";
-                self.report.error(span, format!("styles add more than {MAX_BYTES} bytes in all"), help);
+                self.report.error(span, format!("styles add more than {STYLE_BYTES} bytes in all"), help);
                 return None;
             }
         }

@@ -15,17 +15,14 @@ use crate::description::finding_code::FindingCode;
 use crate::description::include::joined;
 use crate::description::reader::{DecodeContext, TableName};
 use crate::geom::crs::Crs;
+use crate::limits::INLINE_POINTS;
+use crate::limits::SCENE_LIST;
+use crate::limits::SCENE_TEXT;
 use crate::message::choice::Choice;
 use crate::message::suggest::{quoted, remedy};
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
 pub(super) const COORDINATES: Bounds = Bounds::Within(-1e9, 1e9);
-/// The most inline points of one feature; longer lines belong in a file.
-pub(super) const MAX_POINTS: usize = 100_000;
-/// The longest text, in characters.
-pub(super) const MAX_TEXT: usize = 4096;
-/// The most stops of a ramp, values of a selection's list, and files of a mosaic.
-pub(super) const MAX_LIST: usize = 256;
 
 /// A value on its way from TOML to a type.
 pub(super) struct KeyValue<'k, 't> {
@@ -192,10 +189,10 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn numbers(mut self, range: Bounds) -> Option<Vec<f64>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if list.len() <= MAX_POINTS => {
+            DeValue::Array(list) if list.len() <= INLINE_POINTS => {
                 self.each(list, |number| number.number(range))
             }
-            _ => self.wrong_type(&format!("a list of up to {MAX_POINTS} numbers"), "write [8, 8.5, ...]"),
+            _ => self.wrong_type(&format!("a list of up to {INLINE_POINTS} numbers"), "write [8, 8.5, ...]"),
         }
     }
 
@@ -262,9 +259,9 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn text(mut self) -> Option<String> {
         match self.value.get_ref() {
-            DeValue::String(text) if text.chars().nth(MAX_TEXT).is_none() => Some(text.to_string()),
+            DeValue::String(text) if text.chars().nth(SCENE_TEXT).is_none() => Some(text.to_string()),
             DeValue::String(_) => {
-                self.wrong(format!("`{}` is longer than {MAX_TEXT} characters", self.key), "shorten it")
+                self.wrong(format!("`{}` is longer than {SCENE_TEXT} characters", self.key), "shorten it")
             }
             _ => self.wrong_type("text", "write it in double quotes"),
         }
@@ -290,10 +287,10 @@ impl<'t> KeyValue<'_, 't> {
         read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
     ) -> Option<Vec<T>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if (1..=MAX_LIST).contains(&list.len()) => self.each(list, read),
+            DeValue::Array(list) if (1..=SCENE_LIST).contains(&list.len()) => self.each(list, read),
             DeValue::Array(list) => {
                 let message = format!("`{}` lists {} {plural}", quoted(self.key), list.len());
-                self.wrong(message, format!("list from 1 to {MAX_LIST}"))
+                self.wrong(message, format!("list from 1 to {SCENE_LIST}"))
             }
             _ => read(self.element(self.value)).map(|value| vec![value]),
         }
@@ -313,12 +310,12 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn named_files(mut self) -> Option<BTreeMap<String, String>> {
         match self.value.get_ref() {
-            DeValue::Table(table) if (1..=MAX_LIST).contains(&table.len()) => {
+            DeValue::Table(table) if (1..=SCENE_LIST).contains(&table.len()) => {
                 self.each_entry(table, |name| name.file())
             }
             _ => {
                 let help = "write { name = \"text\", ... }";
-                self.wrong_type(&format!("a table of 1 to {MAX_LIST} texts"), help)
+                self.wrong_type(&format!("a table of 1 to {SCENE_LIST} texts"), help)
             }
         }
     }
@@ -372,8 +369,8 @@ impl<'t> KeyValue<'_, 't> {
 
     fn stops(&mut self, list: &DeArray<'_>) -> Option<Vec<(f64, Color)>> {
         let help = "write [[height, \"#rrggbb\"], ...] with heights in meters that grow";
-        if !(2..=MAX_LIST).contains(&list.len()) {
-            let message = format!("a ramp has from 2 to {MAX_LIST} stops, but this has {}", list.len());
+        if !(2..=SCENE_LIST).contains(&list.len()) {
+            let message = format!("a ramp has from 2 to {SCENE_LIST} stops, but this has {}", list.len());
             return self.wrong(message, help);
         }
         let stops = self.each(list, |stop| stop.stop(help))?;
@@ -416,8 +413,8 @@ impl<'t> KeyValue<'_, 't> {
         let DeValue::Array(list) = self.value.get_ref() else {
             return self.wrong_type("a list of points", help);
         };
-        if list.len() > MAX_POINTS {
-            let message = format!("{} points are more than the {MAX_POINTS} allowed here", list.len());
+        if list.len() > INLINE_POINTS {
+            let message = format!("{} points are more than the {INLINE_POINTS} allowed here", list.len());
             return self.wrong(message, "put them in a GeoJSON file and name it with `file`");
         }
         let points = self.each(list, |point| point.point())?;

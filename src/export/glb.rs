@@ -12,7 +12,6 @@ use crate::draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
 use crate::draw::material::{AlphaMode, Material, TextureId};
 use crate::export::{SceneExport, encode_png};
 use crate::mesh::numbering::Numbering;
-use crate::mesh::sink::VertexId;
 use crate::mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
 
 /// Writes the file.
@@ -65,13 +64,7 @@ impl GlbSceneBuilder {
     }
 
     fn primitive(&mut self, export: &SceneExport<'_>, item: &DrawItem) -> Option<GlbPrimitive<'static>> {
-        let mesh = export.mesh(item);
-        let position = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position);
-        let has_area = |corners: &[VertexId; 3]| {
-            let [a, b, c] = corners.map(position);
-            (b - a).cross(c - a) != Vec3::ZERO
-        };
-        let triangles: Vec<_> = export.triangles(item).iter().copied().filter(has_area).collect();
+        let triangles: Vec<_> = export.triangles(item).collect();
         (!triangles.is_empty()).then(|| GlbPrimitive {
             vertices: self.add_vertices(export, item),
             triangles: Cow::Owned(triangles),

@@ -17,8 +17,10 @@ pub mod obj;
 pub mod page;
 pub mod prepare;
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use glam::Vec3;
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::draw::list::{DrawItem, DrawList, DrawMesh, FeatureId};
@@ -47,9 +49,25 @@ impl SceneExport<'_> {
         &self.list.materials[item.material.0 as usize]
     }
 
-    fn triangles(&self, item: &DrawItem) -> &[[VertexId; 3]] {
-        let Range { start, end } = item.triangles;
-        &self.mesh(item).triangles[start as usize..end as usize]
+    /// The triangles of an item that have an area; the others are not written.
+    fn triangles(&self, item: &DrawItem) -> impl Iterator<Item = [VertexId; 3]> {
+        let (mesh, Range { start, end }) = (self.mesh(item), item.triangles.clone());
+        let position = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position);
+        let has_area = move |corners: &&[VertexId; 3]| {
+            let [a, b, c] = corners.map(position);
+            (b - a).cross(c - a) != Vec3::ZERO
+        };
+        mesh.triangles[start as usize..end as usize].iter().filter(has_area).copied()
+    }
+
+    /// The triangles that the file shows; those of a mesh in several places count in each.
+    pub fn triangle_count(&self) -> usize {
+        let mut counts = BTreeMap::new();
+        let count = |item: &DrawItem| {
+            let key = (item.mesh, item.triangles.start, item.triangles.end);
+            *counts.entry(key).or_insert_with(|| self.triangles(item).count())
+        };
+        self.list.items.iter().map(count).sum()
     }
 }
 

@@ -90,14 +90,15 @@ fn srgb(color: Srgba) -> Vec3 {
 /// `out` cannot be written.
 pub fn write(export: &SceneExport<'_>, stem: &str, out: &mut impl Write) -> io::Result<()> {
     let mut writer = ObjWriter::new(out, export.remarks, Some(&library_name(stem)))?;
-    export.list.items.iter().try_for_each(|item| writer.object(&object(export, item)))
+    let objects = export.list.items.iter().map(|item| object(export, item));
+    objects.filter(|object| !object.triangles.is_empty()).try_for_each(|object| writer.object(&object))
 }
 
 /// The vertices that `item` uses, in world space, and its triangles.
 fn object(export: &SceneExport<'_>, item: &DrawItem) -> ObjObject<'static> {
     let mesh = export.mesh(item);
     let mut ids: Vec<Option<VertexId>> = vec![None; mesh.vertices.len()];
-    export.triangles(item).iter().flatten().for_each(|id| ids[id.index()] = Some(VertexId(0)));
+    export.triangles(item).flatten().for_each(|id| ids[id.index()] = Some(VertexId(0)));
     ids.iter_mut().flatten().enumerate().for_each(|(place, id)| *id = VertexId::new(place));
     let used = mesh.vertices.iter().zip(&ids).filter_map(|(vertex, id)| id.map(|_| vertex));
     let new_id = |id: VertexId| ids[id.index()].expect("every corner is used");
@@ -115,6 +116,6 @@ fn object(export: &SceneExport<'_>, item: &DrawItem) -> ObjObject<'static> {
         colors: used.clone().filter_map(color).collect(),
         normals: used.clone().map(normal).collect(),
         uvs: used.filter_map(uv).collect(),
-        triangles: export.triangles(item).iter().map(|corners| corners.map(new_id)).collect(),
+        triangles: export.triangles(item).map(|corners| corners.map(new_id)).collect(),
     }
 }

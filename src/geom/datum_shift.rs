@@ -58,6 +58,27 @@ impl fmt::Display for DatumShift {
 }
 
 impl DatumShift {
+    /// The meters that positions may be off after the shift; `None` where none is needed.
+    ///
+    /// Of transformations by seven parameters the EPSG registry states mostly 1 to 5 m, of those by three 5 to 25 m.
+    pub fn accuracy_m(&self) -> Option<f64> {
+        /// Modern datums lie within this of WGS 84, and drift apart as continents do.
+        const COINCIDENT_M: f64 = 2.0;
+        const SEVEN_PARAMETERS_M: f64 = 5.0;
+        const THREE_PARAMETERS_M: f64 = 25.0;
+        let of_parameters = |numbers: &String| match numbers.split(',').count() {
+            7 => SEVEN_PARAMETERS_M,
+            _ => THREE_PARAMETERS_M,
+        };
+        match self {
+            Self::NotNeeded => None,
+            Self::Coincident => Some(COINCIDENT_M),
+            Self::ByWgs84 { to_wgs84, from_wgs84 } => {
+                Some(to_wgs84.iter().chain(from_wgs84).map(of_parameters).sum())
+            }
+        }
+    }
+
     /// Between the datums of two proj strings, both of which state their relation to WGS 84.
     pub(crate) fn between(from: ProjString<'_>, to: ProjString<'_>) -> Self {
         let (source, target) = (parameters(from), parameters(to));
@@ -110,6 +131,20 @@ mod tests {
         assert_eq!(shift("EPSG:26711", "EPSG:4267"), "none needed");
         assert_eq!(shift("EPSG:27700", "EPSG:27700"), "none needed");
         assert!(shift("EPSG:4269", "EPSG:32612").contains("taken to coincide"));
+    }
+
+    #[test]
+    fn a_shift_is_as_good_as_its_parameters() {
+        let accuracy_m = |from: &str, to: &str| {
+            let [from, to] = [from, to].map(|text| Crs::parse(text).expect("known"));
+            from.datum_shift_to(&to).expect("a shift").accuracy_m()
+        };
+        assert_eq!(accuracy_m("EPSG:4326", "EPSG:32612"), None);
+        assert_eq!(accuracy_m("EPSG:4269", "EPSG:32612"), Some(2.0));
+        assert_eq!(accuracy_m("EPSG:27700", "EPSG:4326"), Some(5.0));
+        assert_eq!(accuracy_m("EPSG:4326", "+proj=longlat +ellps=bessel +towgs84=1,2,3"), Some(25.0));
+        let both = "+proj=longlat +ellps=intl +towgs84=-87,-98,-121";
+        assert_eq!(accuracy_m("EPSG:27700", both), Some(30.0));
     }
 
     #[test]

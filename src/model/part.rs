@@ -7,16 +7,13 @@ use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
+use crate::limits::MODEL_TRIANGLES;
 use crate::mesh::numbering::Numbering;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::model::ModelPart;
 use crate::model::error::ModelError;
 
-/// The most triangles of a model with all its instances: bounds the memory for a small file with many instances to some
-/// hundred megabytes. Arbitrary, but more than a scene can use.
-pub(super) const MAX_TRIANGLES: usize = 1 << 22;
-
-/// Counts the triangles of a model against [`MAX_TRIANGLES`].
+/// Counts the triangles of a model against [`MODEL_TRIANGLES`].
 #[derive(Debug, Default)]
 pub(super) struct TriangleBudget {
     used: usize,
@@ -25,8 +22,8 @@ pub(super) struct TriangleBudget {
 impl TriangleBudget {
     pub(super) fn take(&mut self, triangles: usize) -> Result<(), ModelError> {
         self.used = self.used.saturating_add(triangles);
-        if self.used > MAX_TRIANGLES {
-            return Err(ModelError::TooLarge { what: "triangles", limit: MAX_TRIANGLES });
+        if self.used > MODEL_TRIANGLES {
+            return Err(ModelError::TooLarge { what: "triangles", limit: MODEL_TRIANGLES });
         }
         Ok(())
     }
@@ -119,7 +116,7 @@ mod tests {
     #[test]
     fn more_triangles_than_the_budget_are_refused() {
         let mut budget = TriangleBudget::default();
-        assert!(budget.take(MAX_TRIANGLES).is_ok());
+        assert!(budget.take(MODEL_TRIANGLES).is_ok());
         assert!(budget.take(1).is_err());
     }
 }

@@ -8,14 +8,11 @@ use image::{ImageFormat, ImageReader, Limits};
 use crate::draw::color::Srgba;
 use crate::draw::material::TextureId;
 use crate::draw::pixels::Pixels;
+use crate::limits::TEXTURE_PIXELS;
+use crate::limits::TEXTURE_SIDE;
 use crate::message::chain::error_text;
 use crate::model::error::CompanionError;
 use crate::model::{Companions, Model};
-
-/// The longest side of a texture in pixels: the most that every graphics adapter supports.
-const MAX_SIDE: u32 = 8192;
-/// The most pixels of all textures of a model: 64 million take 256 MiB.
-const MAX_PIXELS: u64 = 64 << 20;
 
 /// Collects the textures of a model, each file once.
 pub(super) struct Textures<'a> {
@@ -35,16 +32,23 @@ enum TextureError {
     UnknownFormat,
     #[error("it cannot be decoded")]
     Decode(#[from] image::ImageError),
-    #[error("it has {width} × {height} pixels; 1 to {MAX_SIDE} a side are supported")]
+    #[error("it has {width} × {height} pixels; 1 to {TEXTURE_SIDE} a side are supported")]
     Size { width: u32, height: u32 },
-    #[error("the model's textures would have more than {MAX_PIXELS} pixels")]
+    #[error("the model's textures would have more than {TEXTURE_PIXELS} pixels")]
     TooManyPixels,
 }
 
 impl<'a> Textures<'a> {
     pub(super) fn new(companions: &'a dyn Companions) -> Self {
         let (by_name, masked) = (BTreeMap::new(), BTreeMap::new());
-        Self { companions, by_name, masked, pixels: Vec::new(), pixels_left: MAX_PIXELS, notes: Vec::new() }
+        Self {
+            companions,
+            by_name,
+            masked,
+            pixels: Vec::new(),
+            pixels_left: TEXTURE_PIXELS,
+            notes: Vec::new(),
+        }
     }
 
     /// The texture in the file that the model calls `name`; `None`, with a note, where it cannot be loaded.
@@ -169,13 +173,13 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureE
     let reader = || {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut limits = Limits::default();
-        limits.max_image_width = Some(MAX_SIDE);
-        limits.max_image_height = Some(MAX_SIDE);
+        limits.max_image_width = Some(TEXTURE_SIDE);
+        limits.max_image_height = Some(TEXTURE_SIDE);
         reader.limits(limits);
         reader
     };
     let (width, height) = reader().into_dimensions()?;
-    if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+    if !(1..=TEXTURE_SIDE).contains(&width) || !(1..=TEXTURE_SIDE).contains(&height) {
         return Err(TextureError::Size { width, height });
     }
     if u64::from(width) * u64::from(height) > pixels_left {
@@ -254,6 +258,6 @@ mod tests {
     fn a_texture_with_a_forged_size_is_not_allocated() {
         let mut bytes = png(1, 1);
         bytes[16..24].copy_from_slice(&[0, 0, 0x75, 0x30, 0, 0, 0x75, 0x30]);
-        assert!(decode("big.png", &bytes, MAX_PIXELS).is_err());
+        assert!(decode("big.png", &bytes, TEXTURE_PIXELS).is_err());
     }
 }

@@ -9,6 +9,7 @@ impl Choice for Interpolation {
         word(Self::Planar, "planar", "On the finest triangles"),
         word(Self::Bilinear, "bilinear", "Between four posts, as GDAL does"),
         word(Self::Nearest, "nearest", "The height of the nearest post"),
+        word(Self::Cubic, "cubic", "Smooth through sixteen posts (Keys 1981, a = -0.5); may overshoot"),
         word(Self::DistanceWeighted4, "distance-weighted", "The four posts around, weighted by nearness"),
     ];
 }

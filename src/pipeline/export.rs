@@ -36,6 +36,8 @@ pub struct ExportedScene {
     pub files: Vec<PathBuf>,
     /// The content.
     pub list: DrawList,
+    /// The triangles that they show.
+    pub triangles: usize,
 }
 
 /// Exports a scene that was opened true to scale to `path`. The ground is off by at most `max_error_m` at every post.
@@ -75,8 +77,9 @@ pub fn export(
             outputs.write_with(path, |out| obj::write(&export, &stem, out))?;
         }
     }
+    let triangles = export.triangle_count();
     outputs.publish()?;
-    Ok(ExportedScene { files: written, list })
+    Ok(ExportedScene { files: written, triangles, list })
 }
 
 fn remarks(scene: &SceneModel, max_error_m: f64) -> Remarks {

@@ -12,13 +12,11 @@ use crate::annotate::chart_profile::ProfileChart;
 use crate::annotate::nice;
 use crate::dem::answer::Answer;
 use crate::geom::crs::Crs;
+use crate::limits::PROFILE_STEPS;
 use crate::pipeline::dataset::{QueryError, transform};
 use crate::pipeline::positions::{InputLine, format_position};
 use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
 use crate::terrain::query::service::Snapshot;
-
-/// The most steps along a profile: more would fill the memory.
-const MOST_STEPS: f64 = 1e7;
 
 /// Stretches without ground that are shorter than this, in meters, are not mentioned.
 const LEAST_GAP_M: f64 = 0.5;
@@ -32,7 +30,7 @@ pub enum ProfileError {
     #[error("a step of {step_m} m: give meters above 0")]
     Step { step_m: f64 },
     #[error(
-        "a step of {step_m} m: the line is {length_m:.0} m long, and at most {MOST_STEPS} steps are made; take longer ones"
+        "a step of {step_m} m: the line is {length_m:.0} m long, and at most {PROFILE_STEPS} steps are made; take longer ones"
     )]
     ShortStep { step_m: f64, length_m: f64 },
 }
@@ -116,7 +114,9 @@ impl GroundProfile {
 fn check_step(step_m: Option<f64>, length_m: f64) -> Result<(), ProfileError> {
     match step_m {
         Some(step_m) if !(step_m > 0.0 && step_m.is_finite()) => Err(ProfileError::Step { step_m }),
-        Some(step_m) if length_m / step_m > MOST_STEPS => Err(ProfileError::ShortStep { step_m, length_m }),
+        Some(step_m) if length_m / step_m > PROFILE_STEPS => {
+            Err(ProfileError::ShortStep { step_m, length_m })
+        }
         _ => Ok(()),
     }
 }

@@ -8,6 +8,7 @@ pub mod border;
 pub mod chain;
 pub mod crossing;
 mod cut_part;
+mod cutting;
 pub mod drape;
 mod joint;
 pub mod junction;

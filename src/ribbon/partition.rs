@@ -21,13 +21,8 @@ use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::rect_tree::RectTree;
 use crate::mesh::sink::{MeshSink, VertexId};
+use crate::ribbon::cutting::{self, SLIVER_M2};
 use crate::ribbon::plan::{PlanMesh, TextureMap};
-
-/// Triangles, overlaps and leftovers smaller than this are rounding, in square meters: a sliver of 10 m by 0.1 mm.
-const SLIVER_M2: f64 = 1e-3;
-
-/// Pieces smaller than this are dropped while a triangle is being cut: many of them may still lie side by side.
-const NOTHING_M2: f64 = 1e-9;
 
 /// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
 const CHUNK: usize = 256;
@@ -120,38 +115,12 @@ impl Covering {
     /// What no triangle before this one covers.
     fn rest(&self, triangle: usize) -> Rest {
         let corners = &self.triangles[triangle];
-        let mut pieces = vec![corners.to_vec()];
-        let mut is_whole = true;
         let meeting = self.tree.meeting(&Rect::around(*corners));
         let mut before: Vec<usize> = meeting.filter(|&other| other < triangle).collect();
         before.sort_unstable_by_key(|&other| self.ranks[other]);
-        for other in before {
-            if pieces.is_empty() {
-                break;
-            }
-            let window = &self.triangles[other];
-            if shared_m2(corners, window) > SLIVER_M2 {
-                is_whole = false;
-                pieces = outside(pieces, window);
-            }
-        }
-        pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
-        if is_whole { Rest::Whole } else { Rest::Pieces(pieces) }
+        let windows = before.into_iter().map(|other| self.triangles[other]);
+        cutting::rest(corners, windows).map_or(Rest::Whole, Rest::Pieces)
     }
-}
-
-/// The parts of convex pieces that lie outside `window`.
-fn outside(pieces: Vec<Vec<DVec2>>, window: &[DVec2; 3]) -> Vec<Vec<DVec2>> {
-    let mut outside = Vec::with_capacity(pieces.len());
-    for piece in pieces {
-        if shared_m2(&piece, window) > SLIVER_M2 {
-            polygon::cut_away(piece, window, &mut outside);
-        } else {
-            outside.push(piece);
-        }
-    }
-    outside.retain(|piece| polygon::doubled_area(piece) > 2.0 * NOTHING_M2);
-    outside
 }
 
 fn shared_m2(one: &[DVec2], other: &[DVec2]) -> f64 {

@@ -45,6 +45,14 @@ impl PlanMesh {
         parts
     }
 
+    /// Adds the triangles of another.
+    pub fn append(&mut self, other: &Self) {
+        let first = self.vertices.len();
+        let moved = |triangle: &[VertexId; 3]| triangle.map(|id| VertexId::new(first + id.index()));
+        self.vertices.extend_from_slice(&other.vertices);
+        self.triangles.extend(other.triangles.iter().map(moved));
+    }
+
     /// Adds convex polygons' triangles, counter-clockwise, that lie on a textured one.
     pub(in crate::ribbon) fn write(
         &mut self,

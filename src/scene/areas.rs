@@ -16,7 +16,6 @@ use crate::draw::list::FeatureId;
 use crate::geom::own_crossing::own_crossing;
 use crate::geom::rect::Rect;
 use crate::geom::region::{self, PolygonRings};
-use crate::geom::self_crossing::count_crossings;
 use crate::ribbon::area;
 use crate::ribbon::border::{Dashes, border, edge};
 use crate::ribbon::plan::PlanMesh;
@@ -43,17 +42,17 @@ pub fn lay(
     for table in &document.areas {
         let (mut bare, mut off) = (0, 0);
         let mut crossed: Option<(String, DVec2, usize)> = None;
-        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+        for Sourced { attributes, shape, crossings } in sources.polygons(&table.source)? {
             let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
                 continue;
             };
-            let Some(patch) = AreaPatch::of(table, cover, &shape, extent) else {
+            let Some(patch) = AreaPatch::of(table, cover, (&shape, crossings), extent) else {
                 off += 1;
                 continue;
             };
             let name = attributes.name(table.name.as_deref());
-            if patch.crosses_itself
+            if crossings > 0
                 && let Some(crossing) = shape.rings().find_map(|ring| own_crossing(ring, true))
             {
                 crossed.get_or_insert((name.clone(), crossing.at + sources.frame.origin, 0)).2 += 1;
@@ -81,11 +80,11 @@ pub fn lay(
     Ok(())
 }
 
-/// The polygons that a polygon's rings enclose, which cross nothing, and whether the rings do.
-fn without_crossings(shape: &Polygon) -> (Vec<PolygonRings>, bool) {
-    match count_crossings(shape.rings().map(Vec::as_slice), 0) {
-        Some(_) => (vec![shape.rings().cloned().collect()], false),
-        None => (region::even_odd(shape.rings().map(Vec::as_slice)), true),
+/// The polygons that the rings of a polygon with so many crossings enclose; they cross nothing.
+fn without_crossings(shape: &Polygon, crossings: usize) -> Vec<PolygonRings> {
+    match crossings {
+        0 => vec![shape.rings().cloned().collect()],
+        _ => region::even_odd(shape.rings().map(Vec::as_slice)),
     }
 }
 
@@ -97,39 +96,52 @@ struct AreaPatch {
     edge: PlanMesh,
     cover: Cover,
     tint: Srgba,
-    /// Whether its outline crossed itself.
-    crosses_itself: bool,
 }
 
 impl AreaPatch {
-    /// `None` where nothing of it lies on the ground.
-    fn of(table: &AreaTable, cover: Cover, shape: &Polygon, extent: &Rect) -> Option<Self> {
+    /// The patch of a polygon with so many crossings; `None` where nothing of it lies on the ground.
+    ///
+    /// Where it is several polygons, each has the line and the edge along its own outline, cut to itself: what does not
+    /// depend on the others need not be held against them.
+    fn of(
+        table: &AreaTable,
+        cover: Cover,
+        (shape, crossings): (&Polygon, usize),
+        extent: &Rect,
+    ) -> Option<Self> {
         if !Rect::around(shape.exterior.iter().copied()).meets(extent) {
             return None;
         }
-        let width_m = table.border_width;
-        let mut fill = Clipped { plan: PlanMesh::default(), extent };
-        let (parts, crosses_itself) = without_crossings(shape);
+        let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
+        let [fill, line, edge] = [(); 3].map(|()| PlanMesh::default());
+        let mut patch = Self { fill, line, edge, cover, tint };
+        let parts = without_crossings(shape, crossings);
+        let corners: usize = parts.iter().flatten().map(Vec::len).sum();
         for part in &parts {
-            area::fill(&part[0], &part[1..], texture_m(cover, width_m), &mut fill);
+            patch.add(table, part, corners, extent);
         }
-        let rings: Vec<&[DVec2]> = parts.iter().flatten().map(Vec::as_slice).collect();
-        let edge = edge_of(table, cover, &rings, &fill.plan);
+        (!patch.fill.triangles.is_empty()).then_some(patch)
+    }
+
+    /// Adds one of its polygons, which have so many `corners` in all.
+    fn add(&mut self, table: &AreaTable, rings: &[Vec<DVec2>], corners: usize, extent: &Rect) {
+        let (cover, width_m) = (self.cover, table.border_width);
+        let mut fill = Clipped { plan: PlanMesh::default(), extent };
+        area::fill(&rings[0], &rings[1..], texture_m(cover, width_m), &mut fill);
+        let rings: Vec<&[DVec2]> = rings.iter().map(Vec::as_slice).collect();
+        if is_natural(cover) && border_of(table, cover) == Border::None && corners <= MOST_FADED {
+            let faded_m = EDGE_M.min(fill.plan.area_m2().sqrt() * FADED);
+            self.edge.append(&edge(&rings, &fill.plan, faded_m, cover_length_m(cover)));
+        }
         let dashes = match border_of(table, cover) {
             Border::None => None,
             Border::Solid => Some(Dashes::Unbroken),
             Border::Dashed => Some(Dashes::Dashed),
         };
-        let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
-        let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
-        (!fill.plan.triangles.is_empty()).then_some(Self {
-            fill: fill.plan,
-            line,
-            edge,
-            cover,
-            tint,
-            crosses_itself,
-        })
+        if let Some(dashes) = dashes {
+            self.line.append(&border(&rings, &fill.plan, width_m, dashes));
+        }
+        self.fill.append(&fill.plan);
     }
 
     /// Lays the area, and its border over it.
@@ -161,15 +173,6 @@ const MOST_FADED: usize = 4000;
 
 /// Of small areas the part of the side of the square of their size that fades: more would leave nothing of them.
 const FADED: f64 = 1.0 / 8.0;
-
-/// The strip in which natural cover fades, where no line is to be drawn along its outline.
-fn edge_of(table: &AreaTable, cover: Cover, rings: &[&[DVec2]], fill: &PlanMesh) -> PlanMesh {
-    let corners: usize = rings.iter().map(|ring| ring.len()).sum();
-    if !is_natural(cover) || border_of(table, cover) != Border::None || corners > MOST_FADED {
-        return PlanMesh::default();
-    }
-    edge(rings, fill, EDGE_M.min(fill.area_m2().sqrt() * FADED), cover_length_m(cover))
-}
 
 /// The stated border, or the cover's own.
 fn border_of(table: &AreaTable, cover: Cover) -> Border {

@@ -13,12 +13,11 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::limits::ASSET_BYTES;
 use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
 use crate::model::error::CompanionError;
 
-/// The largest file read.
-pub const MAX_BYTES: u64 = 2 << 30;
 /// The most names of a folder that are looked at for the one that was meant.
 const MAX_NAMES: usize = 10_000;
 
@@ -72,7 +71,7 @@ pub enum AssetError {
         /// What it is.
         kind: &'static str,
     },
-    /// More bytes than [`MAX_BYTES`], or than there is memory for.
+    /// More bytes than [`ASSET_BYTES`], or than there is memory for.
     #[error("{} has {bytes} bytes, more than can be read", resolved.display())]
     TooLarge {
         /// Where it is.
@@ -331,11 +330,11 @@ fn read_file(resolved: &Path) -> Result<Vec<u8>, AssetError> {
     let too_large = |bytes| AssetError::TooLarge { resolved: resolved.into(), bytes };
     let size = about.len();
     let mut bytes = Vec::new();
-    let room = usize::try_from(size).ok().filter(|_| size <= MAX_BYTES).ok_or_else(|| too_large(size))?;
+    let room = usize::try_from(size).ok().filter(|_| size <= ASSET_BYTES).ok_or_else(|| too_large(size))?;
     bytes.try_reserve_exact(room).map_err(|_| too_large(size))?;
     let file = File::open(resolved).map_err(unreadable)?;
-    let count = file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if count as u64 > MAX_BYTES { Err(too_large(count as u64)) } else { Ok(bytes) }
+    let count = file.take(ASSET_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if count as u64 > ASSET_BYTES { Err(too_large(count as u64)) } else { Ok(bytes) }
 }
 
 #[cfg(test)]

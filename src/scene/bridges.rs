@@ -20,6 +20,7 @@ use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::polyline::{VertexKey, vertex_key};
 use crate::geom::profile::Profile;
 use crate::geom::rect::Rect;
+use crate::limits::BRIDGE_PIERS;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::report::SpanRow;
@@ -36,9 +37,6 @@ use crate::structure::tunnel::Portal;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::{Deck, DeckError};
 use crate::terrain::triangle_surface::SurfaceTriangle;
-
-/// The most piers in a scene.
-const MOST_PIERS: f64 = 200_000.0;
 
 /// The longest underpass, in meters: under a broad road or a railway yard.
 const LONGEST_UNDERPASS_M: f64 = 60.0;
@@ -120,9 +118,9 @@ fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic
     let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
-        Some(span) if count > MOST_PIERS => {
+        Some(span) if count > BRIDGE_PIERS => {
             let message =
-                format!("the scene's bridges ask for {count:.0} piers, at most {MOST_PIERS} are built");
+                format!("the scene's bridges ask for {count:.0} piers, at most {BRIDGE_PIERS} are built");
             let help = "give a wider pier_spacing, or fewer or shorter bridges";
             Err(document.error_at(span.place.span.clone(), message).with_help(help))
         }
@@ -256,7 +254,7 @@ impl<'a> BuiltChain<'a> {
         let clear = self.chain.length_m - from - abutments[1].unwrap_or(0.0);
         let [first, last] = abutments.map(|abutment| if abutment.is_some() { 1.0 } else { 0.5 });
         // Between n piers are n − 1 spans, and `first` and `last` of one beyond them.
-        let count = (clear / self.run.spacing_m - first - last + 1.0).ceil().clamp(0.0, MOST_PIERS);
+        let count = (clear / self.run.spacing_m - first - last + 1.0).ceil().clamp(0.0, BRIDGE_PIERS);
         let spacing = clear / (first + last + count - 1.0).max(1e-9);
         let even = (0..count as usize).map(|pier| from + spacing * (first + pier as f64));
         even.map(|station| self.beside(station, spacing)).collect()

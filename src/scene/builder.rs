@@ -110,7 +110,11 @@ impl SceneBuilder {
 
 /// A feature in a note; many have no name.
 pub fn described(kind: &str, name: &str) -> String {
-    if name.is_empty() { format!("a {kind} without a name") } else { format!("{kind} '{name}'") }
+    match name {
+        "" if kind.starts_with(['a', 'e', 'i', 'o', 'u']) => format!("an {kind} without a name"),
+        "" => format!("a {kind} without a name"),
+        _ => format!("{kind} '{name}'"),
+    }
 }
 
 /// The class of a surface; a higher class covers a lower.

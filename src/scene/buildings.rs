@@ -118,7 +118,7 @@ pub fn lay_out(
     let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
         let wants_pad = building.base == BaseRule::Pad;
-        for Sourced { attributes, shape } in sources.polygons(&building.source)? {
+        for Sourced { attributes, shape, .. } in sources.polygons(&building.source)? {
             let parts = BuildingFootprint::parts(&shape.exterior, &shape.holes);
             if parts.is_empty() {
                 tally.empty += 1;

@@ -17,6 +17,7 @@ use crate::earthworks::held_posts::HeldPosts;
 use crate::earthworks::level_ground::LevelGround;
 use crate::earthworks::pad::Batters;
 use crate::geom::polyline::Polyline;
+use crate::limits::EARTHWORK_STEPS;
 use crate::message::choice::Choice;
 use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
@@ -25,9 +26,6 @@ use crate::scene::report::EarthworkRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::water_cover::{WaterCover, water_cover};
-
-/// The steps, of some nanoseconds each, that all earthworks of a scene may take together.
-const MAX_COST: f64 = 1e9;
 
 /// Sizes in meters where none are stated: a heavy bomb's crater, a trench to stand in, a truck's track, a bank.
 const RADIUS_M: f64 = 10.0;
@@ -73,7 +71,7 @@ pub fn build(
     for table in &document.earthworks {
         for NamedEarthwork { name, work } in of_table(table, sources, &mut collected.default_counts)? {
             cost += work.cost(lattice);
-            if cost > MAX_COST {
+            if cost > EARTHWORK_STEPS {
                 return Err(too_much(document, table));
             }
             let changes = work.apply(lattice, held);
@@ -140,7 +138,8 @@ fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
 }
 
 fn too_much(document: &Document, table: &EarthworkTable) -> Diagnostic {
-    let message = format!("up to this earthwork, moving the earth takes more than {MAX_COST:.0e} steps");
+    let message =
+        format!("up to this earthwork, moving the earth takes more than {EARTHWORK_STEPS:.0e} steps");
     document
         .error_at(table.source.span(), message)
         .with_help("make it smaller, choose fewer features by `where`, or simplify their lines")
@@ -161,13 +160,13 @@ pub fn of_table(
     let mut works = Vec::new();
     match *table.kind {
         EarthworkKind::Crater => {
-            for Sourced { attributes, shape } in sources.points(source)? {
+            for Sourced { attributes, shape, .. } in sources.points(source)? {
                 let work = Earthwork::Crater(sizes.crater(&attributes, shape));
                 works.push(NamedEarthwork { name: name(&attributes), work });
             }
         }
         EarthworkKind::Level => {
-            for Sourced { attributes, shape } in sources.polygons(source)? {
+            for Sourced { attributes, shape, .. } in sources.polygons(source)? {
                 let rings = std::iter::once(shape.exterior).chain(shape.holes).collect();
                 let level_m = attributes.value(table.level.as_ref());
                 let batters = Batters { cut: table.cut_slope, fill: table.fill_slope };
@@ -176,7 +175,7 @@ pub fn of_table(
             }
         }
         kind @ (EarthworkKind::Trench | EarthworkKind::Track | EarthworkKind::Raise) => {
-            for Sourced { attributes, shape } in sources.lines(source)? {
+            for Sourced { attributes, shape, .. } in sources.lines(source)? {
                 let line = match Polyline::new(shape.clone(), MERGE_M) {
                     Some(line) => line.points().to_vec(),
                     None => shape.into_iter().take(1).collect(),

@@ -15,6 +15,7 @@ use crate::earthworks::alignment::Alignment;
 use crate::earthworks::brush::Trench;
 use crate::geom::polyline::Polyline;
 use crate::geom::rect::Rect;
+use crate::limits::LINE_PIECES;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use crate::ribbon::texture::RibbonSurface;
@@ -34,9 +35,6 @@ use crate::structure::power::{PowerLine, clear};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::terrain::volumes::Volumes;
-
-/// The most posts, pylons, obstacles, dashes and lengths of hedge in a scene: a few hundred megabytes of triangles.
-const MOST_PIECES: f64 = 300_000.0;
 
 /// A line is dug where its trench is at least as many cells wide; on coarser ground it would be a row of pits.
 const LEAST_CELLS: f64 = 3.0;
@@ -97,7 +95,7 @@ pub fn lay_out(
             let feature = collected.add(FeatureKind::Fence, name.clone(), attributes.origin(&fence.source));
             let line = fence_line(fence, &attributes, line.clip(&extent), feature, collected);
             pieces += line.pieces();
-            if pieces > MOST_PIECES {
+            if pieces > LINE_PIECES {
                 return Err(too_many(document, fence, line.kind));
             }
             if line.kind == FenceKind::Trench {
@@ -124,7 +122,7 @@ fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnos
         FenceKind::Hedge | FenceKind::Trench | FenceKind::Wall => "lengths of it",
         FenceKind::Fence => "posts",
     };
-    let message = format!("with the {what} along this, more than {MOST_PIECES} pieces stand along lines");
+    let message = format!("with the {what} along this, more than {LINE_PIECES} pieces stand along lines");
     let place = fence.spacing.as_ref().and_then(Stated::span).unwrap_or_else(|| fence.source.span());
     document.error_at(place, message).with_help("give it a wider `spacing`, or choose fewer lines by `where`")
 }

@@ -10,6 +10,7 @@ use crate::description::stated::Stated;
 use crate::description::words::{GraphicSide, GraphicStatus};
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
+use crate::limits::SCENE_GRAPHICS;
 use crate::message::suggest::{nearest, quoted};
 use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
@@ -22,9 +23,6 @@ use crate::symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic,
 use crate::symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
 use crate::symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
 use crate::vector::feature::Geometry;
-
-/// More graphics hide the ground that they lie on.
-const MOST_GRAPHICS: usize = 4096;
 
 /// A tactical graphic in its place.
 #[derive(Clone, Debug)]
@@ -66,8 +64,8 @@ pub fn lay(
                 off += 1;
                 continue;
             }
-            if collected.graphics.len() == MOST_GRAPHICS {
-                let message = format!("the scene has more than {MOST_GRAPHICS} graphics");
+            if collected.graphics.len() == SCENE_GRAPHICS {
+                let message = format!("the scene has more than {SCENE_GRAPHICS} graphics");
                 let help = "select fewer of them with `where`";
                 return Err(document.error_at(table.source.span(), message).with_help(help));
             }

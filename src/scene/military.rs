@@ -8,6 +8,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::geom::crs::Crs;
+use crate::limits::SCENE_SYMBOLS;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels::{place, written};
 use crate::scene::scene_findings::SceneFindings;
@@ -17,9 +18,6 @@ use crate::symbology::code::SymbolCode;
 use crate::symbology::symbol::MilitarySymbol;
 use crate::symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
 use crate::terrain::lattice::Lattice;
-
-/// More symbols are not read: no picture has room for them.
-const MOST_SYMBOLS: usize = 4096;
 
 /// A symbol at its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,11 +64,11 @@ pub fn symbols(
             None => read_features(table, sources, lattice, &mut symbols, findings)?,
         }
     }
-    if symbols.len() > MOST_SYMBOLS {
-        let more = symbols.len() - MOST_SYMBOLS;
-        let message = format!("{more} symbols beyond the first {MOST_SYMBOLS} are left out");
+    if symbols.len() > SCENE_SYMBOLS {
+        let more = symbols.len() - SCENE_SYMBOLS;
+        let message = format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out");
         findings.add(FindingCode::TooMany, 0..0, message);
-        symbols.truncate(MOST_SYMBOLS);
+        symbols.truncate(SCENE_SYMBOLS);
     }
     Ok(symbols)
 }
@@ -130,7 +128,7 @@ fn read_features(
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
         let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
         symbols.push(found.finished(table, &attributes, findings));
-        if symbols.len() > MOST_SYMBOLS {
+        if symbols.len() > SCENE_SYMBOLS {
             break;
         }
     }

@@ -282,7 +282,7 @@ impl SceneFeature {
         let kind = self.kind.noun(1);
         match (self.name.as_str(), self.origin.number) {
             ("", Some(number)) => format!("{kind} {number} of its file"),
-            ("", None) => format!("a {kind} without a name"),
+            ("", None) => builder::described(kind, ""),
             (name, _) => format!("{kind} '{}'", quoted(name)),
         }
     }

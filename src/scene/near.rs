@@ -26,7 +26,7 @@ pub fn lines(
     let count = lines.len();
     let near: Vec<_> = lines
         .into_iter()
-        .filter_map(|Sourced { attributes, shape }| {
+        .filter_map(|Sourced { attributes, shape, .. }| {
             let reach = Rect::around(shape.iter().copied()).grown(reach_m);
             let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent))?;
             Some((attributes, line))

@@ -14,6 +14,7 @@ use crate::description::selection::Selection;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::self_crossing::count_crossings;
+use crate::limits::RING_CROSSINGS;
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
@@ -24,9 +25,6 @@ use crate::vector::feature::{Geometry, Polygon, VectorLayer};
 use crate::vector::filter::{Condition, Filter};
 use crate::vector::hints::VectorHints;
 use crate::vector::read;
-
-/// The most crossings of a scene's polygons with themselves: a hundred megabytes and a second of resolving them.
-const MOST_CROSSINGS: usize = 100_000;
 
 /// A file's name, and the layer and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);
@@ -50,12 +48,14 @@ pub struct Sourced<T> {
     pub attributes: Attributes,
     /// The shape, in world coordinates.
     pub shape: T,
+    /// How often the rings of a polygon cross themselves and each other; 0 for points and lines.
+    pub crossings: usize,
 }
 
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        let crossings_left = Cell::new(MOST_CROSSINGS);
+        let crossings_left = Cell::new(RING_CROSSINGS);
         Self { frame, assets, layers: RefCell::default(), crossings_left, reaches: RefCell::default() }
     }
 
@@ -87,19 +87,23 @@ impl<'a> Sources<'a> {
             let holes = polygon.holes.into_iter().map(ring).collect::<Result<_, _>>()?;
             Ok(Polygon { exterior: ring(polygon.exterior)?, holes })
         })?;
-        placed.iter().try_for_each(|polygon| self.check_crossings(source, polygon))?;
-        Ok(placed)
+        let counted = |polygon: Sourced<Polygon>| {
+            let crossings = self.crossings(source, &polygon)?;
+            Ok(Sourced { crossings, ..polygon })
+        };
+        placed.into_iter().map(counted).collect()
     }
 
-    /// Refuses a polygon that would take too long to resolve, before anything is spent on it.
-    fn check_crossings(&self, source: &FeatureSource, polygon: &Sourced<Polygon>) -> Result<(), Diagnostic> {
+    /// How often a polygon crosses itself. One that would take too long to resolve is refused, before anything is spent on
+    /// it.
+    fn crossings(&self, source: &FeatureSource, polygon: &Sourced<Polygon>) -> Result<usize, Diagnostic> {
         let Polygon { exterior, holes } = &polygon.shape;
         let rings = std::iter::once(exterior).chain(holes).map(Vec::as_slice);
         let left = self.crossings_left.get();
         match count_crossings(rings, left) {
             Some(crossings) => {
                 self.crossings_left.set(left - crossings);
-                Ok(())
+                Ok(crossings)
             }
             None => {
                 let name = polygon.attributes.name(None);
@@ -109,7 +113,7 @@ impl<'a> Sources<'a> {
                     format!("polygon '{}'", quoted(&name))
                 };
                 let message = format!(
-                    "{name} of {} vertices crosses itself too often: the polygons of a scene are resolved where they cross themselves up to {MOST_CROSSINGS} times in all",
+                    "{name} of {} vertices crosses itself too often: the polygons of a scene are resolved where they cross themselves up to {RING_CROSSINGS} times in all",
                     exterior.len()
                 );
                 let help = "mend it, for example with: ogr2ogr -makevalid out.geojson IN";
@@ -159,7 +163,7 @@ impl<'a> Sources<'a> {
         if let Some(points) = &source.points {
             let line = points.iter().map(|&point| DVec2::from(point)).collect();
             let shape = pick(&Geometry::Lines(vec![line]));
-            let sourced = |shape| Sourced { attributes: Attributes::default(), shape };
+            let sourced = |shape| Sourced { attributes: Attributes::default(), shape, crossings: 0 };
             let crs = source.crs.as_ref().unwrap_or(&self.frame.points_crs);
             return Ok((crs.clone(), shape.into_iter().map(sourced).collect()));
         }
@@ -177,9 +181,11 @@ impl<'a> Sources<'a> {
             .map(|(index, feature)| (Attributes::new(Arc::clone(&layer), index), feature))
             .filter(|(attributes, _)| holds(attributes))
             .flat_map(|(attributes, feature)| {
-                pick(&feature.geometry)
-                    .into_iter()
-                    .map(move |shape| Sourced { attributes: attributes.clone(), shape })
+                pick(&feature.geometry).into_iter().map(move |shape| Sourced {
+                    attributes: attributes.clone(),
+                    shape,
+                    crossings: 0,
+                })
             })
             .collect();
         if shapes.is_empty() {
@@ -281,9 +287,9 @@ impl<'a> Sources<'a> {
         };
         let placed = shapes
             .into_iter()
-            .map(|Sourced { attributes, shape }| {
+            .map(|Sourced { attributes, shape, crossings }| {
                 reach.borrow_mut().begin_shape();
-                transform(shape, &place).map(|shape| Sourced { attributes, shape })
+                transform(shape, &place).map(|shape| Sourced { attributes, shape, crossings })
             })
             .collect::<Result<_, _>>()
             .map_err(|error| self.frame.document.error_at(source.span(), error))?;

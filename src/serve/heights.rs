@@ -9,7 +9,7 @@
 //! |---|---|
 //! | `status` per result | `Ok`, `NoData` (a hole in the model) or `Outside` (beyond its edge) |
 //! | `surface` | `source` (as read), `ground` (after earthworks), `scene` (decks on top); the default is the source of a file and the ground of a scene |
-//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is an error |
+//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is Keys' of 1981 with a = −1/2, as in [`crate::terrain::query`] |
 //! | `crs` | coordinates in another system; see [`coordinates`](crate::serve::coordinates) |
 
 use std::io;
@@ -129,12 +129,6 @@ impl Query for HeightsQuery {
 }
 
 fn interpolation(parameters: &Parameters) -> Result<Interpolation, HttpError> {
-    if parameters.get("interpolation") == Some("cubic") {
-        return Err(HttpError::wrong(
-            "interpolation=cubic is not offered: it makes heights above and below all posts around; \
-             there are planar, bilinear, nearest and distance-weighted",
-        ));
-    }
     Ok(parameters.choice("interpolation")?.unwrap_or_default())
 }
 

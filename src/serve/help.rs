@@ -16,7 +16,7 @@ Datasets: {names}
 
 GET or POST /v1/DATASET             heights; compatible with the Open Topo Data API; a,b: the first that has one
     locations=LAT,LNG|LAT,LNG       at most {points}; or an encoded polyline
-    interpolation=bilinear          nearest, planar, distance-weighted
+    interpolation=bilinear          nearest, planar, cubic, distance-weighted
     samples=N                       N places at equal distances along the path of the locations
     nodata_value=null               nan, or a number: the elevation where there is none
     format=json                     geojson

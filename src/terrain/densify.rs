@@ -20,17 +20,12 @@
 
 use glam::DVec2;
 
+use crate::limits::GROUND_POSTS;
+use crate::limits::GROUND_ROW_POSTS;
 use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::{Lattice, LatticeError, Post};
 use crate::terrain::query::Interpolation;
 use crate::terrain::query::cell::interpolate;
-
-/// The most posts of a densified lattice: some 17 million take about 800 MB with the errors, the light and the map of
-/// each. More would show more of a narrow road, at memory in proportion.
-const MOST_POSTS: u64 = 4097 * 4097;
-
-/// The most posts in a row or column, the largest texture of most graphics cards.
-const MOST_IN_A_ROW: u64 = 8192;
 
 /// The most halvings: a thirty-second of the measured spacing says nothing new about the ground.
 const MOST_DOUBLINGS: u32 = 5;
@@ -56,12 +51,12 @@ pub fn doublings_for(lattice: &Lattice, spacing_m: f64) -> u32 {
     (0..most).find(|&times| spacing(times) <= spacing_m).unwrap_or(most)
 }
 
-/// The largest number of doublings, up to `wanted`, that leaves the lattice within `MOST_POSTS`.
+/// The largest number of doublings, up to `wanted`, that leaves the lattice within `GROUND_POSTS`.
 pub fn affordable_doublings(lattice: &Lattice, wanted: u32) -> u32 {
     let side = |posts: u32, times: u32| ((u64::from(posts) - 1) << times) + 1;
     let is_affordable = |&times: &u32| {
         let (columns, rows) = (side(lattice.columns(), times), side(lattice.rows(), times));
-        columns.max(rows) <= MOST_IN_A_ROW && columns * rows <= MOST_POSTS
+        columns.max(rows) <= GROUND_ROW_POSTS && columns * rows <= GROUND_POSTS
     };
     (1..=wanted).rev().find(is_affordable).unwrap_or(0)
 }

@@ -10,15 +10,13 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::geom::crs::Crs;
+use crate::limits::GEOJSON_BYTES;
 use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::vector::error::{VectorError, shorten};
 use crate::vector::feature::VectorLayer;
 use crate::vector::hints::VectorHints;
 
 const FORMAT: &str = "GeoJSON";
-/// The largest file that is read. A file of vertices takes ten bytes of memory for each of its own, a hostile one
-/// (measured: a list of a single unknown member) thirty-five, which this limits to some two gigabytes.
-const MAX_BYTES: usize = 64 << 20;
 /// Precedes each text of a sequence (RFC 7464).
 const RECORD_SEPARATOR: u8 = 0x1e;
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -87,8 +85,8 @@ pub(super) fn read_sequence(bytes: &[u8], hints: &VectorHints) -> Result<VectorL
 }
 
 fn checked(bytes: &[u8]) -> Result<&[u8], VectorError> {
-    if bytes.len() > MAX_BYTES {
-        return Err(VectorError::TooLarge { bytes: bytes.len(), limit: MAX_BYTES });
+    if bytes.len() > GEOJSON_BYTES {
+        return Err(VectorError::TooLarge { bytes: bytes.len(), limit: GEOJSON_BYTES });
     }
     Ok(bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes))
 }

@@ -14,7 +14,8 @@
 
 use std::borrow::Cow;
 
-use crate::archive::{self, MAX_VECTOR_BYTES, ZipReader};
+use crate::archive::{self, ZipReader};
+use crate::limits::UNPACKED_VECTOR_BYTES;
 use crate::vector::error::VectorError;
 use crate::vector::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
@@ -48,7 +49,7 @@ pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer
 
 /// The most bytes that a packed file or one of its members unpacks to.
 fn most_unpacked(packed: &[u8]) -> u64 {
-    (SMALL_BYTES + MOST_EXPANSION * packed.len() as u64).min(MAX_VECTOR_BYTES)
+    (SMALL_BYTES + MOST_EXPANSION * packed.len() as u64).min(UNPACKED_VECTOR_BYTES)
 }
 
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {

@@ -8,11 +8,8 @@ use glam::DVec2;
 
 use crate::geom::polygon::{contains, doubled_area};
 use crate::geom::rect::Rect;
+use crate::limits::RING_STEPS;
 use crate::vector::builder::Vertices;
-
-/// Most pairs of rings and edges that are compared for one file: seconds, and a hundred times what real layers of
-/// hundred thousands of polygons take.
-const MAX_STEPS: u64 = 1 << 31;
 
 /// The rule by which a ring is a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +43,7 @@ struct SortedRing {
 
 impl RingSorter {
     pub fn new(rule: HoleRule) -> Self {
-        Self { rule, steps_left: MAX_STEPS }
+        Self { rule, steps_left: RING_STEPS }
     }
 
     /// Returns the rings of each polygon, the outer one first: polygons in the order of their outer rings, holes in

@@ -2,7 +2,7 @@
 //!
 //! A document is walked by [`XmlReader::next_child`], which keeps nothing; a small element is read as a tree.
 //! Nothing is fetched. A document type that declares entities is refused, and with it the files that grow a
-//! thousandfold by them. Elements lie at most [`MAX_DEPTH`] deep.
+//! thousandfold by them. Elements lie at most [`XML_DEPTH`] deep.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -13,11 +13,10 @@ use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
+use crate::limits::XML_DEPTH;
 use crate::vector::encoding::TextEncoding;
 use crate::vector::error::{VectorError, shorten};
 
-/// Deeper than folders are nested, and no danger to the stack.
-const MAX_DEPTH: usize = 64;
 /// Bytes of a document in which its declaration is searched.
 const DECLARATION_BYTES: usize = 200;
 
@@ -197,8 +196,8 @@ impl<'a> XmlReader<'a> {
 
     fn open(&mut self, start: BytesStart<'a>) -> Result<XmlContent<'a>, VectorError> {
         self.depth += 1;
-        if self.depth > MAX_DEPTH {
-            return Err(self.broken(format!("elements lie more than {MAX_DEPTH} deep")));
+        if self.depth > XML_DEPTH {
+            return Err(self.broken(format!("elements lie more than {XML_DEPTH} deep")));
         }
         Ok(XmlContent::Element(XmlElement { start, offset: self.offset(), content: Vec::new() }))
     }

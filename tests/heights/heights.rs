@@ -24,9 +24,10 @@ use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
 use sandtable::view::camera::Camera;
 
-const ALL: [Interpolation; 4] = [
+const ALL: [Interpolation; 5] = [
     Interpolation::Planar,
     Interpolation::Bilinear,
+    Interpolation::Cubic,
     Interpolation::Nearest,
     Interpolation::DistanceWeighted4,
 ];

@@ -10,11 +10,12 @@ use sandtable::description::color::{Color, RampChoice};
 use sandtable::description::diagnostic::Diagnostics;
 use sandtable::description::document::Document;
 use sandtable::description::feature_value::FeatureValue;
-use sandtable::description::parse::{MAX_BYTES, parse, parse_bytes};
+use sandtable::description::parse::{parse, parse_bytes};
 use sandtable::description::scalar::Scalar;
 use sandtable::description::selection::Selection;
 use sandtable::description::words::{Clamp, LabelKind, RampName, RoadSurface};
 use sandtable::geom::crs::Crs;
+use sandtable::limits::SCENE_BYTES;
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"
@@ -554,7 +555,7 @@ fn bytes_that_are_not_text_are_told_with_their_place() {
 
 #[test]
 fn too_much_is_refused() {
-    assert!(messages(&" ".repeat(MAX_BYTES + 1)).contains("more than the 4194304 allowed"));
+    assert!(messages(&" ".repeat(SCENE_BYTES + 1)).contains("more than the 4194304 allowed"));
     let points = "[1,2],".repeat(100_001);
     let shown = messages(&format!("{LEAST}[[road]]\npoints = [{points}]\n"));
     assert!(

@@ -23,12 +23,12 @@ mod xyz;
 use std::borrow::Cow;
 use std::error::Error;
 
-use crate::archive::MAX_RASTER_BYTES;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff;
 use crate::dem::write::{WriteError, WrittenDem};
+use crate::limits::UNPACKED_RASTER_BYTES;
 
 /// The formats, in the order in which their content is tried.
 pub static FORMATS: [&DemFormat; 13] = [
@@ -89,7 +89,7 @@ pub(crate) enum Recognition {
 
 /// The limit for files whose first bytes do not tell their size.
 pub(crate) fn any_size(_: &[u8]) -> u64 {
-    MAX_RASTER_BYTES
+    UNPACKED_RASTER_BYTES
 }
 
 impl DemFormat {

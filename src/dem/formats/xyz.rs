@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::point_text::PointText;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::read::DemFile;
+use crate::limits::RASTER_SAMPLES;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "XYZ grid",
@@ -112,11 +112,14 @@ impl XyzLattice {
         }
         let sides = ((max - min) / step).round();
         let nodes = (sides.x + 1.0) * (sides.y + 1.0);
-        let (columns, rows) = (sides.x as u64 + 1, sides.y as u64 + 1);
-        if nodes > MOST_SAMPLES as f64 || nodes > count.saturating_mul(SPARSEST) as f64 {
+        let most = (RASTER_SAMPLES as f64).min(count.saturating_mul(SPARSEST) as f64);
+        // Far apart, their distance may be infinite and the number of nodes no number.
+        if !(nodes <= most) {
+            let [columns, rows] = [sides.x + 1.0, sides.y + 1.0];
             let apart = format!("{} by {} apart", step.x, step.y);
             return Err(scattered(format!("{count} points on {columns} x {rows} nodes, {apart}")));
         }
+        let (columns, rows) = (sides.x as u64 + 1, sides.y as u64 + 1);
         Ok(Self { columns, rows, min, max, cell: (max - min) / sides })
     }
 }
@@ -212,6 +215,19 @@ mod tests {
         ] {
             let refused = grid(text).expect_err(text);
             assert!(refused.contains("sandtable dem grid"), "{refused}");
+        }
+    }
+
+    #[test]
+    fn points_too_far_apart_for_any_number_of_nodes_are_refused() {
+        // A line that lost its end, so that two numbers ran together; positions whose distance is no number.
+        for text in [
+            "440750 3751290 107\n440810 3751290 123\n440870 375121249879465922 2171\n-113.0 37.4 2131\n-113.1 37.4 1873",
+            "0 0 1\n1e-300 0 2\n1e300 0 3\n0 1e-300 4\n0 1e300 5",
+            "-1e308 0 1\n1e308 0 2\n-1e308 1e308 3\n1e308 -1e308 4",
+        ] {
+            let refused = grid(text).expect_err(text);
+            assert!(refused.contains("nodes") && refused.contains("sandtable dem grid"), "{refused}");
         }
     }
 

@@ -4,7 +4,6 @@
 //! numbers, as `.pgw`, `.jgw` or `.wld`) and a `.prj`. A picture is opened by its header alone. What is read of it is a
 //! window, and of that the mean of squares of pixels: the memory follows from what is asked for, not from the file.
 
-mod jpeg_block;
 mod reduce;
 mod tiff_colors;
 
@@ -21,9 +20,7 @@ use crate::dem::read::{DemFile, DemHints};
 use crate::dem::tiff::geotiff;
 use crate::dem::windows::RasterWindow;
 use crate::geom::crs::{Crs, CrsError};
-
-/// The most pixels of a PNG or a JPEG, which are decoded whole: 64 million take 256 MiB.
-const MOST_DECODED: u64 = 64 << 20;
+use crate::limits::IMAGERY_PIXELS;
 
 /// Why a picture of the ground was not read.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +42,7 @@ pub enum ImageryErrorKind {
     )]
     UnknownFormat,
     #[error(
-        "{width} x {height} pixels are more than the {MOST_DECODED} that are read of a PNG or JPEG; convert it, for example with: gdal_translate -co TILED=YES -co COMPRESS=DEFLATE FILE out.tif"
+        "{width} x {height} pixels are more than the {IMAGERY_PIXELS} that are read of a PNG or JPEG; convert it, for example with: gdal_translate -co TILED=YES -co COMPRESS=DEFLATE FILE out.tif"
     )]
     TooLarge { width: u32, height: u32 },
     #[error("it states no place on the ground; put its world file beside it, with the extension {0}")]
@@ -139,7 +136,7 @@ impl<'a> Imagery<'a> {
         };
         let reader = ImageReader::with_format(Cursor::new(bytes), format);
         let (width, height) = reader.into_dimensions().map_err(ImageryErrorKind::Undecodable)?;
-        if u64::from(width) * u64::from(height) > MOST_DECODED {
+        if u64::from(width) * u64::from(height) > IMAGERY_PIXELS {
             return Err(ImageryErrorKind::TooLarge { width, height });
         }
         let text = world_files.iter().find_map(|extension| file.companion(extension));
@@ -175,7 +172,7 @@ impl<'a> Imagery<'a> {
         let mut reader = ImageReader::with_format(Cursor::new(self.bytes), format);
         let mut limits = image::Limits::default();
         // 16-bit colors with alpha take 8 bytes a pixel.
-        limits.max_alloc = Some(MOST_DECODED * 8 + (64 << 20));
+        limits.max_alloc = Some(IMAGERY_PIXELS * 8 + (64 << 20));
         reader.limits(limits);
         reader.decode().map(DynamicImage::into_rgba8).map_err(ImageryErrorKind::Undecodable)
     }

@@ -12,17 +12,17 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::imagery::jpeg_block::{self, JpegBlock};
 use crate::dem::imagery::reduce::{Reducer, Rgba};
 use crate::dem::imagery::{ColorRaster, ImageryErrorKind};
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff::{GeoTiffHeader, limits};
+use crate::dem::tiff::image_kind;
+use crate::dem::tiff::jpeg_block::{self, JpegBlock};
 use crate::dem::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
 use crate::dem::tiff::unpack::Unpacker;
-use crate::dem::tiff::windows::MOST_WINDOWED;
-use crate::dem::tiff::{MOST_IMAGES, image_kind};
 use crate::dem::windows::RasterWindow;
+use crate::limits::{TIFF_IMAGES, WINDOWED_SAMPLES};
 
 /// NewSubfileType's bits for "reduced version of another image" and "mask".
 const IS_REDUCED: u32 = 1;
@@ -33,8 +33,6 @@ pub(super) struct TiffColors {
     layout: ColorLayout,
     /// The value of all color bands that means no data.
     nodata: Option<u8>,
-    /// The tables of JPEG blocks; empty where each has its own.
-    jpeg_tables: Vec<u8>,
     full: Storage,
     /// Reduced images.
     overviews: Vec<Storage>,
@@ -73,14 +71,12 @@ impl TiffColors {
         let bytes = file.bytes;
         let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
         let mut decoder = decoder.with_limits(limits(bytes.len()));
-        let full = Storage::read(&mut decoder, bytes.len(), MOST_WINDOWED)?;
+        let full = Storage::read(&mut decoder, bytes.len(), WINDOWED_SAMPLES)?;
         let layout = ColorLayout::read(&mut decoder, &full)?;
-        let jpeg_tables = decoder.find_tag(Tag::JPEGTables).map_err(decode_error)?;
-        let jpeg_tables = jpeg_tables.and_then(|tables| tables.into_u8_vec().ok()).unwrap_or_default();
         let raster = GeoTiffHeader::read(&mut decoder, &full, file)?.raster;
         let nodata = raster.nodata.filter(|value| value.fract() == 0.0 && (0.0..=255.0).contains(value));
         let mut overviews = Vec::new();
-        for image in 1..MOST_IMAGES {
+        for image in 1..TIFF_IMAGES {
             if decoder.seek_to_image(image).is_err() {
                 break;
             }
@@ -88,13 +84,13 @@ impl TiffColors {
             if kind & IS_REDUCED == 0 || kind & IS_MASK != 0 {
                 continue;
             }
-            let reduced = Storage::read(&mut decoder, bytes.len(), MOST_WINDOWED);
+            let reduced = Storage::read(&mut decoder, bytes.len(), WINDOWED_SAMPLES);
             let is_alike = |storage: &Storage| {
                 (storage.bits, storage.bands_per_block) == (full.bits, full.bands_per_block)
             };
             overviews.extend(reduced.ok().filter(is_alike));
         }
-        Ok((Self { layout, nodata: nodata.map(|value| value as u8), jpeg_tables, full, overviews }, raster))
+        Ok((Self { layout, nodata: nodata.map(|value| value as u8), full, overviews }, raster))
     }
 
     /// See [`Imagery::read`](crate::dem::imagery::Imagery::read).
@@ -187,7 +183,7 @@ impl TiffColors {
                 let packed = unpacker.packed(&mut file, of_band)?;
                 let photometric = self.layout.photometric;
                 let JpegBlock { samples, row_bytes: of_stream } =
-                    jpeg_block::decode(&self.jpeg_tables, &packed, storage, of_band, photometric)?;
+                    jpeg_block::decode(&packed, storage, of_band, photometric)?;
                 (unpacked, row_bytes) = (samples, of_stream);
             } else {
                 unpacker.unpack(&mut &*bytes, of_band, &mut unpacked)?;

@@ -8,7 +8,8 @@ use las::raw::header::Header;
 
 use crate::bytes::ByteFields;
 use crate::dem::error::DemErrorKind;
-use crate::dem::points::{MOST_POINTS, PointsError};
+use crate::dem::points::PointsError;
+use crate::limits::GRID_POINTS;
 
 /// Set in the format of a compressed file.
 const COMPRESSED: u8 = 0x80;
@@ -84,7 +85,7 @@ impl LasHeader {
                 "its header of {size} bytes (its version has {least_size}) is followed by points at byte {points_at}, in a file of {file_bytes}"
             )));
         }
-        if count > MOST_POINTS {
+        if count > GRID_POINTS {
             return Err(PointsError::TooMany(count));
         }
         let most = ((file_bytes - points_at) / self.point_bytes) as u64;

@@ -17,9 +17,7 @@ use glam::DVec3;
 
 use crate::dem::error::DemErrorKind;
 use crate::geom::crs::Crs;
-
-/// The most points of one file; more than any flight line holds, and 1.5 GiB of memory.
-pub const MOST_POINTS: u64 = 1 << 26;
+use crate::limits::GRID_POINTS;
 
 /// Points and breaklines in one coordinate system.
 #[derive(Clone, Debug)]
@@ -84,7 +82,7 @@ pub enum PointsError {
         /// The classes of the file, with their counts.
         found: String,
     },
-    #[error("{0} points are more than the {MOST_POINTS} that are read; thin or cut the file")]
+    #[error("{0} points are more than the {GRID_POINTS} that are read; thin or cut the file")]
     TooMany(u64),
     /// The LAS or LAZ file is broken, or of a kind that is not read.
     #[error(transparent)]

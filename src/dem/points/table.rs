@@ -4,7 +4,8 @@
 //! error with its number: a line dropped silently would leave a hole.
 
 use crate::dem::point_text::PointText;
-use crate::dem::points::{MOST_POINTS, PointCloud, PointHints, PointsError};
+use crate::dem::points::{PointCloud, PointHints, PointsError};
+use crate::limits::GRID_POINTS;
 
 /// Reads a table of points.
 ///
@@ -28,7 +29,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
             Some(point) if point.z.is_finite() => points.push(point),
             _ => return Err(PointsError::Line { line: line.number, found: line.quote() }),
         }
-        if points.len() as u64 > MOST_POINTS {
+        if points.len() as u64 > GRID_POINTS {
             return Err(PointsError::TooMany(points.len() as u64));
         }
     }

@@ -1,6 +1,7 @@
-//! GeoTIFF: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW, deflate, PackBits and Zstandard,
-//! with predictors, classic and BigTIFF in both byte orders.
+//! GeoTIFF: strips and tiles, integers and floats of 8 to 64 bits, uncompressed, LZW, deflate, PackBits, Zstandard
+//! and JPEG (one band of 8 bits), with predictors, classic and BigTIFF in both byte orders.
 //!
+//! Blocks that were never written (GDAL's sparse files) are no data, or 0 where the file states no value for that, as in GDAL.
 //! Of several bands the first is read, of several images the first (a cloud-optimized file's full
 //! resolution). Scale, offset, unit and no-data value come from GDAL's tags. An unsupported compression is
 //! refused by name.
@@ -14,7 +15,6 @@ use tiff::tags::Tag;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
-use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
 use crate::dem::tiff::blocks;
@@ -24,6 +24,8 @@ use crate::dem::tiff::mask;
 use crate::dem::tiff::place::PlaceTags;
 use crate::dem::tiff::storage::{Storage, decode_error};
 use crate::dem::tiff::write::write;
+use crate::limits::RASTER_SAMPLES;
+use crate::limits::TIFF_TAG_BYTES;
 
 pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "GeoTIFF",
@@ -35,11 +37,8 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     writer: Some(write),
 };
 
-/// The most bytes of one tag: the offsets of a million blocks.
-const LARGEST_TAG: usize = 16 << 20;
-
 /// The most values of one tag.
-const MOST_TAG_VALUES: usize = LARGEST_TAG / 8;
+const MOST_TAG_VALUES: usize = TIFF_TAG_BYTES / 8;
 
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
 const LARGEST_TEXT: u64 = 1 << 20;
@@ -54,8 +53,11 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = file.bytes;
     let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
     let mut decoder = decoder.with_limits(limits(bytes.len()));
-    let storage = Storage::read(&mut decoder, bytes.len(), MOST_SAMPLES)?;
+    let storage = Storage::read(&mut decoder, bytes.len(), RASTER_SAMPLES)?;
     let GeoTiffHeader { raster, scale, offset } = GeoTiffHeader::read(&mut decoder, &storage, file)?;
+    if raster.nodata.is_some() && storage.is_all_absent() {
+        return Err(FORMAT.broken("none of its blocks was ever written, so that all of it is no data"));
+    }
     let mut samples = blocks::decode(bytes, &storage, raster.nodata)?;
     let size = (storage.width, storage.height);
     if !mask::apply_within(&mut decoder, bytes, size, &mut samples)?
@@ -69,7 +71,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
 /// The most that the decoder may allocate for a file of `file_bytes` bytes. It reads tags; blocks are unpacked elsewhere.
 pub(crate) fn limits(file_bytes: usize) -> Limits {
     let mut limits = Limits::default();
-    limits.ifd_value_size = file_bytes.clamp(1024, LARGEST_TAG);
+    limits.ifd_value_size = file_bytes.clamp(1024, TIFF_TAG_BYTES);
     // The decoder keeps a value of a tag in 32 bytes, and allocates what a tag claims before it looks whether the file holds it.
     limits.decoding_buffer_size = 32 * file_bytes.clamp(1024, MOST_TAG_VALUES);
     limits
@@ -171,6 +173,132 @@ mod tests {
         assert!(raster.at(1, 0).is_nan() && raster.at(1, 1).is_nan() && raster.at(0, 1) == 3.0);
         assert_eq!(raster.geotransform(), [5e5, 30.0, 0.0, 4e6, 0.0, -30.0]);
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
+    }
+
+    /// A TIFF of `side` samples squared in tiles of 64 squared, plain 32-bit floats, of which only the second tile is
+    /// written, with 7 in each sample; or none is.
+    fn sparse(side: u32, nodata: Option<&str>, writes: bool) -> Vec<u8> {
+        const TILE: u32 = 64;
+        let tiles = side.div_ceil(TILE).pow(2);
+        let mut file = b"II*\0\0\0\0\0".to_vec();
+        let tile: Vec<u8> = 7f32.to_le_bytes().repeat(if writes { (TILE * TILE) as usize } else { 0 });
+        file.extend(&tile);
+        let starts = file.len() as u32;
+        let table = |value: u32| (0..tiles).map(move |tile| if tile == 1 { value } else { 0 });
+        file.extend(table(8 * u32::from(writes)).flat_map(u32::to_le_bytes));
+        let sizes = file.len() as u32;
+        file.extend(table(tile.len() as u32).flat_map(u32::to_le_bytes));
+        let text = file.len() as u32;
+        file.extend(nodata.unwrap_or_default().as_bytes());
+        file.extend([0; 8]);
+        let directory = file.len() as u32;
+        let mut entries = vec![
+            (256u16, 4u16, 1, side),
+            (257, 4, 1, side),
+            (258, 3, 1, 32),
+            (259, 3, 1, 1),
+            (262, 3, 1, 1),
+            (277, 3, 1, 1),
+            (322, 4, 1, TILE),
+            (323, 4, 1, TILE),
+            (324, 4, tiles, starts),
+            (325, 4, tiles, sizes),
+            (339, 3, 1, 3),
+        ];
+        entries.extend(nodata.map(|value| (42113, 2, value.len() as u32 + 1, text)));
+        file[4..8].copy_from_slice(&directory.to_le_bytes());
+        file.extend((entries.len() as u16).to_le_bytes());
+        for (tag, kind, count, value) in entries {
+            file.extend(tag.to_le_bytes());
+            file.extend(kind.to_le_bytes());
+            file.extend(u32::to_le_bytes(count));
+            file.extend(u32::to_le_bytes(value));
+        }
+        file.extend([0; 4]);
+        file
+    }
+
+    #[test]
+    fn blocks_that_were_never_written_are_no_data_or_else_0() {
+        for (nodata, absent) in [(Some("-9999"), f64::NAN), (None, 0.0)] {
+            // Of 16,777,216 samples the file holds 4,096.
+            let raster = read("a.tif", &sparse(4096, nodata, true), &DemHints::default()).expect("sparse");
+            assert_eq!((raster.at(64, 0), raster.at(127, 63)), (7.0, 7.0));
+            for (column, row) in [(63, 0), (128, 0), (64, 64), (4095, 4095)] {
+                let found = raster.at(column, row);
+                assert!(found == absent || found.is_nan() && absent.is_nan(), "{column}, {row}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_without_any_block_is_refused_where_that_leaves_no_data() {
+        let empty = sparse(4096, Some("-9999"), false);
+        let error = read("a.tif", &empty, &DemHints::default()).map(drop).expect_err("empty");
+        assert!(error.to_string().contains("none of its blocks"), "{error}");
+        let zeros = read("a.tif", &sparse(4096, None, false), &DemHints::default()).expect("zeros");
+        assert!(zeros.at(0, 0) == 0.0 && zeros.at(4095, 4095) == 0.0);
+    }
+
+    /// A TIFF whose only strip is a JPEG stream of 8-bit gray, 40 columns by 24 rows.
+    fn jpeg(bands: u32, stream: &[u8]) -> Vec<u8> {
+        let mut file = b"II*\0\0\0\0\0".to_vec();
+        file.extend(stream);
+        let directory = file.len() as u32;
+        let entries: [(u16, u16, u32); 10] = [
+            (256, 4, 40),
+            (257, 4, 24),
+            (258, 3, 8),
+            (259, 3, 7),
+            (262, 3, 1),
+            (273, 4, 8),
+            (277, 3, bands),
+            (278, 4, 24),
+            (279, 4, stream.len() as u32),
+            (339, 3, 1),
+        ];
+        file[4..8].copy_from_slice(&directory.to_le_bytes());
+        file.extend((entries.len() as u16).to_le_bytes());
+        for (tag, kind, value) in entries {
+            file.extend(tag.to_le_bytes());
+            file.extend(kind.to_le_bytes());
+            file.extend(1u32.to_le_bytes());
+            file.extend(value.to_le_bytes());
+        }
+        file.extend([0; 4]);
+        file
+    }
+
+    #[test]
+    fn gray_jpeg_blocks_are_heights_and_colors_are_none() {
+        let gray: Vec<u8> =
+            (0..40 * 24).map(|index: u32| (60 + index % 40 * 2 + index / 40 * 3) as u8).collect();
+        let mut stream = Vec::new();
+        image::codecs::jpeg::JpegEncoder::new_with_quality(&mut stream, 95)
+            .encode(&gray, 40, 24, image::ExtendedColorType::L8)
+            .expect("memory");
+        let raster = read("a.tif", &jpeg(1, &stream), &DemHints::default()).expect("gray");
+        assert_eq!((raster.width, raster.height, raster.data_type), (40, 24, "Byte"));
+        for (index, &wanted) in gray.iter().enumerate() {
+            let found = raster.samples.get(index);
+            assert!((found - f64::from(wanted)).abs() <= 3.0, "{index}: {found} for {wanted}");
+        }
+        let refused = read("a.tif", &jpeg(3, &stream), &DemHints::default()).expect_err("colors");
+        assert!(refused.to_string().contains("JPEG compression of colors"), "{refused}");
+        for end in (8..stream.len()).step_by(7) {
+            let _ = read("a.tif", &jpeg(1, &stream[..end]), &DemHints::default());
+        }
+    }
+
+    #[test]
+    fn blocks_that_are_written_must_fit_the_file() {
+        let mut cut = sparse(4096, None, true);
+        // The table of sizes claims that all tiles are written.
+        let sizes = 8 + 4 * 64 * 64 + 4 * 4096;
+        assert_eq!(cut[sizes + 4..sizes + 8], (4 * 64 * 64u32).to_le_bytes());
+        cut[sizes..sizes + 4 * 4096].fill(1);
+        let error = read("a.tif", &cut, &DemHints::default()).map(drop).expect_err("too short");
+        assert!(error.to_string().contains("cut short"), "{error}");
     }
 
     #[test]

@@ -6,14 +6,15 @@ use std::io::{Cursor, Read, Seek};
 use tiff::decoder::Decoder;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::Samples;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff::{FORMAT, limits};
+use crate::dem::tiff::image_kind;
 use crate::dem::tiff::storage::{Predictor, Storage, decode_error};
 use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
-use crate::dem::tiff::{MOST_IMAGES, image_kind};
 use crate::dem::windows::RasterWindow;
+use crate::limits::RASTER_SAMPLES;
+use crate::limits::TIFF_IMAGES;
 
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;
@@ -46,7 +47,7 @@ pub(crate) fn apply_within(
     size: (u32, u32),
     samples: &mut Samples,
 ) -> Result<bool, DemErrorKind> {
-    for _ in 0..MOST_IMAGES {
+    for _ in 0..TIFF_IMAGES {
         // A broken overview or page is no reason to refuse the image before it.
         if !decoder.more_images() || decoder.next_image().is_err() {
             return Ok(false);
@@ -63,7 +64,7 @@ fn hide<R: Read + Seek>(
     mut bytes: &[u8],
     samples: &mut Samples,
 ) -> Result<(), DemErrorKind> {
-    let storage = Storage::read(decoder, bytes.len(), MOST_SAMPLES)?;
+    let storage = Storage::read(decoder, bytes.len(), RASTER_SAMPLES)?;
     check(&storage)?;
     let (width, height) = (storage.width, storage.height);
     let window = RasterWindow { column: 0, row: 0, width, height };

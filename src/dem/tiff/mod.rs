@@ -5,6 +5,7 @@ mod gdal_metadata;
 mod geokey_codes;
 pub mod geokeys;
 pub(crate) mod geotiff;
+pub(in crate::dem) mod jpeg_block;
 mod mask;
 mod place;
 mod rows;
@@ -18,9 +19,6 @@ use std::io::{Read, Seek};
 
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
-
-/// The most images of a file that are read: overviews and masks.
-pub(in crate::dem) const MOST_IMAGES: usize = 64;
 
 /// The bits of NewSubfileType of the decoder's current image; 0 where it has none.
 pub(in crate::dem) fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {

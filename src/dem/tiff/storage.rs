@@ -43,6 +43,8 @@ pub(crate) struct Storage {
     pub block_width: u32,
     /// Rows of a block; the last one may reach beyond the image.
     pub block_height: u32,
+    /// The tables of JPEG blocks; empty where each has its own.
+    pub jpeg_tables: Vec<u8>,
     /// Whether blocks are tiles: as large at the border as anywhere.
     is_tiled: bool,
     /// Where each block starts in the file.
@@ -63,7 +65,7 @@ pub(crate) enum Packing {
     PackBits,
     /// A Zstandard frame (RFC 8878).
     Zstd,
-    /// A JPEG stream, which only pictures are read from.
+    /// A JPEG stream (Adobe's Technical Note 2): pictures, and heights of one band and 8 bits.
     Jpeg,
 }
 
@@ -114,6 +116,10 @@ impl Storage {
             decoder.find_tag_unsigned_vec(tag).map_err(decode_error).map(Option::unwrap_or_default)
         };
         let (block_starts, block_bytes) = (table(starts)?, table(bytes)?);
+        let jpeg_tables = match packing {
+            Packing::Jpeg => decoder.find_tag(Tag::JPEGTables).map_err(decode_error)?,
+            _ => None,
+        };
         let are_alike = |values: &[u16]| values.iter().all(|value| *value == values[0]);
         let kind = number_kind(formats[0]).filter(|_| are_alike(&depths) && are_alike(&formats));
         let storage = Self {
@@ -130,6 +136,7 @@ impl Storage {
             bands_per_block: if is_planar { 1 } else { bands },
             block_width: if is_tiled { across.max(1) } else { width.max(1) },
             block_height: if is_tiled { down.max(1) } else { down.clamp(1, height.max(1)) },
+            jpeg_tables: jpeg_tables.and_then(|tables| tables.into_u8_vec().ok()).unwrap_or_default(),
             is_tiled,
             block_starts,
             block_bytes,
@@ -143,20 +150,28 @@ impl Storage {
             return Err(FORMAT.broken("it has no band"));
         }
         let expansion = expansion(self.packing);
-        // Blocks that were never written take no bytes: such a file may claim more than it holds.
-        let sparse = expansion.max(2);
         let bytes = u64::from(self.bits.div_ceil(8)) * u64::from(self.bands_per_block);
-        let image = SizeClaim {
-            expansion: if self.block_bytes.contains(&0) { sparse } else { expansion },
-            most_samples,
-            ..SizeClaim::new(self.width.into(), self.height.into(), if self.bits < 8 { 0 } else { bytes })
-        };
-        image.check(file_bytes)?;
-        if self.is_tiled {
+        let claim =
+            SizeClaim::new(self.width.into(), self.height.into(), if self.bits < 8 { 0 } else { bytes });
+        SizeClaim { expansion, most_samples, absent: self.absent_samples(), ..claim }.check(file_bytes)?;
+        if self.is_tiled && self.block_bytes.iter().any(|&bytes| bytes > 0) {
             let tile = SizeClaim::new(self.block_width.into(), self.block_height.into(), bytes);
-            SizeClaim { expansion: sparse, ..tile }.check(file_bytes)?;
+            SizeClaim { expansion, ..tile }.check(file_bytes)?;
         }
         Ok(())
+    }
+
+    /// Samples of the first band in blocks that were never written: they take no bytes of the file.
+    fn absent_samples(&self) -> u64 {
+        let (across, down) = self.blocks_across_and_down();
+        let listed = (u64::from(across) * u64::from(down)).min(self.block_bytes.len() as u64) as u32;
+        let absent = (0..listed).filter(|&index| !self.is_written(index));
+        absent.map(|index| self.block(index % across, index / across).window.samples() as u64).sum()
+    }
+
+    /// Whether no block of the first band was ever written.
+    pub fn is_all_absent(&self) -> bool {
+        self.absent_samples() == u64::from(self.width) * u64::from(self.height)
     }
 
     /// Bytes that `samples` of a block decode to.
@@ -170,8 +185,8 @@ impl Storage {
 
     /// The type of samples that are read as elevation.
     pub fn elevation_type(&self) -> Result<SampleType, DemErrorKind> {
-        if self.packing == Packing::Jpeg {
-            return Err(FORMAT.unsupported("JPEG compression", TO_DEFLATE));
+        if self.packing == Packing::Jpeg && self.bands_per_block != 1 {
+            return Err(FORMAT.unsupported("JPEG compression of colors", TO_DEFLATE));
         }
         let remedy = "convert it, for example with: gdal_translate -ot Float32 FILE out.tif";
         let sample =

@@ -2,7 +2,7 @@
 //!
 //! The `tiff` crate reads the directory, but not blocks: it refuses valid LZW streams of small flat tiles, changes
 //! values by their photometric meaning, and unpacks Zstandard through C. So blocks go straight to the crates that
-//! unpack: `flate2`, `weezl` and `ruzstd`, each in one call from memory into a buffer that is kept.
+//! unpack: `flate2`, `weezl`, `ruzstd` and `zune-jpeg`, each in one call from memory into a buffer that is kept.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -15,10 +15,14 @@ use weezl::{BitOrder, LzwStatus};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::tiff::geotiff::FORMAT;
+use crate::dem::tiff::jpeg_block::{self, JpegBlock};
 use crate::dem::tiff::storage::{Packing, Storage, TO_DEFLATE, TiffBlock};
 
 /// Packed bytes beyond twice what a block unpacks to are ignored; no packing needs more.
 const MOST_GROWTH: usize = 2;
+
+/// The photometric interpretation of one band from dark to light; it says nothing of the meaning of three.
+const BLACK_IS_ZERO: u16 = 1;
 
 /// Bytes that even an empty stream may take.
 const SLACK: usize = 1 << 10;
@@ -90,7 +94,16 @@ impl<'a> Unpacker<'a> {
             Decompressor::Lzw(decoder) => unpack_lzw(decoder, &packed, rows),
             Decompressor::PackBits => unpack_bits(&packed, rows),
             Decompressor::Zstd(decoder) => unpack_zstd(decoder, &packed, rows),
-            Decompressor::Jpeg => return Err(FORMAT.unsupported("JPEG compression", TO_DEFLATE)),
+            Decompressor::Jpeg => {
+                let JpegBlock { samples, row_bytes } =
+                    jpeg_block::decode(&packed, self.storage, block, BLACK_IS_ZERO)?;
+                let kept = self.storage.row_bytes().min(row_bytes);
+                let from = samples.chunks_exact(row_bytes.max(1));
+                for (from, to) in from.zip(rows.chunks_exact_mut(self.storage.row_bytes().max(1))) {
+                    to[..kept].copy_from_slice(&from[..kept]);
+                }
+                needed
+            }
         };
         if unpacked == needed {
             return Ok(());

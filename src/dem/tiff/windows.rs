@@ -27,18 +27,14 @@ use crate::dem::raster::{Raster, scaled};
 use crate::dem::read::{DemFile, DemHints};
 use crate::dem::tiff::blocks;
 use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
+use crate::dem::tiff::image_kind;
 use crate::dem::tiff::mask::{self, IS_MASK};
 use crate::dem::tiff::storage::{Storage, TiffBlock, decode_error};
 use crate::dem::tiff::unpack::BlockBytes;
-use crate::dem::tiff::{MOST_IMAGES, image_kind};
 use crate::dem::windows::{RasterWindow, Windows};
-
-/// The most samples of an image that is read in windows: 262,144 a side. Nothing is allocated for them; it keeps the
-/// numbers of 16 × 16 tiles within 32 bits.
-pub const MOST_WINDOWED: u64 = 1 << 36;
-
-/// The most samples of one block: a tile of 2048². Tiles in use have 128 to 1024 samples a side.
-const MOST_BLOCK_SAMPLES: u64 = 1 << 22;
+use crate::limits::BLOCK_SAMPLES;
+use crate::limits::TIFF_IMAGES;
+use crate::limits::WINDOWED_SAMPLES;
 
 /// The most bytes that one block decodes to: the largest with 64-bit samples.
 const LARGEST_BLOCK: usize = 32 << 20;
@@ -228,11 +224,11 @@ impl<R: Read + Seek> SharedFile<R> {
         for _ in 0..image {
             decoder.next_image().map_err(decode_error)?;
         }
-        let storage = Storage::read(&mut decoder, self.length, MOST_WINDOWED)?;
+        let storage = Storage::read(&mut decoder, self.length, WINDOWED_SAMPLES)?;
         let across = storage.block_width.clamp(1, storage.width);
         let down = storage.block_height.clamp(1, storage.height);
         let samples = u64::from(across) * u64::from(down);
-        if samples > MOST_BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
+        if samples > BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
             return Err(FORMAT.unsupported(
                 format!("blocks of {across} x {down} samples"),
                 "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
@@ -250,7 +246,7 @@ impl<R: Read + Seek> SharedFile<R> {
         let mut file = self.lock();
         let Ok(mut decoder) = self.decoder(&mut file) else { return images };
         let size = decoder.dimensions().unwrap_or_default();
-        for image in 1..=MOST_IMAGES {
+        for image in 1..=TIFF_IMAGES {
             // A broken overview or page is no reason to refuse the images before it.
             if !decoder.more_images() || decoder.next_image().is_err() {
                 break;

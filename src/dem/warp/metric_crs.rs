@@ -11,8 +11,8 @@ use crate::dem::raster::Raster;
 use crate::dem::warp::data_extent::{data_extent, outline};
 use crate::dem::warp::{WarpError, check_source};
 use crate::geom::crs::Crs;
-use crate::geom::map_scale::MapScale;
 use crate::geom::rect::Rect;
+use crate::geom::scale_factors::ScaleFactors;
 
 /// The largest error of lengths at the center of a raster that a system in meters may have. National and UTM grids stay
 /// below 0.3 %; the systems beyond are made for maps of the world or of a continent.
@@ -30,7 +30,7 @@ pub struct OffScale {
     /// The system that the raster names or that was asked for.
     pub stated: Crs,
     /// Its scale at the center of the raster.
-    pub scale: MapScale,
+    pub scale: ScaleFactors,
     /// The UTM zone in which the ground is made; `None` where no zone covers the raster, which stays in `stated`.
     pub zone: Option<Crs>,
 }
@@ -83,7 +83,7 @@ pub fn off_scale(raster: &Raster, target: Option<&Crs>) -> Result<Option<OffScal
     let Some(own) = raster.crs.as_ref().or(target) else { return Ok(None) };
     let stated = target.unwrap_or(own);
     let center = own.transform(stated, raster.center()).ok();
-    let scale = center.filter(|_| stated.is_metric()).and_then(|center| MapScale::at(stated, center));
+    let scale = center.filter(|_| stated.is_metric()).and_then(|center| ScaleFactors::at(stated, center));
     let Some(scale) = scale.filter(|scale| scale.error() > MOST_SCALE_ERROR) else { return Ok(None) };
     let zone = match utm_zone(raster, own) {
         Ok(zone) => Some(zone),

@@ -10,7 +10,6 @@ use glam::{DVec2, U64Vec2};
 use rayon::prelude::*;
 
 use crate::dem::cell_grid::{CellGrid, CellGridError};
-use crate::dem::limits::MOST_SAMPLES;
 use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::dem::sample::bilinear_at_grid;
 use crate::dem::warp::WarpError;
@@ -19,6 +18,7 @@ use crate::dem::warp::data_extent::{data_extent, outline};
 use crate::dem::warp::row_positions::positions;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
+use crate::limits::RASTER_SAMPLES;
 
 /// Without a stated cell, the samples of the output per sample of the source: a raster turned by 45° needs 2.
 const GROWTH: u64 = 8;
@@ -48,13 +48,13 @@ impl<'a> Resampler<'a> {
             None => CellSize::new(valid.center(), &at)?.side,
         };
         let extent = Rect::around(outline(valid).map(at).collect::<Result<Vec<_>, _>>()?);
-        let most = if cell.is_some() { MOST_SAMPLES } else { source.samples.len() as u64 * GROWTH + 1024 };
+        let most = if cell.is_some() { RASTER_SAMPLES } else { source.samples.len() as u64 * GROWTH + 1024 };
         Self::new(source, transform, CellGrid::around(extent, side), most)
     }
 
     /// To cells over a raster with north up, from its own corner.
     pub fn over(source: &'a Raster, transform: &'a CrsTransform<'a>, cell: f64) -> Result<Self, WarpError> {
-        Self::new(source, transform, CellGrid::within(source.extent(), cell), MOST_SAMPLES)
+        Self::new(source, transform, CellGrid::within(source.extent(), cell), RASTER_SAMPLES)
     }
 
     fn new(

@@ -52,7 +52,8 @@
 //! are, and are ordered as numbers where both convert, else by letters. `true` equals a value that holds, `false` one
 //! that does not.
 //!
-//! Parsing is bounded by [`MAX_TEXT_BYTES`] and [`MAX_DEPTH`]; evaluation takes time in proportion to the text.
+//! Parsing is bounded by [`EXPRESSION_BYTES`](crate::limits::EXPRESSION_BYTES) and
+//! [`EXPRESSION_DEPTH`](crate::limits::EXPRESSION_DEPTH); evaluation takes time in proportion to the text.
 
 mod evaluate;
 mod parser;
@@ -65,11 +66,6 @@ use std::ops::Range;
 use crate::description::expression::evaluate::{Evaluation, any};
 use crate::description::expression::syntax::ExpressionNode;
 use crate::description::scalar::Scalar;
-
-/// The longest text of an expression, about a screen: it bounds the work.
-pub const MAX_TEXT_BYTES: usize = 4096;
-/// The deepest nesting of brackets and of chains of operators: it bounds the stack.
-pub const MAX_DEPTH: usize = 200;
 
 /// Looks up a feature's property by name; `None` where the feature does not have it.
 pub type PropertyLookup<'a> = &'a dyn Fn(&str) -> Option<Scalar>;

@@ -3,10 +3,11 @@
 use std::iter;
 use std::ops::Range;
 
+use crate::description::expression::ExpressionError;
 use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, OPERATORS, RESERVED};
 use crate::description::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
-use crate::description::expression::{ExpressionError, MAX_DEPTH};
 use crate::description::scalar::Scalar;
+use crate::limits::EXPRESSION_DEPTH;
 use crate::message::suggest::{nearest, quoted, remedy};
 
 /// A node and its depth.
@@ -207,7 +208,7 @@ impl ExpressionParser<'_> {
     }
 
     fn deepened(&self, deep: usize) -> Result<usize, ExpressionError> {
-        if deep < MAX_DEPTH { Ok(deep + 1) } else { Err(self.too_deep()) }
+        if deep < EXPRESSION_DEPTH { Ok(deep + 1) } else { Err(self.too_deep()) }
     }
 
     fn too_deep(&self) -> ExpressionError {

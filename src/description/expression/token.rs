@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::description::expression::{ExpressionError, MAX_TEXT_BYTES};
+use crate::description::expression::ExpressionError;
+use crate::limits::EXPRESSION_BYTES;
 use crate::message::suggest::quoted;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -48,9 +49,9 @@ pub(super) fn wrong(
 /// # Errors
 /// The text is too long, a quotation is not closed, or a character begins no token.
 pub(super) fn tokens(text: &str) -> Result<Vec<SpannedToken>, ExpressionError> {
-    if text.len() > MAX_TEXT_BYTES {
+    if text.len() > EXPRESSION_BYTES {
         let message =
-            format!("this expression has {} bytes, more than the {MAX_TEXT_BYTES} allowed", text.len());
+            format!("this expression has {} bytes, more than the {EXPRESSION_BYTES} allowed", text.len());
         return Err(wrong(text, 0..0, message, "make several tables of it, each with a `where` of its own"));
     }
     let mut tokens = Vec::new();

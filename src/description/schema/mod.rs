@@ -9,11 +9,11 @@ use serde_json::{Map, Value, json};
 use crate::description::bounds::Bounds;
 use crate::description::declaration::{KeyDeclaration, KeyKind, Presence};
 use crate::description::document::Document;
-use crate::description::expression::MAX_TEXT_BYTES;
 use crate::description::phases::PHASES_KEY;
 use crate::description::styles::STYLE_KEY;
-use crate::description::value::{COORDINATES, MAX_LIST, MAX_POINTS, MAX_TEXT};
+use crate::description::value::COORDINATES;
 use crate::description::words::{RampName, WordDeclaration, declarations};
+use crate::limits::{EXPRESSION_BYTES, INLINE_POINTS, SCENE_LIST, SCENE_TEXT};
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {
@@ -135,12 +135,12 @@ fn shared_definitions() -> [(String, Value); 5] {
     let definitions = [
         (
             "expression",
-            json!({ "type": "string", "minLength": 1, "maxLength": MAX_TEXT_BYTES,
+            json!({ "type": "string", "minLength": 1, "maxLength": EXPRESSION_BYTES,
                     "description": "An expression over the feature's properties, such as \"lanes * 3.25 ?? 6\"." }),
         ),
         (
             "computed",
-            json!({ "type": "string", "pattern": "[^\\w-]", "maxLength": MAX_TEXT_BYTES,
+            json!({ "type": "string", "pattern": "[^\\w-]", "maxLength": EXPRESSION_BYTES,
                     "description": "An expression that gives one of the words, such as \"property('surface')\"." }),
         ),
         (
@@ -160,27 +160,27 @@ fn shape(key: &KeyDeclaration) -> Value {
         KeyKind::Integer(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         KeyKind::FeatureNumber(range) => json!({ "anyOf": [number(range), reference("expression")] }),
         KeyKind::Switch => json!({ "type": "boolean" }),
-        KeyKind::Text => json!({ "type": "string", "maxLength": MAX_TEXT }),
+        KeyKind::Text => json!({ "type": "string", "maxLength": SCENE_TEXT }),
         KeyKind::FilledText => text(),
-        KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, MAX_LIST)] }),
+        KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, SCENE_LIST)] }),
         KeyKind::TextTable => {
-            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": MAX_LIST })
+            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": SCENE_LIST })
         }
         KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
         KeyKind::Word(words) => one_of(&words()),
         KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(&words()), reference("computed")] }),
         KeyKind::Color => json!({ "allOf": [reference("color")] }),
         KeyKind::Point => json!({ "allOf": [reference("point")] }),
-        KeyKind::Points(least) => list(reference("point"), least, MAX_POINTS),
+        KeyKind::Points(least) => list(reference("point"), least, INLINE_POINTS),
         KeyKind::NumberRange(range) => list(number(range), 2, 2),
-        KeyKind::Numbers(range) => list(number(range), 0, MAX_POINTS),
+        KeyKind::Numbers(range) => list(number(range), 0, INLINE_POINTS),
         KeyKind::Ramp => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, MAX_LIST)] })
+            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, SCENE_LIST)] })
         }
         KeyKind::Selection => {
-            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, MAX_LIST)] });
+            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, SCENE_LIST)] });
             let table = json!({ "type": "object", "additionalProperties": values, "minProperties": 1 });
             json!({ "anyOf": [table, reference("expression")] })
         }
@@ -198,7 +198,7 @@ fn one_of(words: &[WordDeclaration]) -> Value {
 }
 
 fn text() -> Value {
-    json!({ "type": "string", "minLength": 1, "maxLength": MAX_TEXT })
+    json!({ "type": "string", "minLength": 1, "maxLength": SCENE_TEXT })
 }
 
 fn list(items: Value, least: usize, most: usize) -> Value {

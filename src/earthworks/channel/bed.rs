@@ -2,8 +2,9 @@
 
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::earthworks::channel::{ChannelError, Cut, MOST_VISITS};
+use crate::earthworks::channel::{ChannelError, Cut};
 use crate::geom::segment;
+use crate::limits::RIVER_POSTS;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::volumes::Volumes;
@@ -139,7 +140,7 @@ fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>,
         };
         courses.iter().zip(0..).flat_map(of_course)
     };
-    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > MOST_VISITS {
+    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > RIVER_POSTS {
         return Err(ChannelError::TooWide);
     }
     let (mut wishes, mut kept) = (Vec::new(), 0);

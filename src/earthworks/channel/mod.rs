@@ -30,6 +30,7 @@ use crate::earthworks::channel::bed::ChannelBed;
 use crate::earthworks::channel::carve::CenterlinePiece;
 use crate::earthworks::channel::course::ChannelCourse;
 use crate::geom::polyline::Polyline;
+use crate::limits::RIVER_POSTS;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::volumes::Volumes;
 
@@ -81,14 +82,10 @@ pub struct Cuts {
 pub enum ChannelError {
     /// Beds of hundreds of millions of posts.
     #[error(
-        "the beds of these rivers would cover more than {MOST_VISITS} posts, each counted once a cell along the river"
+        "the beds of these rivers would cover more than {RIVER_POSTS} posts, each counted once a cell along the river"
     )]
     TooWide,
 }
-
-/// The most posts that beds may cover, counted once for each triangle that a centerline crosses beside them: some
-/// seconds' work.
-pub const MOST_VISITS: usize = 200_000_000;
 
 /// Cuts the ground so that it never rises along any of `channels` but at the climbs in their cuts.
 ///

@@ -6,12 +6,10 @@ use std::cell::Cell;
 use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType};
 
+use crate::limits::MODEL_ELEMENTS;
 use crate::model::error::ModelError;
 
 use super::data::{BufferView, GltfBuffers};
-
-/// The most elements read from all accessors of a model, instances included; bounds time and memory.
-const MAX_ELEMENTS: usize = 1 << 25;
 
 pub(super) struct AccessorReader<'a> {
     buffers: &'a GltfBuffers,
@@ -78,8 +76,8 @@ impl<'a> AccessorReader<'a> {
     pub(super) fn charge(&self, elements: usize) -> Result<(), ModelError> {
         let total = self.elements_read.get().saturating_add(elements);
         self.elements_read.set(total);
-        if total > MAX_ELEMENTS {
-            return Err(ModelError::TooLarge { what: "vertices, indices and joints", limit: MAX_ELEMENTS });
+        if total > MODEL_ELEMENTS {
+            return Err(ModelError::TooLarge { what: "vertices, indices and joints", limit: MODEL_ELEMENTS });
         }
         Ok(())
     }

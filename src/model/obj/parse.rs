@@ -5,9 +5,9 @@ use std::ops::Range;
 use glam::{Vec2, Vec3};
 
 use crate::draw::color::Srgba;
+use crate::limits::MODEL_TRIANGLES;
 use crate::mesh::numbering::Numbering;
 use crate::model::error::ModelError;
-use crate::model::part::MAX_TRIANGLES;
 
 use super::text::{logical_lines, number, split_keyword};
 
@@ -65,8 +65,8 @@ pub(super) fn parse(text: &str) -> Result<ObjFile, ModelError> {
     for (line, statement) in logical_lines(text) {
         parser.line = line;
         parser.statement(&statement)?;
-        if parser.file.corners.len() > MAX_TRIANGLES {
-            return Err(ModelError::TooLarge { what: "corners of faces", limit: MAX_TRIANGLES });
+        if parser.file.corners.len() > MODEL_TRIANGLES {
+            return Err(ModelError::TooLarge { what: "corners of faces", limit: MODEL_TRIANGLES });
         }
     }
     parser.file.check_indices()?;

@@ -9,6 +9,8 @@ use crate::description::words::{Clamp, Footing};
 use crate::earthworks::pad;
 use crate::earthworks::pad::Batters;
 use crate::geom::polygon;
+use crate::limits::LEVELED_CELLS;
+use crate::limits::LEVELED_PADS;
 use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::PlacedModels;
 use crate::scene::placement::{outline, stand};
@@ -22,11 +24,6 @@ use crate::terrain::volumes::Volumes;
 
 /// The margin of a pad around the footprint, as a part of the longer side.
 const PAD_REACH: f32 = 0.1;
-/// The most pads of a scene; each may move some ten thousand posts.
-const MAX_PADS: usize = 10_000;
-/// The most cells that all footprints together may cover. Models a thousand times too large, those in a wrong unit, would
-/// otherwise take minutes.
-const MAX_CELLS: u64 = 10_000_000;
 
 /// Levels the ground under every model on a pad, and returns the earth moved by the index of the placement.
 ///
@@ -49,11 +46,11 @@ pub fn level_pads(
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
             cells += FullResolution { lattice }.cell_count(&reach);
-            if cells > MAX_CELLS {
+            if cells > LEVELED_CELLS {
                 return Err(too_large(frame.document, group.table));
             }
             if placement.standing.footing == Footing::Pad {
-                if volumes.len() == MAX_PADS {
+                if volumes.len() == LEVELED_PADS {
                     return Err(too_many(frame.document, group.table));
                 }
                 if let Some(moved) = level(placement, footprint, frame.scale, lattice) {
@@ -86,13 +83,13 @@ fn level(
 
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let place = table.footing.span().or(table.file.span()).unwrap_or_default();
-    let message = format!("more than {MAX_PADS} models have the ground leveled for them");
+    let message = format!("more than {LEVELED_PADS} models have the ground leveled for them");
     document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
 }
 
 fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let place = table.scale.span().or(table.file.span()).unwrap_or_default();
-    let message = format!("up to this model, the footprints cover more than {MAX_CELLS} cells of ground");
+    let message = format!("up to this model, the footprints cover more than {LEVELED_CELLS} cells of ground");
     document
         .error_at(place, message)
         .with_help("check `scale`, the meters per unit of the model file: 0.001 for one in millimeters")

@@ -22,6 +22,7 @@ use crate::description::features::{FeatureSource, ModelPlacement};
 use crate::description::scalar::Scalar;
 use crate::description::words::{Clamp, Footing};
 use crate::draw::list::FeatureId;
+use crate::limits::SCENE_MODELS;
 use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::feature_origin::FeatureOrigin;
@@ -34,9 +35,6 @@ use crate::scene::{FeatureKind, GroundFit, Placement};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
-
-/// The most models of a scene: some fifty megabytes of placements, and more than a picture can show.
-pub const MAX_MODELS: usize = 1_000_000;
 
 /// The placements of one `[[model]]`.
 pub struct InstanceGroup<'a> {
@@ -122,7 +120,7 @@ impl<'a> PlacedModels<'a> {
             let model = self.library.get(&table.file, table.file.span(), collected)?;
             let name = table.name.clone().unwrap_or_else(|| table.file.to_string());
             let feature = collected.add(FeatureKind::Model, name, FeatureOrigin::stated(at.span()));
-            let point = Sourced { attributes: Attributes::default(), shape: world };
+            let point = Sourced { attributes: Attributes::default(), shape: world, crossings: 0 };
             self.add(table, model, &point, feature, frame, &mut collected.default_counts);
         } else if let Some(source) = &table.instances {
             let points = sources.points(source)?;
@@ -179,15 +177,15 @@ impl<'a> PlacedModels<'a> {
     }
 }
 
-/// Checks that a scene has no more models than [`MAX_MODELS`].
+/// Checks that a scene has no more models than [`SCENE_MODELS`].
 ///
 /// # Errors
 /// There are more; the error points at `source`.
 pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Result<(), Diagnostic> {
-    if count <= MAX_MODELS {
+    if count <= SCENE_MODELS {
         return Ok(());
     }
-    let message = format!("with these, more than {MAX_MODELS} models stand in the scene");
+    let message = format!("with these, more than {SCENE_MODELS} models stand in the scene");
     Err(document
         .error_at(source.span(), message)
         .with_help("take fewer points or a lower density, or choose among them with `where`"))

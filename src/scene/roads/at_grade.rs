@@ -2,14 +2,9 @@
 
 use crate::geom::leg_tree::{LegTree, LineLeg};
 use crate::geom::segment;
+use crate::limits::ROAD_CROSSINGS;
+use crate::limits::ROAD_PAIRS;
 use crate::scene::roads::centerline::Centerline;
-
-/// No more pairs of legs are compared. A city of 100 000 legs has some hundred thousand pairs; only lines drawn all over
-/// each other have more than this, and comparing those would take minutes.
-const MOST_PAIRS: usize = 20_000_000;
-
-/// No more crossings are kept: each parts two roads.
-const MOST_CROSSINGS: usize = 1_000_000;
 
 /// Legs whose angle has a smaller sine are parallel.
 const PARALLEL: f64 = 1e-9;
@@ -34,7 +29,7 @@ pub fn crossings(
         let same = others.filter(|other| roads[one.line].street.level == roads[other.line].street.level);
         found.extend(same.filter_map(|other| crossing(one, other)));
         pairs += after.len();
-        if pairs > MOST_PAIRS || found.len() > MOST_CROSSINGS {
+        if pairs > ROAD_PAIRS || found.len() > ROAD_CROSSINGS {
             return None;
         }
     }

@@ -13,15 +13,13 @@ use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
 use crate::earthworks::alignment::spans::EarthworkLimits;
 use crate::earthworks::grading::strip;
 use crate::geom::profile::Profile;
+use crate::limits::ROAD_STATIONS;
 use crate::scene::attributes::DefaultCounts;
 use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::meetings::{RoadMeetings, RoadStop};
 use crate::scene::roads::route::Route;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
-
-/// No more stations than this: as many as 100 000 km of road have over cells of 15 m, and some 2 GB.
-const MOST_STATIONS: f64 = 2e7;
 
 /// The rules for a road that the ground follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +95,7 @@ impl NetworkSurvey {
         for (index, (road, rules)) in roads.iter().zip(rules).enumerate() {
             let Some(rules) = rules else { continue };
             stations += stations_of(lattice, road);
-            if stations > MOST_STATIONS {
+            if stations > ROAD_STATIONS {
                 return Err(too_many(document, road));
             }
             survey.add(lattice, index, road, rules, &meetings.stops[index]);
@@ -179,7 +177,7 @@ fn stations_of(lattice: &Lattice, road: &Centerline) -> f64 {
 }
 
 fn too_many(document: &Document, road: &Centerline) -> Diagnostic {
-    let message = format!("these roads have more than {MOST_STATIONS:e} stations on the elevation model");
+    let message = format!("these roads have more than {ROAD_STATIONS:e} stations on the elevation model");
     let help = "let fewer of them conform, by a `where` or in a scene of a smaller area";
     document.error_at(document.roads[road.table].source.span(), message).with_help(help)
 }

@@ -21,6 +21,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
+use crate::limits::SCATTER_SQUARES;
 use crate::mesh::sink::VertexId;
 use crate::model::built_in;
 use crate::scene::attributes::Attributes;
@@ -46,8 +47,6 @@ use crate::vector::feature::Polygon;
 const SPACING_PART: f64 = 0.5;
 /// The clearance of a model from other features, in parts of its reach: boughs may hang over a road.
 const CLEAR_PART: f64 = 0.5;
-/// The most squares of a scene's patterns, and the most pieces of edges of one area: a second's work.
-const MAX_SQUARES: usize = 1 << 25;
 /// Rows of squares filled in parallel before the models are counted.
 const ROWS_AT_ONCE: usize = 256;
 
@@ -78,7 +77,7 @@ pub fn strew(
         let ground =
             ScatterGround { table, frame, lattice, taken: &taken, library, species: &species, feature };
         let (mut stood, mut counts, mut areas) = (Vec::new(), ScatterCounts::default(), 0);
-        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+        for Sourced { attributes, shape, .. } in sources.polygons(&table.source)? {
             let pattern = pattern(table, &attributes, species.seed, collected);
             if pattern.is_crowded() {
                 counts.crowded += 1;
@@ -169,18 +168,18 @@ fn bands(
     let rings: Vec<Vec<DVec2>> = area.rings().map(to_map).collect();
     let extent = lattice.extent();
     let extent = Rect { min: extent.min + lattice.origin(), max: extent.max + lattice.origin() };
-    let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, MAX_SQUARES);
+    let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, SCATTER_SQUARES);
     let bands = bands.filter(|bands| {
         let wide = bands.rows().map(|row| {
             let columns = bands.columns(row);
             usize::try_from(columns.end() - columns.start() + 1).unwrap_or(0)
         });
         *squares += wide.sum::<usize>();
-        *squares <= MAX_SQUARES
+        *squares <= SCATTER_SQUARES
     });
     bands.ok_or_else(|| {
         let place = table.density.span().unwrap_or(table.source.span());
-        let message = format!("so dense a pattern has more than {MAX_SQUARES} places in these areas");
+        let message = format!("so dense a pattern has more than {SCATTER_SQUARES} places in these areas");
         document
             .error_at(place, message)
             .with_help("`density` is how many stand on a hectare, 100 m by 100 m")

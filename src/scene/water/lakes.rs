@@ -67,7 +67,7 @@ fn measure(
 ) -> Result<Vec<Lake>, Diagnostic> {
     let (mut lakes, extent) = (Vec::new(), lattice.extent());
     for table in &document.lakes {
-        for Sourced { attributes, shape } in sources.polygons(&table.source)? {
+        for Sourced { attributes, shape, .. } in sources.polygons(&table.source)? {
             let name = attributes.name(table.name.as_deref());
             let bounds = polygon::bounds(&shape.exterior);
             if !bounds.meets(&extent) {

@@ -21,7 +21,8 @@ pub fn interpolate(
     match interpolation {
         Interpolation::Planar => weighted_sum(planar_weights(part, diagonal), corners),
         Interpolation::Nearest => weighted_sum(bilinear_weights((part + 0.5).floor()), corners),
-        Interpolation::Bilinear => {
+        // The cubic is bilinear where its other posts are missing.
+        Interpolation::Bilinear | Interpolation::Cubic => {
             let height = bilinear(corners, part);
             if height.is_nan() {
                 weighted_mean(bilinear_weights(part), corners)

@@ -30,13 +30,15 @@
 //! | planar | rising diagonal, `x ≥ y`: `(1−x)·sw + (x−y)·se + y·ne`, and likewise on the other three triangles | continuous, bends at edges and diagonals | no answer where the triangle has one with a weight |
 //! | bilinear | `s + (n − s)·y` with `s = sw + (se − sw)·x`, `n = nw + (ne − nw)·x`; the source's as GDAL, [`crate::dem::sample`] | continuous, bends at cell edges | left out, weights renormalized |
 //! | nearest | the nearest post: a constant cell around each post | steps halfway between posts | no answer |
+//! | cubic | Keys 1981 with a = −1/2 over 4 × 4 posts; parabolas continue them beyond the border | continuous, and its slopes | where one of the sixteen has none, bilinear |
 //! | distance-weighted | `Σ hᵢ/dᵢ ÷ Σ 1/dᵢ` over the four corners, `d` in meters; at a corner, its height | continuous within a cell, steps across its edges | left out, weights renormalized |
 //!
-//! At a post all four answer that post's own height. None overshoots: but for rounding, an answer lies between the lowest
-//! and the highest corner with a weight.
+//! At a post all five answer that post's own height. None but the cubic overshoots: but for rounding, an answer lies between
+//! the lowest and the highest corner with a weight. The cubic may lie beyond its sixteen posts by 9/32 of what they differ,
+//! and runs through the posts of the ground: where that was made finer for narrow works, through the finer ones.
 //!
 //! **Where the model ends.** The ground, and the source's planar and distance-weighted surfaces, end at the outer posts,
-//! which belong to them. The source's nearest and bilinear reach half a sample further, to the outer edge of the outer
+//! which belong to them. The source's nearest, bilinear and cubic reach half a sample further, to the outer edge of the outer
 //! samples, as GDAL counts pixels. Beyond, the answer is [`Answer::Outside`]; so it is for a position that is not finite,
 //! or that cannot be transformed to the surface's coordinate system.
 //!
@@ -50,6 +52,7 @@
 pub mod batch;
 pub mod cell;
 pub mod change;
+mod cubic;
 pub mod deck;
 pub mod gradient;
 pub mod pieces;
@@ -58,12 +61,13 @@ pub mod source;
 pub mod tiles;
 pub mod zone;
 
-use glam::DVec2;
+use glam::{DVec2, UVec2};
 
 use crate::dem::answer::Answer;
 use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::Lattice;
+use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::query::cell::interpolate;
+use crate::terrain::query::cubic::cubic;
 
 /// The surface of a height query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +92,8 @@ pub enum Interpolation {
     Bilinear,
     /// The nearest post's height.
     Nearest,
+    /// Through sixteen posts by cubic convolution: smooth, and not between the posts' heights everywhere.
+    Cubic,
     /// The four posts around, weighted by inverse distance.
     DistanceWeighted4,
 }
@@ -97,6 +103,14 @@ pub fn ground_height(lattice: &Lattice, interpolation: Interpolation, at: DVec2)
     let Some((cell, part)) = lattice.cell_at(at - lattice.origin()) else {
         return Answer::Outside;
     };
+    if interpolation == Interpolation::Cubic {
+        let size = UVec2::new(lattice.columns(), lattice.rows());
+        let post = |column, row| f64::from(lattice.height(Post { column, row }));
+        let height = cubic(cell.grid() + part, size, post);
+        if !height.is_nan() {
+            return Answer::Height(height);
+        }
+    }
     let corners = lattice.corner_heights(cell).map(f64::from);
     interpolate(interpolation, corners, part, Diagonal::of_cell(cell), lattice.cell())
 }
@@ -105,9 +119,10 @@ pub fn ground_height(lattice: &Lattice, interpolation: Interpolation, at: DVec2)
 mod tests {
     use super::*;
 
-    const ALL: [Interpolation; 4] = [
+    const ALL: [Interpolation; 5] = [
         Interpolation::Planar,
         Interpolation::Bilinear,
+        Interpolation::Cubic,
         Interpolation::Nearest,
         Interpolation::DistanceWeighted4,
     ];
@@ -135,7 +150,7 @@ mod tests {
         let ground = lattice(|column, row| column as f32 * 2.0 - row as f32 * 3.0);
         for (x, y) in [(3.0, 4.0), (12.5, 77.0), (49.9, 99.9), (0.0, 0.1), (50.0, 100.0)] {
             let exact = x / 10.0 * 2.0 - y / 20.0 * 3.0;
-            for interpolation in [Interpolation::Planar, Interpolation::Bilinear] {
+            for interpolation in [Interpolation::Planar, Interpolation::Bilinear, Interpolation::Cubic] {
                 let height = ground_height(&ground, interpolation, at(x, y)).height_m().expect("inside");
                 assert!((height - exact).abs() < 1e-9, "{interpolation:?} at {x}, {y}");
             }
@@ -156,6 +171,9 @@ mod tests {
         let holed = lattice(|column, _| if column == 2 { f32::NAN } else { 1.0 });
         assert_eq!(ground_height(&holed, Interpolation::Planar, at(15.0, 30.0)), Answer::NoData);
         assert_eq!(ground_height(&holed, Interpolation::Bilinear, at(15.0, 30.0)), Answer::Height(1.0));
+        assert_eq!(ground_height(&holed, Interpolation::Cubic, at(35.0, 30.0)), Answer::Height(1.0));
+        assert_eq!(ground_height(&holed, Interpolation::Cubic, at(20.0, 40.0)), Answer::NoData);
+        assert_eq!(ground_height(&holed, Interpolation::Cubic, at(-1.0, 30.0)), Answer::Outside);
         assert_eq!(ground_height(&holed, Interpolation::Nearest, at(20.0, 40.0)), Answer::NoData);
         assert_eq!(ground_height(&holed, Interpolation::Planar, at(-1.0, 30.0)), Answer::Outside);
     }

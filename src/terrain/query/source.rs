@@ -1,10 +1,10 @@
 //! Heights of the raster as read, in its own grid.
 //!
-//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]) and reach half a sample beyond the centers of the outer
-//! samples. Planar and distance-weighted use the grid of sample centers and end at the outer ones. Heights in another unit
+//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]); they and the cubic reach half a sample beyond the centers of the
+//! outer samples, whose heights they hold there. Planar and distance-weighted use the grid of sample centers and end at the outer ones. Heights in another unit
 //! are converted to meters.
 
-use glam::DVec2;
+use glam::{DVec2, UVec2};
 
 use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
@@ -15,6 +15,7 @@ use crate::terrain::lattice::Post;
 use crate::terrain::query::Interpolation;
 use crate::terrain::query::batch::{self, HeightSlices};
 use crate::terrain::query::cell::interpolate;
+use crate::terrain::query::cubic::cubic;
 
 /// Positions that are transformed to the raster's system at a time, on the stack.
 const TRANSFORMED: usize = 512;
@@ -24,6 +25,7 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
     let answer = match interpolation {
         Interpolation::Nearest => sample::nearest(raster, at),
         Interpolation::Bilinear => sample::bilinear(raster, at),
+        Interpolation::Cubic => cubic_between_samples(raster, at),
         Interpolation::Planar | Interpolation::DistanceWeighted4 => {
             between_samples(raster, interpolation, at)
         }
@@ -121,6 +123,21 @@ impl<'a> SourceTransform<'a> {
     }
 }
 
+/// The cubic height of a raster, in its vertical unit; bilinear where one of its samples has no data.
+fn cubic_between_samples(raster: &Raster, at: DVec2) -> Answer {
+    let bilinear = sample::bilinear(raster, at);
+    if bilinear == Answer::Outside {
+        return bilinear;
+    }
+    let size = UVec2::new(raster.width, raster.height);
+    let from_first = (raster.grid_from_map(at) - 0.5).clamp(DVec2::ZERO, (size - 1).as_dvec2());
+    // Rounding in map coordinates must not mix a neighbor, or a hole, into an exact value.
+    let center = from_first.round();
+    let is_on = (from_first - center).abs().cmple(DVec2::splat(sample::ON_CENTER));
+    let height = cubic(DVec2::select(is_on, center, from_first), size, |column, row| raster.at(column, row));
+    if height.is_nan() { bilinear } else { Answer::Height(height) }
+}
+
 /// Planar and distance-weighted heights of a raster, on the grid of its sample centers, in its vertical unit.
 fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
     let grid = raster.grid_from_map(at) - 0.5;
@@ -160,6 +177,24 @@ mod tests {
     }
 
     #[test]
+    fn the_cubic_source_keeps_a_parabola_and_holds_its_outer_samples() {
+        // Columns 10 m apart at x = 5, 15 and so on hold the squares of 0 to 5; the middle of the last row is a hole.
+        let squares = "0 1 4 9 16 25\n";
+        let hole = "0 1 -9999 -9999 16 25\n";
+        let head = "ncols 6\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+        let source = read_grid(&format!("{head}{}{hole}", squares.repeat(4)), None);
+        let at = |x: f64, y: f64| raster_height(&source, Interpolation::Cubic, DVec2::new(x, y));
+        for column in [0.0f64, 0.3, 1.5, 2.25, 4.9, 5.0] {
+            let height = at(5.0 + 10.0 * column, 33.0).height_m().expect("inside");
+            assert!((height - column * column).abs() < 1e-9, "{column}: {height}");
+        }
+        assert_eq!([at(0.0, 50.0), at(60.0, 33.0)], [Answer::Height(0.0), Answer::Height(25.0)]);
+        let bilinear = |x, y| raster_height(&source, Interpolation::Bilinear, DVec2::new(x, y));
+        assert_eq!(at(20.0, 17.0), bilinear(20.0, 17.0), "beside a hole");
+        assert_eq!([at(30.0, 2.0), at(61.0, 33.0)], [Answer::NoData, Answer::Outside]);
+    }
+
+    #[test]
     fn heights_in_feet_are_converted_to_meters() {
         let text = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n100 100\n100 100\n";
         let mut source = read_grid(text, None);
@@ -167,6 +202,7 @@ mod tests {
         for interpolation in [
             Interpolation::Planar,
             Interpolation::Bilinear,
+            Interpolation::Cubic,
             Interpolation::Nearest,
             Interpolation::DistanceWeighted4,
         ] {

@@ -12,10 +12,9 @@
 //! seven and four more crates to save some 60 lines.
 
 use crate::bytes::{ByteCursor, ByteOrder};
+use crate::limits::GEOMETRY_DEPTH;
 use crate::vector::builder::{FeatureParts, Vertices, position};
 
-/// Depth of nested collections; a multipolygon in a collection is three deep.
-const MAX_DEPTH: usize = 16;
 /// EWKB's flags in the type.
 const HAS_Z: u32 = 0x8000_0000;
 const HAS_M: u32 = 0x4000_0000;
@@ -50,7 +49,7 @@ fn read_shape(cursor: &mut ByteCursor<'_>, parts: &mut FeatureParts, depth: usiz
     /// Least bytes of a ring, its count, and of a shape, its byte order and type.
     const MIN_RING_BYTES: usize = 4;
     const MIN_SHAPE_BYTES: usize = 5;
-    if depth > MAX_DEPTH {
+    if depth > GEOMETRY_DEPTH {
         return Err(WkbError::Broken);
     }
     let (kind, layout) = read_header(cursor)?;

@@ -4,15 +4,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::limits::OSM_AREA_VERTICES;
 use crate::vector::builder::Vertices;
 use crate::vector::error::VectorError;
 use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 use crate::vector::osm::significant_tags;
 use crate::vector::rings::{HoleRule, RingLimitExceeded, RingSorter};
-
-/// Most vertices of all areas of an extract: far more than any has, and a gigabyte. Relations can name the same ways
-/// again and again.
-const MAX_VERTICES: usize = 1 << 25;
 
 /// Assembles areas, and tracks the ways that they replace.
 pub(super) struct AreaAssembler<'a> {
@@ -29,7 +26,7 @@ impl<'a> AreaAssembler<'a> {
             data,
             is_replaced: vec![false; data.ways.len()],
             sorter: RingSorter::new(HoleRule::Nesting),
-            vertices_left: MAX_VERTICES,
+            vertices_left: OSM_AREA_VERTICES,
         }
     }
 

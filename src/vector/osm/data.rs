@@ -3,11 +3,9 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use crate::limits::OSM_BYTES;
 use crate::vector::builder::{Vertices, position};
 
-/// Most bytes that an extract may take in memory. A hostile file of small numbers, well packed, would take thousands of
-/// times its size; a city's takes ten.
-const MAX_BYTES: usize = 2 << 30;
 /// Bytes that an allocation takes beyond its content.
 const ALLOCATION_BYTES: usize = 16;
 /// Units of coordinates in a degree.
@@ -15,7 +13,7 @@ pub(super) const UNITS_PER_DEGREE: f64 = 1e7;
 
 /// The extract takes more memory than it may.
 #[derive(Debug, thiserror::Error)]
-#[error("it takes more than {} GiB of memory; cut it down with 'osmium extract'", MAX_BYTES >> 30)]
+#[error("it takes more than {} GiB of memory; cut it down with 'osmium extract'", OSM_BYTES >> 30)]
 pub(super) struct OsmMemoryExceeded;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +116,7 @@ impl OsmData {
 
     fn charge(&mut self, bytes: usize) -> Result<(), OsmMemoryExceeded> {
         self.bytes += bytes;
-        if self.bytes > MAX_BYTES { Err(OsmMemoryExceeded) } else { Ok(()) }
+        if self.bytes > OSM_BYTES { Err(OsmMemoryExceeded) } else { Ok(()) }
     }
 }
 

@@ -298,3 +298,35 @@ fn a_png_is_asked_with_its_scale_and_offset() {
     let moved = height(&at(&["--height-scale", "0.1", "--height-offset", "1000"]).ok());
     assert!((moved - plain - 1000.0).abs() < 1e-3, "{plain} and {moved}");
 }
+
+#[test]
+fn an_approximate_datum_shift_is_reported_with_its_meters() {
+    let scratch = Scratch::new();
+    let grid = "ncols 2\nnrows 2\nxllcorner 600000\nyllcorner 200000\ncellsize 1000\n1 2\n3 4\n";
+    scratch.write("bern.asc", grid);
+    scratch.write(
+        "bern.prj",
+        "+proj=somerc +lat_0=46.95240555555556 +lon_0=7.439583333333333 +k_0=1 +x_0=600000 \
+                  +y_0=200000 +ellps=bessel +towgs84=674.374,15.056,405.346",
+    );
+    let shifted =
+        run_in(scratch.folder(), &["height", "bern.asc", "--crs", "EPSG:4326", "--at", "7.445,46.955"]);
+    assert!(shifted.out.contains("Ok"), "{shifted:?}");
+    assert!(shifted.err.contains("674.374") && shifted.err.contains("25 m"), "{shifted:?}");
+    let own = run_in(scratch.folder(), &["height", "bern.asc", "--at", "600500,200500"]).ok();
+    assert!(own.ends_with(",3,Ok\n"), "{own}");
+}
+
+#[test]
+fn cubic_heights_run_smoothly_through_the_samples() {
+    let scratch = Scratch::new();
+    let squares = (0..6).map(|column: i32| (column * column).to_string()).collect::<Vec<_>>().join(" ");
+    let head = "ncols 6\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    scratch.write("a.asc", format!("{head}{}", format!("{squares}\n").repeat(4)));
+    let heights = |interpolation: &str| {
+        run_in(scratch.folder(), &["height", "a.asc", "--at", "20,15", "--interpolation", interpolation]).ok()
+    };
+    // Midway between 1 and 4 the parabola has 2.25, the straight line 2.5.
+    assert!(heights("cubic").ends_with("20,15,2.25,Ok\n"), "{}", heights("cubic"));
+    assert!(heights("bilinear").ends_with("20,15,2.5,Ok\n"), "{}", heights("bilinear"));
+}

@@ -66,7 +66,7 @@ fn wrong_usage_ends_with_two() {
         &["render", &scene, "--backend", "abacus"],
         &["render", &scene, "--color"],
         &["height", "a.tif"],
-        &["height", "a.tif", "--points", "-", "--interpolation", "cubic"],
+        &["height", "a.tif", "--points", "-", "--interpolation", "spline"],
         &["dem", "info", "a.tif", "--height-scale", "tall"],
         &["dem"],
         &["model", "info"],

@@ -22,8 +22,9 @@ const FILES: [&str; 6] = [
     "dem/etopo1_1deg_global.tif",
 ];
 
-const INTERPOLATIONS: [(&str, Interpolation); 4] = [
+const INTERPOLATIONS: [(&str, Interpolation); 5] = [
     ("nearest", Interpolation::Nearest),
+    ("cubic", Interpolation::Cubic),
     ("bilinear", Interpolation::Bilinear),
     ("planar", Interpolation::Planar),
     ("distance-weighted", Interpolation::DistanceWeighted4),

@@ -25,7 +25,6 @@ fn a_wrong_parameter_is_named_with_what_was_found() {
         ("locations=50,10||50,10", "location 2"),
         ("locations=hello%20world", "encoded polyline"),
         ("locations=50,10&interpolation=spline", "interpolation is 'spline'"),
-        ("locations=50,10&interpolation=cubic", "cubic"),
         ("locations=50,10&samples=1000000000", "samples is '1000000000'"),
         ("locations=50,10|50,11&samples=1", "samples is '1'"),
         ("locations=50,10|50,11&samples=-5", "samples is '-5'"),

@@ -1,8 +1,8 @@
 //! Scenes of every kind of feature, in any shape, over a small ground: built, and drawn.
 
 use std::fmt::Write;
-use std::path::Path;
 
+use glam::DVec2;
 use sandtable::pipeline::picture::{PictureSize, annotate_view, draw_view};
 use sandtable::pipeline::scene_file::build_scene_text;
 use sandtable::render::RenderBackend;
@@ -10,9 +10,11 @@ use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{build_draw_list, camera};
 
 use super::byte_source::ByteSource;
+use super::hill;
 
-/// The ground's sides, meters.
-pub const SIDE_M: f64 = 320.0;
+/// The south-west corner of the hill, and its sides in meters.
+pub const CORNER: DVec2 = DVec2::new(500_000.0, 4_000_000.0);
+pub const SIDE_M: f64 = 480.0;
 
 /// The most features of a scene, and points of a feature: enough for every pair to meet.
 const MOST_FEATURES: usize = 6;
@@ -85,7 +87,7 @@ const TABLES: &[(&str, &[NumberKey], &[WordKey])] = &[
 
 /// A scene file of what `bytes` choose.
 pub fn scene_file(bytes: &mut ByteSource<'_>) -> String {
-    let mut text = "[terrain]\ndem = \"ground.asc\"\n".to_owned();
+    let mut text = "crs = \"EPSG:32616\"\n[terrain]\ndem = \"hill.asc\"\n".to_owned();
     if bytes.byte() > 192 {
         let _ = writeln!(text, "vertical_exaggeration = {:?}", bytes.number(0.1, 5.0));
     }
@@ -141,20 +143,18 @@ fn feature(bytes: &mut ByteSource<'_>, text: &mut String) {
 /// Mostly on the ground; some on a grid, so that features meet and repeat points exactly.
 fn point(bytes: &mut ByteSource<'_>) -> (f64, f64) {
     let (low, high) = (-0.2 * SIDE_M, 1.2 * SIDE_M);
-    match bytes.byte() {
-        0..8 => (bytes.number(low, high), bytes.number(low, high)),
-        8..120 => (20.0 * bytes.below(17) as f64, 20.0 * bytes.below(17) as f64),
-        _ => (bytes.between(low, high), bytes.between(low, high)),
-    }
+    let at = match bytes.byte() {
+        0..8 => DVec2::new(bytes.number(low, high), bytes.number(low, high)),
+        8..120 => DVec2::new(bytes.below(17) as f64, bytes.below(17) as f64) * 30.0,
+        _ => DVec2::new(bytes.between(low, high), bytes.between(low, high)),
+    };
+    (CORNER + at).into()
 }
 
 /// The scene that `bytes` choose; `None` where it is refused.
 pub fn built(bytes: &mut ByteSource<'_>) -> Option<SceneModel> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"));
-    // The manifest is that of the program or of the fuzz targets, which lie in `tests/fuzz`.
-    let folder = if path.ends_with("tests/fuzz") { path.to_owned() } else { path.join("tests/fuzz") };
     let text = scene_file(bytes);
-    match build_scene_text(&folder.join("ground/scene.toml"), &text, &[], &|_| {}) {
+    match build_scene_text(&hill().join("scene.toml"), &text, &[], &|_| {}) {
         Ok(scene) => Some(scene),
         Err(error) => {
             assert!(!error.to_string().is_empty(), "an error that says nothing");
@@ -164,7 +164,7 @@ pub fn built(bytes: &mut ByteSource<'_>) -> Option<SceneModel> {
 }
 
 /// Builds a scene; its draw list is sound.
-pub fn scene_build(bytes: &[u8]) {
+pub fn listed(bytes: &[u8]) {
     let Some(scene) = built(&mut ByteSource::new(bytes)) else { return };
     for view in &scene.cameras {
         let Ok(camera) = camera(&scene, view, (64, 48)) else { continue };
@@ -176,7 +176,7 @@ pub fn scene_build(bytes: &[u8]) {
 }
 
 /// Builds a scene and draws it with its labels.
-pub fn scene_picture(bytes: &[u8]) {
+pub fn drawn(bytes: &[u8]) {
     let Some(scene) = built(&mut ByteSource::new(bytes)) else { return };
     let size = PictureSize { width: 64, height: 48 };
     for view in &scene.cameras {

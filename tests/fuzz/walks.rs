@@ -9,7 +9,7 @@ use sandtable::pipeline::walk::frame::WalkOptions;
 use sandtable::view::camera::Camera;
 
 use super::byte_source::ByteSource;
-use super::scenes::{SIDE_M, built};
+use super::shapes::{CORNER, SIDE_M, built};
 
 /// The most steps of a walk.
 const MOST_STEPS: usize = 24;

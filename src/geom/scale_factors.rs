@@ -15,14 +15,14 @@ const MEASURED_M: f64 = 200.0;
 
 /// The scale factors of a map at a place: 1 where its lengths are those of the ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapScale {
+pub struct ScaleFactors {
     /// In the direction in which the map stretches least; above 0.
     pub least: f64,
     /// In the direction in which the map stretches most.
     pub most: f64,
 }
 
-impl MapScale {
+impl ScaleFactors {
     /// The scale of `crs` at `at`, a position in its coordinates; `None` for a system in degrees or without a place on Earth,
     /// and for a position that the projection does not cover.
     ///
@@ -31,9 +31,9 @@ impl MapScale {
     ///
     /// ```
     /// use glam::DVec2;
-    /// use sandtable::geom::{crs::Crs, map_scale::MapScale};
+    /// use sandtable::geom::{crs::Crs, scale_factors::ScaleFactors};
     /// let utm = Crs::from_epsg(32616).unwrap();
-    /// let scale = MapScale::at(&utm, DVec2::new(500_000.0, 4_000_000.0)).unwrap();
+    /// let scale = ScaleFactors::at(&utm, DVec2::new(500_000.0, 4_000_000.0)).unwrap();
     /// assert!((scale.most - 0.9996).abs() < 1e-5);
     /// ```
     pub fn at(crs: &Crs, at: DVec2) -> Option<Self> {
@@ -80,11 +80,11 @@ fn singular_values(matrix: DMat2) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    fn scale(code: u32, longitude: f64, latitude: f64) -> MapScale {
+    fn scale(code: u32, longitude: f64, latitude: f64) -> ScaleFactors {
         let crs = Crs::from_epsg(code).expect("known");
         let degrees = crs.geographic_base().expect("on Earth");
         let at = degrees.transform(&crs, DVec2::new(longitude, latitude)).expect("inside");
-        MapScale::at(&crs, at).expect("inside")
+        ScaleFactors::at(&crs, at).expect("inside")
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
         let central = scale(32616, -87.0, 45.0);
         assert!((central.least - 0.9996).abs() < 1e-5 && (central.most - 0.9996).abs() < 1e-5, "{central:?}");
         let crs = Crs::from_epsg(32616).expect("known");
-        let beside = MapScale::at(&crs, DVec2::new(680_000.0, 3_000_000.0)).expect("inside");
+        let beside = ScaleFactors::at(&crs, DVec2::new(680_000.0, 3_000_000.0)).expect("inside");
         assert!((beside.most - 1.0).abs() < 1e-4, "{beside:?}");
     }
 
@@ -127,18 +127,18 @@ mod tests {
     #[test]
     fn feet_and_datums_without_a_shift_are_measured_too() {
         let feet = Crs::from_epsg(2225).expect("known");
-        let found = MapScale::at(&feet, DVec2::new(6_500_000.0, 2_000_000.0)).expect("inside");
+        let found = ScaleFactors::at(&feet, DVec2::new(6_500_000.0, 2_000_000.0)).expect("inside");
         assert!(found.error() < 1e-3, "{found:?}");
         let old = Crs::from_epsg(26711).expect("known");
-        let found = MapScale::at(&old, DVec2::new(500_000.0, 4_000_000.0)).expect("inside");
+        let found = ScaleFactors::at(&old, DVec2::new(500_000.0, 4_000_000.0)).expect("inside");
         assert!((found.most - 0.9996).abs() < 1e-5, "{found:?}");
     }
 
     #[test]
     fn degrees_and_local_meters_have_no_scale() {
-        assert_eq!(MapScale::at(&Crs::wgs84(), DVec2::ZERO), None);
-        assert_eq!(MapScale::at(&Crs::local(), DVec2::ZERO), None);
+        assert_eq!(ScaleFactors::at(&Crs::wgs84(), DVec2::ZERO), None);
+        assert_eq!(ScaleFactors::at(&Crs::local(), DVec2::ZERO), None);
         let utm = Crs::from_epsg(32616).expect("known");
-        assert_eq!(MapScale::at(&utm, DVec2::splat(1e300)), None);
+        assert_eq!(ScaleFactors::at(&utm, DVec2::splat(1e300)), None);
     }
 }

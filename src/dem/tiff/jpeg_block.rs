@@ -22,26 +22,26 @@ use crate::dem::tiff::storage::{Storage, TO_DEFLATE, TiffBlock};
 const MARKER: usize = 2;
 
 /// The photometric interpretation "luminance and chroma".
-pub(super) const YCBCR: u16 = 6;
+pub(in crate::dem) const YCBCR: u16 = 6;
 
 /// The bands of a block side by side, red, green and blue in place of luminance and chroma: the rows within the image,
 /// each as long as the stream's.
-pub(super) struct JpegBlock {
+pub(in crate::dem) struct JpegBlock {
     pub samples: Vec<u8>,
     pub row_bytes: usize,
 }
 
-/// Decodes a block of `packed`, whose tables are `tables`.
+/// Decodes a block of the image that is stored so.
 ///
 /// # Errors
 /// The stream is broken, of another size than the block, or has other components than the image has bands.
-pub(super) fn decode(
-    tables: &[u8],
+pub(in crate::dem) fn decode(
     packed: &[u8],
     storage: &Storage,
     block: TiffBlock,
     photometric: u16,
 ) -> Result<JpegBlock, DemErrorKind> {
+    let tables = &storage.jpeg_tables;
     let tables = tables.get(..tables.len().saturating_sub(MARKER)).filter(|tables| tables.len() > MARKER);
     let stream = match tables {
         Some(tables) => [tables, packed.get(MARKER..).unwrap_or_default()].concat(),

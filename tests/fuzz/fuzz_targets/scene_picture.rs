@@ -1,0 +1,8 @@
+//! Fuzzes `scene_picture`.
+
+#![no_main]
+
+#[path = "../targets.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::scene_picture(bytes));

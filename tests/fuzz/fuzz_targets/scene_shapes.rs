@@ -1,0 +1,8 @@
+//! Fuzzes `scene_shapes`.
+
+#![no_main]
+
+#[path = "../targets.rs"]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::scene_shapes(bytes));

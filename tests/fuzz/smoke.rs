@@ -1,0 +1,194 @@
+//! Each fuzz target on its seeds and on mutants of them, the same in every run.
+
+#[path = "targets.rs"]
+mod targets;
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use targets::TARGETS;
+
+/// Mutants of each seed.
+const MUTANTS: u64 = 120;
+
+/// No seed and no mutant may take longer: they are a few kilobytes.
+const SLOWEST: Duration = Duration::from_secs(10);
+
+/// Numbers that look random, the same for the same seed (xorshift, Marsaglia 2003).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as usize % most.max(1)
+    }
+}
+
+/// What often breaks a reader, in place of bytes.
+const PIECES: [&[u8]; 14] = [
+    b"\0\0\0\0",
+    b"\xff\xff\xff\xff",
+    b"\x7f\xff\xff\xff",
+    b"\xff\xff\xff\x7f",
+    b"\x80\0\0\0",
+    b"-1",
+    b"0",
+    b"1e308",
+    b"-1e-308",
+    b"nan",
+    b"4294967296",
+    b"[[",
+    b"\"",
+    b"\n",
+];
+
+/// A seed with one to four changes: bytes flipped, replaced, cut out, repeated or moved.
+fn mutant(seed: &[u8], numbers: &mut Numbers) -> Vec<u8> {
+    let mut bytes = seed.to_vec();
+    for _ in 0..=numbers.below(4) {
+        let at = numbers.below(bytes.len());
+        let length = numbers.below(16).min(bytes.len() - at);
+        match numbers.below(6) {
+            0 if !bytes.is_empty() => bytes[at] ^= 1 << numbers.below(8),
+            1 => drop(bytes.splice(at..at + length, PIECES[numbers.below(PIECES.len())].iter().copied())),
+            2 => drop(bytes.drain(at..at + length)),
+            3 => bytes.truncate(at),
+            4 => {
+                let repeated = bytes[at..at + length].to_vec();
+                drop(bytes.splice(at..at, repeated));
+            }
+            _ => {
+                let moved: Vec<u8> = bytes.drain(at..at + length).collect();
+                let to = numbers.below(bytes.len() + 1);
+                drop(bytes.splice(to..to, moved));
+            }
+        }
+    }
+    bytes
+}
+
+/// The start of a file of the project, after the byte that picks its name.
+fn file(name: u8, path: &str) -> Vec<u8> {
+    const MOST: usize = 6000;
+    let bytes =
+        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a file of the project");
+    [&[name], &bytes[..bytes.len().min(MOST)]].concat()
+}
+
+fn text(name: u8, text: &str) -> Vec<u8> {
+    [&[name], text.as_bytes()].concat()
+}
+
+fn seeds(target: &str) -> Vec<Vec<u8>> {
+    match target {
+        "elevation" => vec![
+            file(0, "assets/jacksboro/dem.tif"),
+            file(1, "assets/jacksboro/valley.asc"),
+            text(1, "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n1 2 3\n4 5 -1\n"),
+            vec![2; 2 * 1201 * 3],
+            text(5, "binterr1.3\x03\0\0\0\x03\0\0\0\x02\0\0\0\x01\0\x10\0"),
+            text(7, "DSAA\n3 2\n0 20\n0 10\n1 6\n1 2 3\n4 5 6\n"),
+            text(8, "0 0 1\n5 0 2\n0 5 3\n5 5 4\n"),
+            file(9, "assets/jacksboro/hills.png"),
+            text(10, "NROWS 2\nNCOLS 2\nNBITS 16\nBYTEORDER I\nULXMAP 0\nULYMAP 9\nXDIM 1\nYDIM 1\n"),
+        ],
+        "points" => vec![
+            b"x,y,z\n1,2,3\n4,5,6\n".to_vec(),
+            [&b"LASF"[..], &[0; 20], &[1, 2], &[0; 68], &[227, 0, 227, 0], &[0; 200]].concat(),
+        ],
+        "vectors" => vec![
+            file(0, "assets/jacksboro/lake.geojson"),
+            file(0, "assets/jacksboro/crossing.geojson"),
+            text(4, "<gpx version=\"1.1\"><trk><name>a</name><trkseg><trkpt lat=\"1\" lon=\"2\"><ele>3</ele></trkpt>\
+                     <trkpt lat=\"1.1\" lon=\"2\"/></trkseg></trk></gpx>"),
+            text(5, "<kml><Document><Placemark><name>a</name><Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 1,0 \
+                     1,1 0,0</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>"),
+            text(6, "<osm><node id=\"1\" lat=\"1\" lon=\"2\"/><node id=\"2\" lat=\"1.1\" lon=\"2\"/><way id=\"3\">\
+                     <nd ref=\"1\"/><nd ref=\"2\"/><tag k=\"highway\" v=\"track\"/></way></osm>"),
+            [&[1][..], &[0, 0, 0x27, 0x0a], &[0; 20], &[0, 0, 0, 50], &[0xe8, 3, 0, 0, 3, 0, 0, 0], &[0; 72]].concat(),
+        ],
+        "models" => vec![
+            file(0, "assets/models/watchtower.3ds"),
+            file(1, "assets/models/farmhouse.obj"),
+            file(2, "assets/models/tent.glb"),
+            text(3, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\
+                     \"accessors\":[{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"bufferView\":0}]}"),
+        ],
+        "scene_text" => ["road", "areas", "symbols", "expressions", "phases"]
+            .map(|name| file(b'\n', &format!("scenes/{name}.toml")))
+            .to_vec(),
+        "scene_build" => [
+            "[[road]]\nwidth = 6\nprofile = \"conform\"\npoints = [[500030, 4000060], [500240, 4000200], [500450, 4000300]]\n",
+            "[[river]]\nwidth = 4\npoints = [[500450, 4000450], [500240, 4000200], [500030, 4000060]]\n",
+            "[[lake]]\npoints = [[500090, 4000090], [500200, 4000090], [500190, 4000200], [500080, 4000190]]\n",
+            "[[area]]\ncover = \"forest\"\npoints = [[500030, 4000030], [500400, 4000400], [500400, 4000030], [500030, 4000400]]\n",
+            "[[building]]\nheight = 9\npoints = [[500090, 4000090], [500120, 4000090], [500120, 4000110], [500090, 4000110]]\n",
+            "[[label]]\ntext = \"a\"\nat = [500240, 4000240]\n[[camera]]\nname = \"c\"\neye = [500240, 3999900]\n\
+             eye_elevation = 300\nlook_at = [500240, 4000240]\n",
+            "[[earthwork]]\nkind = \"crater\"\ndiameter = 40\npoints = [[500240, 4000240]]\n",
+        ]
+        .map(|tables| tables.as_bytes().to_vec())
+        .to_vec(),
+        "scene_shapes" | "scene_picture" | "walk" => {
+            // Choices, not a text: whatever bytes they are, they choose something.
+            let mut numbers = Numbers(0x5851_F42D_4C95_7F2D);
+            (0..12).map(|seed| (0..60 + 20 * seed).map(|_| numbers.below(256) as u8).collect()).collect()
+        }
+        _ => [
+            "width * 2 + if(lanes > 2, 3.5, 0)",
+            "EPSG:32616 +to_meter=0.3048",
+            "+proj=lcc +lat_1=49 +lat_2=44 +lat_0=46.5 +lon_0=3 +ellps=GRS80 +units=m",
+            "PROJCS[\"a\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],\
+             UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"central_meridian\",-87],\
+             UNIT[\"metre\",1]]",
+            "130310001612110001041020000000",
+        ]
+        .map(|words| words.as_bytes().to_vec())
+        .to_vec(),
+    }
+}
+
+fn run(name: &str, target: fn(&[u8]), bytes: &[u8], what: &str) {
+    let start = Instant::now();
+    target(bytes);
+    let took = start.elapsed();
+    assert!(took < SLOWEST, "{name}: {what} took {took:?}: {:?}", String::from_utf8_lossy(bytes));
+}
+
+#[test]
+fn every_target_ends_with_an_answer_or_an_error_on_seeds_and_mutants() {
+    for (name, target) in TARGETS {
+        // A scene is built by many passes, which takes longer than reading a file.
+        let mutants = match name {
+            "scene_build" => MUTANTS / 3,
+            "scene_shapes" => MUTANTS / 8,
+            "scene_picture" | "walk" => MUTANTS / 40,
+            _ => MUTANTS,
+        };
+        let seeds = seeds(name);
+        assert!(!seeds.is_empty(), "{name}");
+        for (index, seed) in seeds.iter().enumerate() {
+            run(name, target, seed, &format!("seed {index}"));
+            let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15 ^ (index as u64 + 1));
+            for number in 0..mutants {
+                run(name, target, &mutant(seed, &mut numbers), &format!("mutant {number} of seed {index}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn seeds_reach_behind_the_first_check() {
+    // A seed that no reader takes makes mutants that test nothing.
+    use sandtable::dem::read::{DemHints, read};
+    let grid = &seeds("elevation")[2];
+    assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
+    let folder = std::env::temp_dir();
+    assert!(folder.is_dir());
+    for seed in seeds("scene_build") {
+        let text = String::from_utf8(seed).expect("text");
+        targets::scene_build(text.as_bytes());
+    }
+}

@@ -1,0 +1,148 @@
+//! What is fuzzed: each target takes any bytes, and must end with an answer or an error. Coverage-guided runs and the smoke
+//! test of `cargo test` share them.
+
+mod byte_source;
+mod shapes;
+mod walks;
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use sandtable::dem::points::{self, PointHints};
+use sandtable::dem::read::{self as elevation, DemHints};
+use sandtable::description::expression::Expression;
+use sandtable::description::parse::parse_bytes;
+use sandtable::geom::crs::Crs;
+use sandtable::model::Companions;
+use sandtable::model::error::CompanionError;
+use sandtable::model::read as models;
+use sandtable::pipeline::scene_file::build_scene_text;
+use sandtable::symbology::code::SymbolCode;
+use sandtable::vector::hints::VectorHints;
+use sandtable::vector::read as vectors;
+
+/// A target by its name.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All targets.
+#[allow(dead_code, reason = "each fuzz target is a program that uses one of them")]
+pub const TARGETS: [Target; 10] = [
+    ("elevation", elevation),
+    ("points", points),
+    ("vectors", vectors),
+    ("models", models),
+    ("scene_text", scene_text),
+    ("scene_build", scene_build),
+    ("scene_shapes", scene_shapes),
+    ("scene_picture", scene_picture),
+    ("walk", walk),
+    ("words", words),
+];
+
+/// The names under which a rasters's bytes are read: some formats are known by the name alone.
+const RASTERS: [&str; 12] = [
+    "a.tif", "a.asc", "a.hgt", "a.dt1", "a.dem", "a.bt", "a.ter", "a.grd", "a.xyz", "a.png", "a.bil", "a.zip",
+];
+
+/// The names of vector files.
+const VECTORS: [&str; 9] =
+    ["a.geojson", "a.shp", "a.gpkg", "a.fgb", "a.gpx", "a.kml", "a.osm", "a.osm.pbf", "a.zip"];
+
+/// The names of models.
+const MODELS: [&str; 4] = ["a.3ds", "a.obj", "a.glb", "a.gltf"];
+
+/// A name, by the first byte, and the rest of the bytes.
+fn named<'a>(names: &[&'static str], bytes: &'a [u8]) -> Option<(&'static str, &'a [u8])> {
+    let (first, rest) = bytes.split_first()?;
+    Some((names[usize::from(*first) % names.len()], rest))
+}
+
+/// Elevation files, with a header beside them that is their own bytes.
+pub fn elevation(bytes: &[u8]) {
+    let Some((name, bytes)) = named(&RASTERS, bytes) else { return };
+    let beside = |name: &str| name.ends_with(".hdr").then(|| bytes.to_vec());
+    let hints = DemHints { height_scale: Some(1.0), companions: &beside, ..DemHints::default() };
+    if let Ok(raster) = elevation::read(name, bytes, &hints) {
+        assert!(raster.width > 0 && raster.height > 0, "a raster without samples");
+        assert!(raster.map_from_grid.is_finite(), "a raster that lies nowhere");
+    }
+}
+
+/// Scattered points: LAS, LAZ and tables.
+pub fn points(bytes: &[u8]) {
+    if let Ok(cloud) = points::read(bytes, &PointHints::default()) {
+        assert!(cloud.points.iter().all(|point| point.is_finite()), "a point that lies nowhere");
+    }
+}
+
+/// Vector files.
+pub fn vectors(bytes: &[u8]) {
+    let Some((name, bytes)) = named(&VECTORS, bytes) else { return };
+    let wgs84 = Crs::wgs84();
+    let _ = vectors::read(name, bytes, &VectorHints { crs: Some(&wgs84), ..VectorHints::default() });
+}
+
+/// Models with whatever they name beside them.
+pub fn models(bytes: &[u8]) {
+    struct Itself<'a>(&'a [u8]);
+    impl Companions for Itself<'_> {
+        fn load(&self, _: &str) -> Result<Vec<u8>, CompanionError> {
+            Ok(self.0.to_vec())
+        }
+    }
+    let Some((name, bytes)) = named(&MODELS, bytes) else { return };
+    let Ok(model) = models::read(name, bytes, &Itself(bytes)) else { return };
+    for part in &model.parts {
+        let count = part.mesh.vertices.len();
+        let corners = part.mesh.triangles.iter().flatten();
+        assert!(corners.clone().all(|corner| corner.index() < count), "a corner beyond the last vertex");
+        assert!((part.material.0 as usize) < model.materials.len(), "a material beyond the last");
+    }
+}
+
+/// The decoder of scene files.
+pub fn scene_text(bytes: &[u8]) {
+    let _ = parse_bytes("a.toml", bytes);
+}
+
+/// Scenes on a small hill: the tables that follow `[terrain]`.
+pub fn scene_build(bytes: &[u8]) {
+    let Ok(tables) = std::str::from_utf8(bytes) else { return };
+    let text = format!("crs = \"EPSG:32616\"\n[terrain]\ndem = \"hill.asc\"\n{tables}");
+    let _ = build_scene_text(&hill().join("a.toml"), &text, &[], &|_| ());
+}
+
+/// Scenes of features in any shape, whose draw lists are sound.
+pub fn scene_shapes(bytes: &[u8]) {
+    shapes::listed(bytes);
+}
+
+/// Scenes of features in any shape, drawn with their labels.
+pub fn scene_picture(bytes: &[u8]) {
+    shapes::drawn(bytes);
+}
+
+/// Walks over such scenes, by cameras and edits in any order, after each of which the invariants hold.
+pub fn walk(bytes: &[u8]) {
+    walks::walk(bytes);
+}
+
+/// Texts that a user writes on the command line or in a key: expressions, systems, symbol codes.
+pub fn words(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let _ = (Expression::parse(text), Crs::parse(text), SymbolCode::parse(text));
+}
+
+/// A folder with a hill of 17 by 17 posts, 30 m apart, from (500000, 4000000) on; left behind, a kilobyte.
+fn hill() -> &'static PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = std::env::temp_dir().join(format!("sandtable-fuzz-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a writable temporary folder");
+        let post = |index: i32| (100 - (index % 17 - 8).pow(2) - (index / 17 - 8).pow(2)).to_string();
+        let heights = (0..17 * 17).map(post).collect::<Vec<_>>().join(" ");
+        let head = "ncols 17\nnrows 17\nxllcenter 500000\nyllcenter 4000000\ncellsize 30\n";
+        std::fs::write(folder.join("hill.asc"), format!("{head}{heights}\n")).expect("writable");
+        folder
+    })
+}
