@@ -24,6 +24,9 @@ pub struct ServeArguments {
     /// Where to listen; port 0 takes a free one. Only this machine can reach 127.0.0.1, all can reach 0.0.0.0
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", value_parser = address)]
     pub listen: SocketAddr,
+    /// A name by which clients reach the service, beside localhost and addresses in numbers; others are refused
+    #[arg(long, value_name = "NAME")]
+    pub host: Vec<String>,
     /// Write a line for each request to standard error: method, path, status, milliseconds
     #[arg(long)]
     pub log: bool,
@@ -33,7 +36,7 @@ pub struct ServeArguments {
     /// The most posts of one viewshed: those in the square around its range
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_posts, value_parser = clap::value_parser!(u32).range(1..=268_435_456))]
     pub max_posts: u32,
-    /// The most requests answered at once; more are refused with 503
+    /// The most requests of one client that are answered or wait for it at once; more are refused with 503
     #[arg(long, value_name = "N", default_value_t = ServiceLimits::default().max_requests, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub max_requests: u32,
     /// The most connections held open; one client may hold half of them
@@ -64,6 +67,7 @@ pub fn run(arguments: &ServeArguments, serve: Option<ServeProgram>) -> Result<()
             allowed: arguments.access.allow.clone(),
         },
         listen: arguments.listen,
+        hosts: arguments.host.clone(),
         limits: ServiceLimits {
             max_points: arguments.max_points,
             max_posts: arguments.max_posts,

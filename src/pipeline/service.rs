@@ -21,6 +21,9 @@ pub struct ServiceOptions {
     pub dataset: DatasetOptions,
     /// The address to listen at; port 0 takes a free one.
     pub listen: SocketAddr,
+    /// The names by which clients reach the service, beside `localhost` and addresses in numbers; requests for others are
+    /// refused.
+    pub hosts: Vec<String>,
     /// Limits of requests.
     pub limits: ServiceLimits,
     /// Whether each request is logged.
@@ -36,9 +39,9 @@ pub struct ServiceLimits {
     pub max_points: u32,
     /// The most posts of one viewshed: those in the square around its range.
     pub max_posts: u32,
-    /// The most requests answered at once.
+    /// The most requests of one client that are answered or wait for it at once.
     pub max_requests: u32,
-    /// The most connections held open.
+    /// The most connections held open, of one client half of them.
     pub max_connections: u32,
     /// How long a request may take to arrive, and how long its answer may take, seconds.
     pub timeout_s: u16,

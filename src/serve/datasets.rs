@@ -5,10 +5,15 @@
 
 use std::sync::Arc;
 
+use axum::Json;
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+
 use crate::message::chain::error_text;
 use crate::pipeline::dataset::{Dataset, OpenError};
 use crate::pipeline::service::{NamedFile, ServiceOptions};
-use crate::serve::reply::{HttpError, quoted};
+use crate::serve::query::Service;
+use crate::serve::reply::{HttpError, OK, quoted};
 use crate::terrain::query::service::Snapshot;
 
 pub struct ServedDataset {
@@ -17,6 +22,24 @@ pub struct ServedDataset {
 }
 
 impl ServedDataset {
+    /// What it is.
+    pub fn facts(&self) -> DatasetFacts<'_> {
+        let source = self.dataset.source();
+        let extent = source.extent();
+        DatasetFacts {
+            name: &self.name,
+            crs: source.crs.as_ref().map(|crs| crs.name().to_owned()),
+            extent: DatasetExtent {
+                min_x: extent.min.x,
+                min_y: extent.min.y,
+                max_x: extent.max.x,
+                max_y: extent.max.y,
+            },
+            columns: source.width,
+            rows: source.height,
+        }
+    }
+
     /// The current ground; waits while it is being made.
     pub fn snapshot(&self) -> Result<Arc<Snapshot>, HttpError> {
         let service = self.dataset.service().map_err(|error| {
@@ -25,6 +48,37 @@ impl ServedDataset {
         })?;
         Ok(service.snapshot())
     }
+}
+
+/// What a dataset is, in answers.
+#[derive(Serialize)]
+pub struct DatasetFacts<'a> {
+    name: &'a str,
+    crs: Option<String>,
+    /// Of the raster as read, out to its outer edges, in `crs`.
+    extent: DatasetExtent,
+    columns: u32,
+    rows: u32,
+}
+
+#[derive(Serialize)]
+struct DatasetExtent {
+    min_x: f64,
+    min_y: f64,
+    max_x: f64,
+    max_y: f64,
+}
+
+/// `/datasets`, in the frame that the Open Topo Data API gives it.
+#[derive(Serialize)]
+struct DatasetList<'a> {
+    results: Vec<DatasetFacts<'a>>,
+    status: &'static str,
+}
+
+pub fn page(service: &Service) -> Response {
+    let results = service.datasets.all().iter().map(ServedDataset::facts).collect();
+    Json(DatasetList { results, status: OK }).into_response()
 }
 
 /// All datasets, in the order in which they were named; at least one.

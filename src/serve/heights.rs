@@ -29,6 +29,7 @@ use crate::serve::query::{Query, QueryWeight, Service};
 use crate::serve::reply::{HttpError, JsonArray, OK, quoted};
 use crate::serve::samples::along_path;
 use crate::terrain::query::{Interpolation, Surface};
+use crate::terrain::stop_flag::StopFlag;
 
 /// The most points that the request's own thread queries, in some tens of microseconds. Moving a query to another
 /// thread takes two context switches, about as long.
@@ -95,7 +96,11 @@ impl Query for HeightsQuery {
         if is_made && self.positions.len() <= LIGHT_POINTS { QueryWeight::Light } else { QueryWeight::Heavy }
     }
 
-    fn answer(self, service: &Service) -> Result<Response, HttpError> {
+    fn most_bytes(&self, _: &Service) -> usize {
+        self.positions.len() * RESULT_BYTES
+    }
+
+    fn answer(self, service: &Service, _: &StopFlag) -> Result<Response, HttpError> {
         let heights = self.heights(service)?;
         let results = heights.iter().zip(&self.positions);
         let dataset = |found: &FoundHeight| service.datasets.at(found.dataset).name.as_str();

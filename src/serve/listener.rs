@@ -14,20 +14,20 @@
 //! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits
 //! its body and [`router`](crate::serve::router) its answer.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::SocketAddr;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 
-use axum::serve::Listener;
+use axum::extract::connect_info::Connected;
+use axum::serve::{IncomingStream, Listener};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep};
+
+use crate::serve::clients::{Clients, Connection, OpenConnection};
 
 /// The time limit of a quiet connection: a megabyte over a slow line, and a pause between requests.
 const QUIET: Duration = Duration::from_secs(60);
@@ -44,31 +44,26 @@ const FULL: &[u8] =
     connection: close\r\ncontent-length: 72\r\n\r\n\
     {\"status\":\"SERVER_ERROR\",\"error\":\"too many open connections; try again\"}";
 
-/// Accepts connections, as many as may be open, and of one client no more than half of them.
+/// Accepts connections, as many as [`Clients`] admits.
 pub struct Gate {
     listener: TcpListener,
-    permits: Arc<Semaphore>,
-    most_of_one: usize,
-    clients: Arc<Mutex<BTreeMap<IpAddr, usize>>>,
+    clients: Arc<Clients>,
 }
 
 impl Gate {
-    /// Accepts at most `most` connections at a time; more are refused and closed.
-    pub fn new(listener: TcpListener, most: usize) -> Self {
-        let most_of_one = most.div_ceil(2);
-        Self { listener, permits: Arc::new(Semaphore::new(most)), most_of_one, clients: Arc::default() }
+    /// Accepts connections of `clients`; others are refused and closed.
+    pub fn new(listener: TcpListener, clients: Arc<Clients>) -> Self {
+        Self { listener, clients }
     }
+}
 
-    /// The permit of a connection from `address`; `None` where too many are open, of all clients or of this one.
-    fn admit(&self, address: IpAddr) -> Option<ConnectionPermit> {
-        let permit = Arc::clone(&self.permits).try_acquire_owned().ok()?;
-        let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
-        let open = clients.entry(address).or_default();
-        if *open >= self.most_of_one {
-            return None;
-        }
-        *open += 1;
-        Some(ConnectionPermit { _permit: permit, address, clients: Arc::clone(&self.clients) })
+/// The connection over which a request came.
+#[derive(Clone, Debug)]
+pub struct RequestConnection(pub Arc<Connection>);
+
+impl Connected<IncomingStream<'_, Gate>> for RequestConnection {
+    fn connect_info(stream: IncomingStream<'_, Gate>) -> Self {
+        Self(Arc::clone(&stream.io().open.connection))
     }
 }
 
@@ -80,8 +75,8 @@ impl Listener for Gate {
         use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset};
         loop {
             match self.listener.accept().await {
-                Ok((stream, from)) => match self.admit(from.ip()) {
-                    Some(permit) => return (TimedStream::new(stream, permit), from),
+                Ok((stream, from)) => match self.clients.admit(from.ip()) {
+                    Some(open) => return (TimedStream::new(stream, open), from),
                     // Does not block on a client that does not read.
                     None => drop(stream.try_write(FULL)),
                 },
@@ -95,25 +90,6 @@ impl Listener for Gate {
 
     fn local_addr(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
-    }
-}
-
-/// An open connection among those of its client.
-struct ConnectionPermit {
-    _permit: OwnedSemaphorePermit,
-    address: IpAddr,
-    clients: Arc<Mutex<BTreeMap<IpAddr, usize>>>,
-}
-
-impl Drop for ConnectionPermit {
-    fn drop(&mut self) {
-        let mut clients = self.clients.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Entry::Occupied(mut open) = clients.entry(self.address) {
-            *open.get_mut() -= 1;
-            if *open.get() == 0 {
-                open.remove();
-            }
-        }
     }
 }
 
@@ -131,16 +107,16 @@ pub struct TimedStream {
     /// The end of the phase; not used while busy.
     end: Instant,
     alarm: Pin<Box<Sleep>>,
-    _permit: ConnectionPermit,
+    open: OpenConnection,
 }
 
 impl TimedStream {
-    fn new(stream: TcpStream, permit: ConnectionPermit) -> Self {
+    fn new(stream: TcpStream, open: OpenConnection) -> Self {
         // An answer is written at once; waiting to fill a packet would only delay it.
         let _ = stream.set_nodelay(true);
         let end = Instant::now() + QUIET;
         let alarm = Box::pin(tokio::time::sleep_until(end));
-        Self { stream, phase: ConnectionPhase::Quiet, end, alarm, _permit: permit }
+        Self { stream, phase: ConnectionPhase::Quiet, end, alarm, open }
     }
 
     fn received(&mut self, bytes: &[u8]) {
@@ -154,6 +130,7 @@ impl TimedStream {
         };
         let ends = blank.ends_in(bytes);
         self.phase = if ends { ConnectionPhase::Busy } else { ConnectionPhase::Head(blank) };
+        self.open.connection.set_busy(ends);
     }
 
     fn sent(&mut self, bytes: &[u8]) {
@@ -161,6 +138,15 @@ impl TimedStream {
         if self.phase != ConnectionPhase::Quiet && !bytes.starts_with(b"HTTP/1.1 100") {
             self.phase = ConnectionPhase::Quiet;
             self.end = Instant::now() + QUIET;
+            self.open.connection.set_busy(false);
+        }
+    }
+
+    /// Fails where the connection was closed in favor of another.
+    fn check_open(&self, context: &Context<'_>) -> io::Result<()> {
+        match self.open.connection.is_closed(context.waker()) {
+            true => Err(io::ErrorKind::ConnectionAborted.into()),
+            false => Ok(()),
         }
     }
 
@@ -183,12 +169,14 @@ impl AsyncRead for TimedStream {
         into: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         let this = self.get_mut();
+        this.check_open(context)?;
         let before = into.filled().len();
         match Pin::new(&mut this.stream).poll_read(context, into) {
             Poll::Pending => this.poll_end(context),
             done => {
                 let bytes = &into.filled()[before..];
                 if !bytes.is_empty() {
+                    this.open.connection.moved(bytes.len());
                     this.received(bytes);
                 }
                 done
@@ -208,10 +196,16 @@ impl AsyncWrite for TimedStream {
         parts: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         let this = self.get_mut();
+        this.check_open(context)?;
         this.sent(parts.first().map_or(&[], |part| part));
         match Pin::new(&mut this.stream).poll_write_vectored(context, parts) {
             Poll::Pending => this.poll_end(context),
-            done => done,
+            done => {
+                if let Poll::Ready(Ok(bytes)) = done {
+                    this.open.connection.moved(bytes);
+                }
+                done
+            }
         }
     }
 

@@ -12,12 +12,14 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
+use crate::serve::api;
 use crate::serve::coordinates::Location;
 use crate::serve::parameters::Parameters;
 use crate::serve::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curvature};
 use crate::serve::reply::{HttpError, OK};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use crate::terrain::stop_flag::StopFlag;
 
 pub struct LosQuery {
     ground: GroundQuery,
@@ -25,8 +27,6 @@ pub struct LosQuery {
     ends: [SightEnd; 2],
     curvature: Curvature,
 }
-
-const KNOWN: [&str; 6] = ["from", "to", "observer_height", "target_height", "refraction", "earth"];
 
 #[derive(Serialize)]
 struct LosAnswer<'a> {
@@ -47,7 +47,7 @@ struct LosBlocker {
 
 impl Query for LosQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &KNOWN)?;
+        let ground = GroundQuery::read(service, parameters, &api::LOS)?;
         let end = |name: &str, height: &str, default_m: f64| {
             let text = parameters.required(name, "46.2,-122.19")?;
             let at = ground.coordinates.position(name, text)?;
@@ -57,7 +57,7 @@ impl Query for LosQuery {
         Ok(Self { ends, curvature: curvature(parameters)?, ground })
     }
 
-    fn answer(self, service: &Service) -> Result<Response, HttpError> {
+    fn answer(self, service: &Service, _: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
         let snapshot = served.snapshot()?;
         let on_ground = |what: &str, end: SightEnd| {

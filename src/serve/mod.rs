@@ -3,23 +3,30 @@
 //! ```text
 //! listener      connections: their number and time limits
 //!    └─ router  requests: their address, their limits, the thread that answers them
+//!         ├─ host, clients, answers                        who may ask, and for how much at once
 //!         ├─ parameters, coordinates, polyline, samples    reading
 //!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
 //!         ├─ datasets                                      the rasters and scenes that are served
-//!         └─ reply, help, health                           writing
+//!         ├─ api ─► help, openapi                          what may be asked, as a table and as pages
+//!         └─ reply, health                                 writing
 //! ```
 //!
 //! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and its numbers
 //! read back to the same bits. Requests name no files and change no state: the datasets are fixed when the service
 //! starts.
 
+mod answers;
+mod api;
+mod clients;
 mod coordinates;
 mod datasets;
 mod health;
 mod heights;
 mod help;
+mod host;
 mod listener;
 mod los;
+mod openapi;
 mod parameters;
 mod polyline;
 mod profile;
@@ -40,10 +47,12 @@ use tokio::sync::{Semaphore, oneshot};
 
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::OpenError;
-use crate::pipeline::service::ServiceOptions;
+use crate::pipeline::service::{ServiceLimits, ServiceOptions};
+use crate::serve::answers::{AnswerMemory, UNITS_OF_CLIENT};
+use crate::serve::clients::{ClientShares, Clients};
 use crate::serve::datasets::Datasets;
-use crate::serve::listener::Gate;
-use crate::serve::parameters::LONG_BODIES;
+use crate::serve::listener::{Gate, RequestConnection};
+use crate::serve::parameters::{LONG_BODIES, LONG_BODIES_OF_CLIENT};
 use crate::serve::query::Service;
 
 /// Why the service cannot start or continue.
@@ -71,9 +80,12 @@ pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
         datasets: Datasets::open(options)?,
         limits: options.limits,
         wgs84: Crs::wgs84(),
-        requests: Arc::new(Semaphore::new(options.limits.max_requests as usize)),
-        long_bodies: Semaphore::new(LONG_BODIES),
-        viewsheds: Semaphore::new(viewsheds_at_once()),
+        hosts: options.hosts.clone(),
+        clients: Clients::new(options.limits.max_connections as usize, shares(&options.limits)),
+        answers: AnswerMemory::default(),
+        long_bodies: Arc::new(Semaphore::new(LONG_BODIES)),
+        heavy: Arc::new(Semaphore::new(cores())),
+        expensive: Arc::new(Semaphore::new(expensive_at_once())),
         log: options.log,
         write_line: options.write_line,
     });
@@ -88,14 +100,27 @@ fn cores() -> usize {
 }
 
 /// A viewshed uses all cores; with several at once, a small one finishes before a large one.
-fn viewsheds_at_once() -> usize {
+fn expensive_at_once() -> usize {
     (cores() / 2).clamp(1, 4)
 }
 
-/// A runtime with a listening thread per core, and enough threads for heavy queries that one per core is left beside
-/// all viewsheds.
+/// What one client may have at once. Alone it may use all cores, but begin only one expensive query at a time.
+fn shares(limits: &ServiceLimits) -> ClientShares {
+    ClientShares {
+        connections: limits.max_connections.div_ceil(2) as usize,
+        requests: limits.max_requests as usize,
+        long_bodies: LONG_BODIES_OF_CLIENT,
+        answers: UNITS_OF_CLIENT,
+        heavy: cores(),
+        expensive: 1,
+    }
+}
+
+/// A runtime with a listening thread per core, and threads for all heavy and expensive queries that have their turn and
+/// for reading as many more.
 fn runtime() -> io::Result<Runtime> {
-    Builder::new_multi_thread().enable_all().max_blocking_threads(cores() + viewsheds_at_once()).build()
+    let blocking = 2 * cores() + expensive_at_once();
+    Builder::new_multi_thread().enable_all().max_blocking_threads(blocking).build()
 }
 
 /// Makes the ground of every dataset in the background. Queries for elevations as read do not wait for it.
@@ -109,12 +134,14 @@ fn prepare(service: &Arc<Service>) {
 /// Serves until the first signal. Then accepts no more connections and waits for pending answers, until the grace time
 /// ends or a second signal arrives.
 async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> {
-    let gate = Gate::new(listener, service.limits.max_connections as usize);
+    let gate = Gate::new(listener, Arc::clone(&service.clients));
     let address = axum::serve::Listener::local_addr(&gate)?;
     let mut signals = StopSignals::listen()?;
     (service.write_line)(&format!("listening at http://{address}: {}", service.datasets.names()));
     let (stop, stopped) = oneshot::channel::<()>();
-    let serving = axum::serve(gate, router::router(Arc::clone(service))).with_graceful_shutdown(async {
+    let router = router::router(Arc::clone(service));
+    let router = router.into_make_service_with_connect_info::<RequestConnection>();
+    let serving = axum::serve(gate, router).with_graceful_shutdown(async {
         let _ = stopped.await;
     });
     let grace = Duration::from_secs(service.limits.grace_s.into());

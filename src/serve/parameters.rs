@@ -6,7 +6,6 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Json;
@@ -16,8 +15,11 @@ use axum::http::header::{CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+use tokio::sync::SemaphorePermit;
 
 use crate::message::choice::Choice;
+use crate::serve::answers::taking_from_slow;
+use crate::serve::clients::{Connection, HeldResource};
 use crate::serve::query::Service;
 use crate::serve::reply::{HttpError, quoted};
 
@@ -29,6 +31,11 @@ const MOST: usize = 32;
 const LONGEST_URL: usize = 60_000;
 
 const FORM: &str = "application/x-www-form-urlencoded";
+
+const JSON: &str = "application/json";
+
+/// The media types of bodies.
+pub const BODY_TYPES: [&str; 2] = [FORM, JSON];
 
 /// Named values.
 #[derive(Debug, Default)]
@@ -92,10 +99,16 @@ const SHORT_BODY: u64 = 32 * 1024;
 /// as long as its client likes to send.
 pub const LONG_BODIES: usize = 64;
 
-impl FromRequest<Arc<Service>> for Parameters {
-    type Rejection = HttpError;
+/// How many of these one client may send.
+pub const LONG_BODIES_OF_CLIENT: usize = LONG_BODIES / 2;
 
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, HttpError> {
+impl Parameters {
+    /// Receives the parameters of a request that came over `connection`.
+    pub async fn receive(
+        request: Request,
+        service: &Service,
+        connection: &Connection,
+    ) -> Result<Self, HttpError> {
         let length = request.uri().path_and_query().map_or(0, |whole| whole.as_str().len());
         if length > LONGEST_URL {
             let reason = format!(
@@ -108,7 +121,7 @@ impl FromRequest<Arc<Service>> for Parameters {
         let Query(mut parameters) = query.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
         if request.method() == Method::POST {
             let is_json = is_json(request.headers())?;
-            let body = read_body(request, service).await?;
+            let body = read_body(request, service, connection).await?;
             parameters.0.append(&mut Self::from_body(body, is_json).await?.0);
         }
         Ok(parameters)
@@ -219,14 +232,42 @@ fn is_json(headers: &HeaderMap) -> Result<Option<bool>, HttpError> {
     let Some(found) = headers.get(CONTENT_TYPE) else { return Ok(None) };
     let named = found.to_str().unwrap_or_default().split(';').next().unwrap_or_default().trim();
     match named.to_ascii_lowercase().as_str() {
-        "application/json" => Ok(Some(true)),
+        JSON => Ok(Some(true)),
         FORM => Ok(Some(false)),
         _ => Err(refused("content type", found, &format!("send application/json or {FORM}"))),
     }
 }
 
+/// A long body that is being received.
+struct LongBody<'a> {
+    _own: SemaphorePermit<'a>,
+    _all: SemaphorePermit<'a>,
+    connection: &'a Connection,
+}
+
+impl<'a> LongBody<'a> {
+    /// Waits until another long body may be received; refused where the client sends its share already.
+    async fn begin(service: &'a Service, connection: &'a Connection) -> Result<Self, HttpError> {
+        let busy = |_| {
+            let reason = format!("{LONG_BODIES_OF_CLIENT} of your long bodies are being received; try again");
+            HttpError::busy(1, reason).closing()
+        };
+        let own = connection.client.long_bodies.try_acquire().map_err(busy)?;
+        let all = taking_from_slow(&service.clients, HeldResource::Body, service.long_bodies.acquire());
+        let all = all.await.expect("no semaphore of the service is ever closed");
+        connection.hold(Some(HeldResource::Body));
+        Ok(Self { _own: own, _all: all, connection })
+    }
+}
+
+impl Drop for LongBody<'_> {
+    fn drop(&mut self) {
+        self.connection.hold(None);
+    }
+}
+
 /// The whole body, within the limits of size and time.
-async fn read_body(request: Request, service: &Service) -> Result<Bytes, HttpError> {
+async fn read_body(request: Request, service: &Service, connection: &Connection) -> Result<Bytes, HttpError> {
     let limits = &service.limits;
     // 128 bytes a point hold both coordinates at full precision with the quotes and escapes of any notation.
     let most = limits.max_points as usize * 128 + 65_536;
@@ -238,17 +279,18 @@ async fn read_body(request: Request, service: &Service) -> Result<Bytes, HttpErr
     if stated.is_some_and(|length: u64| length > most as u64) {
         return Err(too_long());
     }
-    let _permit = match stated {
-        Some(..=SHORT_BODY) => None,
-        _ => Some(service.long_bodies.try_acquire().map_err(|_| {
-            HttpError::busy(1, format!("{LONG_BODIES} long bodies are being received; try again")).closing()
-        })?),
+    let receive = async {
+        let _permits = match stated {
+            Some(..=SHORT_BODY) => None,
+            _ => Some(LongBody::begin(service, connection).await?),
+        };
+        Ok::<_, HttpError>(to_bytes(request.into_body(), most).await)
     };
     let timeout = Duration::from_secs(limits.timeout_s.into());
-    match tokio::time::timeout(timeout, to_bytes(request.into_body(), most)).await {
-        Ok(Ok(bytes)) => Ok(bytes),
+    match tokio::time::timeout(timeout, receive).await {
         // Either the body exceeds the limit, or the client has left and reads no answer.
-        Ok(Err(_)) => Err(too_long()),
+        Ok(Ok(body)) => body.map_err(|_| too_long()),
+        Ok(Err(refusal)) => Err(refusal),
         Err(_) => {
             let reason = format!("the body did not arrive within {} s", limits.timeout_s);
             Err(HttpError::new(StatusCode::REQUEST_TIMEOUT, reason).closing())

@@ -13,16 +13,21 @@ use axum::response::{IntoResponse, Response};
 use glam::DVec2;
 use serde::Serialize;
 
+use crate::serve::api;
 use crate::serve::coordinates::Location;
 use crate::serve::parameters::Parameters;
-use crate::serve::query::{GroundQuery, Query, Service};
+use crate::serve::query::{GroundQuery, Query, QueryWeight, Service};
 use crate::serve::reply::{HttpError, JsonArray, OK};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::profile;
+use crate::terrain::stop_flag::StopFlag;
 
 /// The limit of a profile's stations, as a multiple of the limit of a request's points, since every edge of a triangle
 /// adds a station.
 const STATIONS_PER_POINT: usize = 10;
+
+/// The approximate size of a station in JSON.
+const STATION_BYTES: usize = 130;
 
 pub struct ProfileQuery {
     ground: GroundQuery,
@@ -48,7 +53,7 @@ struct ProfileResult {
 
 impl Query for ProfileQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &["locations"])?;
+        let ground = GroundQuery::read(service, parameters, &api::PROFILE)?;
         let text = parameters.required("locations", "46.2,-122.19|46.21,-122.2")?;
         let vertices = ground.coordinates.positions(text, service.limits.max_points as usize)?;
         if vertices.len() < 2 {
@@ -57,7 +62,19 @@ impl Query for ProfileQuery {
         Ok(Self { ground, vertices })
     }
 
-    fn answer(self, service: &Service) -> Result<Response, HttpError> {
+    fn weight(&self, _: &Service) -> QueryWeight {
+        QueryWeight::Expensive
+    }
+
+    fn most_bytes(&self, service: &Service) -> usize {
+        let source = self.ground.served(service).dataset.source();
+        // A warped ground has about as many posts; twice as many are enough for any.
+        let on_leg = 4 * (source.width as usize + source.height as usize) + 4;
+        let most = service.limits.max_points as usize * STATIONS_PER_POINT;
+        (self.vertices.len() * on_leg).min(most) * STATION_BYTES
+    }
+
+    fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
         let snapshot = served.snapshot()?;
         let to_ground = |(&at, number): (&DVec2, usize)| {
@@ -72,6 +89,9 @@ impl Query for ProfileQuery {
             )));
         }
         let stations = profile(snapshot.lattice(), &line);
+        if stop.is_stopped() {
+            return Err(HttpError::stopped());
+        }
         let results = stations.iter().map(|station| ProfileResult {
             station_m: station.station_m,
             elevation: station.ground.height_m(),

@@ -8,12 +8,16 @@ use tokio::sync::Semaphore;
 
 use crate::geom::crs::Crs;
 use crate::pipeline::service::{RequestLog, ServiceLimits};
+use crate::serve::answers::AnswerMemory;
+use crate::serve::api::ApiAddress;
+use crate::serve::clients::Clients;
 use crate::serve::coordinates::{Coordinates, Location};
 use crate::serve::datasets::{Datasets, ServedDataset};
 use crate::serve::parameters::Parameters;
 use crate::serve::reply::HttpError;
 use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::Curvature;
+use crate::terrain::stop_flag::StopFlag;
 
 /// The greatest height above the ground, in meters: above all aircraft.
 const HIGHEST_M: f64 = 100_000.0;
@@ -27,12 +31,16 @@ pub struct Service {
     pub limits: ServiceLimits,
     /// WGS 84, the system of most requests.
     pub wgs84: Crs,
-    /// Permits for requests that are being answered.
-    pub requests: Arc<Semaphore>,
+    /// The names under which it is asked for, beside its addresses.
+    pub hosts: Vec<String>,
+    pub clients: Arc<Clients>,
+    pub answers: AnswerMemory,
     /// Permits for long bodies that are being received.
-    pub long_bodies: Semaphore,
-    /// Permits for viewsheds that are being computed: each takes all cores and a byte a post.
-    pub viewsheds: Semaphore,
+    pub long_bodies: Arc<Semaphore>,
+    /// Permits for heavy queries that are worked on.
+    pub heavy: Arc<Semaphore>,
+    /// Permits for expensive queries that are worked on: each may take all cores and a byte a post.
+    pub expensive: Arc<Semaphore>,
     pub log: RequestLog,
     /// Writes a line for the user.
     pub write_line: fn(&str),
@@ -43,8 +51,10 @@ pub struct Service {
 pub enum QueryWeight {
     /// The thread that parsed it; it takes microseconds.
     Light,
-    /// A blocking thread.
+    /// A blocking thread, in its turn; milliseconds.
     Heavy,
+    /// A blocking thread and perhaps all others, in its turn among its like; seconds.
+    Expensive,
 }
 
 /// A query with an address of its own.
@@ -57,7 +67,13 @@ pub trait Query: Sized + Send + 'static {
         QueryWeight::Heavy
     }
 
-    fn answer(self, service: &Service) -> Result<Response, HttpError>;
+    /// The size of the answer in bytes, at most, of a query that is not light; 0 for short ones.
+    fn most_bytes(&self, _: &Service) -> usize {
+        0
+    }
+
+    /// Answers the query; what takes long looks at `stop` and ends early where it is set.
+    fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError>;
 }
 
 /// The dataset of a query about its ground, and the coordinates of the request and its answer.
@@ -68,9 +84,9 @@ pub struct GroundQuery {
 }
 
 impl GroundQuery {
-    /// Reads `dataset` and `crs`; refuses parameters other than these and `known`.
-    pub fn read(service: &Service, parameters: &Parameters, known: &[&str]) -> Result<Self, HttpError> {
-        parameters.allow_only(&[&["dataset"][..], known, &["crs"]].concat())?;
+    /// Reads `dataset` and `crs`; refuses parameters that the address does not have.
+    pub fn read(service: &Service, parameters: &Parameters, address: &ApiAddress) -> Result<Self, HttpError> {
+        parameters.allow_only(&address.names())?;
         let dataset = service.datasets.find_one(parameters.get("dataset"))?;
         let native = service.datasets.at(dataset).dataset.crs();
         let coordinates = Coordinates::read(parameters, &native, &service.wgs84)?;

@@ -70,6 +70,11 @@ impl HttpError {
         Self { hint, ..Self::new(StatusCode::SERVICE_UNAVAILABLE, reason) }
     }
 
+    /// The work was stopped, since nobody waits for the answer: 503.
+    pub fn stopped() -> Self {
+        Self::busy(1, "the client has left")
+    }
+
     /// The method is not supported: 405.
     pub fn method(allowed: &'static str) -> Self {
         let reason = format!("this address answers {allowed}");

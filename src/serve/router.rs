@@ -1,11 +1,13 @@
 //! Dispatches requests: from address to query, and from query to thread.
 //!
 //! ```text
-//! request ─► parameters (query, body) ─► permit ─► read ─► light? ─► answer ─► response
-//!              │ 414 413 415 408 400 503    │ 503    │ 400   └ no ─► another thread ────┘ 503 in the end
+//! request ─► host ─► parameters (query, body) ─► permit ─► read ─► light? ─► answer ─► response
+//!           │ 400 421  │ 414 413 415 408 400 503   │ 503    │ 400   └ no ─► turn, memory, another thread ─┘ 503 in the end
 //! ```
 //!
-//! A request takes its permit when all of it is there: clients that send slowly keep nobody from being answered.
+//! A request takes its permit when all of it is there: clients that send slowly keep nobody from being answered. Heavy and
+//! expensive queries take turns, of which each client has its share (see [`clients`](crate::serve::clients)), so that who
+//! asks for much waits for himself and not others for him. Work whose client has left stops.
 //!
 //! A query of a few points takes less time than moving it to another thread, so the thread that parsed it executes it.
 //! Longer work must not block the threads that listen.
@@ -13,31 +15,33 @@
 //! The limits are here and in [`parameters`](crate::serve::parameters), not in layers of `tower-http`: its body limit
 //! refuses in plain text where this API promises JSON; its body timeout counts from byte to byte, so that a client that
 //! sends a byte in time occupies a request forever; its timeout cannot tell a late body (408) from a late answer (503),
-//! and ends the wait but not the work that holds the permit.
+//! and ends the wait but not the work.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use axum::Router;
 use axum::extract::rejection::PathRejection;
-use axum::extract::{FromRequest, Path, Request, State};
+use axum::extract::{ConnectInfo, Path, Request, State};
 use axum::http::header::ALLOW;
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
-use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 use crate::pipeline::service::RequestLog;
-use crate::serve::health;
+use crate::serve::clients::Connection;
 use crate::serve::heights::HeightsQuery;
-use crate::serve::help;
+use crate::serve::listener::RequestConnection;
 use crate::serve::los::LosQuery;
 use crate::serve::parameters::Parameters;
 use crate::serve::profile::ProfileQuery;
 use crate::serve::query::{Query, QueryWeight, Service};
 use crate::serve::reply::{HttpError, quoted};
 use crate::serve::viewshed::ViewshedQuery;
+use crate::serve::{answers, api, datasets, health, help, host, openapi};
+use crate::terrain::stop_flag::StopFlag;
 
 /// Values longer than this are parsed on another thread, because parsing takes longer than the move.
 const LIGHT_BYTES: usize = 32 * 1024;
@@ -54,6 +58,8 @@ type Shared = State<Arc<Service>>;
 pub fn router(service: Arc<Service>) -> Router {
     let router = Router::new()
         .route("/", page(help::page))
+        .route("/datasets", page(datasets::page))
+        .route("/openapi.json", page(openapi::page))
         .route("/health", page(health::page))
         .route("/v1/los", query::<LosQuery>())
         .route("/v1/profile", query::<ProfileQuery>())
@@ -63,6 +69,7 @@ pub fn router(service: Arc<Service>) -> Router {
             get(heights).post(heights).fallback(async |method| other(&method, QUERY_METHODS)),
         )
         .fallback(async |State(service): Shared, uri: Uri| not_found(&service, &uri));
+    let router = router.layer(from_fn_with_state(Arc::clone(&service), host::check));
     let router = match service.log {
         RequestLog::On => router.layer(from_fn_with_state(Arc::clone(&service), log)),
         RequestLog::Off => router,
@@ -76,19 +83,24 @@ fn page(write: fn(&Service) -> Response) -> MethodRouter<Arc<Service>> {
 }
 
 fn query<Q: Query>() -> MethodRouter<Arc<Service>> {
-    async fn handle<Q: Query>(State(service): Shared, request: Request) -> Result<Response, HttpError> {
-        answer::<Q>(&service, "", request).await
+    async fn handle<Q: Query>(
+        State(service): Shared,
+        ConnectInfo(RequestConnection(connection)): ConnectInfo<RequestConnection>,
+        request: Request,
+    ) -> Result<Response, HttpError> {
+        answer::<Q>(&service, &connection, "", request).await
     }
     get(handle::<Q>).post(handle::<Q>).fallback(async |method| other(&method, QUERY_METHODS))
 }
 
 async fn heights(
     State(service): Shared,
+    ConnectInfo(RequestConnection(connection)): ConnectInfo<RequestConnection>,
     datasets: Result<Path<String>, PathRejection>,
     request: Request,
 ) -> Result<Response, HttpError> {
     match datasets {
-        Ok(Path(datasets)) => answer::<HeightsQuery>(&service, &datasets, request).await,
+        Ok(Path(datasets)) => answer::<HeightsQuery>(&service, &connection, &datasets, request).await,
         Err(_) => Err(not_found(&service, request.uri())),
     }
 }
@@ -104,8 +116,8 @@ fn other(method: &Method, allowed: &'static str) -> Response {
 fn not_found(service: &Service, uri: &Uri) -> HttpError {
     let (path, names) = (quoted(uri.path()), service.datasets.names());
     HttpError::unknown(format!(
-        "there is nothing at {path}; there are /, /health, /v1/los, /v1/profile, /v1/viewshed and /v1/DATASET, \
-         where the datasets are {names}"
+        "there is nothing at {path}; there are {}, where the datasets are {names}",
+        api::paths().join(", ")
     ))
 }
 
@@ -119,49 +131,75 @@ async fn log(State(service): Shared, request: Request, next: Next) -> Response {
     response
 }
 
-async fn answer<Q: Query>(
-    service: &Arc<Service>,
-    datasets: &str,
-    request: Request,
-) -> Result<Response, HttpError> {
-    let parameters = Parameters::from_request(request, service).await?;
-    let permit = Arc::clone(&service.requests).try_acquire_owned().map_err(|_| {
-        let most = service.limits.max_requests;
-        HttpError::busy(1, format!("{most} requests are being answered; try again"))
-    })?;
-    if parameters.len() > LIGHT_BYTES {
-        let datasets = datasets.to_owned();
-        let work = move |service: &Service| Q::read(service, &datasets, &parameters)?.answer(service);
-        return on_another_thread(service, permit, work).await;
-    }
-    let query = Q::read(service, datasets, &parameters)?;
-    match query.weight(service) {
-        QueryWeight::Light => query.answer(service),
-        QueryWeight::Heavy => on_another_thread(service, permit, move |service| query.answer(service)).await,
+/// Lets the work on a request stop when its client has left or its time is over.
+#[derive(Default)]
+struct StopOnDrop(Arc<StopFlag>);
+
+impl Drop for StopOnDrop {
+    fn drop(&mut self) {
+        self.0.stop();
     }
 }
 
-/// Executes a query on a blocking thread, with a time limit. The request holds its permit until the work ends, or is
-/// dropped before it begins.
-async fn on_another_thread(
+async fn answer<Q: Query>(
     service: &Arc<Service>,
-    permit: OwnedSemaphorePermit,
-    work: impl FnOnce(&Service) -> Result<Response, HttpError> + Send + 'static,
+    connection: &Arc<Connection>,
+    datasets: &str,
+    request: Request,
 ) -> Result<Response, HttpError> {
-    let shared = Arc::clone(service);
-    let mut task = tokio::task::spawn_blocking(move || {
-        let answer = work(&shared);
-        drop(permit);
+    let parameters = Parameters::receive(request, service, connection).await?;
+    let _permit = connection.client.requests.try_acquire().map_err(|_| {
+        let most = service.limits.max_requests;
+        HttpError::busy(1, format!("{most} of your requests are being answered; try again"))
+    })?;
+    let stop = StopOnDrop::default();
+    let work = work::<Q>(service, connection, datasets.to_owned(), parameters, &stop.0);
+    let seconds = service.limits.timeout_s;
+    tokio::time::timeout(Duration::from_secs(seconds.into()), work).await.unwrap_or_else(|_| {
+        let reason = format!("no answer within {seconds} s; ask for less at a time, or later");
+        Err(HttpError::busy(seconds, reason))
+    })
+}
+
+async fn work<Q: Query>(
+    service: &Arc<Service>,
+    connection: &Arc<Connection>,
+    datasets: String,
+    parameters: Parameters,
+    stop: &Arc<StopFlag>,
+) -> Result<Response, HttpError> {
+    let query = match parameters.len() > LIGHT_BYTES {
+        true => on_another_thread(service, move |service| Q::read(service, &datasets, &parameters)).await?,
+        false => Q::read(service, &datasets, &parameters)?,
+    };
+    let (own, all) = match query.weight(service) {
+        QueryWeight::Light => return query.answer(service, stop),
+        QueryWeight::Heavy => (&connection.client.heavy, &service.heavy),
+        QueryWeight::Expensive => (&connection.client.expensive, &service.expensive),
+    };
+    let own = acquire(own).await;
+    let memory = service.answers.reserve(&service.clients, connection, query.most_bytes(service)).await;
+    let turn = (own, acquire(all).await);
+    let stop = Arc::clone(stop);
+    let answer = on_another_thread(service, move |service| {
+        let answer = query.answer(service, &stop);
+        drop(turn);
         answer
     });
-    let seconds = service.limits.timeout_s;
-    match tokio::time::timeout(Duration::from_secs(seconds.into()), &mut task).await {
-        Ok(Ok(answer)) => answer,
-        Ok(Err(_)) => Err(HttpError::new(StatusCode::INTERNAL_SERVER_ERROR, "answering failed")),
-        Err(_) => {
-            task.abort();
-            let reason = format!("no answer within {seconds} s; ask for less at a time, or later");
-            Err(HttpError::busy(seconds, reason))
-        }
-    }
+    Ok(answers::hold(answer.await?, memory).await)
+}
+
+async fn acquire(semaphore: &Arc<Semaphore>) -> OwnedSemaphorePermit {
+    let permit = Arc::clone(semaphore).acquire_owned().await;
+    permit.expect("no semaphore of the service is ever closed")
+}
+
+/// Works on a blocking thread.
+async fn on_another_thread<T: Send + 'static>(
+    service: &Arc<Service>,
+    work: impl FnOnce(&Service) -> Result<T, HttpError> + Send + 'static,
+) -> Result<T, HttpError> {
+    let shared = Arc::clone(service);
+    let done = tokio::task::spawn_blocking(move || work(&shared)).await;
+    done.unwrap_or_else(|_| Err(HttpError::new(StatusCode::INTERNAL_SERVER_ERROR, "answering failed")))
 }

@@ -19,18 +19,20 @@ use axum::response::{IntoResponse, Response};
 use glam::DVec2;
 use serde::Serialize;
 
+use crate::serve::api;
 use crate::serve::coordinates::Location;
 use crate::serve::parameters::Parameters;
-use crate::serve::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curvature};
+use crate::serve::query::{GroundQuery, OBSERVER_M, Query, QueryWeight, Service, above_m, curvature};
 use crate::serve::reply::{HttpError, OK, quoted};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::line::SightEnd;
 use crate::terrain::sight::viewshed::{
     self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions,
 };
+use crate::terrain::stop_flag::StopFlag;
 
-/// When to try again while other viewsheds are being computed, seconds.
-const RETRY_AFTER_S: u16 = 2;
+/// The size of a post in `runs`, at most: where no two neighbors are alike.
+const POST_BYTES: usize = 2;
 
 pub struct ViewshedQuery {
     ground: GroundQuery,
@@ -47,9 +49,6 @@ enum ViewshedDetail {
     /// The counts.
     Summary,
 }
-
-const KNOWN: [&str; 8] =
-    ["observer", "observer_height", "target_height", "range", "sector", "refraction", "earth", "format"];
 
 #[derive(Serialize)]
 struct ViewshedAnswer<'a> {
@@ -68,7 +67,7 @@ struct ViewshedAnswer<'a> {
 
 impl Query for ViewshedQuery {
     fn read(service: &Service, _: &str, parameters: &Parameters) -> Result<Self, HttpError> {
-        let ground = GroundQuery::read(service, parameters, &KNOWN)?;
+        let ground = GroundQuery::read(service, parameters, &api::VIEWSHED)?;
         let text = parameters.required("observer", "46.2,-122.19")?;
         let at = ground.coordinates.position("observer", text)?;
         let above = above_m(parameters, "observer_height", OBSERVER_M)?;
@@ -84,11 +83,20 @@ impl Query for ViewshedQuery {
         Ok(Self { ground, options, detail })
     }
 
-    fn answer(self, service: &Service) -> Result<Response, HttpError> {
-        let _permit = service
-            .viewsheds
-            .try_acquire()
-            .map_err(|_| HttpError::busy(RETRY_AFTER_S, "other viewsheds are being computed; try again"))?;
+    fn weight(&self, _: &Service) -> QueryWeight {
+        QueryWeight::Expensive
+    }
+
+    fn most_bytes(&self, service: &Service) -> usize {
+        let source = self.ground.served(service).dataset.source();
+        let posts = 2 * source.width as usize * source.height as usize;
+        match self.detail {
+            ViewshedDetail::Runs => posts.min(service.limits.max_posts as usize) * POST_BYTES,
+            ViewshedDetail::Summary => 0,
+        }
+    }
+
+    fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
         let snapshot = served.snapshot()?;
         let lattice = snapshot.lattice();
@@ -97,9 +105,10 @@ impl Query for ViewshedQuery {
         window.check(lattice, service.limits.max_posts)?;
         let observer = SightEnd { at, ..self.options.observer };
         let options = ViewshedOptions { observer, ..self.options };
-        let viewshed = viewshed::viewshed(lattice, &options).map_err(|answer| {
+        let viewshed = viewshed::viewshed_until(lattice, &options, stop).map_err(|answer| {
             HttpError::wrong(format!("observer: there is no ground there ({})", answer.status()))
         })?;
+        let viewshed = viewshed.ok_or_else(HttpError::stopped)?;
         let counts = window.counts(&viewshed);
         let xy = |DVec2 { x, y }: DVec2| Location::Xy { x, y };
         Ok(Json(ViewshedAnswer {

@@ -2,6 +2,8 @@
 
 mod bits;
 pub mod client;
+#[cfg(unix)]
+mod fairness;
 mod ground;
 mod heights;
 mod hostile;

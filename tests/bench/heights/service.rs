@@ -127,7 +127,8 @@ fn post(dataset: &str, points: usize) -> Vec<u8> {
     let locations = (0..points).map(place).collect::<Vec<_>>().join("|");
     let body = format!("locations={locations}");
     let length = body.len();
-    format!("POST /v1/{dataset} HTTP/1.1\r\nhost: a\r\ncontent-length: {length}\r\n\r\n{body}").into_bytes()
+    format!("POST /v1/{dataset} HTTP/1.1\r\nhost: localhost\r\ncontent-length: {length}\r\n\r\n{body}")
+        .into_bytes()
 }
 
 /// Asks one batch after the other over one connection.
@@ -167,7 +168,8 @@ async fn load(server: &Server, dataset: &str) {
                 let mut times_ms = Vec::with_capacity(REQUESTS / CLIENTS);
                 for index in 0..REQUESTS / CLIENTS {
                     let at = place(index * CLIENTS + client);
-                    let request = format!("GET /v1/{dataset}?locations={at} HTTP/1.1\r\nhost: a\r\n\r\n");
+                    let request =
+                        format!("GET /v1/{dataset}?locations={at} HTTP/1.1\r\nhost: localhost\r\n\r\n");
                     let begun = Instant::now();
                     connection.ask(request.as_bytes()).await;
                     times_ms.push(begun.elapsed().as_secs_f64() * 1e3);

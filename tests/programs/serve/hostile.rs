@@ -30,9 +30,9 @@ fn what_is_no_http_is_refused() {
         b"GET /v1/grid HTTP/9.9\r\n\r\n",
         b"GET /\x01 HTTP/1.1\r\n\r\n",
         b"GET / HTTP/1.1\r\nhost a\r\n\r\n",
-        b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: -1\r\n\r\n",
-        b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 5\r\ncontent-length: 6\r\n\r\nabcdef",
-        b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ntransfer-encoding: chunked\r\n\r\nzz\r\n",
+        b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: -1\r\n\r\n",
+        b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: 5\r\ncontent-length: 6\r\n\r\nabcdef",
+        b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ntransfer-encoding: chunked\r\n\r\nzz\r\n",
     ] {
         let answer = server.raw(bytes);
         assert!((400..500).contains(&answer.status) || answer.status == 0, "{answer:?}");
@@ -81,7 +81,8 @@ fn a_head_that_trickles_is_cut_off() {
 fn a_body_that_does_not_come_is_not_waited_for() {
     let (_scratch, server) = server(&["--timeout", "1"]);
     let begun = Instant::now();
-    let answer = server.raw(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 100\r\n\r\nlocations=");
+    let answer =
+        server.raw(b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: 100\r\n\r\nlocations=");
     answer.refused(408);
     assert!(begun.elapsed() < Duration::from_secs(10));
     still_answers(&server);
@@ -115,7 +116,7 @@ fn one_connection_too_many_is_told_so() {
 /// A request for as many heights as there may be.
 fn long_request() -> String {
     let body = format!("locations={}", vec!["50.0123456789,10.0123456789"; 10_000].join("|"));
-    format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {}\r\n\r\n{body}", body.len())
+    format!("POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: {}\r\n\r\n{body}", body.len())
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn clients_whose_bodies_do_not_come_keep_nobody_from_being_answered() {
     let (_scratch, server) = server(&[]);
     let begin = |length: u32| {
         let mut silent = server.connect();
-        let head = format!("POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: {length}\r\n\r\nl");
+        let head = format!("POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: {length}\r\n\r\nl");
         silent.write_all(head.as_bytes()).expect("it reads");
         silent
     };

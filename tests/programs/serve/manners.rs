@@ -39,7 +39,7 @@ fn one_connection_answers_many_requests_in_order() {
     let mut reader = BufReader::new(stream.try_clone().expect("a clone"));
     let ask = |column: usize| {
         format!(
-            "GET /v1/grid?locations=50.005,10.0{column}5&interpolation=nearest HTTP/1.1\r\nhost: a\r\n\r\n"
+            "GET /v1/grid?locations=50.005,10.0{column}5&interpolation=nearest HTTP/1.1\r\nhost: localhost\r\n\r\n"
         )
     };
     // Both at once, then one after the other.
@@ -59,7 +59,7 @@ fn asked_to_end_it_answers_what_it_has_begun_and_takes_nothing_more() {
     let scratch = folder();
     let server = Server::start(scratch.folder(), &["grid.asc"]);
     let mut half = server.connect();
-    half.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 23\r\n\r\nlocations=")
+    half.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: 23\r\n\r\nlocations=")
         .expect("it reads");
     // An answer on a later connection shows that the earlier one was taken.
     assert_eq!(server.get("/health").status, 200);
@@ -77,7 +77,7 @@ fn it_does_not_wait_for_ever_for_the_last_answers() {
     let scratch = folder();
     let server = Server::start(scratch.folder(), &["grid.asc", "--grace", "1"]);
     let mut half = server.connect();
-    half.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 23\r\n\r\nlocations=")
+    half.write_all(b"POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: 23\r\n\r\nlocations=")
         .expect("it reads");
     assert_eq!(server.get("/health").status, 200);
     let begun = Instant::now();

@@ -91,7 +91,9 @@ fn an_unknown_address_is_told_the_datasets() {
 fn methods_that_are_not_answered_are_told_which_are() {
     let (_scratch, server) = server(&[]);
     let ask = |method: &str, path: &str| {
-        server.raw(format!("{method} {path} HTTP/1.1\r\nhost: a\r\ncontent-length: 0\r\n\r\n").as_bytes())
+        server.raw(
+            format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\ncontent-length: 0\r\n\r\n").as_bytes(),
+        )
     };
     for path in ["/v1/grid?locations=50,10", "/v1/los", "/v1/profile", "/v1/viewshed"] {
         for method in ["PUT", "DELETE", "PATCH", "BREW"] {
@@ -117,18 +119,19 @@ fn a_body_of_another_kind_or_too_long_is_refused() {
     let (_scratch, server) = server(&["--max-points", "10"]);
     server.post("/v1/grid", "text/csv", "50,10").refused(415);
     server.post("/v1/grid", "multipart/form-data; boundary=a", "").refused(415);
-    let zipped = "POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-type: application/json\r\ncontent-encoding: gzip\r\n\
+    let zipped = "POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-encoding: gzip\r\n\
                   content-length: 2\r\n\r\n{}";
     server.raw(zipped.as_bytes()).refused(415);
     for wrong in ["", "[]", "{\"locations\":", "{\"locations\":[[50,10]]}", "{\"locations\":true}", "null"] {
         server.post("/v1/grid", "application/json", wrong).refused(400);
     }
     server.post("/v1/grid", FORM, &"x".repeat(200_000)).refused(413);
-    let stated = "POST /v1/grid HTTP/1.1\r\nhost: a\r\ncontent-length: 99999999999\r\n\r\n";
+    let stated = "POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-length: 99999999999\r\n\r\n";
     let reason = server.raw(stated.as_bytes()).refused(413);
     assert!(reason.contains("bytes"), "{reason}");
     let chunk = "8000\r\n".to_owned() + &"x".repeat(0x8000) + "\r\n";
-    let chunked = "POST /v1/grid HTTP/1.1\r\nhost: a\r\ntransfer-encoding: chunked\r\n\r\n".to_owned()
+    let chunked = "POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ntransfer-encoding: chunked\r\n\r\n"
+        .to_owned()
         + &chunk.repeat(8);
     server.raw(chunked.as_bytes()).refused(413);
 }

@@ -1,0 +1,130 @@
+//! `/openapi.json`: the queries as an OpenAPI document (OpenAPI Specification 3.1.0), for programs that make clients.
+
+use axum::Json;
+use axum::response::{IntoResponse, Response};
+use serde_json::{Map, Value, json};
+
+use crate::serve::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
+use crate::serve::parameters::BODY_TYPES;
+use crate::serve::query::Service;
+
+/// The part of a path that is a parameter, in the table and in the document.
+const DATASET: (&str, &str) = ("DATASET", "{dataset}");
+
+pub fn page(service: &Service) -> Response {
+    Json(document(service)).into_response()
+}
+
+fn document(service: &Service) -> Value {
+    let paths: Map<String, Value> = ADDRESSES
+        .iter()
+        .map(|address| (address.path.replace(DATASET.0, DATASET.1), path_item(address, service)))
+        .collect();
+    json!({
+        "openapi": "3.1.0",
+        "info": {
+            "title": "sandtable",
+            "summary": "Heights, profiles, lines of sight and viewsheds over HTTP",
+            "version": env!("CARGO_PKG_VERSION"),
+        },
+        "paths": paths,
+        "components": {"schemas": {"Refusal": {
+            "type": "object",
+            "required": ["status", "error"],
+            "properties": {
+                "status": {"enum": ["INVALID_REQUEST", "SERVER_ERROR"]},
+                "error": {"type": "string", "description": "what was found, and what to do"},
+            },
+        }}},
+    })
+}
+
+fn path_item(address: &ApiAddress, service: &Service) -> Value {
+    let in_query = address.parameters.iter().map(|parameter| {
+        json!({
+            "name": parameter.name,
+            "in": "query",
+            "required": parameter.need == ApiNeed::Required,
+            "description": described(parameter),
+            "schema": schema(parameter, service),
+        })
+    });
+    let names: Vec<&str> = service.datasets.all().iter().map(|served| served.name.as_str()).collect();
+    let in_path = json!({
+        "name": "dataset",
+        "in": "path",
+        "required": true,
+        "description": "the name of a dataset, or several with commas between",
+        "schema": {"type": "string", "examples": names},
+    });
+    let in_path = (address.path == HEIGHTS.path).then_some(in_path);
+    let mut item = json!({"get": {
+        "summary": address.summary,
+        "parameters": in_path.iter().cloned().chain(in_query).collect::<Vec<_>>(),
+        "responses": responses(address),
+    }});
+    if address.methods == ApiMethods::GetOrPost {
+        item["post"] = json!({
+            "summary": address.summary,
+            "parameters": in_path.iter().collect::<Vec<_>>(),
+            "requestBody": {"required": true, "content": content(&body(address, service))},
+            "responses": responses(address),
+        });
+    }
+    item
+}
+
+/// The schema of a body, in each form that it may have.
+fn content(schema: &Value) -> Value {
+    BODY_TYPES
+        .iter()
+        .map(|name| ((*name).to_owned(), json!({"schema": schema})))
+        .collect::<Map<_, _>>()
+        .into()
+}
+
+fn body(address: &ApiAddress, service: &Service) -> Value {
+    let properties: Map<String, Value> = address
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let mut schema = schema(parameter, service);
+            schema["description"] = described(parameter).into();
+            (parameter.name.to_owned(), schema)
+        })
+        .collect();
+    let required = address.parameters.iter().filter(|parameter| parameter.need == ApiNeed::Required);
+    let required: Vec<&str> = required.map(|parameter| parameter.name).collect();
+    json!({"type": "object", "properties": properties, "required": required})
+}
+
+fn described(parameter: &ApiParameter) -> String {
+    match parameter.need {
+        ApiNeed::Required => parameter.text.to_owned(),
+        ApiNeed::Optional(default) => format!("{}; default: {default}", parameter.text),
+    }
+}
+
+fn schema(parameter: &ApiParameter, service: &Service) -> Value {
+    match parameter.value {
+        ApiValue::Text(form) => json!({"type": "string", "examples": [form]}),
+        ApiValue::Number(least, most) => json!({"type": "number", "minimum": least, "maximum": most}),
+        ApiValue::Count => json!({"type": "integer", "minimum": 2, "maximum": service.limits.max_points}),
+        ApiValue::Words(words) => json!({"type": "string", "enum": words()}),
+    }
+}
+
+fn responses(address: &ApiAddress) -> Value {
+    let refusal = |what: &str| {
+        let schema = json!({"$ref": "#/components/schemas/Refusal"});
+        json!({"description": what, "content": {"application/json": {"schema": schema}}})
+    };
+    let answer = address.answer;
+    let mut responses = json!({"200": {"description": address.summary, "content": {answer: {}}}});
+    if address.methods == ApiMethods::GetOrPost {
+        responses["400"] = refusal("the request is wrong");
+        responses["404"] = refusal("there is no such dataset");
+        responses["503"] = refusal("the client asks for too much at once, or the answer took too long");
+    }
+    responses
+}
