@@ -26,10 +26,6 @@ use crate::ribbon::drape::check_clearance;
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
-/// The rounding of world positions, which are f32: those of a part may lie so far beside its patch, in meters, in a scene of
-/// ten kilometers.
-const ROUNDING_M: f64 = 2e-3;
-
 /// Parts smaller than this are rounding, in square meters.
 const SLIVER_M2: f64 = 1e-7;
 
@@ -51,6 +47,12 @@ impl Borders {
     /// The number of patches.
     pub fn patch_count(&self) -> usize {
         self.columns() * self.north.len().saturating_sub(1)
+    }
+
+    /// How far beside its patch a part may lie, in meters: world positions are f32.
+    fn rounding_m(&self) -> f64 {
+        let ends = [&self.east, &self.north].into_iter().flat_map(|borders| [borders.first(), borders.last()]);
+        ends.flatten().fold(0.0, |most, &border| f64::max(most, border.abs())) * f64::from(f32::EPSILON)
     }
 
     /// Columns and rows of the patches that a rectangle meets.
@@ -172,7 +174,7 @@ impl Drapes {
     pub fn check_in(&self, borders: &Borders, patches: &[usize], ground: &dyn TriangleSurface) -> f64 {
         let of_patch = |&patch: &usize| {
             let window = Rect::around(borders.window((patch % borders.columns(), patch / borders.columns())));
-            let own = WindowSurface { ground, window: window.grown(-ROUNDING_M) };
+            let own = WindowSurface { ground, window: window.grown(-borders.rounding_m()) };
             let cut = self.patches.get(patch).into_iter().flat_map(|patch| &patch.cut);
             cut.map(|cut| check_clearance(cut.mesh(), &own)).fold(0.0, f64::max)
         };

@@ -10,11 +10,6 @@ impl<'a> ByteSource<'a> {
         Self { rest: bytes }
     }
 
-    /// Whether all of them are taken.
-    pub fn is_empty(&self) -> bool {
-        self.rest.is_empty()
-    }
-
     pub fn byte(&mut self) -> u8 {
         let (first, rest) = self.rest.split_first().unwrap_or((&0, &[]));
         self.rest = rest;

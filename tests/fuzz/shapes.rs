@@ -13,7 +13,7 @@ use super::byte_source::ByteSource;
 use super::hill;
 
 /// The south-west corner of the hill, and its sides in meters.
-pub const CORNER: DVec2 = DVec2::new(500_000.0, 4_000_000.0);
+const CORNER: DVec2 = DVec2::new(500_000.0, 4_000_000.0);
 pub const SIDE_M: f64 = 480.0;
 
 /// The most features of a scene, and points of a feature: enough for every pair to meet.

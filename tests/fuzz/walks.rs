@@ -9,7 +9,7 @@ use sandtable::pipeline::walk::frame::WalkOptions;
 use sandtable::view::camera::Camera;
 
 use super::byte_source::ByteSource;
-use super::shapes::{CORNER, SIDE_M, built};
+use super::shapes::{SIDE_M, built};
 
 /// The most steps of a walk.
 const MOST_STEPS: usize = 24;
@@ -25,7 +25,8 @@ pub fn walk(bytes: &[u8]) {
                 let center =
                     DVec2::new(bytes.between(-20.0, SIDE_M + 20.0), bytes.between(-20.0, SIDE_M + 20.0));
                 let radius_m = bytes.between(0.5, 80.0);
-                let crater = Crater { center, radius_m, depth_m: bytes.between(0.1, 40.0), rim_m: 1.0 };
+                let crater =
+                    Crater { center, radius_m, depth_m: radius_m * bytes.between(0.02, 1.0), rim_m: 1.0 };
                 walk.edit(|lattice| crater.apply(lattice)).expect("all of it is in memory");
             }
             96..112 => walk.set_tolerance_px(bytes.between(0.0, 30.0) as f32),
