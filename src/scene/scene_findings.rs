@@ -39,6 +39,11 @@ impl SceneFindings {
         self.push(Finding::new(code, message).at(&self.source, span));
     }
 
+    /// [`Self::add`] with a remedy.
+    pub fn add_with_help(&mut self, code: FindingCode, span: Range<usize>, message: String, help: &str) {
+        self.push(Finding::new(code, message).at(&self.source, span).with_help(help));
+    }
+
     /// Adds a finding.
     pub fn push(&mut self, finding: Finding) {
         self.list.push(finding);

@@ -7,6 +7,7 @@ use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::scene::sources::Sources;
+use crate::scene::symbols::LineSymbol;
 use crate::scene::{FeatureKind, SceneFeature, SceneModel};
 
 /// A scene with the document and the files that it was built of.
@@ -38,6 +39,12 @@ impl LintContext<'_> {
     /// The kind of a feature; `None` for the ground.
     pub fn kind(&self, feature: FeatureId) -> Option<FeatureKind> {
         self.feature(feature).map(|feature| feature.kind)
+    }
+
+    /// The roads that lie on the ground, and the stretches of roads that do.
+    pub fn roads_on_ground(&self) -> impl Iterator<Item = &LineSymbol> {
+        let is_road = |line: &&LineSymbol| self.kind(line.feature) == Some(FeatureKind::Road);
+        self.scene.symbols.iter().filter(is_road).filter(|line| line.alignment.is_on_ground())
     }
 
     fn feature(&self, feature: FeatureId) -> Option<&SceneFeature> {

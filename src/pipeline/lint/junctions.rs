@@ -16,7 +16,6 @@ use crate::pipeline::lint::ground_line::place;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
 use crate::ribbon::junction::LONGEST_REACH;
-use crate::scene::FeatureKind;
 use crate::scene::symbols::LineSymbol;
 
 /// The part of a road that leaves a vertex.
@@ -33,11 +32,8 @@ struct LeavingRoad {
 
 /// Finds these among the roads on the ground.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
-    let is_road = |line: &&LineSymbol| {
-        context.kind(line.feature) == Some(FeatureKind::Road) && line.alignment.is_on_ground()
-    };
     let mut leaving: Vec<(VertexKey, LeavingRoad)> =
-        context.scene.symbols.iter().filter(is_road).flat_map(leaving_roads).collect();
+        context.roads_on_ground().flat_map(leaving_roads).collect();
     // Stable: of one place in the order of the roads.
     leaving.sort_by_key(|(key, _)| *key);
     let mut worst = WorstOfTables::default();
@@ -61,8 +57,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         }
     }
     let help = "let one road begin farther along the other, at an angle";
-    for (span, message) in worst.into_messages(|more| format!("{more} more junctions of this table are such"))
-    {
+    for (span, message) in worst.into_messages() {
         sink.add(context.finding(FindingCode::JunctionUntrimmed, span, message).with_help(help));
     }
 }

@@ -3,7 +3,7 @@
 //! Only placing them tells, so the picture is drawn: without light and colors, which decide about no label, and only
 //! where the scene file states labels.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::annotate::paint::compose_sheet;
 use crate::annotate::report::AnnotationReport;
@@ -29,9 +29,11 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let Some(view) = scene.cameras.first().filter(|_| !context.document.labels.is_empty()) else { return };
     // A camera without a picture is another finding.
     let Some(report) = placed(scene, view) else { return };
+    let behind = behind(scene, &report);
     for (texts, why) in [
         (&report.hidden, "the ground or something on it hides their places"),
         (&report.outside, "their places are outside the picture, or too close to its border"),
+        (&behind, "their places are behind the eye"),
         (&report.crowded_out, "no position near their places is free beside more important ones"),
     ] {
         for ((start, end), dropped) in by_table(scene, texts.iter().map(String::as_str)) {
@@ -73,6 +75,14 @@ fn placed(scene: &SceneModel, view: &SceneView) -> Option<AnnotationReport> {
     let picture = render_buffers(&drawn.list, &camera).ok()?;
     let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
     Some(compose_sheet(picture.pixels, &annotations).1)
+}
+
+/// The labels of which nothing becomes, since their places have no place on the picture.
+fn behind(scene: &SceneModel, report: &AnnotationReport) -> Vec<String> {
+    let known = [&report.placed, &report.hidden, &report.outside, &report.crowded_out];
+    let known: BTreeSet<&String> = known.into_iter().flatten().collect();
+    let texts = scene.labels.iter().map(|label| &label.text);
+    texts.filter(|text| !known.contains(text) && !text.trim().is_empty()).cloned().collect()
 }
 
 /// Texts by the place of the table that states them, in the order of the file; spot heights are stated by none.

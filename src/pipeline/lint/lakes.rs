@@ -1,9 +1,8 @@
 //! Lakes whose level does not fit the ground along their shores.
 //!
 //! The ground is cut and filled to meet the water, so that no gap shows in the picture; how much it takes says whether the
-//! level is right.
+//! level is right. One that is far off all of the shore is found while the scene is built.
 
-use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::pipeline::lint::context::LintContext;
@@ -11,9 +10,7 @@ use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
 use crate::scene::FeatureKind;
 use crate::scene::report::LakeRow;
-
-/// A level farther than this from all ground along the shore is a slip of the pen, or of another datum or unit, meters.
-const ABSURD_M: f64 = 100.0;
+use crate::scene::water::lake_level::far_off_m;
 
 /// A level farther than this from the shore is told, meters: the relative error that the makers of global elevation models
 /// promise (Farr et al. 2007). Less is as likely the model's fault.
@@ -28,36 +25,16 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     for ((index, _), row) in lakes.zip(&context.scene.report.lakes) {
         let lake = FeatureId(FeatureId::GROUND.0 + 1 + index as u32);
         let (Some(lowest_m), Some(highest_m)) = (row.lowest_shore, row.highest_shore) else { continue };
-        let off_m = (lowest_m - row.level).max(row.level - highest_m);
-        if off_m > ABSURD_M {
-            sink.add(absurd(context, lake, row, [lowest_m, highest_m]));
-        } else if let Some((gap_m, message)) = gap(row, lowest_m) {
+        let is_far_off = far_off_m(row.level, [lowest_m, highest_m]).is_some();
+        if let Some((gap_m, message)) = gap(row, lowest_m).filter(|_| !is_far_off) {
             gaps.add(context.origin(lake), gap_m, || format!("{} {message}", context.name(lake)));
         }
     }
     let help =
         "state its `level` as the elevation model has it, or draw its shore where the model has the water";
-    for (span, message) in gaps.into_messages(|more| format!("{more} more lakes of this table do not fit")) {
+    for (span, message) in gaps.into_messages() {
         sink.add(context.finding(FindingCode::LakeShoreGap, span, message).with_help(help));
     }
-}
-
-fn absurd(
-    context: &LintContext<'_>,
-    lake: FeatureId,
-    row: &LakeRow,
-    [lowest_m, highest_m]: [f64; 2],
-) -> Finding {
-    let where_to = if row.level < lowest_m { "below" } else { "above" };
-    let off_m = if row.level < lowest_m { lowest_m - row.level } else { row.level - highest_m };
-    let message = format!(
-        "{} lies level at {:.0} m, {off_m:.0} m {where_to} all ground along its shore, which is {lowest_m:.0} to \
-         {highest_m:.0} m high",
-        context.name(lake),
-        row.level
-    );
-    let help = "state its `level` in meters above what the elevation model counts from, or remove it: the shore gives one";
-    context.about(FindingCode::LakeLevelWrong, lake, message).with_help(help)
 }
 
 /// How far the water is from where its shore would have it, and what a message says of it; `None` where it fits.
@@ -81,7 +58,7 @@ fn gap(row: &LakeRow, lowest_m: f64) -> Option<(f64, String)> {
     }
     (bank_m > GAP_M).then(|| {
         let message = format!(
-            "lies at {level_m:.1} m, and half of its shore more than {bank_m:.1} m above that; the ground is cut down to it"
+            "lies at {level_m:.1} m, and half of its shore at least {bank_m:.1} m above that; the ground is cut down to it"
         );
         (bank_m, message)
     })

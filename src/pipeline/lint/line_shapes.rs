@@ -36,28 +36,17 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         add_crossed(context, line, &mut crossed);
         add_reversals(context, line, &mut back);
     }
-    for (worst, code, help, more) in [
-        (narrow, FindingCode::NarrowWidth, "widths are meters: 3.5 for a lane", "are as narrow"),
+    for (worst, code, help) in [
+        (narrow, FindingCode::NarrowWidth, "widths are meters: 3.5 for a lane"),
         (
             tight,
             FindingCode::TightCurve,
             "draw the curve wider, or the road narrower: its inner edge folds over itself there",
-            "have such a curve",
         ),
-        (
-            crossed,
-            FindingCode::CrossesItself,
-            "split the line there, or mend the order of its points",
-            "cross themselves",
-        ),
-        (
-            back,
-            FindingCode::DoublesBack,
-            "remove the point that the line comes back from",
-            "come back on themselves",
-        ),
+        (crossed, FindingCode::CrossesItself, "split the line there, or mend the order of its points"),
+        (back, FindingCode::DoublesBack, "remove the point that the line comes back from"),
     ] {
-        for (span, message) in worst.into_messages(|count| format!("{count} more of this table {more}")) {
+        for (span, message) in worst.into_messages() {
             sink.add(context.finding(code, span, message).with_help(help));
         }
     }

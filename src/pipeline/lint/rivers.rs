@@ -19,7 +19,7 @@ const MOST_RISE_M: f64 = 10.0;
 
 /// A stretch along which the ground rises.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Rise {
+struct RiverRise {
     from_m: f64,
     to_m: f64,
     rise_m: f64,
@@ -37,7 +37,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             continue;
         }
         let rise = ground_along(scene, line).and_then(|ground| greatest_rise(&ground));
-        let Some(Rise { from_m, to_m, rise_m }) = rise.filter(|rise| rise.rise_m > MOST_RISE_M) else {
+        let Some(RiverRise { from_m, to_m, rise_m }) = rise.filter(|rise| rise.rise_m > MOST_RISE_M) else {
             continue;
         };
         worst.add(span, rise_m, || {
@@ -50,14 +50,14 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         });
     }
     let help = "draw its line along the valley of the elevation model, or say `water = \"falls\"`, which cuts the ground";
-    for (span, message) in worst.into_messages(|more| format!("{more} more of this table rise too")) {
+    for (span, message) in worst.into_messages() {
         sink.add(context.finding(FindingCode::RiverUphill, span, message).with_help(help));
     }
 }
 
 /// The greatest rise from a station to a later one without a hole between them; `None` where the ground nowhere rises.
-fn greatest_rise(ground: &Profile) -> Option<Rise> {
-    let (mut lowest, mut greatest): (Option<(f64, f64)>, Option<Rise>) = (None, None);
+fn greatest_rise(ground: &Profile) -> Option<RiverRise> {
+    let (mut lowest, mut greatest): (Option<(f64, f64)>, Option<RiverRise>) = (None, None);
     for (&station_m, &height_m) in ground.stations().iter().zip(ground.values()) {
         if height_m.is_nan() {
             lowest = None;
@@ -69,7 +69,7 @@ fn greatest_rise(ground: &Profile) -> Option<Rise> {
         }
         let rise_m = height_m - low_m;
         if rise_m > greatest.map_or(0.0, |greatest| greatest.rise_m) {
-            greatest = Some(Rise { from_m, to_m: station_m, rise_m });
+            greatest = Some(RiverRise { from_m, to_m: station_m, rise_m });
         }
     }
     greatest
@@ -86,7 +86,7 @@ mod tests {
             greatest_rise(&Profile::new(stations, values.to_vec()).expect("stations rise"))
         };
         assert_eq!(at(&[9.0, 8.0, 8.0, 1.0]), None);
-        let rise = Rise { from_m: 2.0, to_m: 5.0, rise_m: 7.0 };
+        let rise = RiverRise { from_m: 2.0, to_m: 5.0, rise_m: 7.0 };
         assert_eq!(at(&[9.0, 4.0, 3.0, 5.0, 4.0, 10.0, 2.0, 6.0]), Some(rise));
         assert_eq!(at(&[1.0, f64::NAN, 9.0, 8.0]), None, "a hole is no rise");
     }

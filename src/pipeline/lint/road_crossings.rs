@@ -8,13 +8,15 @@ use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::geom::leg_tree::{LegTree, LineLeg};
 use crate::geom::polygon;
+use crate::geom::rect::Rect;
+use crate::geom::rect_tree::RectTree;
 use crate::geom::segment;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::ground_line::place;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
+use crate::scene::SceneModel;
 use crate::scene::symbols::LineSymbol;
-use crate::scene::{FeatureKind, SceneModel};
 
 /// Rivers narrower than this run through a pipe under the road, which no map shows, meters.
 const CULVERT_M: f64 = 3.0;
@@ -28,6 +30,8 @@ struct WaterLines<'a> {
     legs: LegTree,
     /// The shores of each lake.
     lakes: BTreeMap<FeatureId, Vec<&'a [DVec2]>>,
+    /// The rectangles of the lakes, in the same order.
+    rects: RectTree,
 }
 
 /// Finds roads on the ground that cross a river, or run through a lake.
@@ -38,11 +42,8 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         return;
     }
     let mut worst = WorstOfTables::default();
-    let is_road = |symbol: &&LineSymbol| {
-        context.kind(symbol.feature) == Some(FeatureKind::Road) && symbol.alignment.is_on_ground()
-    };
-    for road in scene.symbols.iter().filter(is_road) {
-        let Crossings { river, lakes } = water.crossed_by(road, scene);
+    for road in context.roads_on_ground() {
+        let WaterCrossings { river, lakes } = water.crossed_by(road, scene);
         let name = || context.name(road.feature);
         if let Some((at, width_m, other)) = river {
             worst.add(context.origin(road.feature), width_m, || {
@@ -50,7 +51,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
                 format!("{} crosses {other}, {width_m:.0} m wide, on the ground at {place}", name())
             });
         }
-        for (lake, InLake { at, length_m }) in lakes {
+        for (lake, LakeStretch { at, length_m }) in lakes {
             worst.add(context.origin(road.feature), length_m, || {
                 let (other, place) = (context.name(lake), place(scene, at));
                 format!("{} runs {length_m:.0} m through {other} on the ground from {place} on", name())
@@ -58,23 +59,21 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         }
     }
     let help = "say which lines are bridges with `bridge = \"...\"`, add a [[bridge]], or leave out water in pipes by `where`";
-    for (span, message) in
-        worst.into_messages(|more| format!("{more} more crossings of this table have no bridge"))
-    {
+    for (span, message) in worst.into_messages() {
         sink.add(context.finding(FindingCode::RoadInWater, span, message).with_help(help));
     }
 }
 
 /// What a road crosses.
 #[derive(Default)]
-struct Crossings {
+struct WaterCrossings {
     /// The widest river: where, its width in meters, and which.
     river: Option<(DVec2, f64, FeatureId)>,
-    lakes: Vec<(FeatureId, InLake)>,
+    lakes: Vec<(FeatureId, LakeStretch)>,
 }
 
 /// The part of a road that lies in a lake.
-struct InLake {
+struct LakeStretch {
     /// Where it first comes in, world coordinates.
     at: DVec2,
     length_m: f64,
@@ -91,15 +90,26 @@ impl<'a> WaterLines<'a> {
         for shore in lines.iter().filter(|line| line.is_shore()) {
             lakes.entry(shore.feature).or_default().push(shore.alignment.line.points());
         }
-        Self { lines, legs, lakes }
+        let rect =
+            |shores: &Vec<&[DVec2]>| Rect::around(shores.iter().flat_map(|shore| shore.iter().copied()));
+        let rects = RectTree::new(&lakes.values().map(rect).collect::<Vec<_>>());
+        Self { lines, legs, lakes, rects }
     }
 
-    fn crossed_by(&self, road: &LineSymbol, scene: &SceneModel) -> Crossings {
+    /// The lakes in whose rectangles a place lies.
+    fn lakes_around(&self, at: DVec2) -> Vec<FeatureId> {
+        let found = self.rects.meeting_in_order(&Rect::around([at]));
+        let lakes: Vec<FeatureId> =
+            if found.is_empty() { Vec::new() } else { self.lakes.keys().copied().collect() };
+        found.into_iter().map(|index| lakes[index]).collect()
+    }
+
+    fn crossed_by(&self, road: &LineSymbol, scene: &SceneModel) -> WaterCrossings {
         let snapshot = scene.heights.snapshot();
         // A bridge of a table of its own carries the road there.
         let is_bridged = |at: DVec2| snapshot.decks().is_some_and(|decks| decks.height_m(at).is_some());
         let line = &road.alignment.line;
-        let mut found = Crossings::default();
+        let mut found = WaterCrossings::default();
         let mut shores: BTreeMap<FeatureId, Vec<f64>> = BTreeMap::new();
         for leg in LineLeg::all(0, line) {
             for near in self.legs.near(&leg) {
@@ -120,6 +130,10 @@ impl<'a> WaterLines<'a> {
                 }
             }
         }
+        // A road that begins in a lake may never cross its shore.
+        for lake in self.lakes_around(line.points()[0]) {
+            shores.entry(lake).or_default();
+        }
         for (lake, mut stations) in shores {
             stations.extend([0.0, line.length()]);
             stations.sort_by(f64::total_cmp);
@@ -131,7 +145,7 @@ impl<'a> WaterLines<'a> {
             let Some(first) = stretches.peek().map(|pair| line.at(pair[0])) else { continue };
             let length_m: f64 = stretches.map(|pair| pair[1] - pair[0]).sum();
             if length_m > SHORE_SLACK_M {
-                found.lakes.push((lake, InLake { at: first, length_m }));
+                found.lakes.push((lake, LakeStretch { at: first, length_m }));
             }
         }
         found

@@ -10,7 +10,6 @@ use crate::pipeline::lint::ground_line::{ground_along, place, steepest_over};
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
 use crate::ribbon::texture::RibbonSurface;
-use crate::scene::FeatureKind;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::symbols::LineSymbol;
 
@@ -40,7 +39,8 @@ fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let base_m = GRADE_OVER_M.max(GRADE_OVER_CELLS * scene.lattice.measured_cell().max_element());
     let mut worst = WorstOfTables::default();
-    for road in scene.symbols.iter().filter(|symbol| is_draped_road(context, symbol)) {
+    for road in context.roads_on_ground().filter(|road| is_for_wheels(road) && road.alignment.level.is_none())
+    {
         let line = &road.alignment.line;
         if line.length() < base_m {
             continue;
@@ -59,16 +59,14 @@ fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
     }
     let help = "set `profile = \"conform\"`, so that the ground follows the road, or let it wind; where the ground itself is \
                 wrong there, it is the elevation model's trees or houses";
-    for (span, message) in worst.into_messages(|more| format!("{more} more of this table are as steep")) {
+    for (span, message) in worst.into_messages() {
         sink.add(context.finding(FindingCode::RoadSteep, span, message).with_help(help));
     }
 }
 
-/// Whether a line is a road for wheels that lies on the ground as that is. Paths and tracks climb what feet climb.
-fn is_draped_road(context: &LintContext<'_>, symbol: &LineSymbol) -> bool {
-    let is_road = context.kind(symbol.feature) == Some(FeatureKind::Road);
-    let is_track = matches!(symbol.surface, RibbonSurface::Track | RibbonSurface::TrackJunction);
-    is_road && !is_track && symbol.alignment.is_on_ground() && symbol.alignment.level.is_none()
+/// Whether vehicles drive on a road. Paths and tracks climb what feet climb.
+fn is_for_wheels(road: &LineSymbol) -> bool {
+    !matches!(road.surface, RibbonSurface::Track | RibbonSurface::TrackJunction)
 }
 
 fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
@@ -97,7 +95,7 @@ fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
         "let a bridge stand there: `max_fill = 15`; or allow a higher `max_grade`, or another line",
         "let a tunnel run there: `max_cut = 25`; or allow a higher `max_grade`, or another line",
     ]) {
-        for (span, message) in worst.into_messages(|more| format!("{more} more of this table do")) {
+        for (span, message) in worst.into_messages() {
             sink.add(context.finding(FindingCode::DeepEarthwork, span, message).with_help(help));
         }
     }

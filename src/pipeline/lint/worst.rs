@@ -36,14 +36,12 @@ impl WorstOfTables {
         }
     }
 
-    /// The span and the message of each table, in the order of the file; `more` words how many others there are.
-    pub fn into_messages(
-        self,
-        more: impl Fn(usize) -> String,
-    ) -> impl Iterator<Item = (Range<usize>, String)> {
-        self.tables.into_iter().map(move |((start, end), worst)| {
-            let others = if worst.count > 1 { format!("; {}", more(worst.count - 1)) } else { String::new() };
-            (start..end, worst.message + &others)
+    /// The span and the message of each table, in the order of the file; a message ends with how many others there are.
+    pub fn into_messages(self) -> impl Iterator<Item = (Range<usize>, String)> {
+        self.tables.into_iter().map(|((start, end), WorstOfTable { message, count, .. })| {
+            let others =
+                if count > 1 { format!("; {} more in this table", count - 1) } else { String::new() };
+            (start..end, message + &others)
         })
     }
 }
@@ -58,7 +56,7 @@ mod tests {
         for (start, badness) in [(40, 1.0), (7, 3.0), (40, 5.0), (40, 2.0)] {
             worst.add(start..start + 2, badness, || format!("{badness} m"));
         }
-        let told: Vec<_> = worst.into_messages(|more| format!("{more} more")).collect();
-        assert_eq!(told, [(7..9, "3 m".to_owned()), (40..42, "5 m; 2 more".to_owned())]);
+        let told: Vec<_> = worst.into_messages().collect();
+        assert_eq!(told, [(7..9, "3 m".to_owned()), (40..42, "5 m; 2 more in this table".to_owned())]);
     }
 }

@@ -23,6 +23,7 @@ use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::spot_heights::LakeSurface;
 use crate::scene::symbols::LineSymbol;
+use crate::scene::water::lake_level::{FAR_OFF_HELP, far_off_m, far_off_message};
 use crate::terrain::densify;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -131,6 +132,18 @@ impl Lake {
             volumes.fill_m3
         );
         collected.findings.add(FindingCode::LakeLevel, span.clone(), message);
+        if let (Some(lowest_m), Some(highest_m)) = (self.shore.lowest_m(), self.shore.highest_m())
+            && let Some(off_m) = far_off_m(level_m, [lowest_m, highest_m])
+        {
+            let lake = described("lake", &self.name);
+            let message = far_off_message(&lake, level_m, [lowest_m, highest_m], off_m);
+            collected.findings.add_with_help(
+                FindingCode::LakeLevelWrong,
+                span.clone(),
+                message,
+                FAR_OFF_HELP,
+            );
+        }
         if let Some(lower_m) = flooded.lower_level_m {
             let message = format!(
                 "{} shares cells with a lake at {lower_m:.1} m, and the lower level holds there",

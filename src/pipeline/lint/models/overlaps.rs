@@ -34,11 +34,14 @@ const FACES_UP: f32 = 0.1;
 
 /// Finds these among `standing`.
 pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &mut FindingSink) {
+    if standing.is_empty() {
+        return;
+    }
     let mut worst = WorstOfTables::default();
     let outlines: Vec<[DVec2; 4]> = standing.iter().map(StandingModel::outline).collect();
     let rects: Vec<Rect> = outlines.iter().map(|outline| polygon::bounds(outline)).collect();
     let tree = RectTree::new(&rects);
-    let (buildings, roads) = (Buildings::of(context), Roads::of(context));
+    let (buildings, roads) = (BuildingRoofs::of(context), RoadLegs::of(context));
     for (index, model) in standing.iter().enumerate() {
         let (feature, outline, rect) = (model.placement.feature, &outlines[index], &rects[index]);
         let mut add = |share: f64, with: &dyn Fn() -> String| {
@@ -66,9 +69,7 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         }
     }
     let help = "move one of them, or leave one out";
-    for (span, message) in
-        worst.into_messages(|more| format!("{more} more models of this table stand in something"))
-    {
+    for (span, message) in worst.into_messages() {
         sink.add(context.finding(FindingCode::ModelsOverlap, span, message).with_help(help));
     }
 }
@@ -87,12 +88,12 @@ fn share_height(one: &StandingModel<'_>, other: &StandingModel<'_>) -> bool {
 }
 
 /// The roofs of the scene's buildings.
-struct Buildings<'a> {
+struct BuildingRoofs<'a> {
     solids: Vec<&'a Solid>,
     tree: RectTree,
 }
 
-impl<'a> Buildings<'a> {
+impl<'a> BuildingRoofs<'a> {
     fn of(context: &LintContext<'a>) -> Self {
         let is_building = |solid: &&Solid| context.kind(solid.feature) == Some(FeatureKind::Building);
         let solids: Vec<&Solid> = context.scene.solids.iter().filter(is_building).collect();
@@ -131,17 +132,14 @@ fn common_m2(triangle: &[DVec2; 3], outline: &[DVec2; 4]) -> f64 {
 }
 
 /// The scene's roads on the ground.
-struct Roads<'a> {
+struct RoadLegs<'a> {
     lines: Vec<&'a LineSymbol>,
     legs: LegTree,
 }
 
-impl<'a> Roads<'a> {
-    fn of(context: &LintContext<'a>) -> Self {
-        let is_road = |line: &&LineSymbol| {
-            context.kind(line.feature) == Some(FeatureKind::Road) && line.alignment.is_on_ground()
-        };
-        let lines: Vec<&LineSymbol> = context.scene.symbols.iter().filter(is_road).collect();
+impl<'a> RoadLegs<'a> {
+    fn of(context: &'a LintContext<'_>) -> Self {
+        let lines: Vec<&LineSymbol> = context.roads_on_ground().collect();
         let legs =
             lines.iter().enumerate().flat_map(|(index, line)| LineLeg::all(index, &line.alignment.line));
         Self { legs: LegTree::new(legs.collect()), lines }

@@ -64,11 +64,11 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         }
     }
     let help = "state in `scale` how many meters a unit of the file has";
-    for (span, message) in sizes.into_messages(|more| format!("{more} more models of this table are too")) {
+    for (span, message) in sizes.into_messages() {
         sink.add(context.finding(FindingCode::ModelSize, span, message).with_help(help));
     }
     let help = "write the file anew with the upright axis of its format: Y in OBJ and glTF, Z in 3DS";
-    for (span, message) in sides.into_messages(|more| format!("{more} more models of this table do")) {
+    for (span, message) in sides.into_messages() {
         sink.add(context.finding(FindingCode::ModelOnSide, span, message).with_help(help));
     }
 }

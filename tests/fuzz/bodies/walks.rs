@@ -1,0 +1,46 @@
+//! Walks: cameras and edits in any order, after each of which the invariants hold.
+
+use std::sync::Arc;
+
+use glam::{DVec2, Vec3};
+use sandtable::earthworks::brush::Crater;
+use sandtable::pipeline::walk::Walk;
+use sandtable::pipeline::walk::frame::WalkOptions;
+use sandtable::view::camera::Camera;
+
+use super::byte_source::ByteSource;
+use super::scenes::{SIDE_M, built};
+
+/// The most steps of a walk.
+const MOST_STEPS: usize = 24;
+
+/// Walks over a scene that `bytes` choose.
+pub fn walk(bytes: &[u8]) {
+    let bytes = &mut ByteSource::new(bytes);
+    let Some(scene) = built(bytes) else { return };
+    let mut walk = Walk::new(Arc::new(scene), WalkOptions::default());
+    for _ in 0..=bytes.below(MOST_STEPS) {
+        match bytes.byte() {
+            0..96 => {
+                let center =
+                    DVec2::new(bytes.between(-20.0, SIDE_M + 20.0), bytes.between(-20.0, SIDE_M + 20.0));
+                let radius_m = bytes.between(0.5, 80.0);
+                let crater = Crater { center, radius_m, depth_m: bytes.between(0.1, 40.0), rim_m: 1.0 };
+                walk.edit(|lattice| crater.apply(lattice)).expect("all of it is in memory");
+            }
+            96..112 => walk.set_tolerance_px(bytes.between(0.0, 30.0) as f32),
+            _ => {
+                let mut at = || {
+                    let (x, y) =
+                        (bytes.between(-100.0, SIDE_M + 100.0), bytes.between(-100.0, SIDE_M + 100.0));
+                    Vec3::new(x as f32, y as f32, bytes.between(0.0, 500.0) as f32)
+                };
+                let (eye, target) = (at(), at());
+                if let Ok(camera) = Camera::new(eye, target, 0.8, (320, 240), (0.5, 5000.0)) {
+                    walk.update(&camera).expect("all of it is in memory");
+                }
+            }
+        }
+        walk.check();
+    }
+}
