@@ -282,6 +282,9 @@ finding_codes! {
     UnusedPhase = "unused-phase", Warning,
         "No table names this phase, so that it shows only what is always there. Add `phases = [\"NAME\"]` to the tables that it is \
          meant for, or remove it.";
+    UnusedVariant = "unused-variant", Warning,
+        "A model's `variants` name a value that none of its points has, so that its file is read for nothing. Remove the entry, \
+         or mend the property.";
     UnusedInclude = "unused-include", Warning,
         "An included file states nothing. Remove it from `include`, or write the tables that are meant.";
     RepeatedName = "repeated-name", Warning,

@@ -14,6 +14,7 @@ use crate::description::feature_value::FeatureValue;
 use crate::description::finding_code::FindingCode;
 use crate::description::include::joined;
 use crate::description::reader::{DecodeContext, TableName};
+use crate::description::scalar::Scalar;
 use crate::geom::crs::Crs;
 use crate::limits::INLINE_POINTS;
 use crate::limits::SCENE_LIST;
@@ -51,6 +52,14 @@ pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
         DeValue::Array(_) => "a list",
         DeValue::Table(_) => "a table",
     }
+}
+
+/// The meters of a text that is a length with its unit, such as `6 m` or `20 ft`; `None` of any other text.
+fn in_meters(text: &str) -> Option<f64> {
+    if text.trim().parse::<f64>().is_ok() {
+        return None;
+    }
+    Scalar::Text(text.to_owned()).number()
 }
 
 /// `value` as a number; `None` where it is of another type or too large for TOML.
@@ -161,6 +170,10 @@ impl<'t> KeyValue<'_, 't> {
             DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
                 format!("write {} without quotes", text.trim())
             }
+            DeValue::String(text) => match in_meters(text) {
+                Some(meters) => format!("lengths are numbers in meters: write {}", ShortNumber(meters)),
+                None => format!("give a number {wanted}"),
+            },
             _ => format!("give a number {wanted}"),
         };
         self.wrong_type("a number", help)
@@ -198,6 +211,7 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn feature_number(mut self, range: Bounds) -> Option<FeatureValue<f64>> {
         match self.value.get_ref() {
+            DeValue::String(text) if in_meters(text).is_some() => self.not_a_number(&range.to_string()),
             DeValue::String(text) if text.trim().parse::<f64>().is_err() => {
                 let expression = self.expression_among(&[])?;
                 Some(FeatureValue::Computed { expression, limits: range, key: self.key_in_table() })

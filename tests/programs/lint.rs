@@ -118,6 +118,7 @@ fn of_text() -> Vec<Seed> {
         seed("unknown-key", NEXT + 2, road(ON_HILL) + "widht = 4\n"),
         seed("missing-key", NEXT, "[[label]]\nat = [750100, 4018100]\n"),
         seed("wrong-type", NEXT + 1, "[style]\nwireframe = 3\n"),
+        seed("wrong-type", NEXT + 2, road(ON_HILL) + "width = \"20 ft\"\n"),
         seed("wrong-value", NEXT + 2, road(ON_HILL) + "width = 1e-9\n"),
         seed("no-effect", NEXT + 2, road(ON_HILL) + "max_grade = 5\n"),
         seed("duplicate-name", NEXT + 3, "[[camera]]\nname = \"a\"\n[[camera]]\nname = \"a\"\n"),
@@ -276,6 +277,26 @@ fn each_is_found(seeds: Vec<Seed>) {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn a_length_with_a_unit_is_told_in_meters() {
+    let findings = seed("", 0, road(ON_HILL) + "width = \"20 ft\"\n").findings();
+    assert_eq!(findings[0].help.as_deref(), Some("lengths are numbers in meters: write 6.096"));
+}
+
+#[test]
+fn variants_that_no_point_names_are_found() {
+    let [x, y] = ORIGIN;
+    let points = format!(
+        "{{\"type\": \"Feature\", \"properties\": {{\"kind\": \"oak\"}}, \"geometry\": \
+         {{\"type\": \"Point\", \"coordinates\": [{}, {}]}}}}",
+        x + 200.0,
+        y + 200.0
+    );
+    let text = "[[model]]\nfile = \"conifer\"\nvariant = \"kind\"\nvariants = { oak = \"broadleaf\", elm = \"poplar\" }\n\
+                [model.instances]\nfile = \"trees.geojson\"\ncrs = \"EPSG:32616\"\n";
+    each_is_found(vec![seed("unused-variant", NEXT + 3, text).with("trees.geojson", points)]);
 }
 
 #[test]

@@ -19,10 +19,16 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::{FeatureSource, ModelPlacement};
+use crate::description::finding_code::FindingCode;
 use crate::description::scalar::Scalar;
 use crate::description::words::{Clamp, Footing};
 use crate::draw::list::FeatureId;
+<<<<<<< HEAD
 use crate::limits::SCENE_MODELS;
+||||||| 2fe00c4
+=======
+use crate::message::suggest::listed;
+>>>>>>> hL
 use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::feature_origin::FeatureOrigin;
@@ -136,6 +142,7 @@ impl<'a> PlacedModels<'a> {
                 let feature = collected.add(FeatureKind::Model, name, point.attributes.origin(source));
                 self.add(table, model, &point, feature, frame, &mut collected.default_counts);
             }
+            choice.find_unused(&mut collected.findings);
             unknown = choice.unknown;
         }
         self.groups.push(InstanceGroup { table, placements: first..self.placements.len(), off, unknown });
@@ -194,8 +201,15 @@ pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Resu
 struct ModelChoice<'a> {
     table: &'a ModelPlacement,
     file: usize,
-    variants: Vec<(&'a str, usize)>,
+    variants: Vec<ModelVariant<'a>>,
     unknown: usize,
+}
+
+/// A model that a point may name.
+struct ModelVariant<'a> {
+    value: &'a str,
+    model: usize,
+    is_used: bool,
 }
 
 impl<'a> ModelChoice<'a> {
@@ -208,7 +222,8 @@ impl<'a> ModelChoice<'a> {
         let mut variants = Vec::new();
         if let Some(given) = &table.variants {
             for (value, name) in given.iter() {
-                variants.push((value.as_str(), library.get(name, given.span(), collected)?));
+                let model = library.get(name, given.span(), collected)?;
+                variants.push(ModelVariant { value, model, is_used: false });
             }
         }
         Ok(Self { table, file, variants, unknown: 0 })
@@ -221,13 +236,25 @@ impl<'a> ModelChoice<'a> {
             Scalar::Number(number) => number.to_string(),
             Scalar::Bool(value) => value.to_string(),
         });
-        let found = self.variants.iter().find(|(variant, _)| value.as_deref() == Some(*variant));
-        found.map_or_else(
-            || {
+        match self.variants.iter_mut().find(|variant| value.as_deref() == Some(variant.value)) {
+            Some(variant) => {
+                variant.is_used = true;
+                variant.model
+            }
+            None => {
                 self.unknown += 1;
                 self.file
-            },
-            |&(_, model)| model,
-        )
+            }
+        }
+    }
+
+    /// Finds the variants that no point names.
+    fn find_unused(&self, findings: &mut SceneFindings) {
+        let unused = self.variants.iter().filter(|variant| !variant.is_used);
+        let unused: Vec<&str> = unused.map(|variant| variant.value).collect();
+        if let (Some(given), [_, ..]) = (&self.table.variants, &unused[..]) {
+            let message = format!("no point names the variant {}", listed(&unused));
+            findings.add(FindingCode::UnusedVariant, given.span().unwrap_or_default(), message);
+        }
     }
 }
