@@ -23,12 +23,8 @@ use crate::description::finding_code::FindingCode;
 use crate::description::scalar::Scalar;
 use crate::description::words::{Clamp, Footing};
 use crate::draw::list::FeatureId;
-<<<<<<< HEAD
 use crate::limits::SCENE_MODELS;
-||||||| 2fe00c4
-=======
 use crate::message::suggest::listed;
->>>>>>> hL
 use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::feature_origin::FeatureOrigin;
