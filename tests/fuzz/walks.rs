@@ -19,29 +19,29 @@ pub fn walk(bytes: &[u8]) {
     let bytes = &mut ByteSource::new(bytes);
     let Some(scene) = built(bytes) else { return };
     let mut walk = Walk::new(Arc::new(scene), WalkOptions::default());
+    let mut camera = None;
     for _ in 0..=bytes.below(MOST_STEPS) {
         match bytes.byte() {
             0..96 => {
-                let center =
-                    DVec2::new(bytes.between(-20.0, SIDE_M + 20.0), bytes.between(-20.0, SIDE_M + 20.0));
+                let [x, y] = [0, 1].map(|_| bytes.between(-20.0, SIDE_M + 20.0));
                 let radius_m = bytes.between(0.5, 80.0);
-                let crater =
-                    Crater { center, radius_m, depth_m: radius_m * bytes.between(0.02, 1.0), rim_m: 1.0 };
+                let depth_m = radius_m * bytes.between(0.02, 1.0);
+                let crater = Crater { center: DVec2::new(x, y), radius_m, depth_m, rim_m: 1.0 };
                 walk.edit(|lattice| crater.apply(lattice)).expect("all of it is in memory");
             }
             96..112 => walk.set_tolerance_px(bytes.between(0.0, 30.0) as f32),
             _ => {
-                let mut at = || {
-                    let (x, y) =
-                        (bytes.between(-100.0, SIDE_M + 100.0), bytes.between(-100.0, SIDE_M + 100.0));
-                    Vec3::new(x as f32, y as f32, bytes.between(0.0, 500.0) as f32)
-                };
-                let (eye, target) = (at(), at());
-                if let Ok(camera) = Camera::new(eye, target, 0.8, (320, 240), (0.5, 5000.0)) {
-                    walk.update(&camera).expect("all of it is in memory");
-                }
+                let [eye, target] = [0, 1].map(|_| {
+                    let [x, y] = [0, 1].map(|_| bytes.between(-100.0, SIDE_M + 100.0) as f32);
+                    Vec3::new(x, y, bytes.between(0.0, 500.0) as f32)
+                });
+                let to = Camera::new(eye, target, 0.8, (320, 240), (0.5, 5000.0));
+                camera = to.ok().or(camera);
             }
         }
-        walk.check();
+        if let Some(camera) = &camera {
+            walk.update(camera).expect("all of it is in memory");
+            walk.check();
+        }
     }
 }
