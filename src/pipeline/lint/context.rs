@@ -26,11 +26,6 @@ impl LintContext<'_> {
         Finding::new(code, message).at(&self.document.source, span)
     }
 
-    /// A finding about a feature, at the points or the file that made it.
-    pub fn about(&self, code: FindingCode, feature: FeatureId, message: impl Into<String>) -> Finding {
-        self.finding(code, self.origin(feature), message)
-    }
-
     /// The bytes of the scene file that state a feature's points or the file that holds it; `0..0` for the ground.
     pub fn origin(&self, feature: FeatureId) -> Range<usize> {
         self.feature(feature).map(|feature| feature.origin.span.clone()).unwrap_or_default()
