@@ -245,14 +245,15 @@ finding_codes! {
          about it in height, as that of a model whose upright axis is another than its format has. OBJ and glTF have Y, 3DS has \
          Z. Write the file anew so.";
     ModelFloats = "model-floats", Warning,
-        "A corner of a model's foot is more than 0.5 m above the ground. The message gives the gap under each corner. Anchor \
+        "A corner of a model's foot is more than 0.5 m above the ground, and more than 5 % of the model's height. The message gives the gap under each corner. Anchor \
          it at the lowest ground under it, or fill the gap with a `footing`.";
     ModelBuried = "model-buried", Warning,
-        "A corner of a model's foot is in the ground by more than a third of the model's height. The message gives each corner. \
+        "A corner of a model's foot is in the ground by more than a third of the model's height, or all of a model whose height \
+         is stated. The message gives each corner. \
          Anchor it at the highest ground under it, on a plinth, or have the ground leveled for it.";
     ModelsOverlap = "models-overlap", Warning,
-        "A model stands in another, in a building, or on a road that it is too large to drive on. They are drawn through each \
-         other. Move one, or leave one out.";
+        "A model stands in another, in a building, or on a road that it is wider than. They are drawn through each other. Move \
+         one, or leave one out.";
 
     CameraSeesNothing = "camera-sees-nothing", Warning,
         "Nothing of the scene is in the picture of a camera: it looks away from it. Turn it, or leave out `eye` and `look_at`: \

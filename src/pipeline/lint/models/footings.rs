@@ -11,6 +11,9 @@ use crate::terrain::triangle_surface::TriangleSurface;
 /// A corner that floats higher shows a gap under the model, meters: a step.
 const FLOATS_M: f64 = 0.5;
 
+/// And higher than this share of the model's height: a crack under a tower is not seen.
+const FLOATS_SHARE: f64 = 0.05;
+
 /// A corner in the ground deeper than this share of the model's height hides doors and windows.
 const BURIED_SHARE: f64 = 1.0 / 3.0;
 
@@ -38,9 +41,12 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
             let name = context.name(model.placement.feature);
             format!("{name} {verb} by up to {most_m:.2} m at {}: {}", model.place(scene), corners(gaps))
         };
-        if highest > FLOATS_M && is_on_ground(model) && model.placement.standing.footing == Footing::None {
+        if highest > FLOATS_M.max(FLOATS_SHARE * height_m)
+            && is_on_ground(model)
+            && model.placement.standing.footing == Footing::None
+        {
             floating.add(span, highest, || what("floats", highest));
-        } else if -lowest > BURIED_M.max(BURIED_SHARE * height_m) && is_meant_to_stand(model) {
+        } else if -lowest > deepest_m(model, height_m) {
             buried.add(span, -lowest, || what(&format!("is {height_m:.1} m high and buried"), -lowest));
         }
     }
@@ -64,10 +70,11 @@ fn is_on_ground(model: &StandingModel<'_>) -> bool {
     }
 }
 
-/// Whether nothing is stated that would put it into the ground.
-fn is_meant_to_stand(model: &StandingModel<'_>) -> bool {
-    model.placement.standing.sink_m == 0.0
-        && (model.placement.clamp != Clamp::Relative || model.placement.height >= 0.0)
+/// How deep a corner may be in the ground, in meters. What states its height or its depth means it, unless all of the model
+/// is in the ground: a bridge stands on its banks.
+fn deepest_m(model: &StandingModel<'_>, height_m: f64) -> f64 {
+    let is_stated = !is_on_ground(model) || model.placement.standing.sink_m > 0.0;
+    if is_stated { height_m } else { BURIED_M.max(BURIED_SHARE * height_m) }
 }
 
 fn corners(gaps: [f64; 4]) -> String {

@@ -73,10 +73,9 @@ impl StandingModel<'_> {
         self.base.map(|corner| corner.truncate().as_dvec2())
     }
 
-    /// World Z of its lowest and its highest point, where it stands upright.
-    fn z_range(&self) -> [f32; 2] {
-        let low = self.base.iter().map(|corner| corner.z).fold(f32::INFINITY, f32::min);
-        [low, low + self.size_m().z]
+    /// World Z of the lowest corner of its foot.
+    fn foot_z(&self) -> f32 {
+        self.base.iter().map(|corner| corner.z).fold(f32::INFINITY, f32::min)
     }
 
     /// Its place as a message states it.

@@ -1,4 +1,6 @@
-//! Models that stand in one another, in a building, or on a road that they are too large to drive on.
+//! Models that stand in one another, in a building, or on a road that they block.
+//!
+//! A truck on a bridge stands on it, not in it, and a bridge along a road carries it.
 
 use glam::{DVec2, Vec3};
 
@@ -20,11 +22,14 @@ use crate::scene::{FeatureKind, Solid};
 /// The share of the smaller foot that has to lie in the other: less is a balcony, or a wall that two houses have in common.
 const SHARED: f64 = 0.2;
 
-/// Two models share height where the ranges of their heights have this part of the lower one in common.
-const SHARED_HEIGHT: f32 = 0.2;
+/// Two models stand on one ground where their feet differ in height by less than this share of the lower model.
+const SAME_GROUND: f32 = 0.5;
 
-/// A foot with sides of at least this belongs to no vehicle, meters: battle tanks are 3.7 m wide.
-const NO_VEHICLE_M: f64 = 4.0;
+/// What is so many times as long as it is wide and lies along a road is a bridge, a gate or a train.
+const LONG: f64 = 2.0;
+
+/// And turns from the road by no more than 30°: the cosine of that.
+const ALONG: f64 = 0.866;
 
 /// The most models near one that it is compared with.
 const MOST_NEAR: usize = 64;
@@ -52,7 +57,7 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         for near in tree.meeting_in_order(rect).into_iter().filter(|&near| near < index).take(MOST_NEAR) {
             let other = &standing[near];
             let share = shared(outline, &outlines[near]);
-            if share > SHARED && share_height(model, other) {
+            if share > SHARED && is_on_one_ground(model, other) {
                 let name = || context.name(other.placement.feature);
                 add(share, &|| {
                     format!("stands in {}: they share {:.0} % of the smaller foot", name(), share * 100.0)
@@ -81,10 +86,9 @@ fn shared(one: &[DVec2; 4], other: &[DVec2; 4]) -> f64 {
     common.map_or(0.0, |common| polygon::doubled_area(&common) / 2.0 / least_m2)
 }
 
-fn share_height(one: &StandingModel<'_>, other: &StandingModel<'_>) -> bool {
-    let ([low_a, high_a], [low_b, high_b]) = (one.z_range(), other.z_range());
-    let common = high_a.min(high_b) - low_a.max(low_b);
-    common > SHARED_HEIGHT * (high_a - low_a).min(high_b - low_b)
+fn is_on_one_ground(one: &StandingModel<'_>, other: &StandingModel<'_>) -> bool {
+    let lower_m = one.size_m().z.min(other.size_m().z);
+    (one.foot_z() - other.foot_z()).abs() < SAME_GROUND * lower_m
 }
 
 /// The roofs of the scene's buildings.
@@ -145,16 +149,22 @@ impl<'a> RoadLegs<'a> {
         Self { legs: LegTree::new(legs.collect()), lines }
     }
 
-    /// A road whose centerline runs through an outline that is too large for a vehicle.
+    /// A road whose centerline runs through an outline that is wider than it, and does not lie along it.
     fn under(&self, outline: &[DVec2; 4], rect: &Rect) -> Option<FeatureId> {
-        let sides = [outline[0].distance(outline[1]), outline[1].distance(outline[2])];
-        if sides[0].min(sides[1]) < NO_VEHICLE_M {
-            return None;
-        }
+        let sides = [outline[1] - outline[0], outline[2] - outline[1]];
+        let (long, short) =
+            if sides[0].length() < sides[1].length() { (sides[1], sides[0]) } else { (sides[0], sides[1]) };
         let line = Polyline::new([rect.min, rect.max], 0.0)?;
         let window = LineLeg::all(0, &line).next()?;
-        let through = |leg: &LineLeg| convex::clip_line(outline, (leg.ends[0], leg.ends[1]), 0.0).is_some();
+        let blocks = |leg: &LineLeg| {
+            let width_m = self.lines[leg.line].alignment.width.at((leg.stations[0] + leg.stations[1]) / 2.0);
+            let way = (leg.ends[1] - leg.ends[0]).normalize_or_zero();
+            let is_along =
+                long.length() >= LONG * short.length() && way.dot(long.normalize_or_zero()).abs() > ALONG;
+            let is_through = convex::clip_line(outline, (leg.ends[0], leg.ends[1]), 0.0).is_some();
+            short.length() > width_m && !is_along && is_through
+        };
         let mut near = self.legs.near(&window).into_iter().map(|near| &self.legs.legs()[near]);
-        near.find(|leg| through(leg)).map(|leg| self.lines[leg.line].feature)
+        near.find(|leg| blocks(leg)).map(|leg| self.lines[leg.line].feature)
     }
 }
