@@ -50,6 +50,8 @@ pub enum Command {
     New(NewArguments),
     /// Print the JSON Schema of scene files, with which editors complete and check them
     Schema,
+    /// Print the licenses of what this program is made of
+    Licenses,
     /// Inspect, convert and make elevation files
     Dem {
         #[command(subcommand)]

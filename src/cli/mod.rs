@@ -11,6 +11,7 @@ mod export;
 mod fly;
 mod grid;
 mod height;
+mod licenses;
 mod lod;
 mod lod_selection;
 mod los;
@@ -83,6 +84,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::Explain(arguments) => explain::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema => schema::run(),
+        Command::Licenses => licenses::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),
         Command::Dem { command: DemCommand::Convert(arguments) } => convert::run(arguments),
         Command::Dem { command: DemCommand::Grid(arguments) } => grid::run(arguments),

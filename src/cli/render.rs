@@ -78,8 +78,12 @@ impl RenderArguments {
 }
 
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from));
+    let pool = threads.build().map_err(|error| {
+        CliError::input(format!(
+            "the threads to draw with cannot be started: {error}; use fewer with --threads"
+        ))
+    })?;
     let outputs = outputs(arguments)?;
     let is_batch = outputs.len() > 1;
     let (mut failures, mut values) = (Vec::new(), Vec::new());

@@ -20,7 +20,7 @@ pub fn page(service: &Service) -> Response {
     ADDRESSES.iter().for_each(|address| describe(address, service, &mut text));
     let _ = write!(
         text,
-        "\nA POST takes the same parameters as a form or as a JSON object. Heights and distances are meters. At most {} \
+        "\nA POST takes the same parameters as a form, in parts or not, or as a JSON object. Heights and distances are meters. At most {} \
          locations\nare answered at a time. A refusal is JSON with status and error.\n\n\
          Example: /v1/{first}?locations=46.2,-122.19\n",
         service.limits.max_points

@@ -1,4 +1,4 @@
-//! The parameters of a request: from its query and from a body that is a form or a JSON object.
+//! The parameters of a request: from its query and from a body that is a form, in parts or not, or a JSON object.
 //!
 //! A JSON object has the same names as a form. Its values are strings, numbers, or lists of strings, which are joined
 //! with `|`. A later value replaces an earlier one, and a value of the body one of the query.
@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use axum::Json;
 use axum::body::{Body, Bytes, to_bytes};
-use axum::extract::{Form, FromRequest, Query, Request};
+use axum::extract::multipart::MultipartError;
+use axum::extract::{Form, FromRequest, Multipart, Query, Request};
 use axum::http::header::{CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_TYPE};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use percent_encoding::percent_decode;
@@ -35,7 +36,18 @@ const FORM: &str = "application/x-www-form-urlencoded";
 const JSON: &str = "application/json";
 
 /// The media types of bodies.
-pub const BODY_TYPES: [&str; 2] = [FORM, JSON];
+pub const BODY_TYPES: [&str; 3] = [FORM, JSON, MULTIPART];
+
+const MULTIPART: &str = "multipart/form-data";
+
+/// How a body is written.
+#[derive(Clone, Debug)]
+enum BodyForm {
+    Json,
+    Form,
+    /// In parts; the content type says what is between them.
+    Multipart(HeaderValue),
+}
 
 /// Named values.
 #[derive(Debug, Default)]
@@ -120,9 +132,9 @@ impl Parameters {
         let query = Query::<Self>::try_from_uri(request.uri());
         let Query(mut parameters) = query.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
         if request.method() == Method::POST {
-            let is_json = is_json(request.headers())?;
+            let form = body_form(request.headers())?;
             let body = read_body(request, service, connection).await?;
-            parameters.0.append(&mut Self::from_body(body, is_json).await?.0);
+            parameters.0.append(&mut Self::from_body(body, form).await?.0);
         }
         Ok(parameters)
     }
@@ -144,12 +156,17 @@ fn check_utf8(form: &[u8]) -> Result<(), HttpError> {
 
 impl Parameters {
     /// Parses a body. Without a content type it is JSON where it begins with a brace, else a form.
-    async fn from_body(mut body: Bytes, is_json: Option<bool>) -> Result<Self, HttpError> {
-        if is_json.unwrap_or_else(|| body.trim_ascii_start().starts_with(b"{")) {
-            let json = Json::<Self>::from_bytes(&body);
-            return json
-                .map(|Json(parameters)| parameters)
-                .map_err(|rejection| HttpError::wrong(rejection.body_text()));
+    async fn from_body(mut body: Bytes, form: Option<BodyForm>) -> Result<Self, HttpError> {
+        let is_json = body.trim_ascii_start().starts_with(b"{");
+        match form.unwrap_or(if is_json { BodyForm::Json } else { BodyForm::Form }) {
+            BodyForm::Json => {
+                let json = Json::<Self>::from_bytes(&body);
+                return json
+                    .map(|Json(parameters)| parameters)
+                    .map_err(|rejection| HttpError::wrong(rejection.body_text()));
+            }
+            BodyForm::Multipart(content_type) => return Self::from_parts(body, content_type).await,
+            BodyForm::Form => {}
         }
         body.truncate(body.trim_ascii_end().len());
         check_utf8(&body)?;
@@ -158,6 +175,27 @@ impl Parameters {
         request.headers_mut().insert(CONTENT_TYPE, HeaderValue::from_static(FORM));
         let form = Form::<Self>::from_request(request, &()).await;
         form.map(|Form(parameters)| parameters).map_err(|rejection| HttpError::wrong(rejection.body_text()))
+    }
+
+    /// Parses a form in parts (RFC 7578), each of which is a parameter.
+    async fn from_parts(body: Bytes, content_type: HeaderValue) -> Result<Self, HttpError> {
+        let mut request = Request::new(Body::from(body));
+        request.headers_mut().insert(CONTENT_TYPE, content_type);
+        let parts = Multipart::from_request(request, &()).await;
+        let mut parts = parts.map_err(|rejection| HttpError::wrong(rejection.body_text()))?;
+        let wrong = |error: MultipartError| HttpError::wrong(error.body_text());
+        let mut parameters = BTreeMap::new();
+        while let Some(part) = parts.next_field().await.map_err(wrong)? {
+            let name = part.name().unwrap_or_default().to_owned();
+            let bytes = part.bytes().await.map_err(wrong)?;
+            let text = String::from_utf8(bytes.into());
+            let not_text = |_| HttpError::wrong(format!("{} is not UTF-8 text", quoted(&name)));
+            parameters.insert(name.clone(), text.map_err(not_text)?);
+            if parameters.len() > MOST {
+                return Err(HttpError::wrong(format!("there are more than {MOST} parameters")));
+            }
+        }
+        Ok(Self(parameters))
     }
 
     /// The number of bytes of all values.
@@ -219,8 +257,8 @@ impl Parameters {
     }
 }
 
-/// Whether the headers declare a body as JSON (`true`) or as a form (`false`); `None` where they declare neither.
-fn is_json(headers: &HeaderMap) -> Result<Option<bool>, HttpError> {
+/// How the headers say that a body is written; `None` where they do not.
+fn body_form(headers: &HeaderMap) -> Result<Option<BodyForm>, HttpError> {
     let refused = |what: &str, found: &HeaderValue, remedy: &str| {
         let found = quoted(&String::from_utf8_lossy(found.as_bytes()));
         HttpError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, format!("the {what} is {found}; {remedy}"))
@@ -232,9 +270,10 @@ fn is_json(headers: &HeaderMap) -> Result<Option<bool>, HttpError> {
     let Some(found) = headers.get(CONTENT_TYPE) else { return Ok(None) };
     let named = found.to_str().unwrap_or_default().split(';').next().unwrap_or_default().trim();
     match named.to_ascii_lowercase().as_str() {
-        JSON => Ok(Some(true)),
-        FORM => Ok(Some(false)),
-        _ => Err(refused("content type", found, &format!("send application/json or {FORM}"))),
+        JSON => Ok(Some(BodyForm::Json)),
+        FORM => Ok(Some(BodyForm::Form)),
+        MULTIPART => Ok(Some(BodyForm::Multipart(found.clone()))),
+        _ => Err(refused("content type", found, &format!("send {JSON}, {FORM} or {MULTIPART}"))),
     }
 }
 
@@ -305,7 +344,8 @@ pub(in crate::serve) mod tests {
 
     fn read(body: &[u8], is_json: bool) -> Result<Parameters, HttpError> {
         let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a thread");
-        runtime.block_on(Parameters::from_body(Bytes::copy_from_slice(body), Some(is_json)))
+        let form = if is_json { BodyForm::Json } else { BodyForm::Form };
+        runtime.block_on(Parameters::from_body(Bytes::copy_from_slice(body), Some(form)))
     }
 
     pub fn form(text: &str) -> Parameters {

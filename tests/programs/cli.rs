@@ -12,6 +12,7 @@ mod heights;
 mod info;
 #[cfg(unix)]
 mod interrupts;
+mod licenses;
 mod lod;
 mod los;
 mod manners;

@@ -44,7 +44,7 @@ fn writers() -> Vec<(Vec<String>, Vec<&'static str>)> {
         command("export SCENE -o out.obj", &["out.mtl", "out.obj"]),
         command("export SCENE -o out.html", &["out.html"]),
         command("export SCENE -o out.3mf", &["out.3mf"]),
-        command("dem convert DEM -o out.asc", &["out.asc", "out.prj"]),
+        command("dem convert DEM --source-crs EPSG:32616 -o out.asc", &["out.asc", "out.prj"]),
         command("dem convert DEM -o out.tif", &["out.tif"]),
         command("mesh DEM --max-error 5 -o out.ply", &["out.ply"]),
     ]
@@ -196,6 +196,22 @@ fn a_user_without_a_home_gets_the_same_picture() {
     ran(command.output().expect("the program starts")).ok();
     let [home, none] = ["home.png", "none.png"].map(|name| fs::read(scratch.at(name)).expect("written"));
     assert!(home == none);
+}
+
+#[test]
+fn one_thread_and_64_draw_the_same_picture() {
+    let scratch = Scratch::new();
+    let scene = project("scenes/labels.toml");
+    let drawn = |threads: &str| {
+        let name = format!("{threads}.png");
+        let render = ["render", &scene, "--size", "320x180", "--threads", threads, "-o", &name];
+        run_in(scratch.folder(), &render).ok();
+        fs::read(scratch.at(&name)).expect("written")
+    };
+    let one = drawn("1");
+    for threads in ["2", "16", "64"] {
+        assert!(drawn(threads) == one, "{threads}");
+    }
 }
 
 #[test]

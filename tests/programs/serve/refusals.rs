@@ -118,7 +118,9 @@ fn methods_that_are_not_answered_are_told_which_are() {
 fn a_body_of_another_kind_or_too_long_is_refused() {
     let (_scratch, server) = server(&["--max-points", "10"]);
     server.post("/v1/grid", "text/csv", "50,10").refused(415);
-    server.post("/v1/grid", "multipart/form-data; boundary=a", "").refused(415);
+    server.post("/v1/grid", "multipart/form-data; boundary=a", "").refused(400);
+    server.post("/v1/grid", "multipart/form-data", "--a--").refused(400);
+    server.post("/v1/grid", "multipart/mixed; boundary=a", "--a--").refused(415);
     let zipped = "POST /v1/grid HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\ncontent-encoding: gzip\r\n\
                   content-length: 2\r\n\r\n{}";
     server.raw(zipped.as_bytes()).refused(415);

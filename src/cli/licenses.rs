@@ -1,0 +1,11 @@
+//! `sandtable licenses`: the notices of what the program is made of.
+
+use crate::cli::error::CliError;
+use crate::cli::output::print;
+
+/// Made by `tests/tools/notices.py`.
+const NOTICES: &str = include_str!("../../assets/NOTICES.txt");
+
+pub fn run() -> Result<(), CliError> {
+    print(NOTICES)
+}
