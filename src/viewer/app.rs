@@ -16,11 +16,12 @@ use crate::view::navigation::pose::{ViewPose, wrapped};
 use crate::view::navigation::{NavigationMode, TRANSITION_S};
 use crate::viewer::commands::{ViewCommand, pressed};
 use crate::viewer::drawing_job::DrawingJob;
+use crate::viewer::following::FollowedFiles;
 use crate::viewer::frame_times::FrameTimes;
 use crate::viewer::loading::{LoadingTask, SceneLoading, opening_error};
 use crate::viewer::measuring::{MeasureKind, Measuring};
 use crate::viewer::notices::ViewerNotices;
-use crate::viewer::opened::{OpenedScene, SceneFrame};
+use crate::viewer::opened::{OpenedScene, OpeningView, SceneFrame};
 use crate::viewer::panels::detail::DetailSettings;
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::open::OpenPanel;
@@ -28,10 +29,10 @@ use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::place::PlaceText;
 use crate::viewer::recent::RecentFiles;
 use crate::viewer::saving::{Leaving, SavingQuestion};
+use crate::viewer::scene_load::LoaderSlot;
 use crate::viewer::session::EditingSession;
 use crate::viewer::tool_use::{ActiveTool, ToolPreview};
 use crate::viewer::view_area::ViewArea;
-use crate::viewer::watch::FileWatch;
 
 /// What the window has to do for the app.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +82,8 @@ pub struct ViewerApp {
     pub adapter: String,
     /// How long frames took.
     pub frames: FrameTimes,
+    /// What brings scenes to the window's renderer.
+    pub slot: LoaderSlot,
     pub(super) options: ViewerOptions,
     pub(super) context: Context,
     pub(super) recent: RecentFiles,
@@ -105,9 +108,7 @@ pub struct ViewerApp {
     pub(super) tool: Option<ActiveTool>,
     pub(super) preview: Option<ToolPreview>,
     pub(super) question: Option<SavingQuestion>,
-    /// What the files of the scene held when they were read or saved last.
-    pub(super) fingerprint: Option<String>,
-    pub(super) watch: Option<FileWatch>,
+    pub(super) files: FollowedFiles,
     title: String,
     pub(super) requests: Vec<WindowRequest>,
 }
@@ -125,6 +126,7 @@ impl ViewerApp {
         let mut app = Self {
             adapter: String::new(),
             frames: FrameTimes::default(),
+            slot: LoaderSlot::default(),
             options: options.clone(),
             context: context.clone(),
             recent,
@@ -148,8 +150,7 @@ impl ViewerApp {
             tool: None,
             preview: None,
             question: None,
-            fingerprint: None,
-            watch: None,
+            files: FollowedFiles::default(),
             title: String::new(),
             requests: Vec::new(),
         };
@@ -180,6 +181,9 @@ impl ViewerApp {
         match opened.frame(self.view.size) {
             Ok(frame) => {
                 self.view.camera = Some(frame.camera);
+                if frame.statistics.waiting_patches > 0 {
+                    self.context.request_repaint();
+                }
                 Some(frame)
             }
             Err(error) => {
@@ -201,9 +205,10 @@ impl ViewerApp {
         }
     }
 
-    /// Whether a file is being opened or a picture drawn.
+    /// Whether a file is being opened, a picture drawn, or what stands set anew.
     pub fn is_busy(&self) -> bool {
-        self.loading.is_some() || self.drawing.is_some()
+        let is_relisting = self.opened.as_ref().is_some_and(|opened| opened.is_relisting());
+        self.loading.is_some() || self.drawing.is_some() || is_relisting
     }
 
     /// What is said in the window, the oldest first.
@@ -238,8 +243,15 @@ impl ViewerApp {
     }
 
     fn start_loading(&mut self, task: LoadingTask) {
+        let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
+        let before = self.opened.as_ref().filter(|before| before.path == *path);
+        let view = before.map_or_else(OpeningView::default, |before| OpeningView {
+            seen: Some(before.seen_from(self.view.size)),
+            hidden: self.tree.hidden.clone(),
+        });
         let context = self.context.clone();
-        self.loading = Some(SceneLoading::start(task, move || context.request_repaint()));
+        let wake = move || context.request_repaint();
+        self.loading = Some(SceneLoading::start(task, view, self.slot.clone(), wake));
         self.failure = None;
     }
 
@@ -255,6 +267,7 @@ impl ViewerApp {
     pub fn show(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
         self.follow_loading(ui);
         self.follow_drawing(ui);
+        self.follow_relisting();
         self.follow_files(ui);
         if !ui.ctx().text_edit_focused() {
             let commands = ui.input_mut(pressed);

@@ -92,6 +92,10 @@ impl ViewerApp {
                     ui.spinner();
                     ui.label("drawing the picture");
                 }
+                if self.opened.as_ref().is_some_and(|opened| opened.is_relisting()) {
+                    ui.spinner();
+                    ui.label("setting light and models");
+                }
             });
         });
         commands.into_iter().for_each(|command| self.run(command));

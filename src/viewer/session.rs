@@ -98,7 +98,9 @@ impl EditingSession {
 
     /// Lets what stands on the ground follow an edit.
     fn shown(&self, made: WalkEdit, opened: &mut OpenedScene) -> WalkEdit {
-        opened.follow_ground(made.moves_standing);
+        if made.moves_standing {
+            opened.relist();
+        }
         made
     }
 }

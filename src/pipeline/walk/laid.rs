@@ -1,5 +1,7 @@
 //! What lies on the ground of a walk, cut again where the ground or the view of it changed.
 
+use std::sync::Arc;
+
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
@@ -41,6 +43,8 @@ struct LaidPatch {
     is_cut: bool,
     /// Whether other symbols are planned in it than it was cut of.
     is_replanned: bool,
+    /// Whether it is to be handed over again as it is.
+    is_wanted: bool,
     /// From where it was seen when it was handed over; `None` where the renderer does not have it.
     eye: Option<Vec3>,
 }
@@ -48,7 +52,11 @@ struct LaidPatch {
 /// What lies on the ground, by patch.
 pub(super) struct LaidGround {
     sheets: GroundSheets,
+    /// The materials.
+    head: Arc<DrawList>,
     patches: Vec<LaidPatch>,
+    /// How many patches in view wait to be handed over again.
+    waiting: usize,
     /// From where symbols were planned.
     planned: Option<Vec3>,
 }
@@ -56,12 +64,23 @@ pub(super) struct LaidGround {
 impl LaidGround {
     pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
         let patches = vec![LaidPatch::default(); ground.layout.patch_count()];
-        Self { sheets: GroundSheets::new(scene, ground), patches, planned: None }
+        let sheets = GroundSheets::new(scene, ground);
+        Self { head: Arc::new(sheets.head().clone()), sheets, patches, waiting: 0, planned: None }
     }
 
     /// The materials.
-    pub fn head(&self) -> &DrawList {
-        self.sheets.head()
+    pub fn head(&self) -> &Arc<DrawList> {
+        &self.head
+    }
+
+    /// Hands all of it over again, a few patches an update.
+    pub fn renew(&mut self) {
+        self.patches.iter_mut().for_each(|patch| patch.is_wanted = patch.eye.is_some());
+    }
+
+    /// How many patches in view wait to be handed over in later updates.
+    pub fn waiting(&self) -> usize {
+        self.waiting
     }
 
     /// Marks what lies on a patch as off the ground, which has moved.
@@ -106,8 +125,9 @@ impl LaidGround {
             let laid = self.patches[patch];
             let is_due = match laid.eye {
                 Some(eye) if laid.is_cut => {
-                    let looks_otherwise =
-                        laid.is_replanned || self.looks_otherwise(terrain, patch, eye, camera.eye());
+                    let looks_otherwise = laid.is_replanned
+                        || laid.is_wanted
+                        || self.looks_otherwise(terrain, patch, eye, camera.eye());
                     renewed += usize::from(looks_otherwise);
                     looks_otherwise && renewed <= MOST_RENEWED
                 }
@@ -117,6 +137,7 @@ impl LaidGround {
                 due.push(patch);
             }
         }
+        self.waiting = usize::saturating_sub(renewed, MOST_RENEWED);
         if due.is_empty() {
             // Threads would be woken for nothing.
             return Vec::new();
@@ -127,7 +148,7 @@ impl LaidGround {
             self.sheets.recut(&uncut, &DeferredSurface::new(mesh, terrain.lattice().cell()));
         }
         for &patch in &due {
-            self.patches[patch] = LaidPatch { is_cut: true, is_replanned: false, eye: Some(camera.eye()) };
+            self.patches[patch] = LaidPatch { is_cut: true, eye: Some(camera.eye()), ..LaidPatch::default() };
         }
         let pieces = |patch: usize| self.sheets.pieces(patch, camera);
         due.into_par_iter()

@@ -19,6 +19,7 @@ pub mod paged;
 pub mod pick;
 mod relief_map;
 mod shown;
+pub mod standing_task;
 
 use std::sync::{Arc, OnceLock};
 
@@ -38,7 +39,7 @@ use crate::roam::spheres;
 use crate::scene::SceneModel;
 use crate::scene::picture::models::{PlacementMove, PlacementMoves};
 use crate::scene::picture::placed_text::PlacedText;
-use crate::scene::picture::standing::{self, WalkedGround};
+use crate::scene::picture::standing;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::ground::SightGround;
 use crate::view::camera::Camera;
@@ -150,10 +151,9 @@ impl Walk {
     /// Its first material is that of the ground; those of [`DrapedPiece`](crate::draw::patches::DrapedPiece)s are among those
     /// that follow, with the same numbers in every list of this walk.
     pub fn static_list(&self, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
-        let walked = WalkedGround { moves: &self.moves, lattice: self.lattice(), to_sun: self.to_sun() };
-        let mut list = standing::standing(&self.scene, walked, camera, self.laid.head(), progress);
-        if let Some(map) = &mut list.ground {
-            self.map.load(map, self.elevations());
+        let list = self.standing_task(self.to_sun()).list(camera, progress);
+        if let Some(map) = &list.ground {
+            self.map.keep(map);
         }
         list
     }
@@ -191,6 +191,7 @@ impl Walk {
         self.forget_meshes();
         changes.drapes = self.laid.update(&self.scene, &self.mesh, &self.shown, camera);
         changes.map = self.map.take_new();
+        statistics.waiting_patches = self.laid.waiting();
         statistics.examined = self.mesh.examined();
         statistics.count(&self.mesh, &changes);
         Ok(WalkFrame { changes, statistics })
@@ -205,6 +206,11 @@ impl Walk {
     pub fn forget_handed(&mut self) {
         self.shown.forget();
         self.laid.forget_handed();
+    }
+
+    /// Hands over what lies on the ground again, a few patches an update: for a viewer that shows other features of it.
+    pub fn renew_laid(&mut self) {
+        self.laid.renew();
     }
 
     /// Where the camera's spheres are seen from. Parallel rays come from very far away.
