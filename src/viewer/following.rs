@@ -45,7 +45,11 @@ impl ViewerApp {
     /// Takes over what stands, where it was set anew meanwhile.
     pub(super) fn follow_relisting(&mut self) {
         let Some(opened) = &mut self.opened else { return };
-        if let Err(error) = opened.follow_relisting(&self.context, &self.slot) {
+        let followed = [
+            opened.follow_relisting(&self.context, &self.slot),
+            opened.follow_shadows(&self.context, &self.slot),
+        ];
+        for error in followed.into_iter().filter_map(Result::err) {
             self.notices.warn(opening_error(&error));
         }
     }

@@ -4,8 +4,8 @@
 //! window ─► keys, pointer ─► app ─► panels ─► commands        egui; no adapter needed: tests run it without a window
 //!   │                         │
 //!   │                         ├─ loading ─► scene              on a thread, with progress; and on others:
-//!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; drawing: pictures
-//!   │                         │                                   all of them: worker
+//!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; shadowing; drawing:
+//!   │                         │                                   pictures; all of them: worker
 //!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
 //! ```
 //!
@@ -37,6 +37,7 @@ mod scene_load;
 mod script;
 mod script_run;
 mod session;
+mod shadowing;
 mod snapshots;
 mod symbol_layer;
 mod tool_use;

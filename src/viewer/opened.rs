@@ -15,7 +15,8 @@ use crate::pipeline::walk::Walk;
 use crate::pipeline::walk::frame::{WalkError, WalkOptions, WalkStatistics};
 use crate::pipeline::walk::pick::{StandingIndex, WalkPick, pixel_ray};
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::live::{KeptPatches, LiveShadows};
+use crate::render::gpu::live::KeptPatches;
+use crate::render::gpu::live::prepared::PreparedShadows;
 use crate::scene::picture;
 use crate::scene::{SceneModel, SceneView};
 use crate::terrain::sight::ray::Ray;
@@ -24,6 +25,7 @@ use crate::view::navigation::pose::{ViewPicture, ViewPose};
 use crate::view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
 use crate::viewer::relisting::Relisting;
 use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
+use crate::viewer::shadowing::{ShadowState, ShadowedView};
 
 /// The size that cameras are fitted to before the window has one.
 pub const FIRST_SIZE: (u32, u32) = (1280, 720);
@@ -67,6 +69,9 @@ pub struct OpenedScene {
     pub(super) relisting: Option<Relisting>,
     /// Whether the list is of old, or will be when the next one is there.
     pub(super) wants_list: bool,
+    pub(super) shadows: ShadowState,
+    /// The size of the picture, pixels.
+    pub(super) size: (u32, u32),
 }
 
 /// How a scene that is opened will first be seen, so that nothing is left to be made for its first frame.
@@ -104,6 +109,8 @@ impl SeenFrom {
 pub struct SceneFrame {
     /// The list to load before anything else; `None` where the renderer has it.
     pub load: Option<SceneLoad>,
+    /// Shadows to take over; `None` where the renderer has them.
+    pub shadows: Option<PreparedShadows>,
     /// What changed on the ground.
     pub changes: GroundChanges,
     /// How it is seen.
@@ -165,6 +172,8 @@ impl OpenedScene {
             load: Some(SceneLoad::unprepared(&list)),
             relisting: None,
             wants_list: false,
+            shadows: ShadowState::default(),
+            size: FIRST_SIZE,
             list,
             scene,
             walk,
@@ -172,25 +181,27 @@ impl OpenedScene {
         progress("showing the ground");
         // Rays of the pointer need it.
         opened.walk.sight();
-        let first = opened.first_ground(view)?;
+        let seen = opened.opening_camera(view)?;
+        let first = opened.walk.update(&seen)?.changes;
+        let first = opened.without_hidden(first);
         progress("sending the scene to the adapter");
-        let prepared = slot.prepare(&opened.list, &LiveShadows::default(), &first)?;
+        let shadowed = ShadowedView { camera: seen, ground: opened.walk.shown_ground() };
+        let prepared = slot.prepare(&opened.list, &shadowed, &first)?;
         if prepared.is_some() {
+            opened.shadows.made_for(seen);
             let list = Arc::clone(&opened.list);
             opened.load = Some(SceneLoad { list, prepared, kept: KeptPatches::None });
         }
         Ok(opened)
     }
 
-    /// The ground as it is first seen.
-    fn first_ground(&mut self, view: &OpeningView) -> Result<GroundChanges, SceneFrameError> {
+    /// The camera that it is first seen through.
+    fn opening_camera(&self, view: &OpeningView) -> Result<Camera, CameraError> {
         let (pose, fov_y_rad, size) = match &view.seen {
             Some(seen) => (seen.pose_at(self.scene.scale.0), seen.fov_y_rad, seen.size),
             None => (self.navigator.pose(), self.fov_y_rad, FIRST_SIZE),
         };
-        let camera = self.camera_of(&pose, fov_y_rad, size)?;
-        let changes = self.walk.update(&camera)?.changes;
-        Ok(self.without_hidden(changes))
+        self.camera_of(&pose, fov_y_rad, size)
     }
 
     /// Changes of the ground without what is hidden.
@@ -283,6 +294,7 @@ impl OpenedScene {
     /// # Errors
     /// See [`SceneFrameError`].
     pub fn frame(&mut self, size: (u32, u32)) -> Result<SceneFrame, SceneFrameError> {
+        self.size = size;
         let camera = self.camera(size)?;
         let (min, max) = self.scene.bounds;
         let has_moved = self.list_eye.distance(camera.eye()) > (max - min).length() * EYE_SHARE;
@@ -302,12 +314,22 @@ impl OpenedScene {
         let frame = self.walk.update(&refined_for)?;
         let update_ms = started.elapsed().as_secs_f32() * 1e3;
         let (changes, statistics) = (self.without_hidden(frame.changes), frame.statistics);
-        Ok(SceneFrame { load, changes, lighting: self.walk.lighting(&camera), camera, statistics, update_ms })
+        let shadows = self.shadows.take_ready();
+        Ok(SceneFrame {
+            load,
+            shadows,
+            changes,
+            lighting: self.walk.lighting(&camera),
+            camera,
+            statistics,
+            update_ms,
+        })
     }
 
     /// Hands everything over again: to a renderer that starts anew.
     pub fn reload(&mut self) {
         self.load = Some(SceneLoad::unprepared(&self.list));
+        self.shadows.forget();
     }
 
     /// Hides these features and shows all others, as soon as they are there.

@@ -11,10 +11,12 @@ use crate::draw::patches::GroundChanges;
 use crate::pipeline::walk::pick::StandingIndex;
 use crate::pipeline::walk::standing_task::StandingTask;
 use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::KeptPatches;
 use crate::render::gpu::live::prepared::PreparedScene;
-use crate::render::gpu::live::{KeptPatches, LiveShadows};
+use crate::view::camera::Camera;
 use crate::viewer::opened::{FIRST_SIZE, OpenedScene};
 use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
+use crate::viewer::shadowing::ShadowedView;
 use crate::viewer::worker::{WorkerFailure, WorkerJob, drop_apart};
 
 /// A list that is being made.
@@ -29,6 +31,8 @@ struct RelistedScene {
     standing: StandingIndex,
     prepared: Option<PreparedScene>,
     eye: Vec3,
+    /// The camera that its shadows are for.
+    seen: Camera,
 }
 
 /// Why a list cannot be shown; the one before stays.
@@ -71,7 +75,7 @@ impl OpenedScene {
         done: Result<Result<RelistedScene, GpuError>, WorkerFailure>,
     ) -> Result<(), RelistingError> {
         let Some(relisting) = self.relisting.take() else { return Ok(()) };
-        let RelistedScene { list, standing, prepared, eye } = done??;
+        let RelistedScene { list, standing, prepared, eye, seen } = done??;
         self.walk.take_standing(&relisting.task, &list);
         drop_apart((
             std::mem::replace(&mut self.list, list),
@@ -81,26 +85,31 @@ impl OpenedScene {
         // A list that was not shown yet took the ground with it.
         let load = match (&self.load, prepared) {
             (None, Some(prepared)) => {
+                self.shadows.made_for(seen);
                 SceneLoad { list: Arc::clone(&self.list), prepared: Some(prepared), kept: KeptPatches::All }
             }
-            _ => SceneLoad::unprepared(&self.list),
+            _ => {
+                self.shadows.forget();
+                SceneLoad::unprepared(&self.list)
+            }
         };
         self.load = Some(load);
         Ok(())
     }
 
     fn start_relisting(&mut self, context: &Context, slot: &LoaderSlot) {
-        let Ok(camera) = self.camera(FIRST_SIZE) else { return };
+        let (Ok(camera), Ok(seen)) = (self.camera(FIRST_SIZE), self.camera(self.size)) else { return };
+        let shadowed = ShadowedView { camera: seen, ground: self.walk.shown_ground() };
         let task = self.walk.standing_task(self.wanted_sun);
         let (made, hidden, slot, context) =
             (task.clone(), self.hidden.clone(), slot.clone(), context.clone());
         let work = move || {
             let mut list = made.list(&camera, &|_| ());
             list.items.retain(|item| !hidden.contains(&item.feature));
-            let prepared = slot.prepare(&list, &LiveShadows::default(), &GroundChanges::default())?;
+            let prepared = slot.prepare(&list, &shadowed, &GroundChanges::default())?;
             let list = Arc::new(list);
             let standing = StandingIndex::new(Arc::clone(&list));
-            Ok(RelistedScene { list, standing, prepared, eye: camera.eye() })
+            Ok(RelistedScene { list, standing, prepared, eye: camera.eye(), seen })
         };
         let job = WorkerJob::start(work, move || context.request_repaint());
         self.relisting = Some(Relisting { task, job });

@@ -65,6 +65,9 @@ impl SceneGraphics {
                 None => self.renderer.load(&list)?,
             }
         }
+        if let Some(shadows) = frame.shadows.take() {
+            self.renderer.show_shadows(shadows)?;
+        }
         self.renderer.set_lighting(frame.lighting);
         let sent = self.renderer.update(&frame.changes)?;
         let upload_ms = milliseconds(uploading);

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::draw::list::DrawList;
 use crate::draw::patches::GroundChanges;
 use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::KeptPatches;
 use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene};
-use crate::render::gpu::live::{KeptPatches, LiveShadows};
+use crate::viewer::shadowing::ShadowedView;
 
 /// A list that the renderer is to show.
 pub struct SceneLoad {
@@ -35,18 +36,18 @@ impl LoaderSlot {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(loader);
     }
 
-    /// Brings a list and its first ground to the device; `None` where there is no renderer yet.
+    /// Brings a list, its shadows and its first ground to the device; `None` where there is no renderer yet.
     ///
     /// # Errors
     /// See [`GpuError`].
     pub fn prepare(
         &self,
         list: &DrawList,
-        shadows: &LiveShadows,
+        view: &ShadowedView,
         first: &GroundChanges,
     ) -> Result<Option<PreparedScene>, GpuError> {
         let Some(loader) = self.loader() else { return Ok(None) };
-        let mut prepared = loader.prepare(list, shadows)?;
+        let mut prepared = loader.prepare(list, &view.shadows(list)?)?;
         loader.update(&mut prepared, first)?;
         Ok(Some(prepared))
     }

@@ -98,8 +98,9 @@ impl EditingSession {
 
     /// Lets what stands on the ground follow an edit.
     fn shown(&self, made: WalkEdit, opened: &mut OpenedScene) -> WalkEdit {
-        if made.moves_standing {
-            opened.relist();
+        match made.moves_standing {
+            true => opened.relist(),
+            false => opened.shadows.forget(),
         }
         made
     }

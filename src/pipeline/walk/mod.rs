@@ -19,6 +19,7 @@ pub mod paged;
 pub mod pick;
 mod relief_map;
 mod shown;
+pub mod shown_ground;
 pub mod standing_task;
 
 use std::sync::{Arc, OnceLock};

@@ -5,7 +5,7 @@
 //! update(GroundChanges) ─► patches, drapes        ├─► draw: sky ─ ground ─ drapes ─ solids ─ transparent solids
 //! set_shadows(LiveShadows) ─► shadow maps         ┘   pick: the same to a single pixel
 //!
-//! loader() ─► another thread: prepare(DrawList) ─► show(PreparedScene)      as load, without a late frame
+//! loader() ─► another thread: prepare ─► show, show_shadows      as load and set_shadows, without a late frame
 //! ```
 //!
 //! The ground and what lies on it come by patches ([`crate::draw::patches`]); everything else is drawn as in a picture, by
@@ -41,7 +41,7 @@ use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::ground_map::EditedMap;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
-use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene};
+use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene, PreparedShadows};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
 use crate::render::gpu::materials::GpuMaterials;
 use crate::render::gpu::memory::Loader;
@@ -303,15 +303,26 @@ impl LiveRenderer {
     /// # Errors
     /// See [`GpuError`]; the shadows before stay.
     pub fn set_shadows(&mut self, shadows: &LiveShadows) -> Result<(), GpuError> {
+        let prepared = self.loader().prepare_shadows(shadows)?;
+        self.show_shadows(prepared)
+    }
+
+    /// Replaces the shadows of solids by those that a loader of this renderer has prepared.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the shadows before stay.
+    pub fn show_shadows(&mut self, prepared: PreparedShadows) -> Result<(), GpuError> {
         let Some(scene) = &mut self.scene else { return Ok(()) };
-        self.gpu.guarded("sending the shadows", || {
-            let loader = Loader::new(&self.gpu);
-            scene.textures.replace_shadows(&loader, &shadows.0)?;
-            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
-            scene.shadows = ShadowView::both(&shadows.0);
-            let has_shadows = [&shadows.0.sun, &shadows.0.sky].map(Option::is_some);
-            scene.parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
-            scene.make(&self.gpu, &mut self.colors, &mut self.features);
+        self.gpu.guarded("showing the shadows", || {
+            let PreparedShadows { textures, views, has_shadows } = prepared;
+            scene.textures.replace_shadows(textures);
+            scene.frame = FrameGroup::new(&Loader::new(&self.gpu), &self.layouts, &scene.textures)?;
+            scene.shadows = views;
+            let parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
+            if parts != scene.parts {
+                scene.parts = parts;
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
             Ok(())
         })
     }

@@ -21,7 +21,7 @@ use crate::render::gpu::memory::Loader;
 use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::pipelines::{Layouts, Pipelines};
 use crate::render::gpu::plan::Plan;
-use crate::render::gpu::shadow::ShadowView;
+use crate::render::gpu::shadow::{ShadowTextures, ShadowView};
 
 /// Prepares scenes for a renderer, on any thread.
 #[derive(Clone, Debug)]
@@ -37,6 +37,15 @@ pub struct LiveLoader {
 pub struct PreparedScene {
     pub(super) scene: Box<LoadedScene>,
     pub(super) pipelines: [Pipelines; 2],
+}
+
+/// Shadow maps on the device that are not shown yet.
+#[derive(Debug)]
+pub struct PreparedShadows {
+    pub(super) textures: ShadowTextures,
+    /// Of the sun and of the sky.
+    pub(super) views: [ShadowView; 2],
+    pub(super) has_shadows: [bool; 2],
 }
 
 impl LiveLoader {
@@ -78,6 +87,19 @@ impl LiveLoader {
             scene.make(gpu, colors, features);
             gpu.finish_sending()?;
             Ok(PreparedScene { scene: Box::new(scene), pipelines })
+        })
+    }
+
+    /// Brings shadow maps to the device, and waits until they are there.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn prepare_shadows(&self, LiveShadows(shadows): &LiveShadows) -> Result<PreparedShadows, GpuError> {
+        self.gpu.guarded("sending the shadows", || {
+            let textures = ShadowTextures::upload(&Loader::new(&self.gpu), shadows)?;
+            self.gpu.finish_sending()?;
+            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            Ok(PreparedShadows { textures, views: ShadowView::both(shadows), has_shadows })
         })
     }
 
