@@ -140,13 +140,7 @@ fn neighbors(post: Post) -> impl Iterator<Item = Post> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// 101 × 101 posts 1 m apart, rising east and north.
-    fn slope(rise: DVec2) -> Lattice {
-        let at = |index: u32| DVec2::new(f64::from(index % 101), f64::from(index / 101));
-        let heights = (0..101 * 101).map(|index| (100.0 + at(index).dot(rise)) as f32).collect();
-        Lattice::new(DVec2::ZERO, DVec2::ONE, 101, heights).expect("sound")
-    }
+    use crate::earthworks::pad::tests::slope;
 
     /// An L with its inner corner at (50, 50).
     fn corner() -> Vec<DVec2> {

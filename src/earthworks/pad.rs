@@ -105,12 +105,12 @@ fn distance_m(outline: &[DVec2], at: DVec2) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use glam::DMat2;
 
     /// 101 × 101 posts 1 m apart, rising east and north.
-    fn slope(rise: DVec2) -> Lattice {
+    pub fn slope(rise: DVec2) -> Lattice {
         let at = |index: u32| DVec2::new(f64::from(index % 101), f64::from(index / 101));
         let heights = (0..101 * 101).map(|index| (100.0 + at(index).dot(rise)) as f32).collect();
         Lattice::new(DVec2::ZERO, DVec2::ONE, 101, heights).expect("sound")

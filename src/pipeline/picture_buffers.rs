@@ -91,7 +91,7 @@ impl PictureBuffers<'_> {
             None => at.distance(self.camera.eye()),
         };
         Some(PickedPlace {
-            at: self.scene.lattice.origin() + at.truncate().as_dvec2(),
+            at: self.scene.lattice.map_point(at),
             elevation_m: self.scene.scale.elevation_m(f64::from(at.z)),
             distance_m: f64::from(distance),
             feature,

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 
 use crate::pipeline::editing::editor::SceneSource;
 use crate::pipeline::files;
@@ -121,7 +121,7 @@ fn ground_ahead(scene: &SceneModel, camera: &Camera) -> Option<AimedPoint> {
         let share = f32::from(step) / f32::from(TRIED);
         // Closer together near the eye.
         let at = camera.eye() + camera.forward() * (reach_m * share * share);
-        let map = scene.lattice.origin() + at.truncate().as_dvec2();
+        let map = scene.lattice.map_point(at);
         let height_m = ground_height(&scene.lattice, Interpolation::Planar, map).height_m()?;
         let above_m = f64::from(at.z) - f64::from(scene.scale.world_z(height_m as f32));
         Some(AimedPoint { at, above_m })
@@ -150,11 +150,6 @@ impl ViewSnapshot {
         write_sheet(&path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
         Ok(path)
     }
-}
-
-/// Map coordinates of a point in world space.
-pub fn map_position(scene: &SceneModel, at: Vec3) -> DVec2 {
-    scene.lattice.origin() + at.truncate().as_dvec2()
 }
 
 #[cfg(test)]

@@ -186,7 +186,7 @@ pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
     let lattice = ground.lattice;
     let depth_m = |view: &SceneView| {
         let ViewAim::At { eye, .. } = view.aim else { return None };
-        let at = lattice.origin() + eye.truncate().as_dvec2();
+        let at = lattice.map_point(eye);
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
         Some(height - f64::from(ground.scale.elevation_m(eye.z))).filter(|&depth| depth > 0.0)
     };

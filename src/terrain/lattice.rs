@@ -18,7 +18,7 @@
 
 use std::iter::once;
 
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Vec2, Vec3};
 
 use crate::dem::raster::{Raster, Samples};
 use crate::geom::rect::Rect;
@@ -215,6 +215,11 @@ impl Lattice {
     /// Map coordinates of the south-west post: the origin of world space.
     pub fn origin(&self) -> DVec2 {
         self.origin
+    }
+
+    /// Map coordinates of a point in world space.
+    pub fn map_point(&self, at: Vec3) -> DVec2 {
+        self.origin + at.truncate().as_dvec2()
     }
 
     /// Meters between posts, eastward and northward.

@@ -5,7 +5,6 @@ use egui::{
 };
 
 use crate::pipeline::files;
-use crate::pipeline::view_snapshot::map_position;
 use crate::view::navigation::NavigationMode;
 use crate::viewer::app::{ViewerApp, ViewerStage};
 use crate::viewer::commands::{ViewCommand, key_text};
@@ -149,7 +148,7 @@ impl ViewerApp {
         });
         header("Light and heights").show(ui, |ui| {
             let (middle, crs) =
-                (map_position(&opened.scene, opened.bounds().center()), opened.scene.crs.clone());
+                (opened.scene.lattice.map_point(opened.bounds().center()), opened.scene.crs.clone());
             match light_panel(ui, &mut self.light, &crs, middle) {
                 Some(LightEvent::Sun(to_sun)) => {
                     opened.set_sun(to_sun);

@@ -25,7 +25,13 @@ const LINES_NEARER: f64 = 1.0 + 1.0 / 1000.0;
 /// step. A drape has corners that the ground lacks; four times that covers both.
 const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 
-const SHADER: &str = concat!(include_str!("shader.wgsl"), "\n", include_str!("sky.wgsl"));
+const SHADER: &str = concat!(
+    include_str!("shader.wgsl"),
+    "\n",
+    include_str!("whole_picture.wgsl"),
+    "\n",
+    include_str!("sky.wgsl")
+);
 
 /// Corners with their owners.
 const MERGED_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexBufferLayout {
@@ -206,7 +212,7 @@ impl Pipelines {
             VertexSource::Merged => ("merged_vertex", &MERGED_BUFFERS[..]),
             VertexSource::Placed => ("placed_vertex", &PLACED_BUFFERS[..]),
             VertexSource::Patch => ("patch_vertex", &PATCH_BUFFERS[..]),
-            VertexSource::None => ("sky_vertex", &[][..]),
+            VertexSource::None => ("whole_picture", &[][..]),
         };
         let fragment = match (target.pass, gpu.api()) {
             _ if is_sky => "sky_color",
@@ -315,7 +321,7 @@ mod tests {
                 "masked_color",
                 "color_and_depth",
                 "feature",
-                "sky_vertex",
+                "whole_picture",
                 "sky_color",
             ]
         );

@@ -1,12 +1,6 @@
-// What shows where nothing is drawn, by src/draw/backdrop.rs: one triangle that covers the picture.
+// What shows where nothing is drawn, by src/draw/backdrop.rs.
 //
 // `Frame` is declared in shader.wgsl, which this file is appended to.
-
-@vertex
-fn sky_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-    return vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn sky_color(@builtin(position) pixel: vec4f) -> @location(0) vec4f {

@@ -3,7 +3,8 @@
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::memory::bind;
 
-pub const ENCODE_SHADER: &str = include_str!("../encode.wgsl");
+pub const ENCODE_SHADER: &str =
+    concat!(include_str!("../whole_picture.wgsl"), "\n", include_str!("../encode.wgsl"));
 
 /// Encodes linear colors as sRGB.
 #[derive(Debug)]
@@ -43,7 +44,7 @@ impl Encoder {
             layout: Some(&pipeline_layout),
             vertex: wgpu::VertexState {
                 module: &module,
-                entry_point: Some("encode_vertex"),
+                entry_point: Some("whole_picture"),
                 compilation_options: Default::default(),
                 buffers: &[],
             },
