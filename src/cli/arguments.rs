@@ -2,8 +2,10 @@
 
 use clap::{Parser, Subcommand};
 
+use crate::cli::check::CheckArguments;
 use crate::cli::convert::ConvertArguments;
 use crate::cli::dem_info::DemInfoArguments;
+use crate::cli::explain::ExplainArguments;
 use crate::cli::export::ExportArguments;
 use crate::cli::fly::FlyArguments;
 use crate::cli::grid::GridArguments;
@@ -13,7 +15,6 @@ use crate::cli::los::LosArguments;
 use crate::cli::mesh::MeshArguments;
 use crate::cli::model::ModelArguments;
 use crate::cli::new::NewArguments;
-use crate::cli::options::SceneArguments;
 use crate::cli::pick::PickArguments;
 use crate::cli::profile::ProfileArguments;
 use crate::cli::render::RenderArguments;
@@ -41,8 +42,10 @@ pub enum Command {
     Pick(PickArguments),
     /// Draw a flight through a scene, frame by frame
     Fly(FlyArguments),
-    /// Load and validate a scene file without rendering it
-    Check(SceneArguments),
+    /// Find what is wrong with a scene file, or looks wrong, without rendering it
+    Check(CheckArguments),
+    /// Explain a code of `check`, or list all
+    Explain(ExplainArguments),
     /// Write a first scene file for an elevation file and vector files
     New(NewArguments),
     /// Print the JSON Schema of scene files, with which editors complete and check them

@@ -1,27 +1,141 @@
 //! `sandtable check`: load and validate a scene, draw nothing.
 
+use clap::Args;
+use serde_json::{Value, json};
+
 use crate::cli::error::CliError;
 use crate::cli::options::SceneArguments;
-use crate::cli::output::{print_lines, row};
+use crate::cli::output::{print, print_lines, row};
 use crate::cli::progress::StepTimer;
-use crate::pipeline::scene_file::open_scene;
+use crate::cli::values::choice;
+use crate::description::finding::{Finding, Severity};
+use crate::description::source_place::SourcePlace;
+use crate::message::choice::{Choice, ChoiceWord, word};
+use crate::pipeline::scene_file::{OpenSceneError, open_linted};
 use crate::scene::SceneModel;
 use crate::scene::views::whole_meters;
 
 /// The most notes that are printed: as many as fit on a screen beside the rest.
 const MOST_NOTES: usize = 20;
 
-pub fn run(arguments: &SceneArguments) -> Result<(), CliError> {
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Print JSON: every finding with code, severity, file, line, column, message and help
+    #[arg(long)]
+    pub json: bool,
+    /// Fail where there are warnings, not only where there are errors
+    #[arg(long, value_name = "FINDINGS", value_parser = choice::<DeniedFindings>())]
+    pub deny: Option<DeniedFindings>,
+}
+
+/// Findings that let a check fail, besides errors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeniedFindings {
+    /// Warnings.
+    Warnings,
+}
+
+impl Choice for DeniedFindings {
+    const CHOICES: &'static [ChoiceWord<Self>] =
+        &[word(Self::Warnings, "warnings", "what looks wrong, or has no effect")];
+}
+
+pub fn run(arguments: &CheckArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
-    let scene = open_scene(&arguments.scene, &arguments.access.allow, &|step| steps.begin(step))?;
+    let SceneArguments { scene: path, access } = &arguments.scene;
+    let opened = open_linted(path, &access.allow, &|step| steps.begin(step));
     steps.finish();
-    let mut lines = vec![format!("{} is sound", arguments.scene.display())];
-    lines.extend(contents(&scene));
-    print_lines(&lines)
+    let (scene, findings) = match opened {
+        Ok((scene, findings)) => (Some(scene), findings),
+        Err(error) if arguments.json => (None, findings_of(&error)),
+        Err(error) => return Err(error.into()),
+    };
+    let name = path.display().to_string();
+    match &scene {
+        _ if arguments.json => print(&format!("{:#}\n", as_json(&name, &findings)))?,
+        Some(scene) => print_lines(&lines(&name, scene, &findings))?,
+        None => {}
+    }
+    let is_denied = |finding: &Finding| match finding.severity() {
+        Severity::Error => true,
+        Severity::Warning => arguments.deny == Some(DeniedFindings::Warnings),
+        Severity::Note => false,
+    };
+    if findings.iter().any(is_denied) { Err(CliError::Reported) } else { Ok(()) }
+}
+
+/// The errors that keep a scene from being built, as findings.
+fn findings_of(error: &OpenSceneError) -> Vec<Finding> {
+    match error {
+        OpenSceneError::Parse(errors) => errors.as_slice().iter().map(Finding::from).collect(),
+        OpenSceneError::Build(error) => vec![Finding::from(error)],
+        other => vec![other.finding()],
+    }
+}
+
+/// The findings that somebody should look at, each with its line, then the contents of the scene.
+fn lines(name: &str, scene: &SceneModel, findings: &[Finding]) -> Vec<String> {
+    let (notes, shown): (Vec<&Finding>, Vec<&Finding>) =
+        findings.iter().partition(|finding| finding.severity() == Severity::Note);
+    let mut lines: Vec<String> =
+        shown.iter().flat_map(|finding| [finding.to_string(), String::new()]).collect();
+    let is_sound = shown.iter().all(|finding| finding.severity() != Severity::Error);
+    lines.push(format!("{name} {}", if is_sound { "is sound" } else { "is wrong" }));
+    if !shown.is_empty() {
+        let counts = format!("{}; `sandtable explain CODE` explains a code", counts(findings));
+        lines.push(row(9, "findings", counts));
+    }
+    lines.extend(summary(scene));
+    let note = |note: &Finding| format!("{} [{}]", note.message, note.code.word());
+    lines.extend(note_rows(&notes.into_iter().map(note).collect::<Vec<_>>()));
+    lines
+}
+
+/// `1 error, 2 warnings, 3 notes`.
+pub fn counts(findings: &[Finding]) -> String {
+    let count = |severity| findings.iter().filter(|finding| finding.severity() == severity).count();
+    let counted = Severity::ALL.map(|severity| (severity.word(), count(severity)));
+    let words = counted.iter().filter(|(_, count)| *count > 0);
+    words
+        .map(|(word, count)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" }))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn as_json(name: &str, findings: &[Finding]) -> Value {
+    let object = |finding: &Finding| {
+        let position = finding.place.as_ref().map(SourcePlace::position);
+        json!({
+            "code": finding.code.word(),
+            "severity": finding.severity().word(),
+            "file": finding.place.as_ref().map(SourcePlace::file),
+            "line": position.map(|position| position.line),
+            "column": position.map(|position| position.column),
+            "message": finding.message,
+            "help": finding.help,
+        })
+    };
+    let count = |severity| findings.iter().filter(|finding| finding.severity() == severity).count();
+    json!({
+        "scene": name,
+        "errors": count(Severity::Error),
+        "warnings": count(Severity::Warning),
+        "notes": count(Severity::Note),
+        "findings": findings.iter().map(object).collect::<Vec<_>>(),
+    })
 }
 
 /// The contents of a scene and its notes, in lines.
 pub fn contents(scene: &SceneModel) -> Vec<String> {
+    let mut lines = summary(scene);
+    lines.extend(note_rows(&scene.notes()));
+    lines
+}
+
+/// The ground, the features and the cameras of a scene, in lines.
+fn summary(scene: &SceneModel) -> Vec<String> {
     let lattice = &scene.lattice;
     let (low, high) = scene.height_range_m;
     let size = lattice.extent().size() / 1000.0;
@@ -39,14 +153,17 @@ pub fn contents(scene: &SceneModel) -> Vec<String> {
     let labels = scene.labels.len();
     let labels = format!("{labels} label{}", if labels == 1 { "" } else { "s" });
     let cameras: Vec<&str> = scene.cameras.iter().map(|view| view.name.as_str()).collect();
-    let mut lines = vec![
+    vec![
         row(9, "ground", ground),
         row(9, "features", census.chain([labels]).collect::<Vec<_>>().join(", ")),
         row(9, "cameras", cameras.join(", ")),
-    ];
-    lines.extend(scene.notes.iter().take(MOST_NOTES).map(|note| row(9, "note", note)));
-    if let Some(more @ 1..) = scene.notes.len().checked_sub(MOST_NOTES) {
-        lines.push(row(9, "note", format!("… and {more} more; `sandtable report` prints all")));
+    ]
+}
+
+fn note_rows(notes: &[impl std::fmt::Display]) -> Vec<String> {
+    let mut rows: Vec<String> = notes.iter().take(MOST_NOTES).map(|note| row(9, "note", note)).collect();
+    if let Some(more @ 1..) = notes.len().checked_sub(MOST_NOTES) {
+        rows.push(row(9, "note", format!("… and {more} more; `sandtable report` prints all")));
     }
-    lines
+    rows
 }

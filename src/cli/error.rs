@@ -20,6 +20,8 @@ pub enum CliError {
     },
     /// The command was used wrongly: exit code 2.
     Usage(String),
+    /// What is wrong with the input is printed already: exit code 1.
+    Reported,
 }
 
 impl<E: Error + Send + Sync + 'static> From<E> for CliError {
@@ -44,6 +46,7 @@ impl CliError {
                 warn(&format!("error: {message}"));
                 ExitCode::from(2)
             }
+            Self::Reported => ExitCode::from(1),
             Self::Input { error, hint } => {
                 warn(&message(error.as_ref()));
                 hint.iter().for_each(|hint| warn(hint));

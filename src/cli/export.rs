@@ -99,7 +99,7 @@ fn run_scene(arguments: &ExportArguments, format: ExportFormat) -> Result<(), Cl
         row(10, "triangles", exported.list.triangle_count()),
         row(10, "materials", exported.list.materials.len()),
     ];
-    print_lines(&summary(&exported.files, &facts, &scene.notes))
+    print_lines(&summary(&exported.files, &facts, &scene.notes()))
 }
 
 fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
@@ -117,7 +117,7 @@ fn run_page(arguments: &ExportArguments) -> Result<(), CliError> {
             format!("{} triangles, off by at most {} m", page.ground_triangles, page.max_error_m),
         ),
     ];
-    print_lines(&summary(&[out], &facts, &scene.notes))
+    print_lines(&summary(&[out], &facts, &scene.notes()))
 }
 
 fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), CliError> {
@@ -144,11 +144,15 @@ fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), Cli
         ),
         row(10, "triangles", triangles),
     ];
-    print_lines(&summary(&files, &facts, &[&scene.notes[..], &notes[..]].concat()))
+    print_lines(&summary(
+        &files,
+        &facts,
+        &scene.notes().into_iter().chain(notes.iter().map(String::as_str)).collect::<Vec<_>>(),
+    ))
 }
 
 /// The files, what they hold, and notes.
-fn summary(files: &[impl AsRef<Path>], facts: &[String], notes: &[String]) -> Vec<String> {
+fn summary(files: &[impl AsRef<Path>], facts: &[String], notes: &[&str]) -> Vec<String> {
     let files = files.iter().map(|path| path.as_ref().display().to_string());
     files.chain(facts.iter().cloned()).chain(notes.iter().map(|note| row(10, "note", note))).collect()
 }

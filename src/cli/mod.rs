@@ -6,6 +6,7 @@ mod check;
 mod convert;
 mod dem_info;
 mod error;
+mod explain;
 mod export;
 mod fly;
 mod grid;
@@ -72,6 +73,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::Pick(arguments) => pick::run(arguments),
         Command::Fly(arguments) => fly::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::New(arguments) => new::run(arguments),
         Command::Schema => schema::run(),
         Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),

@@ -147,7 +147,8 @@ impl RenderedScene {
     /// Each picture as an object with a member for each fact.
     fn as_json(&self, times: &[(&'static str, f64)]) -> Vec<Value> {
         let inferred = self.scene.inferred_notes();
-        let notes: Vec<&String> = self.scene.notes.iter().chain(&inferred).collect();
+        let notes: Vec<&str> =
+            self.scene.notes().into_iter().chain(inferred.iter().map(String::as_str)).collect();
         let seconds: Map<String, Value> =
             times.iter().map(|&(step, time)| (step.into(), time.into())).collect();
         let object = |picture: &RenderedPicture| {

@@ -40,7 +40,7 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     steps.finish();
     let report = &scene.report;
     if arguments.json {
-        return print(&format!("{:#}\n", as_json(report, &scene.notes)));
+        return print(&format!("{:#}\n", as_json(report, &scene.notes())));
     }
     if let Some(folder) = &arguments.csv {
         return print_lines(&write_csv_files(&scene, folder)?);
@@ -51,11 +51,11 @@ pub fn run(arguments: &ReportArguments) -> Result<(), CliError> {
     if tables.is_empty() {
         lines.push("  nothing to report of single features".into());
     }
-    lines.extend(scene.notes.iter().map(|note| format!("  note  {note}")));
+    lines.extend(scene.notes().iter().map(|note| format!("  note  {note}")));
     print_lines(&lines)
 }
 
-fn as_json(report: &SceneReport, notes: &[String]) -> Value {
+fn as_json(report: &SceneReport, notes: &[&str]) -> Value {
     let rows = |table: &ReportTable| (table.name.replace(' ', "_"), rows_as_json(table));
     let tables: Map<String, Value> = report.tables().iter().map(rows).collect();
     json!({"tables": tables, "notes": notes})

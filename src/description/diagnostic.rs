@@ -1,47 +1,39 @@
-//! A message that points at a place in the scene file.
-//!
-//! Rendered by the crate `annotate-snippets` as text without color, so that it reads the same on a terminal, in a log
-//! and in a test:
-//!
-//! ```text
-//! hill.toml:12:1: error: unknown key `widht` in [[road]]
-//!    |
-//! 12 | widht = 4
-//!    | ^^^^^
-//!    |
-//!    = help: did you mean `width`?
-//! ```
-//!
-//! The crate expands tabs, counts wide characters and cuts long lines. It passes some control characters on, so they
-//! are replaced before.
+//! Errors in a scene file: each points at its place, and all are reported at once.
 
 use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-
+use crate::description::finding_code::FindingCode;
+use crate::description::source_place::SourcePlace;
 use crate::description::source_text::{LineColumn, SourceText};
 use crate::message::chain::error_text;
 
 /// One error in a scene file: its cause, its place, and a remedy.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    source_text: Arc<SourceText>,
-    span: Range<usize>,
+    code: FindingCode,
+    place: SourcePlace,
     cause: Arc<dyn Error + Send + Sync>,
     help: Option<String>,
 }
 
 impl Diagnostic {
-    /// An error about the bytes `span` of `source`; `cause` is an error or a sentence.
+    /// An error about the bytes `span` of `source`; `cause` is an error or a sentence. Its code is that of a wrong value.
     pub fn new(
         source: &Arc<SourceText>,
         span: Range<usize>,
         cause: impl Into<Box<dyn Error + Send + Sync>>,
     ) -> Self {
-        Self { source_text: Arc::clone(source), span, cause: cause.into().into(), help: None }
+        let (code, place) = (FindingCode::WrongValue, SourcePlace::new(source, span));
+        Self { code, place, cause: cause.into().into(), help: None }
+    }
+
+    /// The same with another code.
+    #[must_use]
+    pub fn with_code(self, code: FindingCode) -> Self {
+        Self { code, ..self }
     }
 
     /// The same with a remedy.
@@ -60,39 +52,29 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
+    /// What is wrong.
+    pub fn code(&self) -> FindingCode {
+        self.code
+    }
+
+    /// The place of the error.
+    pub fn place(&self) -> &SourcePlace {
+        &self.place
+    }
+
     /// The line and column where the error starts.
     pub fn position(&self) -> LineColumn {
-        self.source_text.line_column(self.span.start)
+        self.place.position()
     }
 
     fn is_same(&self, other: &Self) -> bool {
-        self.span == other.span && self.message() == other.message()
+        self.place.span() == other.place.span() && self.message() == other.message()
     }
 }
 
-/// The cells of a terminal that a line and its number take at most.
-const WIDTH: usize = 120;
-
 impl fmt::Display for Diagnostic {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (text, position) = (self.source_text.text(), self.position());
-        let line = self.source_text.line_at(self.span.start);
-        let boundary = |at: usize| text.floor_char_boundary(at.clamp(line.start, line.end));
-        let (start, end) = (boundary(self.span.start), boundary(self.span.end));
-        let parts = [line.start..start, start..end, end..line.end].map(|part| harmless(&text[part]));
-        let mark = parts[0].len()..parts[0].len() + parts[1].len();
-        let snippet = Snippet::source(parts.concat())
-            .line_start(position.line)
-            .fold(false)
-            .annotation(AnnotationKind::Primary.span(mark));
-        let mut group = Group::with_level(Level::ERROR).element(snippet);
-        if let Some(help) = &self.help {
-            group = group.element(Level::HELP.message(harmless(help)));
-        }
-        let name = harmless(self.source_text.name_at(self.span.start));
-        let (LineColumn { line, column }, message) = (position, harmless(&self.message()));
-        let shown = Renderer::plain().term_width(WIDTH).render(&[group]);
-        write!(out, "{name}:{line}:{column}: error: {message}\n{shown}")
+        self.place.show(out, &self.code.head(), &self.message(), self.help())
     }
 }
 
@@ -100,16 +82,6 @@ impl Error for Diagnostic {
     fn source(&self) -> Option<&(dyn Error + 'static)> {
         Some(self.cause.as_ref())
     }
-}
-
-/// `text` with a replacement character for every control and direction mark but the tab: they could steer a terminal.
-fn harmless(text: &str) -> String {
-    let visible = |character: char| match character {
-        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
-        _ if character.is_control() && character != '\t' => '\u{fffd}',
-        _ => character,
-    };
-    text.chars().map(visible).collect()
 }
 
 /// All errors in a scene file, in the order of the file; never empty.
@@ -186,6 +158,17 @@ impl DiagnosticSink {
         self.add(Diagnostic::new(&self.source, span, cause).with_help(help));
     }
 
+    /// As [`Self::error`], with a code of its own.
+    pub fn coded(
+        &mut self,
+        code: FindingCode,
+        span: Range<usize>,
+        cause: impl Into<Box<dyn Error + Send + Sync>>,
+        help: impl Into<String>,
+    ) {
+        self.add(Diagnostic::new(&self.source, span, cause).with_help(help).with_code(code));
+    }
+
     /// Adds an error unless it is a repetition: a style is read for every table that names it.
     pub fn add(&mut self, error: Diagnostic) {
         if self.is_full() {
@@ -197,7 +180,7 @@ impl DiagnosticSink {
 
     /// The errors in the order of the file; `None` where there are none.
     pub fn into_diagnostics(mut self) -> Option<Diagnostics> {
-        self.list.sort_by_key(|diagnostic| diagnostic.span.start);
+        self.list.sort_by_key(|diagnostic| diagnostic.place.span().start);
         (!self.list.is_empty()).then_some(Diagnostics { list: self.list, omitted: self.omitted })
     }
 }
@@ -205,6 +188,7 @@ impl DiagnosticSink {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::source_place::WIDTH;
 
     fn shown(text: &str, span: Range<usize>) -> String {
         Diagnostic::new(&SourceText::new("a", text), span, "m").to_string()
@@ -214,7 +198,7 @@ mod tests {
     fn a_diagnostic_reads_as_place_line_carets_and_help() {
         let source = SourceText::new("hill.toml", "[[road]]\nwidht = 4\n");
         let shown = Diagnostic::new(&source, 9..14, "unknown key `widht`").with_help("did you mean `width`?");
-        let expected = "hill.toml:2:1: error: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^\n  |\n  = help: did you mean `width`?";
+        let expected = "hill.toml:2:1: error[wrong-value]: unknown key `widht`\n  |\n2 | widht = 4\n  | ^^^^^\n  |\n  = help: did you mean `width`?";
         assert_eq!(shown.to_string(), expected);
     }
 
@@ -258,7 +242,7 @@ mod tests {
         ] {
             assert_eq!(shown(text, span).lines().last(), Some(carets), "{text}");
         }
-        assert!(shown("x = 1\n", 90..99).starts_with("a:2:1: error: m"));
+        assert!(shown("x = 1\n", 90..99).starts_with("a:2:1: error[wrong-value]: m"));
     }
 
     #[test]

@@ -45,6 +45,7 @@ use crate::description::features::{
     AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
     RoadTable, ScatterTable,
 };
+use crate::description::finding_code::FindingCode;
 use crate::description::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::description::key;
 use crate::description::reader::TableReader;
@@ -65,6 +66,7 @@ table! {
     /// A whole scene file.
     struct Document {
         with source: Arc<SourceText> = TableReader::source, "The text that it was read from; messages point into it.";
+        with unused_styles: Vec<Stated<String>> = TableReader::unused_styles, "The names of styles that no table names.";
         with phase: Option<String> = TableReader::phase, "The phase that it was read for; `None` where it has none.";
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
@@ -474,14 +476,19 @@ fn check_eye(reader: &mut TableReader<'_, '_>) {
         for key in ["azimuth", "pitch", "shows"] {
             if let Some(span) = reader.key_span(key) {
                 let message = format!("`{key}` has no effect on a camera with an `eye`");
-                reader.error(span, message, "remove it, or remove `eye` and `look_at`");
+                reader.coded(
+                    FindingCode::NoEffect,
+                    span,
+                    message,
+                    "remove it, or remove `eye` and `look_at`",
+                );
             }
         }
     } else {
         for key in ["eye_height", "eye_elevation", "look_at_height"] {
             if let Some(span) = reader.key_span(key) {
                 let message = format!("`{key}` has no effect on a camera without an `eye`");
-                reader.error(span, message, "state `eye` and `look_at`, or remove it");
+                reader.coded(FindingCode::NoEffect, span, message, "state `eye` and `look_at`, or remove it");
             }
         }
     }
@@ -503,6 +510,11 @@ fn check_names<'a>(
         let (line, file) = (source.line_column(first).line, source.name_at(first));
         let other = if file == source.name_at(span.start) { String::new() } else { format!(" of {file}") };
         let message = format!("the {kind} on line {line}{other} already has this name");
-        reader.error(span, message, format!("give each {kind} a name of its own"));
+        reader.coded(
+            FindingCode::DuplicateName,
+            span,
+            message,
+            format!("give each {kind} a name of its own"),
+        );
     }
 }

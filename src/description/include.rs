@@ -21,6 +21,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use crate::description::finding_code::FindingCode;
 use crate::description::source_text::SourceText;
 use crate::message::suggest::quoted;
 
@@ -50,6 +51,15 @@ pub enum IncludeError {
 }
 
 impl IncludeError {
+    /// What is wrong.
+    pub fn code(&self) -> FindingCode {
+        match self {
+            Self::Unreadable(..) => FindingCode::MissingFile,
+            Self::NotText(..) => FindingCode::WrongFormat,
+            Self::Cycle(_) | Self::TooMany | Self::TooLarge(..) => FindingCode::WrongValue,
+        }
+    }
+
     /// The remedy.
     pub fn help(&self) -> &'static str {
         match self {

@@ -8,6 +8,7 @@ use toml::de::DeTable;
 
 use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::include::{LoadFile, gather, merged, moved};
 use crate::description::phases::Phases;
 use crate::description::reader::{DecodeContext, TableReader};
@@ -62,14 +63,14 @@ pub fn parse_in_phase(
         let source = SourceText::new(file_name, String::from_utf8_lossy(bytes));
         let at = error.valid_up_to();
         let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
-        wrong.with_help("save the file as UTF-8")
+        wrong.with_help("save the file as UTF-8").with_code(FindingCode::Syntax)
     })?;
     let gathered = gather(file_name, text, load, MAX_BYTES);
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
     for (span, error) in gathered.errors {
         let help = error.help();
-        report.error(span, error, help);
+        report.coded(error.code(), span, error, help);
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
     let tables: Option<Vec<_>> = tables.into_iter().collect();
@@ -118,7 +119,7 @@ fn toml_table<'i>(start: usize, text: &'i str, report: &mut DiagnosticSink) -> O
         if line_end.is_none_or(|end| span.start > end) {
             let (message, help) = syntax_message(error.message(), &text[excerpt(&span, text)]);
             let placed = span.start + start..span.end + start;
-            let error = Diagnostic::new(report.source(), placed, message);
+            let error = Diagnostic::new(report.source(), placed, message).with_code(FindingCode::Syntax);
             line_end = Some(report.source().line_at(span.start + start).end - start);
             report.add(if help.is_empty() { error } else { error.with_help(help) });
         }

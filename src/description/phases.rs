@@ -21,6 +21,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
+use crate::description::finding_code::FindingCode;
 use crate::description::key::{Key, text_list};
 use crate::description::stated::Stated;
 use crate::message::suggest::{quoted, remedy};
@@ -67,7 +68,12 @@ impl<'t> Phases<'t> {
                 [] => format!("add a table [[phase]] with `name = \"{}\"`", quoted(name)),
                 names => remedy(name, names, "the phases are").replace(" or ", " and "),
             };
-            report.error(span.clone(), format!("there is no phase \"{}\"", quoted(name)), help);
+            report.coded(
+                FindingCode::UnknownName,
+                span.clone(),
+                format!("there is no phase \"{}\"", quoted(name)),
+                help,
+            );
         }
         self.chosen.as_ref().is_none_or(|chosen| stated.contains(chosen))
     }

@@ -12,6 +12,7 @@ use toml::de::{DeString, DeTable, DeValue};
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::key::{Group, Key, Styling};
 use crate::description::phases::{PHASES_KEY, PHASES_TYPE, Phases};
 use crate::description::source_text::SourceText;
@@ -107,12 +108,28 @@ impl<'r, 't> TableReader<'r, 't> {
         self.context.phases.chosen()
     }
 
+    /// The names of styles that no table names; of the whole scene once all its tables are read.
+    pub fn unused_styles(&mut self) -> Vec<Stated<String>> {
+        self.context.styles.unused()
+    }
+
     pub fn source(&mut self) -> Arc<SourceText> {
         Arc::clone(self.context.report.source())
     }
 
     pub fn error(&mut self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) {
         self.context.report.error(span, message.into(), help);
+    }
+
+    /// As [`Self::error`], with a code of its own.
+    pub fn coded(
+        &mut self,
+        code: FindingCode,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.context.report.coded(code, span, message.into(), help);
     }
 
     /// The span of a key; `None` where the key is absent.
@@ -137,7 +154,8 @@ impl<'r, 't> TableReader<'r, 't> {
     pub fn without_effect(&mut self, keys: &[&str], reason: &str, help: &str) {
         for key in keys {
             if let Some(span) = self.key_span(key) {
-                self.error(span, format!("`{key}` has no effect {reason}"), help);
+                let message = format!("`{key}` has no effect {reason}");
+                self.coded(FindingCode::NoEffect, span, message, help);
             }
         }
     }
@@ -148,7 +166,7 @@ impl<'r, 't> TableReader<'r, 't> {
         let is_there = self.key_span(key).or(self.key_span(other)).is_some();
         if !is_there && !self.unknown().into_iter().any(misspelled) {
             let message = format!("{} has neither `{key}` nor `{other}`", self.name.title());
-            self.error(self.span.clone(), message, help);
+            self.coded(FindingCode::MissingKey, self.span.clone(), message, help);
         }
     }
 
@@ -266,7 +284,7 @@ impl<'r, 't> TableReader<'r, 't> {
             misspelled.extend(meant);
             let message = format!("unknown key `{}` in {}", quoted(key.get_ref()), self.name.title());
             let help = self.help_for_unknown(key.get_ref(), meant);
-            self.error(key.span(), message, help);
+            self.coded(FindingCode::UnknownKey, key.span(), message, help);
         }
         for key in std::mem::take(&mut self.missing) {
             if !misspelled.contains(&key) {
@@ -298,7 +316,7 @@ impl<'r, 't> TableReader<'r, 't> {
         } else {
             (format!("{title} needs the key `{key}`"), format!("add a line `{key} = ...` below it"))
         };
-        self.error(self.span.clone(), message, help);
+        self.coded(FindingCode::MissingKey, self.span.clone(), message, help);
     }
 }
 
@@ -325,7 +343,11 @@ impl KeyValue<'_, '_> {
             }
             DeValue::Table(_) => {
                 let help = format!("write {title} with double brackets: there may be several");
-                self.wrong(format!("`{key}` is a list of tables, not one table"), help)
+                self.wrong_as(
+                    FindingCode::WrongType,
+                    format!("`{key}` is a list of tables, not one table"),
+                    help,
+                )
             }
             _ => self.wrong_type("a list of tables", format!("start each with {title}")),
         }
@@ -335,7 +357,7 @@ impl KeyValue<'_, '_> {
         let DeValue::Table(table) = self.value.get_ref() else {
             let found = type_name(self.value.get_ref());
             let message = format!("`{}` must be a table, but this is {found}", name.dotted);
-            return self.wrong(message, format!("start it with {}", name.title()));
+            return self.wrong_as(FindingCode::WrongType, message, format!("start it with {}", name.title()));
         };
         TableReader::read(self.context, table, (name, self.value.span()), styling)
     }

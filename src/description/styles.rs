@@ -16,11 +16,13 @@
 //! own counts ([`KeyDeclaration::rivals`]). A style names no other style.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
 use crate::description::declaration::{KeyDeclaration, Presence};
 use crate::description::diagnostic::DiagnosticSink;
+use crate::description::finding_code::FindingCode;
 use crate::description::key::{Key, filled_text};
 use crate::description::reader::DecodeContext;
 use crate::description::stated::Stated;
@@ -43,9 +45,16 @@ pub const STYLE_KEY: KeyDeclaration = KeyDeclaration {
 /// list in a style of ten thousand tables would fill the memory.
 const MAX_BYTES: usize = 16 << 20;
 
+/// A style with the place of its name, and whether a table has named it.
+struct NamedStyle<'t> {
+    keys: &'t DeTable<'t>,
+    name_span: Range<usize>,
+    is_used: bool,
+}
+
 /// All styles of a scene, by name.
 pub(super) struct Styles<'t> {
-    styles: BTreeMap<&'t str, &'t DeTable<'t>>,
+    styles: BTreeMap<&'t str, NamedStyle<'t>>,
     /// How many more bytes may be used.
     bytes_left: usize,
 }
@@ -65,12 +74,21 @@ impl<'t> Styles<'t> {
                         let message = "a style cannot take keys of another one";
                         report.error(key.span(), message, "state the keys themselves");
                     }
-                    None => drop(styles.insert(name.get_ref().as_ref(), keys)),
+                    None => {
+                        let style = NamedStyle { keys, name_span: name.span(), is_used: false };
+                        styles.insert(name.get_ref().as_ref(), style);
+                    }
                 },
                 _ => report.error(name.span(), WRONG_STYLES, help),
             }
         }
         Self { styles, bytes_left: MAX_BYTES }
+    }
+
+    /// The names of the styles that no table has named yet.
+    pub fn unused(&self) -> Vec<Stated<String>> {
+        let unused = self.styles.iter().filter(|(_, style)| !style.is_used);
+        unused.map(|(name, style)| Stated::new((*name).to_owned(), style.name_span.clone())).collect()
     }
 }
 
@@ -81,11 +99,13 @@ impl<'t> DecodeContext<'t> {
     /// bytes.
     pub fn take_style(&mut self, name: &Stated<String>) -> Option<&'t DeTable<'t>> {
         let span = name.span().unwrap_or_default();
-        let Some(&style) = self.styles.styles.get(name.as_str()) else {
+        let Some(style) = self.styles.styles.get_mut(name.as_str()) else {
             let (message, help) = self.styles.unknown(name);
-            self.report.error(span, message, help);
+            self.report.coded(FindingCode::UnknownName, span, message, help);
             return None;
         };
+        style.is_used = true;
+        let style = style.keys;
         let bytes: usize = style.values().map(|value| value.span().len()).sum();
         match self.styles.bytes_left.checked_sub(bytes) {
             Some(left) => self.styles.bytes_left = left,

@@ -11,6 +11,7 @@ use crate::description::bounds::{Bounds, ShortNumber};
 use crate::description::color::{Color, RampChoice};
 use crate::description::expression::{Expression, ExpressionError};
 use crate::description::feature_value::FeatureValue;
+use crate::description::finding_code::FindingCode;
 use crate::description::include::joined;
 use crate::description::reader::{DecodeContext, TableName};
 use crate::geom::crs::Crs;
@@ -83,14 +84,25 @@ impl<'t> KeyValue<'_, 't> {
         message: impl Into<Box<dyn Error + Send + Sync>>,
         help: impl Into<String>,
     ) -> Option<T> {
-        self.context.report.error(self.value.span(), message, help);
+        self.wrong_as(FindingCode::WrongValue, message, help)
+    }
+
+    /// As [`Self::wrong`], with a code of its own.
+    pub fn wrong_as<T>(
+        &mut self,
+        code: FindingCode,
+        message: impl Into<Box<dyn Error + Send + Sync>>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.context.report.coded(code, self.value.span(), message, help);
         None
     }
 
     /// Reports a value of another type than `wanted`; always `None`.
     pub fn wrong_type<T>(&mut self, wanted: &str, help: impl Into<String>) -> Option<T> {
         let found = type_name(self.value.get_ref());
-        self.wrong(format!("`{}` must be {wanted}, but this is {found}", self.key), help)
+        let message = format!("`{}` must be {wanted}, but this is {found}", self.key);
+        self.wrong_as(FindingCode::WrongType, message, help)
     }
 
     pub fn element<'e>(&'e mut self, value: &'e Spanned<DeValue<'e>>) -> KeyValue<'e, 't> {
@@ -318,7 +330,7 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn crs(mut self) -> Option<Crs> {
         let text = self.element(self.value).filled_text()?;
-        Crs::parse(&text).map_or_else(|error| self.wrong(error, CRS_HELP), Some)
+        Crs::parse(&text).map_or_else(|error| self.wrong_as(FindingCode::CrsUnknown, error, CRS_HELP), Some)
     }
 
     pub fn metric_crs(mut self) -> Option<Crs> {
@@ -329,7 +341,8 @@ impl<'t> KeyValue<'_, 't> {
             false if unit != 1.0 => format!("a unit of {name} is {unit} m"),
             false => return Some(crs),
         };
-        self.wrong(format!("the scene's coordinate system must be metric, but {found}"), CRS_HELP)
+        let message = format!("the scene's coordinate system must be metric, but {found}");
+        self.wrong_as(FindingCode::CrsInDegrees, message, CRS_HELP)
     }
 
     pub fn word<W: Choice>(mut self) -> Option<W> {

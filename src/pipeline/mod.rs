@@ -31,6 +31,7 @@ pub mod labels;
 pub mod legend;
 mod legend_overlay;
 mod line_labels;
+pub mod lint;
 pub mod lod;
 pub mod look;
 pub mod margin;

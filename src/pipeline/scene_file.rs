@@ -4,9 +4,14 @@ use std::path::{Path, PathBuf};
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::description::document::{Document, FlightTable};
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
 use crate::description::parse::parse_in_phase;
+use crate::message::chain::error_text;
 use crate::message::suggest::{quoted, remedy};
 use crate::pipeline::files::{self, ReadFileError};
+use crate::pipeline::lint::cause_code::coded;
+use crate::pipeline::lint::lint;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
 use crate::scene::flights::{SceneFlight, flight};
@@ -24,11 +29,28 @@ pub enum OpenSceneError {
     #[error("the scene file is wrong")]
     Parse(#[from] Diagnostics),
     #[error("the scene cannot be built")]
-    Build(#[from] Diagnostic),
+    Build(#[source] Diagnostic),
     #[error("{}", no_phase(.name, .names))]
     NoPhase { name: String, names: Vec<String> },
     #[error("{}", no_flight(.name.as_deref(), .names))]
     NoFlight { name: Option<String>, names: Vec<String> },
+}
+
+impl From<Diagnostic> for OpenSceneError {
+    fn from(error: Diagnostic) -> Self {
+        Self::Build(coded(error))
+    }
+}
+
+impl OpenSceneError {
+    /// The error as a finding without a place.
+    pub fn finding(&self) -> Finding {
+        let code = match self {
+            Self::NoPhase { .. } | Self::NoFlight { .. } => FindingCode::UnknownName,
+            Self::File(_) | Self::Assets(_) | Self::Parse(_) | Self::Build(_) => FindingCode::UnreadableFile,
+        };
+        Finding::new(code, error_text(self))
+    }
 }
 
 fn no_phase(name: &str, names: &[String]) -> String {
@@ -65,6 +87,23 @@ pub fn open_scene(
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed, None)?;
     Ok(build(&document, &assets, progress)?)
+}
+
+/// [`open_scene`] with the findings about the scene, in the order of output.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn open_linted(
+    path: &Path,
+    allowed: &[PathBuf],
+    progress: &dyn Fn(&'static str),
+) -> Result<(SceneModel, Vec<Finding>), OpenSceneError> {
+    progress("reading the scene file");
+    let (document, assets) = open_document(path, allowed, None)?;
+    let scene = build(&document, &assets, progress)?;
+    progress("checking");
+    let findings = lint(&document, &assets, &scene);
+    Ok((scene, findings))
 }
 
 /// Parses and builds a scene that has no file, of the text `text`; it reads files as one at `path` would.

@@ -23,6 +23,7 @@ use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_nat
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::Clipped;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::{Sourced, Sources};
 use crate::vector::feature::Polygon;
 
@@ -48,13 +49,15 @@ pub fn lay(
                 off += 1;
                 continue;
             };
-            let feature = collected.add(FeatureKind::Area, attributes.name(table.name.as_deref()));
+            let name = attributes.name(table.name.as_deref());
+            let feature = collected.add(FeatureKind::Area, name, attributes.origin(&table.source));
             patch.lay(feature, collected);
         }
-        let name = table.name.as_deref();
+        let named =
+            FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
         let why = "off the elevation model or without an area";
-        collected.note_left_out(off, FeatureKind::Area, name, why);
-        collected.note_left_out(bare, FeatureKind::Area, name, "their properties name no cover");
+        collected.findings.left_out(off, &named, why);
+        collected.findings.left_out(bare, &named, "their properties name no cover");
     }
     Ok(())
 }

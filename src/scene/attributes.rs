@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use crate::description::expression::Expression;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
+use crate::description::features::FeatureSource;
 use crate::description::scalar::Scalar;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::vector::feature::{Geometry, VectorLayer};
 
 /// The properties of one feature; none for a feature that the scene file itself states.
@@ -47,6 +49,11 @@ impl Attributes {
             (None, Some(Scalar::Text(name))) => name,
             _ => String::new(),
         }
+    }
+
+    /// Where the feature comes from, which `source` states.
+    pub fn origin(&self, source: &FeatureSource) -> FeatureOrigin {
+        FeatureOrigin { span: source.span(), number: self.feature.as_ref().map(|(_, feature)| feature + 1) }
     }
 
     /// The value of a key; `None` where the key is not stated, or the properties give no value in its range.

@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::chain::{ChainLink, Direction};
 use crate::earthworks::alignment::{Alignment, Support};
 use crate::geom::polyline::{VertexKey, vertex_key};
@@ -92,7 +93,8 @@ pub fn build(
             let span = &spans[chain.links[0].line];
             let kind = if span.street.alignment.support == Support::Tunnel { "tunnel" } else { "bridge" };
             let what = described(kind, &span.name);
-            collected.notes.push(format!("{what} left out: no ground lies along it"));
+            let message = format!("{what} left out: no ground lies along it");
+            collected.findings.add(FindingCode::LeftOut, span.place.span.clone(), message);
             continue;
         };
         let built = BuiltChain { spans: &spans, chain, run, site: &site, mouths: &mouths };
@@ -122,7 +124,7 @@ fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic
             let message =
                 format!("the scene's bridges ask for {count:.0} piers, at most {MOST_PIERS} are built");
             let help = "give a wider pier_spacing, or fewer or shorter bridges";
-            Err(document.error_at(span.place.clone(), message).with_help(help))
+            Err(document.error_at(span.place.span.clone(), message).with_help(help))
         }
         _ => Ok(()),
     }
@@ -163,7 +165,8 @@ impl PlannedBridge<'_> {
             section.edges_m = section.edges_m.map(|edge_m| site.scale.world_z(edge_m));
         }
         let built = bridge::build(&self.alignment, &self.sections, &self.options, &|at| site.ground_z(at));
-        let feature = collected.add(FeatureKind::Bridge, self.chain.spans[self.link.line].name.clone());
+        let span = &self.chain.spans[self.link.line];
+        let feature = collected.add(FeatureKind::Bridge, span.name.clone(), span.place.clone());
         let coat = Coat::Surface(street.surface);
         collected.solids.push(Solid { mesh: built.carriageway, coat, feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
@@ -287,7 +290,8 @@ impl<'a> BuiltChain<'a> {
             return;
         }
         for link in &self.chain.links {
-            let feature = collected.add(FeatureKind::Tunnel, self.spans[link.line].name.clone());
+            let span = &self.spans[link.line];
+            let feature = collected.add(FeatureKind::Tunnel, span.name.clone(), span.place.clone());
             let portals: Vec<Portal> = if is_shallow {
                 Vec::new()
             } else {

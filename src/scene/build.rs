@@ -14,6 +14,7 @@ use glam::DVec2;
 use crate::dem::raster::Raster;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::earthworks::brush::Change;
 use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
@@ -58,7 +59,7 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
     let mut lattice = loaded.lattice;
     let frame = WorldFrame::new(document, &loaded.crs, lattice.origin());
     let sources = Sources::new(&frame, assets);
-    let mut collected = SceneBuilder::default();
+    let mut collected = SceneBuilder::new(loaded.findings);
     shape(document, &sources, &mut lattice, &mut collected)?;
     models::level_pads(&sources, &mut lattice)?;
     let lattice = Arc::new(lattice);
@@ -82,7 +83,7 @@ pub fn build(
 
     progress("laying features");
     let sources = Sources::new(&frame, assets);
-    let mut collected = SceneBuilder { notes: loaded.notes, ..SceneBuilder::default() };
+    let mut collected = SceneBuilder::new(loaded.findings);
     let shaped = shape(document, &sources, &mut lattice, &mut collected)?;
     network::lay(&shaped.roads, &lattice.extent(), &mut collected);
     fences::set(&shaped.lines, frame.scale.ground(&lattice), &mut collected);
@@ -92,8 +93,9 @@ pub fn build(
     progress("loading models");
     let placed = models::place(&sources, &mut lattice, &mut collected)?;
     let models = placed.library.into_models();
-    let defaulted: Vec<String> = attributes::notes(&collected.default_counts).collect();
-    collected.notes.extend(defaulted);
+    for sentence in attributes::notes(&collected.default_counts) {
+        collected.findings.add(FindingCode::DefaultTaken, 0..0, sentence);
+    }
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
     let sight = sight_layers::lay(&frame, &lattice, &mut collected)?;
@@ -102,16 +104,18 @@ pub fn build(
     let layout = layout(document, &lattice)?;
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let mut labels = views::labels(&sources, &lattice, &mut collected.notes)?;
+    let mut labels = views::labels(&sources, &lattice, &mut collected.findings)?;
     let most = document.style.spot_heights as usize;
     labels.extend(spot_heights(most, &labels, &collected.lakes, &frame, &lattice));
-    let military = military::symbols(&sources, &lattice, &mut collected.notes)?;
+    let military = military::symbols(&sources, &lattice, &mut collected.findings)?;
     let cameras = views::cameras(&frame, &lattice)?;
-    collected.notes.extend(views::buried(&cameras, scale.ground(&lattice)));
+    views::find_buried(document, &cameras, scale.ground(&lattice), &mut collected.findings);
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     let surroundings = Surroundings::new(document);
-    collected.notes.extend(style::missing_place_note(document, &crs, lattice.map_extent().center()));
+    if let Some(missing) = style::missing_place_note(document, &crs, lattice.map_extent().center()) {
+        collected.findings.add(FindingCode::NoPlaceOnEarth, 0..0, missing);
+    }
     Ok(SceneModel {
         title: document.title.clone(),
         subtitle: document.phase_title().map(str::to_owned).or_else(|| document.subtitle.clone()),
@@ -157,7 +161,7 @@ pub fn build(
         furniture: document.furniture.clone(),
         sheet_day: style::sheet_day(document)?,
         features: collected.features,
-        notes: collected.notes,
+        findings: collected.findings.into_vec(),
         report: collected.report,
         profiles: collected.profiles,
         crs,

@@ -1,4 +1,4 @@
-//! The output of the passes over a document: features with their ids, ribbons, solids, notes and reports.
+//! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
@@ -6,16 +6,17 @@ use crate::ribbon::partition;
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::DefaultCounts;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::spot_heights::LakeSurface;
 use crate::scene::symbols::LineSymbol;
 use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
 use crate::terrain::triangle_surface::SurfaceTriangle;
 
-/// The features of a scene so far, with their meshes, notes and reports.
-#[derive(Default)]
+/// The features of a scene so far, with their meshes, findings and reports.
 pub struct SceneBuilder {
     /// Meshes draped on the ground.
     pub ribbons: Vec<Ribbon>,
@@ -33,8 +34,8 @@ pub struct SceneBuilder {
     pub decks: Vec<SurfaceTriangle>,
     /// Lakes with their levels.
     pub lakes: Vec<LakeSurface>,
-    /// Notes for the user.
-    pub notes: Vec<String>,
+    /// What was found, for the user.
+    pub findings: SceneFindings,
     /// The number of expressions without a value, by key and default.
     pub default_counts: DefaultCounts,
     /// Measures of single features.
@@ -44,9 +45,27 @@ pub struct SceneBuilder {
 }
 
 impl SceneBuilder {
+    /// Nothing but what was found so far.
+    pub fn new(findings: SceneFindings) -> Self {
+        Self {
+            ribbons: Vec::new(),
+            symbols: Vec::new(),
+            graphics: Vec::new(),
+            features: Vec::new(),
+            solids: Vec::new(),
+            uprights: Vec::new(),
+            decks: Vec::new(),
+            lakes: Vec::new(),
+            findings,
+            default_counts: DefaultCounts::new(),
+            report: SceneReport::default(),
+            profiles: Vec::new(),
+        }
+    }
+
     /// Adds a feature and returns its id.
-    pub fn add(&mut self, kind: FeatureKind, name: String) -> FeatureId {
-        self.features.push(SceneFeature { kind, name });
+    pub fn add(&mut self, kind: FeatureKind, name: String, origin: FeatureOrigin) -> FeatureId {
+        self.features.push(SceneFeature { kind, name, origin });
         FeatureId(FeatureId::GROUND.0 + self.features.len() as u32)
     }
 
@@ -58,14 +77,6 @@ impl SceneBuilder {
     /// The name of a feature; may be empty.
     pub fn name(&self, feature: FeatureId) -> &str {
         self.feature(feature).map_or("", |feature| &feature.name)
-    }
-
-    /// Notes how many features of a table were left out, where any were, and why.
-    pub fn note_left_out(&mut self, count: usize, kind: FeatureKind, table: Option<&str>, why: &str) {
-        if count > 0 {
-            let what = table.map(|name| format!(" of '{name}'")).unwrap_or_default();
-            self.notes.push(format!("{count} {}{what} left out: {why}", kind.noun(count)));
-        }
     }
 
     /// Adds a ribbon over those of its class and below.

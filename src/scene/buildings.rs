@@ -12,6 +12,7 @@ use crate::description::color::Color;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::BuildingTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::scalar::Scalar;
 use crate::description::words::{BaseRule, RoofShape as RoofWord};
 use crate::draw::color::Srgba;
@@ -23,6 +24,7 @@ use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
 use crate::scene::report::BuildingPadRow;
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::{Coat, FeatureKind, FeatureSolid, Solid};
@@ -70,17 +72,35 @@ struct BuildingTally {
 }
 
 impl BuildingTally {
-    fn note(&self, notes: &mut Vec<String>) {
+    fn note(&self, document: &Document, findings: &mut SceneFindings) {
+        // The tables share one tally: its place is that of the only one.
+        let span = match &document.buildings[..] {
+            [only] => only.source.span(),
+            _ => 0..0,
+        };
         let sentences = [
-            (self.off, "left out: not wholly on the elevation model's data"),
-            (self.empty, "left out: the footprint encloses no area"),
-            (self.mended, "mended: the footprint crossed itself"),
-            (self.pads_refused, "without its pad: the ground there is shaped for something else already"),
-            (self.roofs_replaced, "with another roof than asked for: the footprint does not take it"),
-            (self.raised_whole, "without a min_height, which is not below the height"),
+            (self.off, FindingCode::LeftOut, "left out: not wholly on the elevation model's data"),
+            (self.empty, FindingCode::EmptyShape, "left out: the footprint encloses no area"),
+            (self.mended, FindingCode::ShapeMended, "mended: the footprint crossed itself"),
+            (
+                self.pads_refused,
+                FindingCode::PadRefused,
+                "without its pad: the ground there is shaped for something else already",
+            ),
+            (
+                self.roofs_replaced,
+                FindingCode::RoofReplaced,
+                "with another roof than asked for: the footprint does not take it",
+            ),
+            (
+                self.raised_whole,
+                FindingCode::DefaultTaken,
+                "without a min_height, which is not below the height",
+            ),
         ];
-        for (count, sentence) in sentences.into_iter().filter(|(count, _)| *count > 0) {
-            notes.push(format!("{count} {} {sentence}", FeatureKind::Building.noun(count)));
+        for (count, code, sentence) in sentences.into_iter().filter(|(count, ..)| *count > 0) {
+            let message = format!("{count} {} {sentence}", FeatureKind::Building.noun(count));
+            findings.add(code, span.clone(), message);
         }
     }
 }
@@ -112,11 +132,11 @@ pub fn lay_out(
             let name = attributes.name(building.name.as_deref());
             let pad_m = wants_pad.then(|| pad(lattice, &parts, ground.mean_m, &name, collected)).flatten();
             tally.pads_refused += usize::from(wants_pad && pad_m.is_none());
-            let feature = collected.add(FeatureKind::Building, name);
+            let feature = collected.add(FeatureKind::Building, name, attributes.origin(&building.source));
             plots.push(Plot { table, attributes, parts, pad_m, feature });
         }
     }
-    tally.note(&mut collected.notes);
+    tally.note(document, &mut collected.findings);
     Ok(plots)
 }
 
@@ -200,7 +220,7 @@ pub fn raise(document: &Document, plots: &[Plot], ground: DrawnGround<'_>, colle
         let foot_z = ground.scale.world_z(under.low_m.min(base_m)) - FOUNDATION_M;
         raise_parts(building, plot, (base_z, foot_z), collected, &mut tally);
     }
-    tally.note(&mut collected.notes);
+    tally.note(document, &mut collected.findings);
 }
 
 /// Raises the parts of one building, given the world Z of its base and of the foot of its walls.

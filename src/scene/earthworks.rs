@@ -9,6 +9,7 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::earthworks::EarthworkTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::EarthworkKind;
 use crate::earthworks::brush::{Change, Crater, TireTrack, Trench, set_heights};
 use crate::earthworks::earthwork::{CrownHeight, Earthwork, RaisedGround};
@@ -117,21 +118,24 @@ fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
     if !rows.is_empty() {
         let (cut, fill) = rows.iter().fold((0.0, 0.0), |(cut, fill), row| (cut + row.cut, fill + row.fill));
         let count = rows.len();
-        collected.notes.push(format!("{count} {}: {cut:.0} m³ cut, {fill:.0} m³ filled", works(count)));
+        let message = format!("{count} {}: {cut:.0} m³ cut, {fill:.0} m³ filled", works(count));
+        collected.findings.add(FindingCode::EarthMoved, 0..0, message);
     }
     if unseen > 0 {
         let cell_m = lattice.cell().max_element();
-        collected.notes.push(format!(
+        let message = format!(
             "{unseen} {} narrower than two cells of the elevation model, whose posts are {cell_m:.3} m apart: they show \
              as pits, or not at all",
             works(unseen)
-        ));
+        );
+        collected.findings.add(FindingCode::TooFine, 0..0, message);
     }
     if still > 0 {
-        collected.notes.push(format!(
+        let message = format!(
             "{still} {} moved no earth: off the elevation model, between its posts, or under water",
             works(still)
-        ));
+        );
+        collected.findings.add(FindingCode::NoEarthMoved, 0..0, message);
     }
 }
 

@@ -10,6 +10,7 @@ use glam::{DVec2, Vec3};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::LabelTable;
 use crate::description::expression::Expression;
+use crate::description::finding_code::FindingCode;
 use crate::description::scalar::Scalar;
 use crate::geom::crs::Crs;
 use crate::geom::polygon::{doubled_area, inner_point};
@@ -18,6 +19,7 @@ use crate::scene::SceneLabel;
 use crate::scene::attributes::Attributes;
 use crate::scene::label_course::{LabelCourse, across, along};
 use crate::scene::near::MERGE_M;
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::Sources;
 use crate::scene::views::whole_meters;
 use crate::scene::world_frame::WorldFrame;
@@ -27,8 +29,8 @@ use crate::vector::feature::{Geometry, Polygon};
 /// Longer texts name nothing; they are cut here.
 const MOST_LETTERS: usize = 1000;
 
-/// The labels of the features that `table` names, in the order of their rank. `notes` gets a line for features without
-/// one.
+/// The labels of the features that `table` names, in the order of their rank. `findings` gets a sentence on features
+/// without one.
 ///
 /// # Errors
 /// The file cannot be read or holds no feature that matches.
@@ -36,7 +38,7 @@ pub fn labels(
     table: &LabelTable,
     sources: &Sources<'_>,
     lattice: &Lattice,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<Vec<SceneLabel>, Diagnostic> {
     let frame = sources.frame;
     let Some(source) = table.source() else { return Ok(Vec::new()) };
@@ -98,7 +100,9 @@ pub fn labels(
         named.push(NamedFeature { label, lines: pieces });
     }
     let labels = named.into_iter().map(|named| named.with_course(frame, lattice)).collect();
-    notes.extend(left_out.note(source.file.as_ref().map_or("", |file| file.as_str()), most));
+    if let Some(sentence) = left_out.note(source.file.as_ref().map_or("", |file| file.as_str()), most) {
+        findings.add(FindingCode::LeftOut, source.span(), sentence);
+    }
     Ok(labels)
 }
 

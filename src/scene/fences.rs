@@ -6,6 +6,7 @@
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::FenceTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::scalar::Scalar;
 use crate::description::stated::Stated;
 use crate::description::words::FenceKind;
@@ -21,6 +22,7 @@ use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near::{self, Clipped};
 use crate::scene::report::TrenchRow;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::{FeatureKind, FeatureSolid};
@@ -88,10 +90,11 @@ pub fn lay_out(
     let extent = lattice.extent();
     for fence in &document.fences {
         let stated = fence.name.as_deref();
+        let named = FeatureTable { kind: FeatureKind::Fence, name: stated, source: &fence.source };
         let found = sources.lines(&fence.source)?;
-        for (attributes, line) in near::lines(found, &extent, 0.0, FeatureKind::Fence, stated, collected) {
+        for (attributes, line) in near::lines(found, &extent, 0.0, &named, collected) {
             let name = attributes.name(stated);
-            let feature = collected.add(FeatureKind::Fence, name.clone());
+            let feature = collected.add(FeatureKind::Fence, name.clone(), attributes.origin(&fence.source));
             let line = fence_line(fence, &attributes, line.clip(&extent), feature, collected);
             pieces += line.pieces();
             if pieces > MOST_PIECES {
@@ -105,9 +108,10 @@ pub fn lay_out(
     }
     if undug > 0 {
         let trenches = if undug == 1 { "trench" } else { "trenches" };
-        collected.notes.push(format!(
+        let message = format!(
             "{undug} {trenches} drawn on the ground, not dug: the elevation model's posts are too far apart"
-        ));
+        );
+        collected.findings.add(FindingCode::TooFine, 0..0, message);
     }
     Ok(lines)
 }
@@ -244,7 +248,8 @@ pub fn set(lines: &[FenceLine], ground: DrawnGround<'_>, collected: &mut SceneBu
     }
     if added > 0 {
         let pylons = if added == 1 { "pylon" } else { "pylons" };
-        collected.notes.push(format!("{added} {pylons} added to keep wires off the ground"));
+        let message = format!("{added} {pylons} added to keep wires off the ground");
+        collected.findings.add(FindingCode::PylonsAdded, 0..0, message);
     }
 }
 

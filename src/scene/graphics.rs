@@ -14,6 +14,7 @@ use crate::message::suggest::{nearest, quoted};
 use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sources;
 use crate::symbology::code::SymbolCode;
 use crate::symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
@@ -70,10 +71,13 @@ pub fn lay(
                 let help = "select fewer of them with `where`";
                 return Err(document.error_at(table.source.span(), message).with_help(help));
             }
-            let feature = collected.add(FeatureKind::Graphic, attributes.name(table.name.as_deref()));
+            let name = attributes.name(table.name.as_deref());
+            let feature = collected.add(FeatureKind::Graphic, name, attributes.origin(&table.source));
             collected.graphics.push(SceneGraphic { feature, ..graphic });
         }
-        collected.note_left_out(off, FeatureKind::Graphic, table.name.as_deref(), "off the elevation model");
+        let name = table.name.as_deref();
+        let named = FeatureTable { kind: FeatureKind::Graphic, name, source: &table.source };
+        collected.findings.left_out(off, &named, "off the elevation model");
     }
     Ok(())
 }

@@ -17,10 +17,12 @@ use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::scene::assets::Assets;
+use crate::scene::scene_findings::SceneFindings;
 use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
@@ -31,8 +33,8 @@ pub struct LoadedGround {
     pub lattice: Lattice,
     /// The scene's system.
     pub crs: Crs,
-    /// Notes for the user.
-    pub notes: Vec<String>,
+    /// What was found, for the user.
+    pub findings: SceneFindings,
 }
 
 /// Reads the document's elevation files and brings them to a metric system.
@@ -42,34 +44,35 @@ pub struct LoadedGround {
 /// system.
 pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagnostic> {
     let dem = &document.terrain.dem;
-    let mut notes = Vec::new();
-    let mut source = joined(document, assets, &mut notes)?;
-    notes.extend(undeclared_nodata(&source).iter().map(|found| {
+    let (mut findings, span) = (SceneFindings::new(document), dem.span().unwrap_or_default());
+    let mut source = joined(document, assets, &mut findings)?;
+    for found in undeclared_nodata(&source) {
         let (evidence, value) = (&found.evidence, found.written());
-        format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]")
-    }));
+        let message = format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]");
+        findings.add(FindingCode::UndeclaredNoData, span.clone(), message);
+    }
     let mut filled = None;
     match document.terrain.fill_voids {
-        Some(true) => notes.push(voids::fill(&mut source).note()),
+        Some(true) => findings.add(FindingCode::VoidsFilled, span.clone(), voids::fill(&mut source).note()),
         // The source stays as it is read: the ground alone is without holes.
         None if voids::count(&source).0 > 0 => {
             let mut ground = source.clone();
-            notes.push(voids::fill(&mut ground).note());
+            findings.add(FindingCode::VoidsFilled, span.clone(), voids::fill(&mut ground).note());
             filled = Some(ground);
         }
         None | Some(false) => {}
     }
-    let metric = metric(document, filled.as_ref().unwrap_or(&source), &mut notes)?;
+    let metric = metric(document, filled.as_ref().unwrap_or(&source), &mut findings)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
-    Ok(LoadedGround { source: Arc::new(source), lattice, crs, notes })
+    Ok(LoadedGround { source: Arc::new(source), lattice, crs, findings })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system.
 fn metric<'a>(
     document: &Document,
     source: &'a Raster,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<Cow<'a, Raster>, Diagnostic> {
     /// Samples beside the extent that warping reads.
     const BESIDE: u32 = 4;
@@ -78,7 +81,7 @@ fn metric<'a>(
     let Some(extent) = &document.terrain.extent else {
         let metric = warp::to_metric(source, document.crs.as_ref()).map_err(failed)?;
         return Ok(match warp::resamples(source, document.crs.as_ref()).map_err(failed)? {
-            true => straightened(metric, source, document.crs.as_ref(), notes),
+            true => straightened(metric, source, document, findings),
             false => metric,
         });
     };
@@ -108,8 +111,8 @@ fn metric<'a>(
 fn straightened<'a>(
     warped: Cow<'a, Raster>,
     source: &Raster,
-    target: Option<&Crs>,
-    notes: &mut Vec<String>,
+    document: &Document,
+    findings: &mut SceneFindings,
 ) -> Cow<'a, Raster> {
     /// Of the ground between the wedges, the share that may not be lost to the border of the data.
     const LITTLE_LOST: f64 = 0.8;
@@ -125,7 +128,7 @@ fn straightened<'a>(
     }
     if (rect.area() as f64) < inside as f64 * LITTLE_LOST {
         let framed = warp::framed(source);
-        let frame = warp::to_metric(&framed, target).ok();
+        let frame = warp::to_metric(&framed, document.crs.as_ref()).ok();
         let Some(frame) = frame.filter(|frame| (frame.width, frame.height) == (warped.width, warped.height))
         else {
             return warped;
@@ -148,15 +151,16 @@ fn straightened<'a>(
     let Some(part) = crop(&warped, &part, 0) else { return warped };
     let cut = (1.0 - kept) * 100.0;
     let system = warped.crs.as_ref().map_or("north up", Crs::name);
-    notes.push(format!(
+    let message = format!(
         "{cut:.1} % of the elevation model is cut off along its border, so that its edges are straight in {system}; \
          `extent` under [terrain] names another part"
-    ));
+    );
+    findings.add(FindingCode::BorderCut, document.terrain.dem.span().unwrap_or_default(), message);
     Cow::Owned(part)
 }
 
 /// The document's elevation files as one raster.
-fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Result<Raster, Diagnostic> {
+fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) -> Result<Raster, Diagnostic> {
     let terrain = &document.terrain;
     let companions = |name: &str| assets.read(name).ok();
     let hints = DemHints {
@@ -181,7 +185,7 @@ fn joined(document: &Document, assets: &Assets, notes: &mut Vec<String>) -> Resu
     }
     let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
     if dem.len() > 1 {
-        notes.push(mosaic.note());
+        findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
     }
     Ok(mosaic.raster)
 }

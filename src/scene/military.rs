@@ -4,11 +4,13 @@ use glam::Vec3;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::expression::Expression;
+use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::geom::crs::Crs;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels::{place, written};
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::Sources;
 use crate::scene::world_frame::WorldFrame;
 use crate::symbology::code::SymbolCode;
@@ -47,7 +49,7 @@ pub enum SymbolSize {
     Ground(f32),
 }
 
-/// The symbols of the document; `notes` gets a line for what is not drawn.
+/// The symbols of the document; `findings` gets what is not drawn.
 ///
 /// # Errors
 /// A code that the scene file states is none, or its place lies off the ground; a file cannot be read or holds no feature
@@ -55,20 +57,19 @@ pub enum SymbolSize {
 pub fn symbols(
     sources: &Sources<'_>,
     lattice: &Lattice,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<Vec<SceneSymbol>, Diagnostic> {
     let mut symbols = Vec::new();
     for table in &sources.frame.document.symbols {
         match &table.at {
-            Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, notes)?),
-            None => read_features(table, sources, lattice, &mut symbols, notes)?,
+            Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, findings)?),
+            None => read_features(table, sources, lattice, &mut symbols, findings)?,
         }
     }
     if symbols.len() > MOST_SYMBOLS {
-        notes.push(format!(
-            "{} symbols beyond the first {MOST_SYMBOLS} are left out",
-            symbols.len() - MOST_SYMBOLS
-        ));
+        let more = symbols.len() - MOST_SYMBOLS;
+        let message = format!("{more} symbols beyond the first {MOST_SYMBOLS} are left out");
+        findings.add(FindingCode::TooMany, 0..0, message);
         symbols.truncate(MOST_SYMBOLS);
     }
     Ok(symbols)
@@ -79,7 +80,7 @@ fn symbol_at(
     at: &Stated<[f64; 2]>,
     frame: &WorldFrame<'_>,
     lattice: &Lattice,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<SceneSymbol, Diagnostic> {
     let error = |message: String| frame.document.error(&table.sidc, message);
     let code = SymbolCode::parse(&table.sidc).map_err(|found| error(found.to_string()))?;
@@ -88,7 +89,7 @@ fn symbol_at(
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
     let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &table.sidc), ground };
-    Ok(found.finished(table, &Attributes::default(), notes))
+    Ok(found.finished(table, &Attributes::default(), findings))
 }
 
 /// Adds the symbols of the features of a file.
@@ -97,7 +98,7 @@ fn read_features(
     sources: &Sources<'_>,
     lattice: &Lattice,
     symbols: &mut Vec<SceneSymbol>,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<(), Diagnostic> {
     let frame = sources.frame;
     let Some(source) = table.source() else { return Ok(()) };
@@ -127,12 +128,14 @@ fn read_features(
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
         let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
-        symbols.push(found.finished(table, &attributes, notes));
+        symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > MOST_SYMBOLS {
             break;
         }
     }
-    notes.extend(left_out.note(source.file.as_ref().map_or("", |file| file.as_str())));
+    if let Some(sentence) = left_out.note(source.file.as_ref().map_or("", |file| file.as_str())) {
+        findings.add(FindingCode::LeftOut, source.span(), sentence);
+    }
     Ok(())
 }
 
@@ -171,12 +174,17 @@ struct FoundSymbol {
 }
 
 impl FoundSymbol {
-    fn finished(self, table: &SymbolTable, attributes: &Attributes, notes: &mut Vec<String>) -> SceneSymbol {
+    fn finished(
+        self,
+        table: &SymbolTable,
+        attributes: &Attributes,
+        findings: &mut SceneFindings,
+    ) -> SceneSymbol {
         let Self { symbol, texts, name, ground } = self;
         for note in &symbol.notes {
-            let note = format!("symbol {name}: {note}");
-            if !notes.contains(&note) {
-                notes.push(note);
+            let message = format!("symbol {name}: {note}");
+            if !findings.state(&message) {
+                findings.add(FindingCode::SymbolIncomplete, table.sidc.span().unwrap_or_default(), message);
             }
         }
         let direction = attributes.value(table.direction.as_deref());

@@ -16,6 +16,7 @@ pub mod buildings;
 pub mod earthworks;
 mod facade;
 pub mod feature_labels;
+pub mod feature_origin;
 pub mod fences;
 pub mod flights;
 mod font;
@@ -36,6 +37,7 @@ pub mod ramps;
 pub mod report;
 pub mod roads;
 pub mod scatter;
+pub mod scene_findings;
 pub mod sight_layers;
 pub mod sources;
 mod spot_heights;
@@ -55,6 +57,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
+use crate::description::finding::Finding;
 use crate::description::words::{Anchor, Clamp, Footing, GridName, LabelKind, StylePreset, TableTop};
 use crate::draw::color::Srgba;
 use crate::draw::font::FontFile;
@@ -67,6 +70,7 @@ use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::geom::declination::CalendarDay;
 use crate::geom::rect::Rect;
+use crate::message::suggest::quoted;
 use crate::model::Model;
 use crate::model::detail::ModelDetail;
 use crate::ribbon::plan::PlanMesh;
@@ -74,6 +78,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::roam::layout::PatchLayout;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::earthworks::water_beside;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
@@ -176,8 +181,8 @@ pub struct SceneModel {
     pub sheet_day: Option<CalendarDay>,
     /// Every feature, in the order of ids from 2 up.
     pub features: Vec<SceneFeature>,
-    /// Notes for the user: features off the model, missing textures, earth moved.
-    pub notes: Vec<String>,
+    /// What building it found: features off the model, missing textures, earth moved.
+    pub findings: Vec<Finding>,
     /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
@@ -254,6 +259,20 @@ pub struct SceneFeature {
     pub kind: FeatureKind,
     /// Its name; may be empty.
     pub name: String,
+    /// Where it comes from.
+    pub origin: FeatureOrigin,
+}
+
+impl SceneFeature {
+    /// What a message calls it: its kind with its name, or with its number in its file.
+    pub fn described(&self) -> String {
+        let kind = self.kind.noun(1);
+        match (self.name.as_str(), self.origin.number) {
+            ("", Some(number)) => format!("{kind} {number} of its file"),
+            ("", None) => format!("a {kind} without a name"),
+            (name, _) => format!("{kind} '{}'", quoted(name)),
+        }
+    }
 }
 
 /// A feature that lies on the ground.
@@ -495,6 +514,11 @@ impl SceneModel {
         })
     }
 
+    /// The sentences of its findings, for the user.
+    pub fn notes(&self) -> Vec<&str> {
+        self.findings.iter().map(|finding| finding.message.as_str()).collect()
+    }
+
     /// What a picture shows that no file states, for the user.
     pub fn inferred_notes(&self) -> Vec<String> {
         let WaterCover { sea_posts, lakes, .. } = self.water();
@@ -534,7 +558,7 @@ impl SceneModel {
             _ => {}
         }
         let feature = feature.index().and_then(|index| self.features.get(index));
-        feature.map_or_else(String::new, |SceneFeature { kind, name }| match name.as_str() {
+        feature.map_or_else(String::new, |SceneFeature { kind, name, .. }| match name.as_str() {
             "" => kind.noun(1).to_owned(),
             name => format!("{} {name}", kind.noun(1)),
         })

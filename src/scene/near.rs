@@ -6,22 +6,21 @@ use crate::geom::polyline::{Polyline, kept};
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
 use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sourced;
 
 /// Vertices nearer to each other than this have no direction worth a joint, in meters.
 pub const MERGE_M: f64 = 0.01;
 
-/// The lines of `kind` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
-/// others, and those that are a single point, are noted. `name` is the one in the scene file.
+/// The lines of `table` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
+/// others, and those that are a single point, are noted.
 pub fn lines(
     lines: Vec<Sourced<Vec<DVec2>>>,
     extent: &Rect,
     reach_m: f64,
-    kind: FeatureKind,
-    name: Option<&str>,
+    table: &FeatureTable<'_>,
     collected: &mut SceneBuilder,
 ) -> Vec<(Attributes, Polyline)> {
     let count = lines.len();
@@ -33,7 +32,8 @@ pub fn lines(
             Some((attributes, line))
         })
         .collect();
-    collected.note_left_out(count - near.len(), kind, name, "off the elevation model or a single point");
+    let why = "off the elevation model or a single point";
+    collected.findings.left_out(count - near.len(), table, why);
     near
 }
 

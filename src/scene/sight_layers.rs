@@ -13,6 +13,7 @@ use crate::draw::list::FeatureId;
 use crate::geom::crs::Crs;
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::world_frame::WorldFrame;
 use crate::symbology::graphic::check::MOST_RANGES;
 use crate::terrain::lattice::Lattice;
@@ -143,7 +144,8 @@ pub fn lay(
             ..ViewshedOptions::new(end(frame, *at, table.observer_height))
         };
         let name = table.name.clone().unwrap_or_default();
-        let feature = collected.add(FeatureKind::Sight, name.clone());
+        let feature =
+            collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.observers.span()));
         let observers = observers.iter().map(options).collect();
         layers.viewsheds.push(SceneViewshed::new(name, observers, table.tint, feature));
     }
@@ -152,7 +154,11 @@ pub fn lay(
         let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
         let name = table.name.clone().unwrap_or_default();
         layers.sights.push(SceneSight {
-            feature: collected.add(FeatureKind::Sight, name.clone()),
+            feature: collected.add(
+                FeatureKind::Sight,
+                name.clone(),
+                FeatureOrigin::stated(table.observer.span()),
+            ),
             name,
             observer: end(frame, observer, table.observer_height),
             targets: targets.into_iter().map(|at| end(frame, at, table.target_height)).collect(),
@@ -163,7 +169,7 @@ pub fn lay(
         let distances_m = distances(document, &table.distances)?;
         let farthest_m = distances_m.last().copied().unwrap_or(0.0);
         let name = table.name.clone().unwrap_or_default();
-        let feature = collected.add(FeatureKind::Sight, name.clone());
+        let feature = collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.at.span()));
         let sector = sector(table.azimuths);
         let options = ViewshedOptions {
             target_above_m: table.target_height,

@@ -5,13 +5,15 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 use glam::{DVec2, Vec3};
 
 use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{CameraTable, LabelTable, PAPER_DPI, paper_mm};
+use crate::description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
+use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
 use crate::description::words::CameraProjection;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels;
 use crate::scene::label_course::LabelCourse;
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
@@ -19,20 +21,20 @@ use crate::scene::{FittedView, PaperSheet, ParallelView, SceneLabel, SceneView, 
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 
-/// The document's labels, `{height}` filled in; those of files with notes on the features without a label.
+/// The document's labels, `{height}` filled in; those of files with findings on the features without a label.
 ///
 /// # Errors
 /// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
 pub fn labels(
     sources: &Sources<'_>,
     lattice: &Lattice,
-    notes: &mut Vec<String>,
+    findings: &mut SceneFindings,
 ) -> Result<Vec<SceneLabel>, Diagnostic> {
     let mut labels = Vec::new();
     for table in &sources.frame.document.labels {
         match &table.at {
             Some(at) => labels.push(label(table, at, sources.frame, lattice)?),
-            None => labels.extend(feature_labels::labels(table, sources, lattice, notes)?),
+            None => labels.extend(feature_labels::labels(table, sources, lattice, findings)?),
         }
     }
     Ok(labels)
@@ -181,8 +183,13 @@ fn shown(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Resu
     shown.transpose()
 }
 
-/// A note for each camera whose eye is under the ground.
-pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
+/// Finds the cameras whose eye is under the ground.
+pub fn find_buried(
+    document: &Document,
+    cameras: &[SceneView],
+    ground: DrawnGround<'_>,
+    findings: &mut SceneFindings,
+) {
     let lattice = ground.lattice;
     let depth_m = |view: &SceneView| {
         let ViewAim::At { eye, .. } = view.aim else { return None };
@@ -190,11 +197,13 @@ pub fn buried(cameras: &[SceneView], ground: DrawnGround<'_>) -> Vec<String> {
         let height = ground_height(lattice, Interpolation::Planar, at).height_m()?;
         Some(height - f64::from(ground.scale.elevation_m(eye.z))).filter(|&depth| depth > 0.0)
     };
-    cameras
-        .iter()
-        .filter_map(|view| Some((view, depth_m(view)?)))
-        .map(|(view, depth)| format!("camera '{}' has its eye {depth:.1} m under the ground", view.name))
-        .collect()
+    for (view, table) in cameras.iter().zip(&document.cameras) {
+        if let Some(depth) = depth_m(view) {
+            let message = format!("camera '{}' has its eye {depth:.1} m under the ground", view.name);
+            let span = table.eye.as_ref().and_then(Stated::span).unwrap_or_default();
+            findings.add(FindingCode::CameraUnderground, span, message);
+        }
+    }
 }
 
 /// A view that is fitted to the whole ground.

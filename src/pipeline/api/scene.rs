@@ -62,8 +62,8 @@ impl Scene {
     }
 
     /// What was done that a user should know: features off the model, missing textures, earth moved.
-    pub fn notes(&self) -> &[String] {
-        &self.model.notes
+    pub fn notes(&self) -> Vec<&str> {
+        self.model.notes()
     }
 
     /// The names of the views, the first one that of the default.

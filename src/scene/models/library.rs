@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
 use crate::model::Model;
 use crate::model::{built_in, read};
@@ -53,9 +54,12 @@ impl<'a> Library<'a> {
         }
         let (model, origin) = match built_in::by_name(name) {
             Some(model) => (model, ModelOrigin::BuiltIn),
-            None => (self.load(name, span)?, ModelOrigin::File),
+            None => (self.load(name, span.clone())?, ModelOrigin::File),
         };
-        collected.notes.extend(model.notes.iter().map(|note| format!("{name}: {note}")));
+        for note in &model.notes {
+            let span = span.clone().unwrap_or_default();
+            collected.findings.add(FindingCode::ModelRead, span, format!("{name}: {note}"));
+        }
         self.about.push((ModelFootprint::of(&model), origin));
         self.models.push(model);
         self.known.insert(name.to_owned(), self.models.len() - 1);

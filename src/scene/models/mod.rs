@@ -24,8 +24,10 @@ use crate::description::words::{Clamp, Footing};
 use crate::draw::list::FeatureId;
 use crate::scene::attributes::{Attributes, DefaultCounts};
 use crate::scene::builder::SceneBuilder;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::models::library::Library;
 use crate::scene::scatter;
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::{Sourced, Sources};
 use crate::scene::world_frame::WorldFrame;
 use crate::scene::{FeatureKind, GroundFit, Placement};
@@ -81,7 +83,12 @@ pub fn place<'a>(
 /// As for [`place`], for the models on pads.
 pub fn level_pads(sources: &Sources<'_>, lattice: &mut Lattice) -> Result<(), Diagnostic> {
     let tables = sources.frame.document.models.iter().filter(|table| *table.footing == Footing::Pad);
-    let placed = PlacedModels::new(tables, sources, lattice, &mut SceneBuilder::default())?;
+    let placed = PlacedModels::new(
+        tables,
+        sources,
+        lattice,
+        &mut SceneBuilder::new(SceneFindings::new(sources.frame.document)),
+    )?;
     footings::level_pads(&placed, sources.frame, lattice).map(drop)
 }
 
@@ -114,7 +121,7 @@ impl<'a> PlacedModels<'a> {
             frame.on_ground(lattice, at, world)?;
             let model = self.library.get(&table.file, table.file.span(), collected)?;
             let name = table.name.clone().unwrap_or_else(|| table.file.to_string());
-            let feature = collected.add(FeatureKind::Model, name);
+            let feature = collected.add(FeatureKind::Model, name, FeatureOrigin::stated(at.span()));
             let point = Sourced { attributes: Attributes::default(), shape: world };
             self.add(table, model, &point, feature, frame, &mut collected.default_counts);
         } else if let Some(source) = &table.instances {
@@ -128,7 +135,7 @@ impl<'a> PlacedModels<'a> {
                 }
                 let model = choice.of(&point.attributes);
                 let name = point.attributes.name(table.name.as_deref());
-                let feature = collected.add(FeatureKind::Model, name);
+                let feature = collected.add(FeatureKind::Model, name, point.attributes.origin(source));
                 self.add(table, model, &point, feature, frame, &mut collected.default_counts);
             }
             unknown = choice.unknown;

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use crate::description::features::FeatureSource;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
 use crate::scene::Placement;
 use crate::scene::builder::SceneBuilder;
@@ -14,6 +16,7 @@ use crate::scene::footprint::ModelFootprint;
 use crate::scene::models::{InstanceGroup, PlacedModels};
 use crate::scene::placement::stand;
 use crate::scene::report::{InstancesRow, ModelRow};
+use crate::scene::scene_findings::SceneFindings;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
 use crate::terrain::lattice::Lattice;
@@ -38,7 +41,7 @@ pub fn add(
             row(placement, placed.library.footprint(placement.model), &finest, volumes.get(&index))
         });
         if group.table.instances.is_some() {
-            note(group, &name, &mut collected.notes);
+            find(group, &name, &mut collected.findings);
             collected.report.instances.push(instances(group, name, &rows.collect::<Vec<_>>()));
         } else {
             collected.report.models.extend(rows.map(|row| ModelRow { name: name.clone(), ..row }));
@@ -97,14 +100,17 @@ fn instances(group: &InstanceGroup<'_>, name: String, all: &[ModelRow]) -> Insta
     }
 }
 
-fn note(group: &InstanceGroup<'_>, name: &str, notes: &mut Vec<String>) {
+fn find(group: &InstanceGroup<'_>, name: &str, findings: &mut SceneFindings) {
+    let span = group.table.instances.as_ref().map(FeatureSource::span).unwrap_or_default();
     let models = |count: usize| if count == 1 { "1 model".into() } else { format!("{count} models") };
     if group.off > 0 {
-        notes.push(format!("{} of '{name}' left out: off the elevation model", models(group.off)));
+        let message = format!("{} of '{name}' left out: off the elevation model", models(group.off));
+        findings.add(FindingCode::LeftOut, span.clone(), message);
     }
     if group.unknown > 0 {
         let file = group.table.file.as_str();
         let (what, name_s) = (models(group.unknown), if group.unknown == 1 { "names" } else { "name" });
-        notes.push(format!("{what} of '{name}' {name_s} none of its variants; '{file}' was taken"));
+        let message = format!("{what} of '{name}' {name_s} none of its variants; '{file}' was taken");
+        findings.add(FindingCode::UnknownVariant, span, message);
     }
 }

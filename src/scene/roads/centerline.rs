@@ -16,6 +16,7 @@ use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sources;
 
 /// How far from the ground a centerline may run whose road still reaches it, in meters.
@@ -50,8 +51,9 @@ pub fn collect(
     for (table, road) in document.roads.iter().enumerate() {
         let lines = sources.lines(&road.source)?;
         let widths_m = lines.first().and_then(|line| near::widths_m(road.widths.as_deref(), &line.shape));
-        let name = road.name.as_deref();
-        for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Road, name, collected) {
+        let named =
+            FeatureTable { kind: FeatureKind::Road, name: road.name.as_deref(), source: &road.source };
+        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, collected) {
             let mut centerline = centerline(road, attributes, line, collected);
             centerline.table = table;
             if let Some(widths_m) = &widths_m {
@@ -99,7 +101,11 @@ fn centerline(
     Centerline {
         street,
         shoulder_m,
-        feature: collected.add(FeatureKind::Road, attributes.name(road.name.as_deref())),
+        feature: collected.add(
+            FeatureKind::Road,
+            attributes.name(road.name.as_deref()),
+            attributes.origin(&road.source),
+        ),
         table: 0,
         attributes,
     }

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::design::design;
 use crate::earthworks::alignment::network::NodeId;
 use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
@@ -61,7 +62,7 @@ pub fn conform(
     let meetings = meetings(roads, |road| is_on_ground(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
         let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
-        collected.notes.push(note.into());
+        collected.findings.add(FindingCode::Tangled, 0..0, note);
     }
     let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.measured_cell().max_element());
@@ -204,7 +205,8 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
         note = if note.is_empty() { wide + reason } else { format!("{note}; {wide}{reason}") };
     }
     if !note.is_empty() {
-        collected.notes.push(note);
+        let code = if spacing_m > narrowest_m { FindingCode::TooFine } else { FindingCode::PostsAdded };
+        collected.findings.add(code, 0..0, note);
     }
 }
 
@@ -269,7 +271,7 @@ fn note_totals(
         if bridges + tunnels > 0 {
             note += &format!("; on bridges {bridges} times and in tunnels {tunnels} times");
         }
-        collected.notes.push(note);
+        collected.findings.add(FindingCode::EarthMoved, document.roads[table].source.span(), note);
     }
 }
 

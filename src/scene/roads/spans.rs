@@ -1,7 +1,6 @@
 //! Spans: what a bridge or a tunnel carries, from the roads and from the tables of bridges.
 
 use std::collections::BTreeSet;
-use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -15,8 +14,10 @@ use crate::ribbon::junction::{self, Street};
 use crate::ribbon::stroke::StrokeOptions;
 use crate::scene::FeatureKind;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::near;
 use crate::scene::roads::centerline::{self, Centerline};
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sources;
 
 /// How far from the ground a bridge may run that still reaches it, in meters.
@@ -60,8 +61,8 @@ pub struct RoadSpan {
     pub name: String,
     /// Why it is one.
     pub origin: SpanOrigin,
-    /// The place in the scene file, for messages.
-    pub place: Range<usize>,
+    /// Where it is stated, for messages.
+    pub place: FeatureOrigin,
 }
 
 /// The spans of the document: roads that something other than the ground carries, and its tables of bridges.
@@ -105,7 +106,7 @@ fn road_span(
         pier_spacing_m: None,
         name: collected.name(road.feature).to_owned(),
         origin: if is_tagged { SpanOrigin::Tag } else { SpanOrigin::Rule },
-        place: table.source.span(),
+        place: road.attributes.origin(&table.source),
     })
 }
 
@@ -118,8 +119,9 @@ fn table_spans(
     let mut all = Vec::new();
     for bridge in &document.bridges {
         let name = bridge.name.as_deref();
+        let named = FeatureTable { kind: FeatureKind::Bridge, name, source: &bridge.source };
         let lines = sources.lines(&bridge.source)?;
-        for (attributes, line) in near::lines(lines, extent, REACH_M, FeatureKind::Bridge, name, collected) {
+        for (attributes, line) in near::lines(lines, extent, REACH_M, &named, collected) {
             if line.range_within(extent).is_none() {
                 continue;
             }
@@ -139,7 +141,7 @@ fn table_spans(
                 pier_spacing_m: bridge.pier_spacing.stated().copied(),
                 name: attributes.name(name),
                 origin: SpanOrigin::Table,
-                place: bridge.source.span(),
+                place: attributes.origin(&bridge.source),
             });
         }
     }

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::ScatterTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
 use crate::draw::list::FeatureId;
 use crate::geom::rect::Rect;
@@ -24,6 +25,7 @@ use crate::mesh::sink::VertexId;
 use crate::model::built_in;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::{SceneBuilder, described};
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::models::library::Library;
 use crate::scene::models::{PlacedModels, within};
 use crate::scene::placement::outline;
@@ -67,7 +69,11 @@ pub fn strew(
     let mut squares = 0;
     for table in &document.scatters {
         let species = Species::new(table, &mut placed.library, collected)?;
-        let feature = collected.add(FeatureKind::Scattered, table.name.clone().unwrap_or_default());
+        let feature = collected.add(
+            FeatureKind::Scattered,
+            table.name.clone().unwrap_or_default(),
+            FeatureOrigin::stated(Some(table.source.span())),
+        );
         let library = &placed.library;
         let ground =
             ScatterGround { table, frame, lattice, taken: &taken, library, species: &species, feature };
@@ -287,10 +293,11 @@ fn tell(
     let models = if count == 1 { "1 model stands".into() } else { format!("{count} models stand") };
     let called = described("scatter", &name);
     let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
-    collected.notes.push(format!("{called}: {models} in {areas_s}"));
+    let span = table.source.span();
+    collected.findings.add(FindingCode::Scattered, span.clone(), format!("{called}: {models} in {areas_s}"));
     if counts.crowded > 0 {
         let message = "fewer than `density` says, since `spacing` leaves no room for more";
-        collected.notes.push(format!("{called}: {message}"));
+        collected.findings.add(FindingCode::Crowded, span, format!("{called}: {message}"));
     }
     collected.report.scattered.push(ScatterRow {
         name,

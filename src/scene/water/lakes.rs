@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::LakeTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::LevelRule;
 use crate::draw::list::FeatureId;
 use crate::earthworks::shore::{self, Flooded, LakeBasin};
@@ -16,6 +17,7 @@ use crate::ribbon::texture::RibbonSurface;
 use crate::scene::FeatureKind;
 use crate::scene::attributes::{Attributes, count_default};
 use crate::scene::builder::{SceneBuilder, described};
+use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::near::Clipped;
 use crate::scene::report::LakeRow;
 use crate::scene::sources::{Sourced, Sources};
@@ -68,18 +70,21 @@ fn measure(
             let name = attributes.name(table.name.as_deref());
             let bounds = polygon::bounds(&shape.exterior);
             if !bounds.meets(&extent) {
-                collected.notes.push(format!("{} lies off the elevation model", described("lake", &name)));
+                let message = format!("{} lies off the elevation model", described("lake", &name));
+                collected.findings.add(FindingCode::LeftOut, table.source.span(), message);
                 continue;
             }
             let mut plan = Clipped { plan: PlanMesh::default(), extent: &extent };
             area::fill(&shape.exterior, &shape.holes, LAKE_TEXTURE_M, &mut plan);
             if plan.plan.triangles.is_empty() {
-                collected.notes.push(format!("lake '{name}' left out: its shore encloses no area"));
+                let message = format!("lake '{name}' left out: its shore encloses no area");
+                collected.findings.add(FindingCode::EmptyShape, table.source.span(), message);
                 continue;
             }
             let shore = Shore::of(lattice, &shape);
             let level = level_of(document, table, &attributes, &shore, collected)?;
-            lakes.push(Lake { name, plan: plan.plan, shape, shore, level });
+            let origin = attributes.origin(&table.source);
+            lakes.push(Lake { name, origin, plan: plan.plan, shape, shore, level });
         }
     }
     Ok(lakes)
@@ -88,6 +93,7 @@ fn measure(
 /// A lake that no ground is moved for yet.
 struct Lake {
     name: String,
+    origin: FeatureOrigin,
     shape: Polygon,
     plan: PlanMesh,
     shore: Shore,
@@ -117,27 +123,31 @@ impl Lake {
     /// Reports what the lake took and returns its feature.
     fn report(&self, flooded: &Flooded, lattice: &Lattice, collected: &mut SceneBuilder) -> FeatureId {
         let (level_m, volumes) = (self.level.level_m, flooded.volumes);
-        collected.notes.push(format!(
+        let span = self.origin.span.clone();
+        let message = format!(
             "{} lies level at {level_m:.1} m: {:.0} m³ cut, {:.0} m³ filled",
             described("lake", &self.name),
             volumes.cut_m3,
             volumes.fill_m3
-        ));
+        );
+        collected.findings.add(FindingCode::LakeLevel, span.clone(), message);
         if let Some(lower_m) = flooded.lower_level_m {
-            collected.notes.push(format!(
+            let message = format!(
                 "{} shares cells with a lake at {lower_m:.1} m, and the lower level holds there",
                 described("lake", &self.name)
-            ));
+            );
+            collected.findings.add(FindingCode::LakesShareCells, span.clone(), message);
         }
         // A part of a meter is less than the note tells.
         if shore::bed_reach_m(lattice).round() > self.reach_m().round() {
-            collected.notes.push(format!(
+            let message = format!(
                 "{} lies on posts {:.3} m apart, and the ground is level up to {:.0} m from its shore; a model of a \
                  smaller area could have more posts",
                 described("lake", &self.name),
                 lattice.cell().max_element(),
                 shore::bed_reach_m(lattice)
-            ));
+            );
+            collected.findings.add(FindingCode::TooFine, span, message);
         }
         collected.report.lakes.push(LakeRow {
             name: self.name.clone(),
@@ -150,7 +160,7 @@ impl Lake {
             fill: volumes.fill_m3,
         });
         collected.lakes.push(LakeSurface { outline: self.shape.exterior.clone(), level_m });
-        collected.add(FeatureKind::Lake, self.name.clone())
+        collected.add(FeatureKind::Lake, self.name.clone(), self.origin.clone())
     }
 }
 
@@ -159,9 +169,9 @@ fn make_denser(lattice: &mut Lattice, lakes: &[Lake], collected: &mut SceneBuild
     let reach_m = lakes.iter().map(Lake::reach_m).fold(f64::INFINITY, f64::min);
     if densify::bring_to(lattice, shore::spacing_m(reach_m)) > 0 {
         let spacing_m = lattice.cell().max_element();
-        collected
-            .notes
-            .push(format!("posts every {spacing_m:.3} m were put in for lakes; the ground stays as it was"));
+        let message =
+            format!("posts every {spacing_m:.3} m were put in for lakes; the ground stays as it was");
+        collected.findings.add(FindingCode::PostsAdded, 0..0, message);
     }
 }
 

@@ -21,6 +21,7 @@ use crate::scene::FeatureKind;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::near;
+use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::Sources;
 use crate::scene::water::order::{self, RiverSurroundings};
 use crate::terrain::lattice::Lattice;
@@ -61,8 +62,9 @@ pub fn collect(
     for river in &document.rivers {
         let lines = sources.lines(&river.source)?;
         let widths_m = lines.first().and_then(|line| near::widths_m(river.widths.as_deref(), &line.shape));
-        let name = river.name.as_deref();
-        for (attributes, line) in near::lines(lines, &extent, REACH_M, FeatureKind::River, name, collected) {
+        let named =
+            FeatureTable { kind: FeatureKind::River, name: river.name.as_deref(), source: &river.source };
+        for (attributes, line) in near::lines(lines, &extent, REACH_M, &named, collected) {
             let widths = widths_m.as_ref();
             let widths = widths.and_then(|widths_m| Profile::new(line.stations().to_vec(), widths_m.clone()));
             drawn.push((river, attributes, line, widths));
@@ -119,7 +121,7 @@ fn stream(
     collected: &mut SceneBuilder,
 ) -> Stream {
     let name = attributes.name(river.name.as_deref());
-    let feature = collected.add(FeatureKind::River, name.clone());
+    let feature = collected.add(FeatureKind::River, name.clone(), attributes.origin(&river.source));
     let counts = &mut collected.default_counts;
     let width = widths.map(Width::Varying).unwrap_or_else(|| {
         let width_m = attributes.number(&river.width, counts);

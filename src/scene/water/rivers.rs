@@ -13,6 +13,7 @@ use glam::DVec2;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::Water;
 use crate::earthworks::channel::{self, Channel, Climb, Cut, Cuts};
 use crate::geom::offset::Continuations;
@@ -76,29 +77,34 @@ fn report_cuts(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     let Some((stream, cut)) = deepest.filter(|(_, cut)| cut.deepest_m > 0.0) else { return };
     let sum = |of: fn(&Cut) -> f64| cuts.cuts.iter().map(of).sum::<f64>();
     let place = if stream.name.is_empty() { String::new() } else { format!(", in '{}'", stream.name) };
-    collected.notes.push(format!(
+    let message = format!(
         "the beds of {} rivers: {:.0} m³ cut, {:.0} m³ filled, {:.1} m deep at most{place}",
         streams.len(),
         sum(|cut| cut.volumes.cut_m3),
         sum(|cut| cut.volumes.fill_m3),
         cut.deepest_m
-    ));
+    );
+    collected.findings.add(FindingCode::EarthMoved, 0..0, message);
 }
 
 /// Reports where the ground rises downstream: a note on all climbs, with the greatest.
 fn report_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     let climbing = cuts.cuts.iter().filter(|cut| !cut.climbs.is_empty()).count();
     let count: usize = cuts.cuts.iter().map(|cut| cut.climbs.len()).sum();
-    let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((&stream.name, greatest(cut)?)));
-    let Some((name, climb)) = all.max_by(|a, b| a.1.rise_m.total_cmp(&b.1.rise_m)) else { return };
+    let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((stream, greatest(cut)?)));
+    let Some((Stream { name, feature, .. }, climb)) = all.max_by(|a, b| a.1.rise_m.total_cmp(&b.1.rise_m))
+    else {
+        return;
+    };
     let place = if name.is_empty() { String::new() } else { format!("in '{name}', ") };
-    collected.notes.push(format!(
+    let message = format!(
         "the ground rises downstream at {count} places of {climbing} rivers, by {:.1} m at most ({place}{:.0} m from \
          its source): no cut as deep as `max_cut` lets water fall there, so the ground stays as it is; the lines do not \
          follow the model's valleys, or its cells are too wide for these",
-        climb.rise_m,
-        climb.from_m
-    ));
+        climb.rise_m, climb.from_m
+    );
+    let span = collected.feature(*feature).map(|river| river.origin.span.clone()).unwrap_or_default();
+    collected.findings.add(FindingCode::RiverUphill, span, message);
 }
 
 fn greatest(cut: &Cut) -> Option<&Climb> {

@@ -139,7 +139,8 @@ mod tests {
     }
 
     fn harness() -> Harness<'static, TreeTest> {
-        let feature = |kind, name: &str| SceneFeature { kind, name: name.to_owned() };
+        let feature =
+            |kind, name: &str| SceneFeature { kind, name: name.to_owned(), origin: Default::default() };
         let features = vec![
             feature(FeatureKind::Road, "pass road"),
             feature(FeatureKind::Road, ""),

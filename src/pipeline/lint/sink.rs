@@ -1,0 +1,69 @@
+//! Collects findings, within a limit for each code.
+
+use std::collections::BTreeMap;
+
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
+
+/// The most findings of one code that are kept: more say nothing new, and a file may have a million features. The last one
+/// that is kept states how many there are.
+const MOST_OF_A_CODE: usize = 20;
+
+/// Findings so far.
+#[derive(Debug, Default)]
+pub struct FindingSink {
+    list: Vec<Finding>,
+    counts: BTreeMap<FindingCode, usize>,
+}
+
+impl FindingSink {
+    /// Adds a finding, unless its code has enough of them or it is a repetition.
+    pub fn add(&mut self, finding: Finding) {
+        if self.list.contains(&finding) {
+            return;
+        }
+        let count = self.counts.entry(finding.code).or_default();
+        *count += 1;
+        if *count <= MOST_OF_A_CODE {
+            self.list.push(finding);
+        }
+    }
+
+    /// Whether more findings of a code are only counted: a check may stop looking.
+    pub fn is_full(&self, code: FindingCode) -> bool {
+        self.counts.get(&code).is_some_and(|&count| count > MOST_OF_A_CODE)
+    }
+
+    /// The findings in the order of output.
+    pub fn into_findings(mut self) -> Vec<Finding> {
+        for (code, count) in self.counts {
+            let last = self.list.iter_mut().rev().find(|finding| finding.code == code);
+            if let (Some(last), Some(more @ 1..)) = (last, count.checked_sub(MOST_OF_A_CODE)) {
+                last.message += &format!(" (and {more} more findings of this code)");
+            }
+        }
+        self.list.sort_by(Finding::order);
+        self.list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn repetitions_are_dropped_and_more_than_enough_are_counted() {
+        let mut sink = FindingSink::default();
+        for number in 0..MOST_OF_A_CODE + 3 {
+            let finding = Finding::new(FindingCode::UnusedStyle, format!("m{number:03}"));
+            sink.add(finding.clone());
+            sink.add(finding);
+        }
+        assert!(sink.is_full(FindingCode::UnusedStyle) && !sink.is_full(FindingCode::UnknownKey));
+        let found = sink.into_findings();
+        assert_eq!(found.len(), MOST_OF_A_CODE);
+        assert!(
+            found.last().is_some_and(|last| last.message.ends_with("(and 3 more findings of this code)"))
+        );
+    }
+}

@@ -1,0 +1,65 @@
+//! What building a scene found, for the user.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::description::document::Document;
+use crate::description::features::FeatureSource;
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
+use crate::description::source_text::SourceText;
+use crate::scene::FeatureKind;
+
+/// Findings so far, about one scene file.
+#[derive(Clone, Debug)]
+pub struct SceneFindings {
+    source: Arc<SourceText>,
+    list: Vec<Finding>,
+}
+
+/// A table of features, for messages about what was left out of it.
+#[derive(Clone, Copy, Debug)]
+pub struct FeatureTable<'a> {
+    /// What its features are.
+    pub kind: FeatureKind,
+    /// The name that it states.
+    pub name: Option<&'a str>,
+    /// Where its features come from.
+    pub source: &'a FeatureSource,
+}
+
+impl SceneFindings {
+    /// None yet, about the file of `document`.
+    pub fn new(document: &Document) -> Self {
+        Self { source: Arc::clone(&document.source), list: Vec::new() }
+    }
+
+    /// Adds a finding about the bytes `span` of the scene file; about none in particular where `span` is `0..0`.
+    pub fn add(&mut self, code: FindingCode, span: Range<usize>, message: impl Into<String>) {
+        self.push(Finding::new(code, message).at(&self.source, span));
+    }
+
+    /// Adds a finding.
+    pub fn push(&mut self, finding: Finding) {
+        self.list.push(finding);
+    }
+
+    /// Whether one of them has this message.
+    pub fn state(&self, message: &str) -> bool {
+        self.list.iter().any(|finding| finding.message == message)
+    }
+
+    /// Adds how many features of a table were left out, where any were, and why.
+    pub fn left_out(&mut self, count: usize, table: &FeatureTable<'_>, why: &str) {
+        if count > 0 {
+            let what = table.name.map(|name| format!(" of '{name}'")).unwrap_or_default();
+            let message = format!("{count} {}{what} left out: {why}", table.kind.noun(count));
+            self.add(FindingCode::LeftOut, table.source.span(), message);
+        }
+    }
+
+    /// The findings in the order in which they were added.
+    pub fn into_vec(self) -> Vec<Finding> {
+        self.list
+    }
+}
