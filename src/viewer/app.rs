@@ -20,6 +20,7 @@ use crate::viewer::following::FollowedFiles;
 use crate::viewer::frame_times::FrameTimes;
 use crate::viewer::loading::{LoadingTask, SceneLoading, opening_error};
 use crate::viewer::measuring::{MeasureKind, Measuring};
+use crate::viewer::moving::PickedPart;
 use crate::viewer::notices::ViewerNotices;
 use crate::viewer::opened::{OpenedScene, OpeningView, SceneFrame};
 use crate::viewer::panels::detail::DetailSettings;
@@ -33,6 +34,7 @@ use crate::viewer::scene_load::LoaderSlot;
 use crate::viewer::session::EditingSession;
 use crate::viewer::tool_use::{ActiveTool, ToolPreview};
 use crate::viewer::view_area::ViewArea;
+use crate::viewer::viewsheds::ViewshedOverlay;
 
 /// What the window has to do for the app.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +76,8 @@ pub struct PickedText {
     pub feature: String,
     /// The place on the ground; `None` for the sky.
     pub place: Option<PlaceText>,
+    /// The table of the scene file that states it; `None` where it cannot be edited.
+    pub part: Option<PickedPart>,
 }
 
 /// The window's state.
@@ -107,6 +111,7 @@ pub struct ViewerApp {
     pub(super) session: Option<EditingSession>,
     pub(super) tool: Option<ActiveTool>,
     pub(super) preview: Option<ToolPreview>,
+    pub(super) viewshed: Option<ViewshedOverlay>,
     pub(super) question: Option<SavingQuestion>,
     pub(super) files: FollowedFiles,
     title: String,
@@ -149,6 +154,7 @@ impl ViewerApp {
             session: None,
             tool: None,
             preview: None,
+            viewshed: None,
             question: None,
             files: FollowedFiles::default(),
             title: String::new(),
@@ -208,7 +214,8 @@ impl ViewerApp {
     /// Whether a file is being opened, a picture drawn, or what stands set anew.
     pub fn is_busy(&self) -> bool {
         let is_relisting = self.opened.as_ref().is_some_and(|opened| opened.is_relisting());
-        self.loading.is_some() || self.drawing.is_some() || is_relisting
+        let is_looking = self.viewshed.as_ref().is_some_and(ViewshedOverlay::is_busy);
+        self.loading.is_some() || self.drawing.is_some() || is_relisting || is_looking
     }
 
     /// What is said in the window, the oldest first.
@@ -267,6 +274,7 @@ impl ViewerApp {
     pub fn show(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
         self.follow_loading(ui);
         self.follow_drawing(ui);
+        self.follow_viewshed();
         self.follow_relisting();
         self.follow_files(ui);
         if !ui.ctx().text_edit_focused() {
@@ -317,12 +325,18 @@ impl ViewerApp {
     /// Says what the picture shows at a pixel.
     pub(super) fn pick(&mut self, pixel: Vec2) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        if let Some(label) = self.view.label_at(pixel).filter(|&label| label < opened.scene.labels.len()) {
+            let feature = format!("label {}", opened.scene.labels[label].text);
+            self.picked = Some(PickedText { feature, place: None, part: self.part_of_label(label) });
+            return;
+        }
         self.picked = Some(match opened.pick(&camera, pixel) {
             Some(pick) => PickedText {
                 feature: feature_text(opened, pick.place.feature),
                 place: Some(PlaceText::of(&opened.scene, &pick)),
+                part: self.part_of_feature(pick.place.feature),
             },
-            None => PickedText { feature: "sky".to_owned(), place: None },
+            None => PickedText { feature: "sky".to_owned(), place: None, part: None },
         });
     }
 
@@ -349,6 +363,7 @@ impl ViewerApp {
             ViewCommand::Freeze => self.set_frozen(!self.detail.frozen),
             ViewCommand::Find => (self.shows_panels, self.tree.focuses_find) = (true, true),
             ViewCommand::Snapshot => self.take_snapshot(),
+            ViewCommand::KeepCamera => self.keep_camera(),
             ViewCommand::Home => self.go_to_camera(0),
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),

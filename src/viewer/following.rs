@@ -95,6 +95,7 @@ impl ViewerApp {
             None => {
                 self.camera_number = 0;
                 (self.tree, self.picked, self.tool) = (TreePanel::default(), None, None);
+                self.viewshed = None;
                 self.notices.clear();
                 self.recent.add(&path);
             }
@@ -112,8 +113,8 @@ impl ViewerApp {
                 self.opened.replace(opened)
             }
             (None, Some(session)) => {
-                session.rebuilt();
                 let is_outdated = session.editor.text() != source.text;
+                session.rebuilt(source.text);
                 let before = self.opened.replace(opened);
                 if is_outdated {
                     self.rebuild();
@@ -123,6 +124,7 @@ impl ViewerApp {
             (None, None) => self.opened.replace(opened),
         };
         drop_apart(before);
+        self.renew_viewshed();
     }
 
     fn watch_files(&mut self, files: &[PathBuf]) {

@@ -29,6 +29,8 @@ use crate::viewer::shadowing::{ShadowState, ShadowedView};
 
 /// The size that cameras are fitted to before the window has one.
 pub const FIRST_SIZE: (u32, u32) = (1280, 720);
+/// The picture that the ground is first made for where the window has none yet: as high as a new window's.
+const OPENING_SIZE: (u32, u32) = (1280, 800);
 /// How much farther the eye may go before models in the form for their distance are made anew, as a share of the scene's
 /// diagonal: less would make them anew on every flight across it.
 const EYE_SHARE: f32 = 0.1;
@@ -199,7 +201,7 @@ impl OpenedScene {
     fn opening_camera(&self, view: &OpeningView) -> Result<Camera, CameraError> {
         let (pose, fov_y_rad, size) = match &view.seen {
             Some(seen) => (seen.pose_at(self.scene.scale.0), seen.fov_y_rad, seen.size),
-            None => (self.navigator.pose(), self.fov_y_rad, FIRST_SIZE),
+            None => (self.navigator.pose(), self.fov_y_rad, OPENING_SIZE),
         };
         self.camera_of(&pose, fov_y_rad, size)
     }

@@ -13,6 +13,7 @@
 //! | `sun AZIMUTH,ALTITUDE` | moves the sun, degrees |
 //! | `heights FACTOR` | draws heights so many times as high |
 //! | `hide KIND`, `show KIND` | hides or shows features of a kind, such as `roads` |
+//! | `viewshed X,Y` | tints what is seen from a place |
 //! | `edit crater X,Y RADIUS` | digs |
 //! | `undo`, `redo`, `save`, `snapshot`, `quit` | as the keys do |
 //! | `resize WxH` | gives the window a size in pixels |
@@ -55,6 +56,8 @@ pub enum ScriptCommand {
     },
     /// Moves the sun: degrees clockwise from north and above the horizon.
     Sun(DVec2),
+    /// Tints what is seen from a place.
+    Viewshed(DVec2),
     /// Exaggerates heights.
     Heights(f64),
     /// Hides or shows features of a kind, by its plural.
@@ -78,7 +81,7 @@ pub struct ScriptError {
 }
 
 const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
-                        hide KIND, show KIND, edit crater X,Y RADIUS, undo, redo, save, snapshot, resize WxH or quit";
+                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, undo, redo, save, snapshot, resize WxH or quit";
 
 /// The commands of a script, each with its line as it is written.
 ///
@@ -107,6 +110,7 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
         ["camera", _, ..] => ScriptCommand::Camera(words[1..].join(" ")),
         ["pick", at] => ScriptCommand::Pick(place(at)?),
         ["sun", angles] => ScriptCommand::Sun(place(angles)?),
+        ["viewshed", at] => ScriptCommand::Viewshed(place(at)?),
         ["heights", factor] => ScriptCommand::Heights(positive(factor)?),
         ["hide", _, ..] => ScriptCommand::Visibility { kind: words[1..].join(" "), shown: false },
         ["show", _, ..] => ScriptCommand::Visibility { kind: words[1..].join(" "), shown: true },

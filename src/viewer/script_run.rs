@@ -183,6 +183,7 @@ impl ScriptRun {
                 app.keep_light();
             }
             ScriptCommand::Heights(factor) => app.exaggerate(factor),
+            ScriptCommand::Viewshed(at) => app.look_around(at),
             ScriptCommand::Visibility { kind, shown } => {
                 if let Some(opened) = &mut app.opened {
                     let features = (FeatureId::GROUND.0 + 1..).map(FeatureId).zip(&opened.scene.features);

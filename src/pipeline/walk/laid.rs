@@ -16,7 +16,7 @@ use crate::roam::refine::deferred::Deferred;
 use crate::roam::refine::deferred::surface::DeferredSurface;
 use crate::scene::SceneModel;
 use crate::scene::picture::placed_text::PlacedText;
-use crate::scene::picture::recut::GroundSheets;
+use crate::scene::picture::recut::{GroundSheets, SeenTint};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
@@ -59,18 +59,62 @@ pub(super) struct LaidGround {
     waiting: usize,
     /// From where symbols were planned.
     planned: Option<Vec3>,
+    /// A tint that is laid when a list has its texture.
+    tint: Option<SeenTint>,
+    /// How many tints there were.
+    tints: u32,
 }
 
 impl LaidGround {
     pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
         let patches = vec![LaidPatch::default(); ground.layout.patch_count()];
         let sheets = GroundSheets::new(scene, ground);
-        Self { head: Arc::new(sheets.head().clone()), sheets, patches, waiting: 0, planned: None }
+        Self {
+            head: Arc::new(sheets.head().clone()),
+            sheets,
+            patches,
+            waiting: 0,
+            planned: None,
+            tint: None,
+            tints: 0,
+        }
     }
 
     /// The materials.
     pub fn head(&self) -> &Arc<DrawList> {
         &self.head
+    }
+
+    /// Adds the texture of a tint to the materials; the tint before goes.
+    pub fn add_tint(&mut self, mut tint: SeenTint) {
+        self.clear_tint();
+        self.sheets.add_texture(&mut tint);
+        self.head = Arc::new(self.sheets.head().clone());
+        self.tint = Some(tint);
+        self.tints += 1;
+    }
+
+    /// How many tints there were.
+    pub fn tints(&self) -> u32 {
+        self.tints
+    }
+
+    /// Lays the last tint over the ground.
+    pub fn lay_tint(&mut self) {
+        if let Some(tint) = self.tint.take() {
+            self.replan(|sheets| sheets.lay_tint(Some(&tint)));
+        }
+    }
+
+    /// Takes the tint away.
+    pub fn clear_tint(&mut self) {
+        self.tint = None;
+        self.replan(|sheets| sheets.lay_tint(None));
+    }
+
+    fn replan(&mut self, plan: impl FnOnce(&mut GroundSheets) -> Vec<usize>) {
+        let replanned = plan(&mut self.sheets);
+        replanned.into_iter().for_each(|patch| self.patches[patch].is_replanned = true);
     }
 
     /// Hands all of it over again, a few patches an update.

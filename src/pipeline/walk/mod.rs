@@ -24,7 +24,7 @@ pub mod standing_task;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::draw::lighting::Lighting;
 use crate::draw::list::DrawList;
@@ -40,6 +40,7 @@ use crate::roam::spheres;
 use crate::scene::SceneModel;
 use crate::scene::picture::models::{PlacementMove, PlacementMoves};
 use crate::scene::picture::placed_text::PlacedText;
+use crate::scene::picture::recut::SeenTint;
 use crate::scene::picture::standing;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::ground::SightGround;
@@ -164,6 +165,11 @@ impl Walk {
         self.moves.insert(placement, to);
     }
 
+    /// World X and Y of a model, by its number among the scene's placements, where it stands now.
+    pub fn model_at(&self, placement: usize) -> Vec2 {
+        self.moves.get(&placement).map_or(self.scene.placements[placement].at, |moved| moved.at)
+    }
+
     /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
     /// everywhere.
     pub fn list_depends_on_eye(&self) -> bool {
@@ -212,6 +218,17 @@ impl Walk {
     /// Hands over what lies on the ground again, a few patches an update: for a viewer that shows other features of it.
     pub fn renew_laid(&mut self) {
         self.laid.renew();
+    }
+
+    /// Lays a tint over the ground, instead of the one before; the list that a task made from now on has its texture, and the
+    /// tint is seen from [`Walk::take_standing`] on.
+    pub fn lay_tint(&mut self, tint: SeenTint) {
+        self.laid.add_tint(tint);
+    }
+
+    /// Takes the tint away.
+    pub fn clear_tint(&mut self) {
+        self.laid.clear_tint();
     }
 
     /// Where the camera's spheres are seen from. Parallel rays come from very far away.

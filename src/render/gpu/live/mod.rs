@@ -244,7 +244,8 @@ impl LiveRenderer {
         self.colors.adopt(colors);
         self.features.adopt(features);
         if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
-            scene.patches = before.patches;
+            let added = std::mem::replace(&mut scene.patches, before.patches);
+            scene.patches.adopt_materials(added);
         }
         scene.make(&self.gpu, &mut self.colors, &mut self.features);
         self.scene = Some(*scene);
