@@ -14,6 +14,7 @@ pub mod largest_rectangle;
 pub mod limits;
 pub mod mosaic;
 mod north_up;
+pub mod outliers;
 mod point_text;
 pub mod points;
 pub mod raster;

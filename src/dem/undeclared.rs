@@ -30,6 +30,17 @@ pub struct UndeclaredNodata {
     pub value: f64,
     /// The evidence, as a sentence.
     pub evidence: String,
+    /// What kind of evidence that is.
+    pub sign: NodataSign,
+}
+
+/// A sign that a value means no data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NodataSign {
+    /// Many files use the value for that.
+    UsualValue,
+    /// All samples along a side have it, and end in a step.
+    FlatMargin,
 }
 
 impl UndeclaredNodata {
@@ -53,7 +64,7 @@ pub fn undeclared_nodata(raster: &Raster) -> Vec<UndeclaredNodata> {
     let mut found: Vec<UndeclaredNodata> = many
         .map(|(&value, count)| {
             let evidence = format!("{count} samples ({:.1} %) are {value}", count as f64 / all * 100.0);
-            UndeclaredNodata { value, evidence }
+            UndeclaredNodata { value, evidence, sign: NodataSign::UsualValue }
         })
         .collect();
     for side in SIDES {
@@ -69,7 +80,7 @@ pub fn undeclared_nodata(raster: &Raster) -> Vec<UndeclaredNodata> {
                 "along the {} side {} samples ({share:.1} %) are all {value} and end in a step of about {step:.0}",
                 side.name, margin.count
             );
-            found.push(UndeclaredNodata { value, evidence });
+            found.push(UndeclaredNodata { value, evidence, sign: NodataSign::FlatMargin });
         }
     }
     found
@@ -136,7 +147,7 @@ impl Margin {
 }
 
 /// Differences between neighbors in a row, neither of them `value`.
-fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
+pub(in crate::dem) fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
     let width = raster.width as usize;
     let every = raster.samples.len() / MOST_STEPS + 1;
     let inner = (0..raster.samples.len()).step_by(every).filter(|at| at % width + 1 < width);
@@ -146,7 +157,7 @@ fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
 }
 
 /// The middle of the values; 0 where there is none.
-fn median(mut values: Vec<f64>) -> f64 {
+pub(in crate::dem) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
@@ -158,12 +169,13 @@ mod tests {
     #[test]
     fn a_value_is_written_as_a_number_of_a_scene_file() {
         for value in USUAL.into_iter().chain([0.0, -0.5]) {
-            let written = UndeclaredNodata { value, evidence: String::new() }.written();
+            let written =
+                UndeclaredNodata { value, evidence: String::new(), sign: NodataSign::UsualValue }.written();
             let table: toml::Table = format!("nodata = {written}").parse().expect("TOML");
             let read = table["nodata"].as_float().or(table["nodata"].as_integer().map(|whole| whole as f64));
             assert_eq!(read, Some(value), "{written}");
         }
-        let zero = UndeclaredNodata { value: 0.0, evidence: String::new() };
+        let zero = UndeclaredNodata { value: 0.0, evidence: String::new(), sign: NodataSign::UsualValue };
         assert_eq!(zero.written(), "0");
     }
     use crate::dem::raster::tests::small;

@@ -54,6 +54,7 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::symbols::SymbolTable;
 use crate::description::table::Table;
+use crate::description::unused::UnusedDefinitions;
 use crate::description::words::{
     CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
 };
@@ -66,7 +67,7 @@ table! {
     /// A whole scene file.
     struct Document {
         with source: Arc<SourceText> = TableReader::source, "The text that it was read from; messages point into it.";
-        with unused_styles: Vec<Stated<String>> = TableReader::unused_styles, "The names of styles that no table names.";
+        with unused: UnusedDefinitions = TableReader::unused, "What it defines and no table uses.";
         with phase: Option<String> = TableReader::phase, "The phase that it was read for; `None` where it has none.";
 
         /// A scene file, or a list of them, whose tables come before this one's; what this one states counts.
@@ -169,7 +170,7 @@ table! {
         /// Factor by which heights are stretched when they are drawn.
         vertical_exaggeration: f64 = key::number(Above(0.0, 1000.0), ""), default 1;
         /// Greatest error of the drawn ground; one pixel is what an eye can just see.
-        tolerance_px: f64 = key::number(Above(0.0, 1000.0), "px"), default 1;
+        tolerance_px: Stated<f64> = key::number(Above(0.0, 1000.0), "px"), default 1;
     }
 
     /// `[style]`: how the ground looks.

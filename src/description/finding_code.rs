@@ -70,6 +70,21 @@ finding_codes! {
     CrsMismatch = "crs-mismatch", Error,
         "Coordinates cannot be brought from their system to the scene's: they lie outside what one of the two covers, or are \
          not in the system that is stated for them. State the right one with the key `crs`.";
+    NoSystem = "no-system", Note,
+        "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
+         Earth, so that data in other systems cannot be added.";
+    FarFromZone = "far-from-zone", Warning,
+        "The scene lies far from the zone of its coordinate system. Lengths are off by more than 0.1 % there, or the zone is \
+         wrong and with it every longitude and latitude. The zone that fits is named.";
+    DatumShifted = "datum-shifted", Warning,
+        "Coordinates are brought from one datum to another by three or seven parameters, which are good to some meters for \
+         national datums of the last century. Where meters count, transform the data with a shift grid first.";
+    VerticalDatumsMixed = "vertical-datums-mixed", Warning,
+        "Heights are counted from different zeros: tiles of one model state different vertical datums, or none beside one, or the \
+         scene states another than the file. They differ by up to a hundred meters. Bring them to one, or state it.";
+    GeoidOffset = "geoid-offset", Warning,
+        "Heights in a file, or of models at stated elevations, are off the ground by nearly the same number of meters everywhere. \
+         Most likely one of the two is counted from the ellipsoid and the other from a geoid. Bring both to one datum.";
     NoPlaceOnEarth = "no-place-on-earth", Warning,
         "The scene names no coordinate system, so that a grid, magnetic north or the sun of a date cannot be computed. State \
          `crs` under `[terrain]`.";
@@ -78,6 +93,18 @@ finding_codes! {
     UndeclaredNoData = "undeclared-nodata", Warning,
         "A value occurs in the elevation model as no ground does: far apart from all others, or round and repeated. It most \
          likely means no data, but the file does not say so, and it is drawn as ground. State it as `nodata`.";
+    FlatMargin = "flat-margin", Warning,
+        "Along a side of the elevation model all samples have one value and end in a step: most likely a margin without data \
+         that the file does not declare. State the value as `nodata`, or cut the margin off with `extent`.";
+    UnmarkedVoid = "unmarked-void", Warning,
+        "Inside the elevation model a region of one value ends in a step all around, as holes do that were filled with a number. \
+         It is drawn as ground. State the value as `nodata` where no ground has it, so that the hole is filled.";
+    Spike = "spike", Warning,
+        "Single samples stand far above all that surround them, which agree with one another: most likely errors of measurement. \
+         Each is drawn as a needle, and blocks lines of sight. Correct the file.";
+    Pit = "pit", Warning,
+        "Single samples lie far below all that surround them, which agree with one another: most likely errors, or samples without \
+         data that the file does not declare. Correct the file, or state their value as `nodata`.";
     VoidsFilled = "voids-filled", Note,
         "Samples without data were filled by a membrane from their rims, so that the ground has no holes. Heights there are \
          guesses. `fill_voids` under `[terrain]` switches it.";
@@ -96,6 +123,26 @@ finding_codes! {
          posts. It is drawn as well as the posts allow. A model of a smaller area, or one with smaller cells, shows it.";
 
     // Features and the terrain.
+    OffTerrain = "off-terrain", Error,
+        "A feature lies wholly off the elevation model, so that no picture shows it; of a file, all features do. Most often \
+         its coordinates are in another system than stated, or belong to another scene.";
+    PartlyOffTerrain = "partly-off-terrain", Warning,
+        "A feature whose points the scene file states lies partly off the elevation model, and is cut off at its border. Move \
+         the points, or take a larger model.";
+    ReachesBeyond = "reaches-beyond", Note,
+        "Features of a file reach beyond the elevation model, and are cut off at its border or left out.";
+    AxesSwapped = "axes-swapped", Error,
+        "A feature lies off the elevation model, and on it where its two coordinates are exchanged: they are written as \
+         northing and easting, or as latitude and longitude. Coordinates are `[easting, northing]` or `[longitude, latitude]`.";
+    WrongZone = "wrong-zone", Error,
+        "A feature lies off the elevation model, and on it in another zone of the same kind of system. State that one with the \
+         key `crs` of its table.";
+    OverVoid = "over-void", Warning,
+        "A part of what a table states lies over ground without data. It is left out there. Fill the voids, or take a model \
+         that has data there.";
+    NoDataUnder = "nodata-under", Error,
+        "Something stands where the elevation model holds no data, so that its height is not known. Move it to where there is \
+         ground, or fill the voids.";
     LeftOut = "left-out", Note,
         "Features were left out, for the reason that the message states: most often they lie off the elevation model, since \
          files hold more than a scene shows.";
@@ -136,6 +183,12 @@ finding_codes! {
     UnknownVariant = "unknown-variant", Warning,
         "Points name a variant that the table does not have; the model of `file` stands there. Add the variant, or mend the \
          property.";
+    TextureMissing = "texture-missing", Warning,
+        "A texture of a model is not there, or cannot be read: what it covers has a plain color. Put the picture beside the model, \
+         under the name that the model states.";
+    TextureStretched = "texture-stretched", Warning,
+        "A picture of the ground has so few pixels that one is stretched over several cells of the elevation model: the ground \
+         shows as a blur. Take a picture of finer pixels.";
     ModelRead = "model-read", Warning,
         "A model file was read with a loss that the message states: a texture that is not there, faces that were left out.";
     SymbolIncomplete = "symbol-incomplete", Warning,
@@ -144,7 +197,92 @@ finding_codes! {
         "The eye of a camera is under the ground, so that its picture shows the ground from below. Raise `eye_height` or \
          `eye_elevation`.";
 
+    // What no ground carries and nobody builds.
+    RoadSteep = "road-steep", Warning,
+        "A road on the ground is steeper than 35 % over 30 m, or over two cells of the elevation model where these are wider; \
+         the steepest paved street of the world, Baldwin Street in Dunedin, has 34.8 %. No vehicle climbs it. Most often the \
+         road lies on a trace that the elevation model does not show, or its line is shifted. Let the ground follow it with \
+         `profile = \"conform\"`, or mend the line.";
+    DeepEarthwork = "deep-earthwork", Warning,
+        "A road that the ground follows stands on more than 15 m of fill, or lies in a cutting deeper than 25 m. Beyond about \
+         that a viaduct or a tunnel costs less, so that nobody builds it. `max_fill` and `max_cut` let bridges and tunnels \
+         stand there; a higher `max_grade` or a line that winds needs less earth.";
+    RoadInWater = "road-in-water", Warning,
+        "A road on the ground crosses a river at least 3 m wide, or runs more than 10 m through a lake, and no bridge carries \
+         it. The picture shows it in the water. Say by `bridge` which lines are bridges, add a [[bridge]], or leave out water \
+         in pipes by `where`.";
+    LakeLevelWrong = "lake-level-wrong", Error,
+        "A lake's `level` is more than 100 m below or above all ground along its shore: a slip of the pen, or a level in feet \
+         or of another datum. The ground would be cut or filled to it. State it as the elevation model counts, or leave it \
+         out: then it is taken from the shore.";
+    LakeShoreGap = "lake-shore-gap", Warning,
+        "A lake's level and the ground along its shore differ by more than 10 m, the error of global elevation models: the \
+         water stands above its lowest shore, lies below all of it, or half of the shore is higher. The ground is cut and \
+         filled to meet it, so that no gap shows; the scene is not what the model has. Mend `level`, or the outline.";
+    TightCurve = "tight-curve", Warning,
+        "A road or a river turns with a radius smaller than half its width, so that its inner edge folds over itself. Draw the \
+         curve with a greater radius, or state a smaller width.";
+    NarrowWidth = "narrow-width", Warning,
+        "A road is narrower than 0.3 m, or a river than 0.1 m: most often a width in another unit. Widths are meters.";
+    CrossesItself = "crosses-itself", Warning,
+        "A line or an outline crosses itself. A road would meet itself at one level, a river flow through itself, and of an \
+         outline it is not clear what is inside. Mend the order of the points, or split a road where it passes over itself.";
+    DoublesBack = "doubles-back", Warning,
+        "A line comes back on itself: at one of its points it turns by more than 170°. Most often a point was drawn twice or \
+         out of order. Remove it.";
+    JunctionUntrimmed = "junction-untrimmed", Note,
+        "Two roads leave a place at so small an angle that their edges meet farther away than a junction reaches, two and a half \
+         widths: beyond it they lie on one another. Let one begin farther along the other.";
+    ModelSize = "model-size", Warning,
+        "A model is larger than 1000 m, more than any building, or smaller than 0.15 m, less than a brick: its file most likely \
+         has another unit. State in `scale` how many meters a unit of the file has: 0.001 of one in millimeters.";
+    ModelOnSide = "model-on-side", Warning,
+        "A model seems to lie on its side: the box around it begins at its origin toward the front or the back and lies evenly \
+         about it in height, as that of a model whose upright axis is another than its format has. OBJ and glTF have Y, 3DS has \
+         Z. Write the file anew so.";
+    ModelFloats = "model-floats", Warning,
+        "A corner of a model's foot is more than 0.5 m above the ground. The message gives the gap under each corner. Anchor \
+         it at the lowest ground under it, or fill the gap with a `footing`.";
+    ModelBuried = "model-buried", Warning,
+        "A corner of a model's foot is in the ground by more than a third of the model's height. The message gives each corner. \
+         Anchor it at the highest ground under it, on a plinth, or have the ground leveled for it.";
+    ModelsOverlap = "models-overlap", Warning,
+        "A model stands in another, in a building, or on a road that it is too large to drive on. They are drawn through each \
+         other. Move one, or leave one out.";
+
+    CameraSeesNothing = "camera-sees-nothing", Warning,
+        "Nothing of the scene is in the picture of a camera: it looks away from it. Turn it, or leave out `eye` and `look_at`: \
+         then it is fitted to the scene.";
+    CameraFar = "camera-far", Warning,
+        "A camera is so far away that the whole scene is less than 20 pixels wide in its picture. Most often its eye is in \
+         another system or unit.";
+    CameraBlocked = "camera-blocked", Warning,
+        "Within a quarter of the way to the point that a camera looks at, the ground rises before it, or something stands there \
+         that fills most of its picture. Raise the eye, or move it.";
+
+    OutOfView = "out-of-view", Warning,
+        "No camera of the scene has any feature of a table in its picture, whatever hills may hide besides. Turn a camera to \
+         it, or leave it out.";
+    ToleranceBudget = "tolerance-budget", Warning,
+        "`tolerance_px` lets the drawn ground be off by more than 4 pixels, so that roads and models leave their places for \
+         everyone to see, or asks for less than a tenth of a pixel, which costs triangles that change no pixel. 1 is what an \
+         eye can just see.";
+    LabelDropped = "label-dropped", Note,
+        "Labels are not drawn on the picture of the first camera: the ground hides their places, they lie outside the picture, \
+         or no position near them is free. Labels of a lower `rank` come first; one with a `height` stands above what hides it.";
+    LabelIllegible = "label-illegible", Warning,
+        "Labels cannot be read as they are stated: they are cut short because they are too long, or drawn with boxes because \
+         no font has their letters.";
+
     // What the scene states and nothing uses.
+    UnusedPhase = "unused-phase", Warning,
+        "No table names this phase, so that it shows only what is always there. Add `phases = [\"NAME\"]` to the tables that it is \
+         meant for, or remove it.";
+    UnusedInclude = "unused-include", Warning,
+        "An included file states nothing. Remove it from `include`, or write the tables that are meant.";
+    RepeatedName = "repeated-name", Warning,
+        "Two tables give features of one kind the same name, so that reports, legends and messages do not tell them apart. \
+         Rename one.";
     UnusedStyle = "unused-style", Warning,
         "No table names this style, so its keys have no effect. Add `style = \"NAME\"` to the tables that it is meant for, or \
          remove it.";

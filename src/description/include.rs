@@ -76,6 +76,8 @@ pub(super) struct IncludedTexts {
     pub source: SourceText,
     /// The errors, each with the span of the file name.
     pub errors: Vec<(Range<usize>, IncludeError)>,
+    /// For each file but the first, the place that names it.
+    pub named: Vec<Range<usize>>,
     /// For each file, the indices of the files that it includes.
     pub includes: Vec<Vec<usize>>,
 }
@@ -85,6 +87,7 @@ pub(super) fn gather(name: &str, text: &str, load: LoadFile<'_>, max_bytes: usiz
     let gathered = IncludedTexts {
         source: SourceText::alone(name, text),
         errors: Vec::new(),
+        named: Vec::new(),
         includes: vec![Vec::new()],
     };
     let shown_folder = folder_of(name).to_owned();
@@ -111,6 +114,7 @@ impl Gathering<'_> {
         for named in includes_of(text) {
             match self.include(named.get_ref(), start) {
                 Ok(Some((path, text))) => {
+                    self.gathered.named.push(named.span().start + start..named.span().end + start);
                     let start = self.append(&path, &text);
                     let included = self.gathered.includes.len() - 1;
                     self.gathered.includes[file].push(included);

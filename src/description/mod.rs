@@ -28,5 +28,6 @@ pub mod source_text;
 pub mod stated;
 pub mod styles;
 pub mod symbols;
+pub mod unused;
 mod value;
 pub mod words;

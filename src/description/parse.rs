@@ -13,6 +13,7 @@ use crate::description::include::{LoadFile, gather, merged, moved};
 use crate::description::phases::Phases;
 use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
+use crate::description::stated::Stated;
 use crate::description::styles::Styles;
 use crate::message::suggest::quoted;
 
@@ -74,11 +75,13 @@ pub fn parse_in_phase(
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
     let tables: Option<Vec<_>> = tables.into_iter().collect();
+    let empty_includes = empty_includes(&source, tables.as_deref().unwrap_or_default(), &gathered.named);
     let root = tables.map(|mut tables| merged(0, &mut tables, &gathered.includes));
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
-            let mut context = DecodeContext { report, styles, phases: Phases::read(root, phase) };
+            let mut context =
+                DecodeContext { report, styles, phases: Phases::read(root, phase), empty_includes };
             (TableReader::read_root(&mut context, root), context.report)
         }
         None => (None, report),
@@ -92,6 +95,17 @@ pub fn parse_in_phase(
             Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).into())
         }
     }
+}
+
+/// The names of the included files that state nothing, each with its place; `named` holds the places.
+fn empty_includes(
+    source: &SourceText,
+    tables: &[DeTable<'_>],
+    named: &[Range<usize>],
+) -> Vec<Stated<String>> {
+    let empty = tables.iter().skip(1).zip(named).filter(|(table, _)| table.is_empty());
+    let name = |span: &Range<usize>| source.text()[span.clone()].trim_matches(['"', '\'']).to_owned();
+    empty.map(|(_, span)| Stated::new(name(span), span.clone())).collect()
 }
 
 /// The TOML parser's message about a key that is stated twice.

@@ -17,6 +17,9 @@
 //!
 //! A scene file is read for one phase: the one that is asked for, or the first. Tables of others are checked and left out.
 
+use std::collections::BTreeSet;
+use std::ops::Range;
+
 use toml::de::{DeTable, DeValue};
 
 use crate::description::declaration::{KeyDeclaration, Presence};
@@ -42,6 +45,10 @@ pub const PHASES_KEY: KeyDeclaration = KeyDeclaration {
 #[derive(Debug, Default)]
 pub(super) struct Phases<'t> {
     names: Vec<&'t str>,
+    /// The places of the names.
+    spans: Vec<Range<usize>>,
+    /// The names that tables state.
+    used: BTreeSet<String>,
     chosen: Option<String>,
 }
 
@@ -49,10 +56,13 @@ impl<'t> Phases<'t> {
     /// The phases in the root table of a scene file, which is read for the one called `asked`, or for the first.
     pub fn read(root: &'t DeTable<'t>, asked: Option<&str>) -> Self {
         let tables = root.get("phase").and_then(|value| value.get_ref().as_array());
-        let name = |table: &'t toml::Spanned<DeValue<'t>>| table.get_ref().get("name")?.get_ref().as_str();
-        let names: Vec<&str> = tables.into_iter().flatten().filter_map(name).collect();
+        let name = |table: &'t toml::Spanned<DeValue<'t>>| {
+            let name = table.get_ref().get("name")?;
+            Some((name.get_ref().as_str()?, name.span()))
+        };
+        let (names, spans): (Vec<&str>, _) = tables.into_iter().flatten().filter_map(name).unzip();
         let chosen = asked.or(names.first().copied()).map(str::to_owned);
-        Self { names, chosen }
+        Self { names, spans, used: BTreeSet::new(), chosen }
     }
 
     /// The phase that the scene is read for; `None` where it has none.
@@ -60,8 +70,15 @@ impl<'t> Phases<'t> {
         self.chosen.clone()
     }
 
+    /// The phases that no table has named yet.
+    pub fn unused(&self) -> Vec<Stated<String>> {
+        let unused = self.names.iter().zip(&self.spans).filter(|(name, _)| !self.used.contains(**name));
+        unused.map(|(name, span)| Stated::new((*name).to_owned(), span.clone())).collect()
+    }
+
     /// Whether what is there in the phases `stated` is there in the chosen one. Reports names of no phase.
-    pub fn hold(&self, stated: &Stated<Vec<String>>, report: &mut DiagnosticSink) -> bool {
+    pub fn hold(&mut self, stated: &Stated<Vec<String>>, report: &mut DiagnosticSink) -> bool {
+        self.used.extend(stated.iter().cloned());
         let span = stated.span().unwrap_or_default();
         for name in stated.iter().filter(|name| !self.names.contains(&name.as_str())) {
             let help = match &self.names[..] {

@@ -58,7 +58,7 @@ pub fn pick(
 ) -> Result<Vec<Option<PickedPlace>>, PictureError> {
     let (camera, frame) = framed_camera(scene, view, size)?;
     let (left, top) = frame.as_ref().map_or((0, 0), SheetFrame::picture_corner);
-    let list = build_shapes(scene, &camera, progress);
+    let list = build_shapes(scene, &camera, progress).list;
     progress("drawing");
     let rendering = render_buffers(&list, &camera).map_err(crate::render::RenderError::from)?;
     let buffers = PictureBuffers { scene, camera: &camera, rendering: &rendering };

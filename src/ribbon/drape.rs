@@ -14,7 +14,7 @@ use crate::draw::list::{DrawMesh, DrawVertex};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::plan::{PlanMesh, TextureMap};
+use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.
@@ -23,15 +23,33 @@ const SLIVER_M2: f64 = 1e-7;
 /// Writes `plan` cut to the displayed triangles of `ground` to `sink`; what lies off the displayed ground is
 /// left out.
 pub fn drape(plan: &PlanMesh, ground: &dyn TriangleSurface, sink: &mut impl MeshSink<DrawVertex>) {
-    let (mut piece, mut scratch) = (Vec::new(), Vec::new());
-    for corners in plan.corners() {
+    let mut draper = Draper::default();
+    plan.corners().for_each(|corners| draper.lay(corners, ground, sink));
+}
+
+/// Lays single triangles; holds what each needs, for the next.
+#[derive(Debug, Default)]
+pub struct Draper {
+    piece: Vec<DVec2>,
+    scratch: Vec<DVec2>,
+}
+
+impl Draper {
+    /// Writes one plan triangle cut to the displayed triangles of `ground` to `sink`, with vertices of its own.
+    pub fn lay(
+        &mut self,
+        corners: [PlanVertex; 3],
+        ground: &dyn TriangleSurface,
+        sink: &mut impl MeshSink<DrawVertex>,
+    ) {
+        let Self { piece, scratch } = self;
         let texture = TextureMap::of(corners);
         ground.visit_facets(&Rect::around(corners.map(|corner| corner.at)), &mut |facet| {
             piece.clear();
             piece.extend(corners.map(|corner| corner.at));
             let window = facet.map(|corner| corner.truncate().as_dvec2());
-            polygon::clip_convex(&mut piece, &mut scratch, &window);
-            write_piece(&piece, facet, &texture, sink);
+            polygon::clip_convex(piece, scratch, &window);
+            write_piece(piece, facet, &texture, sink);
         });
     }
 }

@@ -32,7 +32,7 @@ use crate::ribbon::texture::RibbonSurface;
 const SAME_WIDTH_M: f64 = 1e-6;
 
 /// How far a junction may reach along an arm, in widths of its widest arm: curbs at a small angle meet far away.
-const LONGEST_REACH: f64 = 2.5;
+pub const LONGEST_REACH: f64 = 2.5;
 
 /// A road or river among those that it may meet.
 #[derive(Clone, Debug, PartialEq)]

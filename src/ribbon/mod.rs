@@ -7,6 +7,7 @@ pub mod area;
 pub mod border;
 pub mod chain;
 pub mod crossing;
+mod cut_part;
 pub mod drape;
 mod joint;
 pub mod junction;

@@ -1,7 +1,8 @@
 //! Everything that lies on the ground, cut patch by patch, so that a frame cuts again only what changed.
 //!
 //! Plans are divided once along the borders of the terrain's patches. A patch's part can then be cut to the displayed
-//! triangles without a look at its neighbors, and stays right until one of its own triangles changes:
+//! triangles without a look at its neighbors, and stays right until one of its own triangles changes; where only some
+//! change, only what lies on these is cut again:
 //!
 //! ```text
 //!   ┌────────┬────────┬────────┐
@@ -10,8 +11,8 @@
 //!   └────────┴────────┴────────┘
 //! ```
 //!
-//! Cost: memory grows with the parts, time of [`Drapes::recut`] with the displayed triangles under the parts of the
-//! patches that are named; nothing is looked at in the others.
+//! Cost: memory grows with the parts, time of [`Drapes::recut`] with the displayed triangles under what is cut again; nothing
+//! is looked at in patches that are not named.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -20,7 +21,8 @@ use crate::draw::list::DrawMesh;
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::mesh::sink::MeshSink;
-use crate::ribbon::drape::{check_clearance, drape};
+use crate::ribbon::cut_part::CutPart;
+use crate::ribbon::drape::check_clearance;
 use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
 use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
@@ -71,6 +73,23 @@ impl Borders {
     }
 }
 
+/// A patch in which what lies is to be cut again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StalePatch {
+    /// Its number.
+    pub patch: usize,
+    /// Boxes, in world space, around all of its triangles that are displayed otherwise than when it was cut last; `None` for
+    /// all of them.
+    pub areas: Option<Vec<Rect>>,
+}
+
+impl StalePatch {
+    /// A patch whose triangles may all have changed.
+    pub fn whole(patch: usize) -> Self {
+        Self { patch, areas: None }
+    }
+}
+
 /// What lies on the ground, by patch.
 #[derive(Clone, Debug)]
 pub struct Drapes {
@@ -83,7 +102,7 @@ struct PatchDrape {
     /// The parts of ribbons, by their places among the plans given.
     parts: Vec<(usize, PlanMesh)>,
     /// Each part cut to the ground as it was displayed when the patch was last cut.
-    cut: Vec<DrawMesh>,
+    cut: Vec<CutPart>,
 }
 
 impl Drapes {
@@ -100,28 +119,22 @@ impl Drapes {
         Self { patches }
     }
 
-    /// Cuts the parts in `patches` to what is displayed there now. The refiner gives these patches: those it
-    /// changed, those that came into view, and those that went.
+    /// Cuts the parts in `stale` to what is displayed there now. The refiner gives these patches: those it changed,
+    /// those that came into view, and those that went. What lies beside the areas that changed stays as it was cut.
     ///
     /// # Panics
     /// Where a number is not that of a patch.
-    pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
+    pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
         if self.patches.is_empty() {
             return;
         }
-        let cut: Vec<Vec<DrawMesh>> = patches
-            .par_iter()
-            .map(|&patch| {
-                let laid = |(_, plan): &(usize, PlanMesh)| {
-                    let mut mesh = DrawMesh::default();
-                    drape(plan, ground, &mut mesh);
-                    mesh
-                };
-                self.patches[patch].parts.iter().map(laid).collect()
-            })
-            .collect();
-        for (&patch, cut) in patches.iter().zip(cut) {
-            self.patches[patch].cut = cut;
+        let cut: Vec<Vec<Option<CutPart>>> =
+            stale.par_iter().map(|of| self.patches[of.patch].recut(of.areas.as_deref(), ground)).collect();
+        for (of, cut) in stale.iter().zip(cut) {
+            let patch = &mut self.patches[of.patch];
+            patch.cut.resize(patch.parts.len(), CutPart::default());
+            let renewed = patch.cut.iter_mut().zip(cut);
+            renewed.filter_map(|(held, cut)| Some((held, cut?))).for_each(|(held, cut)| *held = cut);
         }
     }
 
@@ -129,7 +142,7 @@ impl Drapes {
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
         let patch = self.patches.get(patch);
         let parts = patch.into_iter().flat_map(|PatchDrape { parts, cut }| parts.iter().zip(cut));
-        parts.map(|((ribbon, _), mesh)| (*ribbon, mesh))
+        parts.map(|((ribbon, _), cut)| (*ribbon, cut.mesh()))
     }
 
     /// The ribbons in a patch, cut or not, as places among the plans given.
@@ -150,7 +163,8 @@ impl Drapes {
     /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
-        let cut: Vec<&DrawMesh> = self.patches.iter().flat_map(|patch| &patch.cut).collect();
+        let cut: Vec<&DrawMesh> =
+            self.patches.iter().flat_map(|patch| &patch.cut).map(CutPart::mesh).collect();
         cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
     }
 
@@ -160,7 +174,7 @@ impl Drapes {
             let window = Rect::around(borders.window((patch % borders.columns(), patch / borders.columns())));
             let own = WindowSurface { ground, window: window.grown(-ROUNDING_M) };
             let cut = self.patches.get(patch).into_iter().flat_map(|patch| &patch.cut);
-            cut.map(|mesh| check_clearance(mesh, &own)).fold(0.0, f64::max)
+            cut.map(|cut| check_clearance(cut.mesh(), &own)).fold(0.0, f64::max)
         };
         patches.par_iter().map(of_patch).reduce(|| 0.0, f64::max)
     }
@@ -189,6 +203,16 @@ impl PatchDrape {
             self.parts.push((ribbon, PlanMesh::default()));
         }
         &mut self.parts.last_mut().expect("there is one now").1
+    }
+
+    /// Each part cut to the ground again; `None` for those that lie as they were cut. `areas` hold all triangles that have
+    /// changed; without them all may have.
+    fn recut(&self, areas: Option<&[Rect]>, ground: &dyn TriangleSurface) -> Vec<Option<CutPart>> {
+        let recut = |(at, (_, plan)): (usize, &(usize, PlanMesh))| match (self.cut.get(at), areas) {
+            (Some(cut), Some(areas)) => cut.recut(plan, ground, areas),
+            _ => Some(CutPart::of(plan, ground)),
+        };
+        self.parts.iter().enumerate().map(recut).collect()
     }
 }
 

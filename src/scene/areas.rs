@@ -9,9 +9,11 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::AreaTable;
+use crate::description::finding_code::FindingCode;
 use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
+use crate::geom::own_crossing::own_crossing;
 use crate::geom::rect::Rect;
 use crate::geom::region::{self, PolygonRings};
 use crate::geom::self_crossing::count_crossings;
@@ -21,7 +23,7 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
 use crate::scene::FeatureKind;
-use crate::scene::builder::SceneBuilder;
+use crate::scene::builder::{SceneBuilder, described};
 use crate::scene::near::Clipped;
 use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::{Sourced, Sources};
@@ -40,6 +42,7 @@ pub fn lay(
 ) -> Result<(), Diagnostic> {
     for table in &document.areas {
         let (mut bare, mut off) = (0, 0);
+        let mut crossed: Option<(String, DVec2, usize)> = None;
         for Sourced { attributes, shape } in sources.polygons(&table.source)? {
             let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
@@ -50,8 +53,24 @@ pub fn lay(
                 continue;
             };
             let name = attributes.name(table.name.as_deref());
+            if patch.crosses_itself
+                && let Some(crossing) = shape.rings().find_map(|ring| own_crossing(ring, true))
+            {
+                crossed.get_or_insert((name.clone(), crossing.at + sources.frame.origin, 0)).2 += 1;
+            }
             let feature = collected.add(FeatureKind::Area, name, attributes.origin(&table.source));
             patch.lay(feature, collected);
+        }
+        if let Some((name, at, count)) = crossed {
+            let others =
+                if count > 1 { format!("; {} more of this table do", count - 1) } else { String::new() };
+            let message = format!(
+                "{} crosses itself at ({:.0}, {:.0}): what an odd number of its turns runs around is covered{others}",
+                described("area", &name),
+                at.x,
+                at.y
+            );
+            collected.findings.add(FindingCode::CrossesItself, table.source.span(), message);
         }
         let named =
             FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
@@ -62,11 +81,11 @@ pub fn lay(
     Ok(())
 }
 
-/// The polygons that a polygon's rings enclose; they cross nothing.
-fn without_crossings(shape: &Polygon) -> Vec<PolygonRings> {
+/// The polygons that a polygon's rings enclose, which cross nothing, and whether the rings do.
+fn without_crossings(shape: &Polygon) -> (Vec<PolygonRings>, bool) {
     match count_crossings(shape.rings().map(Vec::as_slice), 0) {
-        Some(_) => vec![shape.rings().cloned().collect()],
-        None => region::even_odd(shape.rings().map(Vec::as_slice)),
+        Some(_) => (vec![shape.rings().cloned().collect()], false),
+        None => (region::even_odd(shape.rings().map(Vec::as_slice)), true),
     }
 }
 
@@ -78,6 +97,8 @@ struct AreaPatch {
     edge: PlanMesh,
     cover: Cover,
     tint: Srgba,
+    /// Whether its outline crossed itself.
+    crosses_itself: bool,
 }
 
 impl AreaPatch {
@@ -88,7 +109,7 @@ impl AreaPatch {
         }
         let width_m = table.border_width;
         let mut fill = Clipped { plan: PlanMesh::default(), extent };
-        let parts = without_crossings(shape);
+        let (parts, crosses_itself) = without_crossings(shape);
         for part in &parts {
             area::fill(&part[0], &part[1..], texture_m(cover, width_m), &mut fill);
         }
@@ -101,7 +122,14 @@ impl AreaPatch {
         };
         let line = dashes.map(|dashes| border(&rings, &fill.plan, width_m, dashes)).unwrap_or_default();
         let tint = table.color.map_or(Srgba::WHITE, |color| Srgba(color.0));
-        (!fill.plan.triangles.is_empty()).then_some(Self { fill: fill.plan, line, edge, cover, tint })
+        (!fill.plan.triangles.is_empty()).then_some(Self {
+            fill: fill.plan,
+            line,
+            edge,
+            cover,
+            tint,
+            crosses_itself,
+        })
     }
 
     /// Lays the area, and its border over it.

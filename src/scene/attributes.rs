@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::DVec2;
+
 use crate::description::expression::Expression;
 use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use crate::description::features::FeatureSource;
@@ -40,6 +42,16 @@ impl Attributes {
     pub fn geometry(&self) -> Option<&Geometry> {
         let (layer, feature) = self.feature.as_ref()?;
         Some(&layer.features[*feature].geometry)
+    }
+
+    /// The vertices whose elevation its file states, in the file's system, with that elevation in meters.
+    pub fn elevations_m(&self) -> impl Iterator<Item = (DVec2, f64)> + '_ {
+        let feature = self.feature.as_ref().map(|(layer, feature)| &layer.features[*feature]);
+        let elevated = feature.and_then(|feature| Some((feature, feature.elevations.as_ref()?)));
+        let pairs = elevated.into_iter().flat_map(|(feature, elevations)| {
+            feature.geometry.vertices().copied().zip(elevations.iter().copied())
+        });
+        pairs.filter(|(_, elevation)| elevation.is_finite())
     }
 
     /// The feature's name: the one given in the scene file, else its property `name`, else empty.

@@ -109,6 +109,12 @@ pub fn build(
     labels.extend(spot_heights(most, &labels, &collected.lakes, &frame, &lattice));
     let military = military::symbols(&sources, &lattice, &mut collected.findings)?;
     let cameras = views::cameras(&frame, &lattice)?;
+    let reaches = sources.reaches();
+    reaches
+        .iter()
+        .filter_map(|reach| reach.error(&frame, &lattice.extent()))
+        .for_each(|error| collected.findings.push(error));
+    let overlaps = reaches.iter().map(|reach| reach.overlap(&lattice.extent())).collect();
     views::find_buried(document, &cameras, scale.ground(&lattice), &mut collected.findings);
     let heights =
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
@@ -139,7 +145,7 @@ pub fn build(
         height_range_m,
         scale,
         bounds,
-        tolerance_px: document.terrain.tolerance_px as f32,
+        tolerance_px: *document.terrain.tolerance_px as f32,
         wireframe: document.style.wireframe,
         layout,
         ground: OnceLock::new(),
@@ -162,6 +168,7 @@ pub fn build(
         sheet_day: style::sheet_day(document)?,
         features: collected.features,
         findings: collected.findings.into_vec(),
+        overlaps,
         report: collected.report,
         profiles: collected.profiles,
         crs,

@@ -96,7 +96,8 @@ pub fn labels(
             lines.insert(text, named.len());
         }
         let anchor = ground + Vec3::Z * table.height as f32;
-        let label = SceneLabel { text: filled, ground, anchor, course, kind: table.kind, rank };
+        let stated = table.text.span().unwrap_or_default();
+        let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank };
         named.push(NamedFeature { label, lines: pieces });
     }
     let labels = named.into_iter().map(|named| named.with_course(frame, lattice)).collect();

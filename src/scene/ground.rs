@@ -12,7 +12,7 @@ use crate::dem::largest_rectangle::{largest_rectangle, outside};
 use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
-use crate::dem::undeclared::undeclared_nodata;
+use crate::dem::undeclared::{NodataSign, undeclared_nodata};
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::description::diagnostic::Diagnostic;
@@ -49,7 +49,11 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     for found in undeclared_nodata(&source) {
         let (evidence, value) = (&found.evidence, found.written());
         let message = format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]");
-        findings.add(FindingCode::UndeclaredNoData, span.clone(), message);
+        let code = match found.sign {
+            NodataSign::UsualValue => FindingCode::UndeclaredNoData,
+            NodataSign::FlatMargin => FindingCode::FlatMargin,
+        };
+        findings.add(code, span.clone(), message);
     }
     let mut filled = None;
     match document.terrain.fill_voids {

@@ -28,6 +28,7 @@ pub mod imagery;
 pub mod label_course;
 pub mod land_cover;
 pub mod military;
+pub mod misplacement;
 pub mod models;
 pub mod near;
 pub mod picture;
@@ -39,6 +40,7 @@ pub mod roads;
 pub mod scatter;
 pub mod scene_findings;
 pub mod sight_layers;
+pub mod source_reach;
 pub mod sources;
 mod spot_heights;
 pub mod style;
@@ -52,6 +54,7 @@ pub mod water;
 pub mod wood;
 pub mod world_frame;
 
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Vec2, Vec3};
@@ -88,6 +91,7 @@ use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::RoadProfile;
 use crate::scene::sight_layers::SightLayers;
+use crate::scene::source_reach::SourceOverlap;
 use crate::scene::style::RampSource;
 use crate::scene::sunlight::Sunlight;
 use crate::scene::symbols::LineSymbol;
@@ -183,6 +187,8 @@ pub struct SceneModel {
     pub features: Vec<SceneFeature>,
     /// What building it found: features off the model, missing textures, earth moved.
     pub findings: Vec<Finding>,
+    /// How much of each source lies off the ground.
+    pub overlaps: Vec<SourceOverlap>,
     /// Measures of single features.
     pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
@@ -364,6 +370,8 @@ impl Placement {
 pub struct SceneLabel {
     /// What it says.
     pub text: String,
+    /// The bytes of the scene file that state it; `0..0` for a spot height.
+    pub stated: Range<usize>,
     /// The position on the ground, world space, displayed height.
     pub ground: Vec3,
     /// Where the leader line starts, at or above the ground.

@@ -127,6 +127,7 @@ report! {
         level: f64, "m" => "Elevation of the water.";
         rule: &'static str => "How the level was found: the level rule, or `given`.";
         lowest_shore: Option<f64>, "m" => "Lowest ground along the shore.";
+        median_shore: Option<f64>, "m" => "Ground along the shore with as much of the shore below it as above.";
         highest_shore: Option<f64>, "m" => "Highest ground along the shore.";
         area: f64, "m2" => "Area of the water, on the elevation model or off, without islands.";
         cut: f64, "m3" => "Earth cut.";

@@ -17,6 +17,7 @@ use crate::geom::self_crossing::count_crossings;
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
+use crate::scene::source_reach::SourceReach;
 use crate::scene::world_frame::WorldFrame;
 use crate::vector::error::{VectorError, did_you_mean, list};
 use crate::vector::feature::{Geometry, Polygon, VectorLayer};
@@ -39,6 +40,8 @@ pub struct Sources<'a> {
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
     /// How many crossings more the scene's polygons may have with themselves.
     crossings_left: Cell<usize>,
+    /// Where the sources lie, by the first byte that states them.
+    reaches: RefCell<BTreeMap<usize, SourceReach>>,
 }
 
 /// A shape with the properties of its feature.
@@ -52,7 +55,8 @@ pub struct Sourced<T> {
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        Self { frame, assets, layers: RefCell::default(), crossings_left: Cell::new(MOST_CROSSINGS) }
+        let crossings_left = Cell::new(MOST_CROSSINGS);
+        Self { frame, assets, layers: RefCell::default(), crossings_left, reaches: RefCell::default() }
     }
 
     /// The lines of a source.
@@ -135,6 +139,15 @@ impl<'a> Sources<'a> {
     pub fn features(&self, source: &FeatureSource) -> Result<(Crs, Vec<Attributes>), Diagnostic> {
         let (crs, features) = self.shapes(source, |_| vec![()])?;
         Ok((crs, features.into_iter().map(|feature| feature.attributes).collect()))
+    }
+
+    /// The shapes of a source, and their system.
+    ///
+    /// # Errors
+    /// The file cannot be read or holds no feature that matches.
+    pub fn geometries(&self, source: &FeatureSource) -> Result<(Crs, Vec<Geometry>), Diagnostic> {
+        let (crs, shapes) = self.shapes(source, |geometry| vec![geometry.clone()])?;
+        Ok((crs, shapes.into_iter().map(|sourced| sourced.shape).collect()))
     }
 
     /// The shapes that `pick` takes from every feature that matches, unplaced.
@@ -259,14 +272,28 @@ impl<'a> Sources<'a> {
         (from, shapes): (Crs, Vec<Sourced<T>>),
         transform: impl Fn(T, &dyn Fn(DVec2) -> Result<DVec2, CrsError>) -> Result<U, CrsError>,
     ) -> Result<Vec<Sourced<U>>, Diagnostic> {
-        let place = |at: DVec2| self.frame.world(&from, at);
-        shapes
+        let file = source.file.as_ref().map(|file| file.to_string());
+        let reach = RefCell::new(SourceReach::new(source.span(), file, from.clone()));
+        let place = |at: DVec2| {
+            let world = self.frame.world(&from, at)?;
+            reach.borrow_mut().add(at, world);
+            Ok(world)
+        };
+        let placed = shapes
             .into_iter()
             .map(|Sourced { attributes, shape }| {
+                reach.borrow_mut().begin_shape();
                 transform(shape, &place).map(|shape| Sourced { attributes, shape })
             })
             .collect::<Result<_, _>>()
-            .map_err(|error| self.frame.document.error_at(source.span(), error))
+            .map_err(|error| self.frame.document.error_at(source.span(), error))?;
+        self.reaches.borrow_mut().insert(source.span().start, reach.into_inner());
+        Ok(placed)
+    }
+
+    /// Where the sources that were read lie, in the order of the scene file.
+    pub fn reaches(&self) -> Vec<SourceReach> {
+        self.reaches.borrow().values().cloned().collect()
     }
 }
 

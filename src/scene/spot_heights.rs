@@ -70,6 +70,7 @@ pub fn spot_heights(
         taken.push(spot.at);
         chosen.push(SceneLabel {
             text: whole_meters(spot.elevation_m),
+            stated: 0..0,
             ground,
             anchor: ground,
             course: LabelCourse::Place,

@@ -136,6 +136,16 @@ impl LineSymbol {
         Alignment { line, width, ..self.alignment.clone() }
     }
 
+    /// Whether it is the shore of a lake.
+    pub fn is_shore(&self) -> bool {
+        self.surface == RibbonSurface::ShoreLine
+    }
+
+    /// Whether it is the centerline of a river.
+    pub fn is_river(&self) -> bool {
+        self.order.is_some()
+    }
+
     /// Whether it begins at a source, where it is drawn as a point.
     pub fn has_source(&self) -> bool {
         self.order.as_ref().is_some_and(|order| order.values()[0] <= 0.0)

@@ -51,6 +51,7 @@ fn label(
     let elevation = whole_meters(frame.scale.elevation_m(ground.z));
     Ok(SceneLabel {
         text: table.text.replace("{height}", &elevation),
+        stated: table.text.span().unwrap_or_default(),
         ground,
         anchor: ground + Vec3::Z * table.height as f32,
         course: LabelCourse::Place,

@@ -5,6 +5,7 @@ use glam::{DVec2, Vec3};
 use crate::dem::answer::Answer;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
 use crate::scene::vertical_scale::VerticalScale;
@@ -65,6 +66,7 @@ impl<'a> WorldFrame<'a> {
             Answer::NoData => Err(self
                 .document
                 .error(at, "the elevation model holds no data at this point")
+                .with_code(FindingCode::NoDataUnder)
                 .with_help("move the point to where there is ground")),
             Answer::Outside => Err(self.off_the_model(lattice, at)),
         }
@@ -91,7 +93,7 @@ impl<'a> WorldFrame<'a> {
         if looks_like_degrees(x, y) && !self.points_crs.is_geographic() {
             help += "; if the point is longitude and latitude, say points_crs = \"EPSG:4326\"";
         }
-        self.document.error(at, message).with_help(help)
+        self.document.error(at, message).with_code(FindingCode::OffTerrain).with_help(help)
     }
 }
 

@@ -65,14 +65,14 @@ impl LayerBuilder {
     /// Adds the file's next feature. One without a usable shape is counted and left out.
     ///
     /// # Errors
-    /// [`VectorError::NotDegrees`].
+    /// [`VectorError::NotDegrees`] or [`VectorError::TooFar`].
     pub fn add(&mut self, parts: FeatureParts, mut properties: Properties) -> Result<(), VectorError> {
         self.feature_count += 1;
         self.omitted[Omission::Feature as usize] += usize::from(parts.is_empty());
         self.omitted.iter_mut().zip(parts.omitted).for_each(|(sum, count)| *sum += count);
         let mut shapes = parts.into_shapes().peekable();
         while let Some((geometry, elevations)) = shapes.next() {
-            check_degrees(&geometry, &self.crs, self.feature_count)?;
+            check_range(&geometry, &self.crs, self.feature_count)?;
             let is_last = shapes.peek().is_none();
             let properties = if is_last { std::mem::take(&mut properties) } else { properties.clone() };
             self.features.push(Feature { geometry, elevations, properties });
@@ -198,12 +198,22 @@ fn open_ring(mut ring: Vertices) -> Option<Vertices> {
     (ring.len() >= 3).then_some(ring)
 }
 
-fn check_degrees(geometry: &Geometry, crs: &Crs, feature: usize) -> Result<(), VectorError> {
+/// Refuses coordinates that cannot be of the system: beyond the degrees there are, or farther from its origin than the
+/// scene file may state points.
+fn check_range(geometry: &Geometry, crs: &Crs, feature: usize) -> Result<(), VectorError> {
     /// Twice round from the prime meridian, for lines that cross the antimeridian.
     const MAX_LONGITUDE: f64 = 360.0;
-    let is_outside = |vertex: &&DVec2| vertex.x.abs() > MAX_LONGITUDE || vertex.y.abs() > 90.0;
-    match crs.is_geographic().then(|| geometry.vertices().find(is_outside)).flatten() {
-        Some(at) => Err(VectorError::NotDegrees { feature, x: at.x, y: at.y, crs: crs.name().into() }),
+    /// In units of the system; no projection of the Earth reaches as far in any.
+    const FARTHEST: f64 = 1e9;
+    if crs.is_geographic() {
+        let is_outside = |vertex: &&DVec2| vertex.x.abs() > MAX_LONGITUDE || vertex.y.abs() > 90.0;
+        return match geometry.vertices().find(is_outside) {
+            Some(at) => Err(VectorError::NotDegrees { feature, x: at.x, y: at.y, crs: crs.name().into() }),
+            None => Ok(()),
+        };
+    }
+    match geometry.vertices().find(|vertex| vertex.abs().max_element() > FARTHEST) {
+        Some(at) => Err(VectorError::TooFar { feature, x: at.x, y: at.y }),
         None => Ok(()),
     }
 }
@@ -231,6 +241,20 @@ mod tests {
         assert_eq!(elevations[..3], [1.0; 3]);
         assert!(elevations[3..6].iter().all(|elevation| elevation.is_nan()));
         assert_eq!(elevations[6..], [3.0; 3]);
+    }
+
+    #[test]
+    fn coordinates_that_no_system_has_are_refused() {
+        for (x, is_refused) in [(-9.99e8, false), (1.1e9, true), (1e308, true)] {
+            let mut parts = FeatureParts::default();
+            parts.add_line(vec![DVec3::new(1.0, 2.0, f64::NAN), DVec3::new(x, 0.0, f64::NAN)]);
+            let added = LayerBuilder::new(Crs::local()).add(parts, Properties::new());
+            assert_eq!(
+                matches!(added, Err(VectorError::TooFar { feature: 1, .. })),
+                is_refused,
+                "{x}: {added:?}"
+            );
+        }
     }
 
     #[test]

@@ -73,6 +73,15 @@ pub enum VectorError {
         y: f64,
         crs: String,
     },
+    #[error(
+        "feature {feature} has a vertex at ({x:e}, {y:e}); no coordinate of a map is beyond 1e9, so the file is broken: export it again"
+    )]
+    TooFar {
+        /// Counts from 1, in the file's order.
+        feature: usize,
+        x: f64,
+        y: f64,
+    },
 }
 
 impl VectorError {

@@ -183,7 +183,7 @@ mod tests {
     fn label(x: f32, rank: f64) -> SceneLabel {
         let ground = Vec3::new(x, 0.0, 0.0);
         let (text, course, kind) = (format!("at {x}"), LabelCourse::Place, LabelKind::Point);
-        SceneLabel { text, ground, anchor: ground, course, kind, rank }
+        SceneLabel { text, stated: 0..0, ground, anchor: ground, course, kind, rank }
     }
 
     fn shown(

@@ -142,7 +142,11 @@ fn scene(scratch: &scratch::Scratch, terrain: &str) -> Result<(Vec<String>, f64,
     let scene = build(&document, &assets, &|_| ()).map_err(|error| error.to_string())?;
     let now = scene.heights.snapshot();
     let source = now.source();
-    Ok((scene.notes.clone(), source.at(source.width - 2, 1), source.vertical_datum.clone()))
+    Ok((
+        scene.notes().into_iter().map(str::to_owned).collect(),
+        source.at(source.width - 2, 1),
+        source.vertical_datum.clone(),
+    ))
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn posts(scene: &SceneModel) -> (usize, usize) {
 }
 
 fn told(scene: &SceneModel, what: &str) -> bool {
-    scene.notes.iter().any(|note| note.contains(what))
+    scene.notes().iter().any(|note| note.contains(what))
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_ragged_coast_keeps_its_capes_and_loses_the_wedges_alone() {
         lattice.height(sandtable::terrain::lattice::Post { column, row }).is_nan()
     });
     assert_eq!(east.count(), 0);
-    assert!(told(&scene, "cut off"), "{:?}", scene.notes);
+    assert!(told(&scene, "cut off"), "{:?}", scene.notes());
 }
 
 #[test]

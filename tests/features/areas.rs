@@ -103,7 +103,11 @@ fn a_cover_comes_from_a_property_and_what_has_none_is_told() {
     let scene = scene(text);
     assert!((area_m2(&scene, RibbonSurface::Cover(Cover::Forest)) - 2500.0).abs() < 0.1);
     assert!((area_m2(&scene, RibbonSurface::Cover(Cover::Meadow)) - 2500.0).abs() < 0.1);
-    assert!(scene.notes.iter().any(|note| note.contains("1 area of 'uses' left out")), "{:?}", scene.notes);
+    assert!(
+        scene.notes().iter().any(|note| note.contains("1 area of 'uses' left out")),
+        "{:?}",
+        scene.notes()
+    );
 }
 
 #[test]

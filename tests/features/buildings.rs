@@ -104,7 +104,7 @@ fn what_is_no_building_and_what_hangs_over_the_edge_is_left_out_with_a_note() {
          [[building]]\npoints = [[100, 100], [120, 120], [120, 100], [100, 120]]\n",
     );
     assert_eq!(scene.solids.len(), 2, "both lobes of the last");
-    let notes = scene.notes.join("\n");
+    let notes = scene.notes().join("\n");
     for part in ["1 building left out: the footprint encloses no area", "not wholly on", "1 building mended"]
     {
         assert!(notes.contains(part), "{notes}");
@@ -173,8 +173,9 @@ fn every_building_of_swellendam_is_raised_and_closed() {
         assert_eq!(raised(scene), 4708);
         assert!(measured(scene).len() >= 4708);
     }
-    let asked: Vec<&String> = scenes[1].notes.iter().filter(|note| note.contains("another roof")).collect();
-    assert_eq!(asked.len(), 1, "{:?}", scenes[1].notes);
+    let asked: Vec<&str> =
+        scenes[1].notes().into_iter().filter(|note| note.contains("another roof")).collect();
+    assert_eq!(asked.len(), 1, "{:?}", scenes[1].notes());
 }
 
 #[test]
@@ -185,6 +186,10 @@ fn every_building_of_monaco_but_the_one_without_area_is_raised_and_closed() {
     for scene in &scenes {
         assert_eq!(raised(scene), 964);
         assert!(measured(scene).len() >= 964);
-        assert!(scene.notes.iter().any(|note| note.starts_with("1 building left out")), "{:?}", scene.notes);
+        assert!(
+            scene.notes().iter().any(|note| note.starts_with("1 building left out")),
+            "{:?}",
+            scene.notes()
+        );
     }
 }

@@ -59,7 +59,7 @@ fn a_crater_of_every_point_of_a_file_has_the_size_of_its_property() {
         assert!((row.cut / cut - 1.0).abs() < 0.2, "{} of {cut}", row.cut);
         assert!(row.fill > 0.0 && row.area > radius * radius);
     }
-    assert!(scene.notes.iter().any(|note| note.starts_with("2 earthworks:")), "{:?}", scene.notes);
+    assert!(scene.notes().iter().any(|note| note.starts_with("2 earthworks:")), "{:?}", scene.notes());
 }
 
 #[test]
@@ -110,11 +110,10 @@ fn a_leveled_pit_is_not_drawn_as_a_lake_nor_is_a_bank_in_the_sea_water() {
 
 #[test]
 fn works_too_small_or_off_the_model_are_noted_and_too_many_refused() {
-    let notes = sound(
+    let scene = sound(
         "[[earthwork]]\nkind = \"trench\"\npoints = [[203, 504], [323, 521]]\n[[earthwork]]\nkind = \"crater\"\npoints = [[-900, 0]]\n",
-    )
-    .notes
-    .join("\n");
+    );
+    let notes = scene.notes().join("\n");
     assert!(notes.contains("1 earthwork narrower than two cells"), "{notes}");
     assert!(notes.contains("moved no earth: off the elevation model"), "{notes}");
     let ring: Vec<String> = (0..60_000).map(|at| format!("[{}, {}]", at % 1200, at / 60)).collect();

@@ -183,7 +183,7 @@ fn a_line_from_far_off_costs_what_lies_on_the_model() {
 fn a_trench_is_dug_where_the_cells_are_fine_enough_and_tells_its_volume() {
     let line = "points = [[200, 500], [320, 520]]\nkind = \"trench\"\nheight = 3\n";
     let coarse = built(&format!("[[fence]]\n{line}width = 4\n")).expect("sound");
-    assert!(coarse.notes.iter().any(|note| note.contains("not dug")), "{:?}", coarse.notes);
+    assert!(coarse.notes().iter().any(|note| note.contains("not dug")), "{:?}", coarse.notes());
     assert!(coarse.report.trenches.is_empty());
     let fine = built(&format!("[[fence]]\n{line}width = 40\n")).expect("sound");
     let cut = fine.report.trenches[0].cut;

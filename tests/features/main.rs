@@ -6,6 +6,7 @@ mod common;
 mod areas;
 mod bridges;
 mod buildings;
+mod checks;
 mod conform;
 mod earthworks;
 mod fences;

@@ -289,10 +289,10 @@ fn a_river_over_a_hill_is_told_of_and_a_deeper_cut_lets_it_through() {
     let scene = ramp(&format!("[[river]]\n{points}")).expect("sound");
     assert_eq!(scene.report.rivers.len(), 1);
     assert!(scene.report.rivers[0].greatest_climb > Some(10.0));
-    assert!(scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+    assert!(scene.notes().iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes());
     let scene = ramp(&format!("[[river]]\n{points}max_cut = 40\n")).expect("sound");
     assert!(scene.report.rivers[0].deepest_cut > 10.0);
-    assert!(!scene.notes.iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes);
+    assert!(!scene.notes().iter().any(|note| note.contains("rises downstream at")), "{:?}", scene.notes());
 }
 
 #[test]

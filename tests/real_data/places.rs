@@ -30,7 +30,7 @@ fn built(scratch: &Scratch, place: &Path, text: &str) -> SceneModel {
     let allowed = [place.to_path_buf(), Path::new(project).join("assets")];
     let scene = crate::scene(scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));
     scene.ground().exact().check(scene.ground().layout());
-    for note in scene.notes.iter().take(8) {
+    for note in scene.notes().iter().take(8) {
         println!("note: {note}");
     }
     scene

@@ -96,13 +96,13 @@ fn swellendam_is_built_with_every_layer_and_everything_lies_on_the_ground() {
     let dem = place.join("dem_srtm_wgs84_f32.tif");
     let scene = scene(&folder, &text(&dem.to_string_lossy(), LAKES), &[place])
         .unwrap_or_else(|error| panic!("{error}"));
-    println!("{:#?}", scene.notes);
+    println!("{:#?}", scene.notes());
     let count =
         |wanted| scene.census().into_iter().find(|(kind, _)| *kind == wanted).map_or(0, |(_, count)| count);
     assert_eq!(count(FeatureKind::Lake), waters);
     assert_eq!(count(FeatureKind::Road), roads);
     // Of twelve rivers some never come near the model.
-    let off = scene.notes.iter().filter(|note| note.contains("left out")).count();
+    let off = scene.notes().iter().filter(|note| note.contains("left out")).count();
     assert!(count(FeatureKind::River) >= 6 && (count(FeatureKind::River) == rivers) == (off == 0));
 
     for (view, size) in [("south", (960, 540)), ("everything", (480, 270)), ("reservoirs", (480, 270))] {

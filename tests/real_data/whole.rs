@@ -28,7 +28,7 @@ fn built(place: &str) -> Option<SceneModel> {
         assert!(pictured.ground_pixels > 1000);
     }
     println!("{place}: {:?}", scene.census());
-    scene.notes.iter().for_each(|note| println!("  {note}"));
+    scene.notes().iter().for_each(|note| println!("  {note}"));
     Some(scene)
 }
 

@@ -38,7 +38,7 @@ fn depths_and_features_are_those_of_the_picture_to_the_bit() {
         let view = &scene.cameras[0];
         let drawn = draw_view(&scene, view, SIZE, RenderBackend::Cpu, &|_| ()).expect("drawn");
         let camera = camera(&scene, view, (SIZE.width, SIZE.height)).expect("sound");
-        let shapes = render_buffers(&build_shapes(&scene, &camera, &|_| ()), &camera).expect("drawn");
+        let shapes = render_buffers(&build_shapes(&scene, &camera, &|_| ()).list, &camera).expect("drawn");
         assert!(shapes.features == drawn.picture.features, "{name}");
         assert!(shapes.depth_m == drawn.picture.depth_m, "{name}");
     }

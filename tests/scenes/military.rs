@@ -42,9 +42,9 @@ fn features_of_a_file_are_symbols_and_those_without_one_are_counted() {
     assert_eq!(scene.military[0].texts.len(), 2);
     let told = |start: &str, part: &str| {
         assert!(
-            scene.notes.iter().any(|note| note.starts_with(start) && note.contains(part)),
+            scene.notes().iter().any(|note| note.starts_with(start) && note.contains(part)),
             "{:?}",
-            scene.notes
+            scene.notes()
         );
     };
     told("symbol 10031500009999000000", "999900 of the set 15 (land equipment) is not drawn");

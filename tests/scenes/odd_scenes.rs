@@ -81,7 +81,8 @@ fn a_camera_that_looks_nowhere_is_refused_at_its_place() {
 #[test]
 fn an_eye_under_the_ground_is_told() {
     let text = "[[camera]]\nname = \"mole\"\neye = [300, 300]\neye_elevation = 20\nlook_at = [300, 500]\n";
-    let notes = scene("mole", (60, 60), text).expect("sound").notes;
+    let scene = scene("mole", (60, 60), text).expect("sound");
+    let notes = scene.notes();
     assert!(
         notes.iter().any(|note| note.contains("'mole'") && note.contains("under the ground")),
         "{notes:?}"
@@ -102,7 +103,7 @@ fn a_lake_without_an_area_leaves_the_ground_alone() {
     let text = "[[lake]]\nname = \"line\"\npoints = [[100, 300], [200, 300], [400, 300]]\n";
     let scene = scene("line", (60, 60), text).expect("sound");
     assert!(scene.features.is_empty());
-    assert!(scene.notes.iter().any(|note| note.contains("encloses no area")), "{:?}", scene.notes);
+    assert!(scene.notes().iter().any(|note| note.contains("encloses no area")), "{:?}", scene.notes());
 }
 
 #[test]
@@ -110,11 +111,11 @@ fn a_sheet_without_a_place_on_earth_says_what_it_lacks() {
     let furniture = "[furniture]\ngrid = \"mgrs\"\nlayout = \"military\"\n";
     let notes = |test: &str, crs: &str| {
         let text = format!("crs = \"{crs}\"\n{furniture}");
-        scene(test, (40, 40), &text).unwrap_or_else(|error| panic!("{error}")).notes
+        scene(test, (40, 40), &text).unwrap_or_else(|error| panic!("{error}")).notes().join("\n")
     };
     let unknown = "+proj=tmerc +lat_0=36 +lon_0=-84 +ellps=bessel +units=m";
-    let said = notes("unplaced", unknown).join("\n");
+    let said = notes("unplaced", unknown);
     assert!(said.contains("the mgrs grid and the three norths are not drawn"), "{said}");
-    let placed = notes("placed", "EPSG:32616").join("\n");
+    let placed = notes("placed", "EPSG:32616");
     assert!(!placed.contains("not drawn"), "{placed}");
 }

@@ -289,7 +289,7 @@ fn instances_stand_at_their_points_as_their_properties_say() {
         assert!((placement.scale - (1.0 + index as f32 / 100.0)).abs() < 1e-6);
         assert!((placement.heading_rad.to_degrees() - index as f32).abs() < 1e-4);
     }
-    let notes = scene.notes.join("\n");
+    let notes = scene.notes().join("\n");
     assert!(notes.contains("12 models of 'row' left out: off the elevation model"), "{notes}");
     assert!(notes.contains("16 models of 'row' name none of its variants; 'shrub' was taken"), "{notes}");
     let row = &scene.report.instances[0];

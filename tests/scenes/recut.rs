@@ -8,7 +8,7 @@ use glam::Vec3;
 use sandtable::draw::list::DrawMesh;
 use sandtable::pipeline::scene_file::open_scene;
 use sandtable::ribbon::drape::drape;
-use sandtable::ribbon::patches::Drapes;
+use sandtable::ribbon::patches::{Drapes, StalePatch};
 use sandtable::roam::displayed::DisplayedTerrain;
 use sandtable::roam::graph::Vertex;
 use sandtable::roam::refine::coherent::Coherent;
@@ -37,7 +37,7 @@ impl Walk<'_> {
             visible.iter().map(|&corner: &Vertex| ground.layout().patch_index(corner)).collect();
         let came_or_went = seen.symmetric_difference(&self.seen).copied();
         let stale: BTreeSet<usize> = changes.dirty.iter().copied().chain(came_or_went).collect();
-        let stale: Vec<usize> = stale.into_iter().collect();
+        let stale: Vec<StalePatch> = stale.into_iter().map(StalePatch::whole).collect();
         let active = self.coherent.active().clone();
         let displayed = DisplayedTerrain::new(Arc::clone(ground.lattice()), active, visible);
         self.drapes.recut(&stale, &displayed);

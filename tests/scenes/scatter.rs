@@ -113,7 +113,11 @@ fn density_and_spacing_are_as_asked() {
 fn spacing_that_leaves_no_room_for_the_density_is_told() {
     let scene = scene(&table(ALL, "density = 40\nspacing = 10")).expect("sound");
     assert!((2850..3150).contains(&scene.placements.len()), "{}", scene.placements.len());
-    assert!(scene.notes.iter().any(|note| note.contains("`spacing` leaves no room")), "{:?}", scene.notes);
+    assert!(
+        scene.notes().iter().any(|note| note.contains("`spacing` leaves no room")),
+        "{:?}",
+        scene.notes()
+    );
 }
 
 #[test]
@@ -144,7 +148,7 @@ fn slope_and_elevation_limits_hold_and_what_they_cost_is_told() {
     let row = &scene.report.scattered[0];
     assert_eq!(row.models, scene.placements.len());
     assert!(row.by_slope > 1000 && row.by_elevation > 1000, "{row:?}");
-    assert!(scene.notes.iter().any(|note| note.contains("models stand in 1 area")), "{:?}", scene.notes);
+    assert!(scene.notes().iter().any(|note| note.contains("models stand in 1 area")), "{:?}", scene.notes());
 }
 
 #[test]

@@ -293,7 +293,7 @@ const BROKEN: &[(&str, &[&str])] = &[
     (
         "[[road]]\nfile = \"r.json\"\nwidht = 4\n",
         &[
-            "hill.toml:5:1: error: unknown key `widht` in [[road]]",
+            "hill.toml:5:1: error[unknown-key]: unknown key `widht` in [[road]]",
             "5 | widht = 4\n  | ^^^^^\n",
             "did you mean `width`?",
         ],
@@ -457,7 +457,7 @@ const BROKEN: &[(&str, &[&str])] = &[
     // many-byte characters and tabs before the place
     (
         "[style]\nlight = { \"名\" = 1, altitude = 0 }\n",
-        &["hill.toml:4:11: error: unknown key `名`", "hill.toml:4:31:"],
+        &["hill.toml:4:11: error[unknown-key]: unknown key `名`", "hill.toml:4:31:"],
     ),
     ("[style]\n\thaze = -1\n", &["hill.toml:4:9:", "4 |     haze = -1\n  |            ^^"]),
 ];
@@ -501,7 +501,10 @@ fn a_duplicate_does_not_hide_other_mistakes() {
 #[test]
 fn a_scene_without_terrain_is_told_so() {
     let shown = messages("");
-    assert!(shown.contains("hill.toml:1:1: error: the scene file has no [terrain] table"), "{shown}");
+    assert!(
+        shown.contains("hill.toml:1:1: error[missing-key]: the scene file has no [terrain] table"),
+        "{shown}"
+    );
     let shown = messages("[terain]\ndem = \"a\"\n");
     assert!(shown.contains("did you mean `terrain`?") && !shown.contains("has no"), "{shown}");
 }
@@ -522,7 +525,7 @@ fn later_rooms_can_point_at_a_value() {
     let document = read(COMPLETE).expect("a valid scene");
     let error = document.error(&document.terrain.dem, "no such file").with_help("check the name");
     let shown = error.to_string();
-    assert!(shown.starts_with("hill.toml:7:7: error: no such file\n"), "{shown}");
+    assert!(shown.starts_with("hill.toml:7:7: error[wrong-value]: no such file\n"), "{shown}");
     assert!(
         shown.contains(
             "7 | dem = \"data/hill.tif\"\n  |       ^^^^^^^^^^^^^^^\n  |\n  = help: check the name"
@@ -542,7 +545,10 @@ fn a_byte_order_mark_and_windows_line_ends_are_welcome() {
 #[test]
 fn bytes_that_are_not_text_are_told_with_their_place() {
     let errors = parse_bytes("hill.toml", b"title = \"x\"\nsubtitle = \"\xff\"\n").expect_err("not UTF-8");
-    assert!(errors.to_string().starts_with("hill.toml:2:13: error: this is not UTF-8 text"), "{errors}");
+    assert!(
+        errors.to_string().starts_with("hill.toml:2:13: error[syntax]: this is not UTF-8 text"),
+        "{errors}"
+    );
     assert!(parse_bytes("hill.toml", LEAST.as_bytes()).is_ok());
 }
 

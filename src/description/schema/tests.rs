@@ -104,7 +104,7 @@ fn every_declared_default_is_a_value_of_its_key() {
     assert_eq!(*document.roads[0].width.default(), 6.0);
     assert_eq!(document.roads[0].miter_limit, 2.0);
     assert_eq!(document.scatters[0].scale, [0.8, 1.2]);
-    assert_eq!((document.style.light.azimuth, document.terrain.tolerance_px), (None, 1.0));
+    assert_eq!((document.style.light.azimuth, *document.terrain.tolerance_px), (None, 1.0));
     assert!(document.furniture.legend && document.terrain.fill_voids.is_none());
     let with_default = |key: &&KeyDeclaration| matches!(key.presence, Presence::Default(_));
     assert!(all_declared().into_values().filter(with_default).count() > 40);

@@ -6,8 +6,9 @@ use crate::description::document::Document;
 use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
-use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
+use crate::scene::sources::Sources;
+use crate::scene::{FeatureKind, SceneFeature, SceneModel};
 
 /// A scene with the document and the files that it was built of.
 pub struct LintContext<'a> {
@@ -17,6 +18,8 @@ pub struct LintContext<'a> {
     pub assets: &'a Assets,
     /// The scene.
     pub scene: &'a SceneModel,
+    /// Reads the vector files of its tables, each once.
+    pub sources: &'a Sources<'a>,
 }
 
 impl LintContext<'_> {
@@ -27,16 +30,25 @@ impl LintContext<'_> {
 
     /// A finding about a feature, at the points or the file that made it.
     pub fn about(&self, code: FindingCode, feature: FeatureId, message: impl Into<String>) -> Finding {
-        let origin = feature.index().and_then(|index| self.scene.features.get(index));
-        let span = origin.map(|feature| feature.origin.span.clone()).unwrap_or_default();
-        self.finding(code, span, message)
+        self.finding(code, self.origin(feature), message)
+    }
+
+    /// The bytes of the scene file that state a feature's points or the file that holds it; `0..0` for the ground.
+    pub fn origin(&self, feature: FeatureId) -> Range<usize> {
+        self.feature(feature).map(|feature| feature.origin.span.clone()).unwrap_or_default()
+    }
+
+    /// The kind of a feature; `None` for the ground.
+    pub fn kind(&self, feature: FeatureId) -> Option<FeatureKind> {
+        self.feature(feature).map(|feature| feature.kind)
+    }
+
+    fn feature(&self, feature: FeatureId) -> Option<&SceneFeature> {
+        self.scene.features.get(feature.index()?)
     }
 
     /// What a message calls a feature: its kind and its name, or its number in its file.
     pub fn name(&self, feature: FeatureId) -> String {
-        let Some(feature) = feature.index().and_then(|index| self.scene.features.get(index)) else {
-            return self.scene.feature_name(feature);
-        };
-        feature.described()
+        self.feature(feature).map_or_else(|| self.scene.feature_name(feature), SceneFeature::described)
     }
 }

@@ -7,10 +7,30 @@
 //! A check is a function in a file of its subject, and a row of [`CHECKS`]. It computes what no picture needs, so it runs
 //! only where a scene is checked; what building finds out anyway is in [`SceneModel::findings`].
 
+mod cameras;
 pub mod cause_code;
 mod context;
 mod definitions;
+mod elevation;
+mod ground_line;
+mod heights;
+mod imagery;
+mod junctions;
+mod labels;
+mod lakes;
+mod line_shapes;
+mod models;
+mod rivers;
+mod road_crossings;
+mod road_profiles;
 pub mod sink;
+mod systems;
+mod table_sources;
+mod terrain;
+mod tolerance;
+mod unseen;
+mod voids;
+mod worst;
 
 use crate::description::document::Document;
 use crate::description::finding::Finding;
@@ -18,17 +38,40 @@ use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
+use crate::scene::sources::Sources;
+use crate::scene::world_frame::WorldFrame;
 
 /// A check of one subject.
 type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
 
 /// All checks, each with what it is about.
-const CHECKS: &[(&str, LintCheck)] = &[("definitions", definitions::check)];
+const CHECKS: &[(&str, LintCheck)] = &[
+    ("definitions", definitions::check),
+    ("elevation", elevation::check),
+    ("heights", heights::check),
+    ("imagery", imagery::check),
+    ("systems", systems::check),
+    ("terrain", terrain::check),
+    ("voids", voids::check),
+    ("road profiles", road_profiles::check),
+    ("road crossings", road_crossings::check),
+    ("rivers", rivers::check),
+    ("lakes", lakes::check),
+    ("line shapes", line_shapes::check),
+    ("junctions", junctions::check),
+    ("models", models::check),
+    ("cameras", cameras::check),
+    ("views", unseen::check),
+    ("tolerance", tolerance::check),
+    ("labels", labels::check),
+];
 
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
 /// those of every check.
 pub fn lint(document: &Document, assets: &Assets, scene: &SceneModel) -> Vec<Finding> {
-    let context = LintContext { document, assets, scene };
+    let frame = WorldFrame::new(document, &scene.crs, scene.lattice.origin());
+    let sources = Sources::new(&frame, assets);
+    let context = LintContext { document, assets, scene, sources: &sources };
     let mut sink = FindingSink::default();
     scene.findings.iter().cloned().for_each(|finding| sink.add(finding));
     for (_, check) in CHECKS {

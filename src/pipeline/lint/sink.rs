@@ -29,6 +29,11 @@ impl FindingSink {
         }
     }
 
+    /// Adds findings.
+    pub fn add_all(&mut self, findings: impl IntoIterator<Item = Finding>) {
+        findings.into_iter().for_each(|finding| self.add(finding));
+    }
+
     /// Whether more findings of a code are only counted: a check may stop looking.
     pub fn is_full(&self, code: FindingCode) -> bool {
         self.counts.get(&code).is_some_and(|&count| count > MOST_OF_A_CODE)

@@ -9,6 +9,7 @@ use crate::draw::list::{DrawList, FeatureId};
 use crate::draw::patches::{PatchDrapes, PatchId};
 use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::shown::ShownPatches;
+use crate::ribbon::patches::StalePatch;
 use crate::roam::dynamic::DynamicTerrain;
 use crate::roam::graph::Vertex;
 use crate::roam::patched_ground::PatchedGround;
@@ -36,10 +37,14 @@ const LEAST_HEIGHT_M: f32 = 150.0;
 /// come nearer to can wait for a few frames, and a frame that waits for all of them is a late one.
 const MOST_RENEWED: usize = 12;
 
+/// The most areas of a patch whose triangles have changed that are told apart: every triangle that lies is compared with each,
+/// which costs as much as cutting it where there are several times as many.
+const MOST_AREAS: usize = 24;
+
 /// What lies on a patch as the renderer has it.
 #[derive(Clone, Copy, Debug, Default)]
 struct LaidPatch {
-    /// Whether it was cut to what the patch displays now.
+    /// Whether it was cut to what the patch displayed before the last update.
     is_cut: bool,
     /// Whether other symbols are planned in it than it was cut of.
     is_replanned: bool,
@@ -158,8 +163,8 @@ impl LaidGround {
     ) -> Vec<PatchDrapes> {
         let terrain = mesh.source();
         self.plan_lines(scene, terrain.lattice(), camera);
-        mesh.changes().dirty.iter().for_each(|&patch| self.patches[patch].is_cut = false);
         shown.changed().iter().for_each(|&patch| self.patches[patch].eye = None);
+        let has_changed = |patch: usize| mesh.changes().dirty.binary_search(&patch).is_ok();
         let (mut due, mut renewed) = (Vec::new(), 0);
         for &patch in shown
             .visible()
@@ -168,7 +173,7 @@ impl LaidGround {
         {
             let laid = self.patches[patch];
             let is_due = match laid.eye {
-                Some(eye) if laid.is_cut => {
+                Some(eye) if laid.is_cut && !has_changed(patch) => {
                     let looks_otherwise = laid.is_replanned
                         || laid.is_wanted
                         || self.looks_otherwise(terrain, patch, eye, camera.eye());
@@ -186,10 +191,16 @@ impl LaidGround {
             // Threads would be woken for nothing.
             return Vec::new();
         }
-        let is_uncut = |patch: &usize| !self.patches[*patch].is_cut || self.patches[*patch].is_replanned;
-        let uncut: Vec<usize> = due.iter().copied().filter(is_uncut).collect();
-        if !uncut.is_empty() {
-            self.sheets.recut(&uncut, &DeferredSurface::new(mesh, terrain.lattice().cell()));
+        let stale: Vec<StalePatch> = due
+            .iter()
+            .filter(|&&patch| {
+                let laid = self.patches[patch];
+                !laid.is_cut || laid.is_replanned || has_changed(patch)
+            })
+            .map(|&patch| self.stale(patch, mesh))
+            .collect();
+        if !stale.is_empty() {
+            self.sheets.recut(&stale, &DeferredSurface::new(mesh, terrain.lattice().cell()));
         }
         for &patch in &due {
             self.patches[patch] = LaidPatch { is_cut: true, eye: Some(camera.eye()), ..LaidPatch::default() };
@@ -198,6 +209,13 @@ impl LaidGround {
         due.into_par_iter()
             .map(|patch| PatchDrapes { patch: PatchId(patch as u32), pieces: pieces(patch) })
             .collect()
+    }
+
+    /// Where a patch is to be cut again: what was cut of it lies on all triangles that the last update left.
+    fn stale(&self, patch: usize, mesh: &Deferred<DynamicTerrain>) -> StalePatch {
+        let areas = mesh.changed_areas(patch);
+        let is_partial = self.patches[patch].is_cut && areas.len() <= MOST_AREAS;
+        StalePatch { patch, areas: is_partial.then(|| areas.collect()) }
     }
 
     /// The texts of tactical graphics, as they were planned last.

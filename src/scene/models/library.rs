@@ -58,7 +58,9 @@ impl<'a> Library<'a> {
         };
         for note in &model.notes {
             let span = span.clone().unwrap_or_default();
-            collected.findings.add(FindingCode::ModelRead, span, format!("{name}: {note}"));
+            let is_texture = note.starts_with("texture '");
+            let code = if is_texture { FindingCode::TextureMissing } else { FindingCode::ModelRead };
+            collected.findings.add(code, span, format!("{name}: {note}"));
         }
         self.about.push((ModelFootprint::of(&model), origin));
         self.models.push(model);

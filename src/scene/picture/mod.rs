@@ -75,18 +75,25 @@ pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<
 
 /// The draw list for one camera. `progress` is called with the name of each step as it begins.
 pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
-    progress("refining terrain");
-    let displayed = Arc::new(display(scene, camera));
-    let ListedScene { list, ground_triangles, graphic_texts } =
-        listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Picture, progress);
-    ViewDraw { list, displayed, ground_triangles, graphic_texts }
+    drawn_for(scene, camera, ListPurpose::Picture, progress)
 }
 
 /// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
-pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
+    drawn_for(scene, camera, ListPurpose::Shapes, progress)
+}
+
+fn drawn_for(
+    scene: &SceneModel,
+    camera: &Camera,
+    purpose: ListPurpose,
+    progress: &dyn Fn(&'static str),
+) -> ViewDraw {
     progress("refining terrain");
-    let displayed = display(scene, camera);
-    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Shapes, progress).list
+    let displayed = Arc::new(display(scene, camera));
+    let ListedScene { list, ground_triangles, graphic_texts } =
+        listed(scene, &displayed, Viewer::Camera(camera), purpose, progress);
+    ViewDraw { list, displayed, ground_triangles, graphic_texts }
 }
 
 /// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as

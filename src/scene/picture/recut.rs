@@ -14,7 +14,7 @@ use crate::draw::color::Srgba;
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use crate::draw::patches::DrapedPiece;
 use crate::geom::convex;
-use crate::ribbon::patches::{Borders, Drapes};
+use crate::ribbon::patches::{Borders, Drapes, StalePatch};
 use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::roam::graph::Vertex;
@@ -204,11 +204,11 @@ impl GroundSheets {
         self.sheets().iter().any(|sheet| sheet.drapes.is_occupied(patch))
     }
 
-    /// Cuts what lies in `patches` to what is displayed there.
-    pub fn recut(&mut self, patches: &[usize], ground: &dyn TriangleSurface) {
+    /// Cuts what lies in `stale` to what is displayed there.
+    pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
         let Self { ribbons, symbols, tints, seen, graphics, .. } = self;
         for sheet in [ribbons, symbols, tints, seen, graphics] {
-            sheet.drapes.recut(patches, ground);
+            sheet.drapes.recut(stale, ground);
         }
     }
 

@@ -238,6 +238,7 @@ fn report_road(road: &Centerline, route: &Route, volumes: &Volumes, collected: &
     collected.profiles.push(RoadProfile {
         feature: road.feature,
         name,
+        line: road.street.alignment.line.clone(),
         ground: route.ground.clone(),
         design: route.design.clone(),
         supports,

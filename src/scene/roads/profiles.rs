@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::Support;
+use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
 
 /// A road's longitudinal profile.
@@ -13,6 +14,8 @@ pub struct RoadProfile {
     pub feature: FeatureId,
     /// Its name; may be empty.
     pub name: String,
+    /// Its centerline in world coordinates.
+    pub line: Polyline,
     /// The ground on the centerline before the road was built, in meters; NaN where there is none.
     pub ground: Profile,
     /// The road's level on the centerline in meters, at the same stations.
@@ -40,12 +43,14 @@ impl RoadProfile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
 
     #[test]
     fn a_profile_s_table_has_a_line_a_station() {
         let profile = RoadProfile {
             feature: FeatureId(2),
             name: "pass road".into(),
+            line: Polyline::new([DVec2::ZERO, DVec2::X * 12.5], 0.0).expect("a line"),
             ground: Profile::straight(12.5, [101.25, f64::NAN]),
             design: Profile::straight(12.5, [101.25, 102.0]),
             supports: vec![Support::Ground, Support::Bridge],

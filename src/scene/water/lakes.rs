@@ -154,6 +154,7 @@ impl Lake {
             level: level_m,
             rule: self.level.rule,
             lowest_shore: self.shore.lowest_m(),
+            median_shore: self.shore.median_m(),
             highest_shore: self.shore.highest_m(),
             area: area_m2(&self.shape),
             cut: volumes.cut_m3,

@@ -60,7 +60,7 @@ pub fn lay(
         document.error_at(place, error).with_help(help)
     })?;
     report_cuts(&falling, &cuts, collected);
-    report_climbs(&falling, &cuts, collected);
+    report_climbs(&falling, &cuts, lattice.origin(), collected);
     ribbons(&streams, &lattice.extent(), collected);
     let symbol =
         |stream: &Stream| LineSymbol::of_river(&stream.street, stream.bank_m, &stream.order, stream.feature);
@@ -87,24 +87,38 @@ fn report_cuts(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
     collected.findings.add(FindingCode::EarthMoved, 0..0, message);
 }
 
-/// Reports where the ground rises downstream: a note on all climbs, with the greatest.
-fn report_climbs(streams: &[&Stream], cuts: &Cuts, collected: &mut SceneBuilder) {
-    let climbing = cuts.cuts.iter().filter(|cut| !cut.climbs.is_empty()).count();
-    let count: usize = cuts.cuts.iter().map(|cut| cut.climbs.len()).sum();
-    let all = streams.iter().zip(&cuts.cuts).filter_map(|(stream, cut)| Some((stream, greatest(cut)?)));
-    let Some((Stream { name, feature, .. }, climb)) = all.max_by(|a, b| a.1.rise_m.total_cmp(&b.1.rise_m))
-    else {
-        return;
-    };
-    let place = if name.is_empty() { String::new() } else { format!("in '{name}', ") };
-    let message = format!(
-        "the ground rises downstream at {count} places of {climbing} rivers, by {:.1} m at most ({place}{:.0} m from \
-         its source): no cut as deep as `max_cut` lets water fall there, so the ground stays as it is; the lines do not \
-         follow the model's valleys, or its cells are too wide for these",
-        climb.rise_m, climb.from_m
-    );
-    let span = collected.feature(*feature).map(|river| river.origin.span.clone()).unwrap_or_default();
-    collected.findings.add(FindingCode::RiverUphill, span, message);
+/// Reports where the ground rises downstream: for each table how often, with the reach of the greatest climb. `origin` is
+/// the map position of world (0, 0).
+fn report_climbs(streams: &[&Stream], cuts: &Cuts, origin: DVec2, collected: &mut SceneBuilder) {
+    let mut tables: BTreeMap<(usize, usize), Vec<(&Stream, &Cut)>> = BTreeMap::new();
+    let climbing = streams.iter().zip(&cuts.cuts).filter(|(_, cut)| !cut.climbs.is_empty());
+    for (stream, cut) in climbing {
+        let span =
+            collected.feature(stream.feature).map(|river| river.origin.span.clone()).unwrap_or_default();
+        tables.entry((span.start, span.end)).or_default().push((stream, cut));
+    }
+    for ((start, end), rivers) in tables {
+        let count: usize = rivers.iter().map(|(_, cut)| cut.climbs.len()).sum();
+        let all = rivers.iter().filter_map(|(stream, cut)| Some((stream, greatest(cut)?)));
+        let Some((stream, climb)) = all.max_by(|a, b| a.1.rise_m.total_cmp(&b.1.rise_m)) else { continue };
+        let name = if stream.name.is_empty() { String::new() } else { format!("in '{}', ", stream.name) };
+        let [from, to] =
+            [climb.from_m, climb.to_m].map(|station_m| stream.street.alignment.line.at(station_m) + origin);
+        let message = format!(
+            "the ground rises downstream at {count} places of {} rivers, by {:.1} m at most ({name}{:.0} to {:.0} m from \
+             its source, ({:.0}, {:.0}) to ({:.0}, {:.0})): no cut as deep as `max_cut` lets water fall there, so the \
+             ground stays as it is; the lines do not follow the model's valleys, or its cells are too wide for these",
+            rivers.len(),
+            climb.rise_m,
+            climb.from_m,
+            climb.to_m,
+            from.x,
+            from.y,
+            to.x,
+            to.y
+        );
+        collected.findings.add(FindingCode::RiverUphill, start..end, message);
+    }
 }
 
 fn greatest(cut: &Cut) -> Option<&Climb> {

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use sandtable::pipeline::scene_file::open_scene;
+use sandtable::ribbon::patches::StalePatch;
 use sandtable::scene::picture::{camera, display, recut};
 
 use crate::rounds::{median, quantile, time_ms};
@@ -24,13 +25,17 @@ pub fn print() {
         let camera = camera(&scene, view, (1920, 1080)).expect("a sound camera");
         let displayed = Arc::new(display(&scene, &camera));
         let all: Vec<usize> = (0..scene.ground().layout().patch_count()).collect();
-        let together = time_ms(|| drapes.recut(&all, &*displayed));
+        let together = time_ms(|| {
+            drapes.recut(&all.iter().copied().map(StalePatch::whole).collect::<Vec<_>>(), &*displayed)
+        });
         let occupied: Vec<usize> = all
             .into_iter()
             .filter(|&patch| drapes.in_patch(patch).any(|(_, mesh)| !mesh.triangles.is_empty()))
             .collect();
-        let each: Vec<f64> =
-            occupied.iter().map(|&patch| time_ms(|| drapes.recut(&[patch], &*displayed)) * 1e3).collect();
+        let each: Vec<f64> = occupied
+            .iter()
+            .map(|&patch| time_ms(|| drapes.recut(&[StalePatch::whole(patch)], &*displayed)) * 1e3)
+            .collect();
         if each.is_empty() {
             continue;
         }

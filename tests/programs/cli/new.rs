@@ -78,7 +78,7 @@ fn what_cannot_be_read_leaves_no_folder_behind() {
     let folder = scratch.at("project");
     for (arguments, wanted) in [
         (["--dem", "data/none.tif"], "data/none.tif: there is no such file"),
-        (["--dem", "data/notes.txt"], "scene.toml:3:7: error: "),
+        (["--dem", "data/notes.txt"], "scene.toml:3:7: error[wrong-format]: "),
         (["--dem", "data"], "data: this is not a file"),
     ] {
         let refused = run_in(&folder, &[["new", "scene"], arguments].concat()).failed(1);

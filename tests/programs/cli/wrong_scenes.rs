@@ -30,7 +30,7 @@ fn a_sound_scene_is_told_with_what_is_in_it() {
 fn a_wrong_key_is_shown_where_it_stands_with_what_was_meant() {
     let scratch = valley("\n[[road]]\npoints = [[750500, 4018883], [751000, 4019000]]\nwdith = 8\n");
     let refused = check(&scratch).failed(1);
-    for wanted in ["scenes/a.toml:7:1: error: ", "wdith = 8", "^", "did you mean `width`?"] {
+    for wanted in ["scenes/a.toml:7:1: error[unknown-key]: ", "wdith = 8", "^", "did you mean `width`?"] {
         assert!(refused.contains(wanted), "{wanted} in\n{refused}");
     }
     assert!(refused.starts_with("scenes/a.toml:7:1"), "nothing stands before the place:\n{refused}");
@@ -39,13 +39,21 @@ fn a_wrong_key_is_shown_where_it_stands_with_what_was_meant() {
 #[test]
 fn what_turns_out_wrong_while_building_points_into_the_file_too() {
     for (more, place, wanted) in [
-        ("[[label]]\ntext = \"off\"\nat = [1, 2]\n", "a.toml:6:6: error: ", "points_crs"),
-        ("[[model]]\nfile = \"none.glb\"\nat = [750500, 4018883]\n", "a.toml:5:8: error: ", "no file"),
-        ("[[road]]\nfile = \"../data/valley.asc\"\n", "a.toml:5:8: error: ", "GeoJSON"),
-        ("[[lake]]\npoints = [[750500, 4018883], [751000, 4019000]]\n", "a.toml:5:10: error: ", "3 points"),
+        ("[[label]]\ntext = \"off\"\nat = [1, 2]\n", "a.toml:6:6: error[off-terrain]: ", "points_crs"),
+        (
+            "[[model]]\nfile = \"none.glb\"\nat = [750500, 4018883]\n",
+            "a.toml:5:8: error[missing-file]: ",
+            "no file",
+        ),
+        ("[[road]]\nfile = \"../data/valley.asc\"\n", "a.toml:5:8: error[wrong-format]: ", "GeoJSON"),
+        (
+            "[[lake]]\npoints = [[750500, 4018883], [751000, 4019000]]\n",
+            "a.toml:5:10: error[wrong-value]: ",
+            "3 points",
+        ),
         (
             "[[camera]]\nname = \"a\"\neye = [0, 0]\nlook_at = [750500, 4018883]\n",
-            "a.toml:6:7: error: ",
+            "a.toml:6:7: error[off-terrain]: ",
             "eye_elevation",
         ),
     ] {
@@ -61,7 +69,8 @@ fn a_missing_elevation_file_is_told_with_the_name_that_is_there() {
     scratch.write("project/scenes/a.toml", "[terrain]\ndem = \"../data/vally.asc\"\n");
     let refused = check(&scratch).failed(1);
     assert!(
-        refused.contains("a.toml:2:7: error: ") && refused.contains("did you mean 'valley.asc'?"),
+        refused.contains("a.toml:2:7: error[missing-file]: ")
+            && refused.contains("did you mean 'valley.asc'?"),
         "{refused}"
     );
 }
@@ -76,7 +85,7 @@ fn a_scene_reads_only_where_it_may_unless_it_is_allowed() {
     scratch.write("elsewhere/valley.asc", bytes_of("assets/jacksboro/valley.asc"));
     let refused = check(&scratch).failed(1);
     let remedy = format!("--allow {}", scratch.at("elsewhere").display());
-    assert!(refused.contains("a.toml:2:7: error: ") && refused.contains(&remedy), "{refused}");
+    assert!(refused.contains("a.toml:2:7: error[file-outside]: ") && refused.contains(&remedy), "{refused}");
     for command in [&["check"][..], &["render", "--size", "64x48"]] {
         let arguments = [command, &["scenes/a.toml", "--allow", "../elsewhere"]].concat();
         run_in(&scratch.at("project"), &arguments).ok();

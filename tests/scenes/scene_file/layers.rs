@@ -94,19 +94,22 @@ fn a_mistake_in_an_included_file_is_shown_there() {
     refused(
         &format!("include = \"more/roads.toml\"\n{LEAST}"),
         &files,
-        &["scenes/more/roads.toml:4:1: error: unknown key `widht` in [[road]]", "4 | widht = 3\n  | ^^^^^"],
+        &[
+            "scenes/more/roads.toml:4:1: error[unknown-key]: unknown key `widht` in [[road]]",
+            "4 | widht = 3\n  | ^^^^^",
+        ],
     );
     let syntax = [("more/roads.toml", "[[road]]\nfile = roads\n")];
     refused(
         &format!("include = \"more/roads.toml\"\n{LEAST}"),
         &syntax,
-        &["scenes/more/roads.toml:2:8: error: text must be in quotes"],
+        &["scenes/more/roads.toml:2:8: error[syntax]: text must be in quotes"],
     );
     let document =
         sound(&format!("include = \"b.toml\"\n{LEAST}"), &[("b.toml", "[[road]]\nfile = \"r\"\n")]);
     let place = document.roads[0].source.file.as_ref().expect("stated");
     let shown = document.error(place, "no such file").to_string();
-    assert!(shown.starts_with("scenes/b.toml:2:8: error: no such file"), "{shown}");
+    assert!(shown.starts_with("scenes/b.toml:2:8: error[missing-file]: no such file"), "{shown}");
 }
 
 #[test]
@@ -114,19 +117,21 @@ fn what_cannot_be_included_is_told_where_it_is_named() {
     refused(
         &format!("include = [\"gone.toml\"]\n{LEAST}"),
         &[],
-        &["scenes/hill.toml:1:12: error: 'gone.toml' cannot be included: there is no file gone.toml"],
+        &[
+            "scenes/hill.toml:1:12: error[missing-file]: 'gone.toml' cannot be included: there is no file gone.toml",
+        ],
     );
     refused(&format!("include = 3\n{LEAST}"), &[], &["hill.toml:1:11:", "`include` must be text"]);
     let cycle = [("a.toml", "include = \"b.toml\"\n"), ("b.toml", "include = \"a.toml\"\n")];
     refused(
         &format!("include = \"a.toml\"\n{LEAST}"),
         &cycle,
-        &["scenes/b.toml:1:11: error: 'a.toml' includes itself"],
+        &["scenes/b.toml:1:11: error[wrong-value]: 'a.toml' includes itself"],
     );
     refused(
         &format!("include = \"hill.toml\"\n{LEAST}"),
         &[],
-        &["hill.toml:1:11: error: 'hill.toml' includes itself"],
+        &["hill.toml:1:11: error[wrong-value]: 'hill.toml' includes itself"],
     );
     let names: Vec<String> = (0..12).map(|index| format!("{index}.toml")).collect();
     let texts: Vec<String> = (1..13).map(|index| format!("include = \"{index}.toml\"\n")).collect();
@@ -185,7 +190,7 @@ fn wrong_styles_are_told_where_they_stand() {
     refused(
         &format!("{LEAST}[styles.lane]\nwidth = 3\n[[road]]\nstyle = \"lame\"\nfile = \"r\"\n"),
         &[],
-        &["hill.toml:6:9: error: there is no style \"lame\"", "did you mean `lane`?"],
+        &["hill.toml:6:9: error[unknown-name]: there is no style \"lame\"", "did you mean `lane`?"],
     );
     refused(
         &format!("{LEAST}[[road]]\nstyle = \"lane\"\nfile = \"r\"\n"),
@@ -195,7 +200,7 @@ fn wrong_styles_are_told_where_they_stand() {
     let twice = format!(
         "{LEAST}[styles.lane]\nroof = \"flat\"\n[[road]]\nstyle = \"lane\"\nfile = \"r\"\n[[road]]\nstyle = \"lane\"\nfile = \"r\"\n"
     );
-    refused(&twice, &[], &["hill.toml:4:1: error: unknown key `roof` in [[road]]"]);
+    refused(&twice, &[], &["hill.toml:4:1: error[unknown-key]: unknown key `roof` in [[road]]"]);
     let errors = scene(&twice, &[]).expect_err("broken");
     assert_eq!(errors.matches("error:").count(), 1, "told once:\n{errors}");
     refused(
@@ -240,7 +245,7 @@ fn a_mistake_in_an_expression_is_underlined_in_it() {
         &format!("{LEAST}[[road]]\nfile = \"r\"\nwidth = \"lanes * * 3\"\n"),
         &[],
         &[
-            "scenes/hill.toml:5:18: error: `width`: expected a number, a text or a property, but found `*`",
+            "scenes/hill.toml:5:18: error[wrong-value]: `width`: expected a number, a text or a property, but found `*`",
             "5 | width = \"lanes * * 3\"\n  |                  ^",
         ],
     );

@@ -25,6 +25,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::geom::rect::Rect;
 use crate::roam::active::ActiveSet;
 use crate::roam::block::{BlockError, BlockSource, PatchBlock};
 use crate::roam::graph::Vertex;
@@ -97,6 +98,8 @@ pub struct Deferred<S> {
     settled: bool,
     frame: u64,
     changes: RefinementChanges,
+    /// Vertices that became active or inactive in the last update, with the places of their patches.
+    changed: Vec<(u32, u16)>,
     counts: UpdateCounts,
     scratch: UpdateScratch,
 }
@@ -126,6 +129,7 @@ impl<S: BlockSource> Deferred<S> {
             settled: false,
             frame: 0,
             changes: RefinementChanges::default(),
+            changed: Vec::new(),
             counts: UpdateCounts::default(),
             scratch: UpdateScratch::default(),
         })
@@ -141,6 +145,7 @@ impl<S: BlockSource> Deferred<S> {
             ..RefinementChanges::default()
         };
         self.changes.dirty.clear();
+        self.changed.clear();
         self.counts = UpdateCounts::default();
         if self.settled && eye == self.station.eye && visible == self.visible {
             return Ok(&self.changes);
@@ -157,6 +162,7 @@ impl<S: BlockSource> Deferred<S> {
         self.changes.splits = self.counts.splits;
         self.changes.merges = self.counts.merges;
         self.changes.dirty.sort_unstable();
+        self.changed.sort_unstable();
         self.settled = true;
         Ok(&self.changes)
     }
@@ -174,6 +180,19 @@ impl<S: BlockSource> Deferred<S> {
     /// The changes of the last update. A patch that has come into view is not dirty for that alone.
     pub fn changes(&self) -> &RefinementChanges {
         &self.changes
+    }
+
+    /// Boxes, in world space, around the triangles of a patch that the last update changed: one for each vertex that became
+    /// active or inactive. Heights that were edited are no such change.
+    pub fn changed_areas(&self, patch: usize) -> impl ExactSizeIterator<Item = Rect> {
+        let of_patch = |&(changed, _): &(u32, u16)| (changed as usize).cmp(&patch);
+        let first = self.changed.partition_point(|changed| of_patch(changed).is_lt());
+        let end = self.changed.partition_point(|changed| of_patch(changed).is_le());
+        let mesh = self.patches[patch].mesh.map(|mesh| &self.meshes.0[mesh as usize]);
+        self.changed[first..end].iter().map(move |&(_, vertex)| {
+            let mesh = mesh.expect("only meshes change");
+            mesh.around(&self.topologies[mesh.parity], vertex)
+        })
     }
 
     /// The number of vertices that the last update examined.
@@ -444,6 +463,7 @@ impl<S: BlockSource> Deferred<S> {
             wheel: &mut self.wheel,
             todo: &mut self.scratch.todo,
             counts: &mut self.counts,
+            changed: &mut self.changed,
         };
         decide(patch, &mut with);
         if self.counts.splits + self.counts.merges > before && patch.changed < self.frame {

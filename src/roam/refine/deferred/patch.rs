@@ -10,8 +10,9 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
+use crate::geom::rect::Rect;
 use crate::roam::block::PatchBlock;
 use crate::roam::refine::deferred::topology::{CENTER, NONE, Topology, TopologyNode, triangle};
 use crate::roam::refine::deferred::wheel::{FARTHEST, Wheel, WheelLink};
@@ -117,6 +118,8 @@ pub struct Decider<'a> {
     pub todo: &'a mut Vec<u16>,
     /// The work done.
     pub counts: &'a mut UpdateCounts,
+    /// Vertices that became active or inactive, with the place of their patch in the layout.
+    pub changed: &'a mut Vec<(u32, u16)>,
 }
 
 /// The work of an update.
@@ -250,6 +253,16 @@ impl PatchMesh {
         [self.block.plan[0][column as usize], self.block.plan[1][row as usize], cell.z, cell.radius]
     }
 
+    /// The box in world space around the triangles that a vertex's activation replaces.
+    pub fn around(&self, topology: &Topology, vertex: u16) -> Rect {
+        let ring = topology.nodes()[vertex as usize].ring;
+        let at = |number: u16| {
+            let [column, row] = topology.places()[number as usize].map(usize::from);
+            DVec2::new(f64::from(self.block.plan[0][column]), f64::from(self.block.plan[1][row]))
+        };
+        Rect::around(ring.into_iter().filter(|&number| number != NONE).map(at))
+    }
+
     /// Decides a vertex whose sphere the eye is inside by `inside` meters, and those that follow from it.
     pub fn decide(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         self.decide_one(with, vertex, inside);
@@ -293,6 +306,7 @@ impl PatchMesh {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.splits += 1;
+        with.changed.push((self.patch as u32, vertex));
         self.flags[vertex as usize] |= ACTIVE;
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
@@ -317,6 +331,7 @@ impl PatchMesh {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.merges += 1;
+        with.changed.push((self.patch as u32, vertex));
         self.flags[vertex as usize] &= !ACTIVE;
         for child in node.children.into_iter().filter(|&child| child != NONE) {
             self.flags[child as usize] -= ONE_PARENT;

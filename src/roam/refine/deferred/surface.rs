@@ -45,20 +45,46 @@ impl<'a, S: BlockSource> DeferredSurface<'a, S> {
             }
             return;
         };
-        let mut stack: Vec<u32> = topology.roots().iter().rev().map(|root| triangle(root[0], 0)).collect();
-        while let Some(at) = stack.pop() {
-            let corners = topology.corners(at);
-            let facet = corners.map(|number| position(mesh, topology, number));
-            if !plan_bounds(&facet).meets(rect) {
-                continue;
-            }
-            let middle = topology.middle(at);
-            if middle != NONE && mesh.is_active(middle) {
-                let side = usize::from(topology.nodes()[middle as usize].ring[3] == corners[0]);
-                stack.extend([triangle(middle, 2 * side), triangle(middle, 2 * side + 1)]);
-            } else if mesh.is_displayed(topology, corners) {
+        let descent = Descent { mesh, topology, rect };
+        for &root in topology.roots() {
+            let facet = root.map(|number| position(mesh, topology, number));
+            descent.visit(triangle(root[0], 0), root, facet, visit);
+        }
+    }
+}
+
+/// A way down the bintree of a patch to the displayed triangles that meet a rectangle.
+struct Descent<'a> {
+    mesh: &'a PatchMesh,
+    topology: &'a Topology,
+    rect: &'a Rect,
+}
+
+impl Descent<'_> {
+    /// Visits what is displayed of the triangle `at` with these corners, apex first, counter-clockwise.
+    fn visit(
+        &self,
+        at: u32,
+        corners: [u16; 3],
+        facet: SurfaceTriangle,
+        visit: &mut dyn FnMut(&SurfaceTriangle),
+    ) {
+        if !plan_bounds(&facet).meets(self.rect) {
+            return;
+        }
+        let middle = self.topology.middle(at);
+        if middle == NONE || !self.mesh.is_active(middle) {
+            if self.mesh.is_displayed(self.topology, corners) {
                 visit(&facet);
             }
+            return;
+        }
+        let side = usize::from(self.topology.nodes()[middle as usize].ring[3] == corners[0]);
+        let split = position(self.mesh, self.topology, middle);
+        let half =
+            |[of, next]: [usize; 2]| ([middle, corners[of], corners[next]], [split, facet[of], facet[next]]);
+        for (half, (corners, facet)) in [(1, half([0, 1])), (0, half([2, 0]))] {
+            self.visit(triangle(middle, 2 * side + half), corners, facet, visit);
         }
     }
 }
@@ -109,24 +135,51 @@ mod tests {
         seen
     }
 
+    /// A mesh over 45 × 37 posts, of which one has no data.
+    fn waves(hole: usize) -> (Arc<Lattice>, Deferred<DynamicTerrain>) {
+        let mut heights: Vec<f32> = (0..45 * 37).map(|at| libm::sinf(at as f32 * 0.31) * 9.0).collect();
+        heights[hole] = f32::NAN;
+        let lattice = Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(4.0, 5.0), 45, heights).expect("sound"));
+        let options =
+            DynamicOptions { patch: 16, measure: ErrorMeasure::Exact, radius: Radius::Bounding, reach: 3.0 };
+        let terrain = DynamicTerrain::new(Arc::clone(&lattice), options).expect("sound");
+        let mesh = Deferred::new(terrain, 4.0).expect("small patches");
+        (lattice, mesh)
+    }
+
+    /// The box around a triangle of [`facets`].
+    fn bounds(facet: &[[u32; 3]; 3]) -> Rect {
+        plan_bounds(&facet.map(|corner| Vec3::from_array(corner.map(f32::from_bits))))
+    }
+
     proptest! {
+        #[test]
+        fn what_an_update_changes_lies_in_its_changed_areas(
+            from in (-0.2..1.2f32, -0.2..1.2f32, 0.0..60.0f32),
+            to in (-0.2..1.2f32, -0.2..1.2f32, 0.0..60.0f32),
+            hole in 0usize..45 * 37,
+        ) {
+            let (lattice, mut mesh) = waves(hole);
+            let all: Vec<Vertex> = mesh.source().layout().patches().collect();
+            let whole = lattice.extent().grown(1.0);
+            let mut seen = Vec::new();
+            for (x, y, z) in [from, to] {
+                mesh.update(Vec3::new(x * 180.0, y * 185.0, z), &all).expect("in memory");
+                seen.push(facets(&DeferredSurface::new(&mesh, lattice.cell()), &whole));
+            }
+            let areas: Vec<Rect> = (0..all.len()).flat_map(|patch| mesh.changed_areas(patch)).collect();
+            for facet in seen[0].symmetric_difference(&seen[1]) {
+                let bounds = bounds(facet);
+                let holds = |area: &Rect| area.min.cmple(bounds.min).all() && bounds.max.cmple(area.max).all();
+                prop_assert!(areas.iter().any(holds), "{bounds:?} is in none of {areas:?}");
+            }
+        }
+
         #[test]
         fn the_surface_is_the_mesh_of_its_active_vertices(
             x in -0.2..1.2f32, y in -0.2..1.2f32, z in 0.0..300.0f32, hole in 0usize..45 * 37,
         ) {
-            let mut heights: Vec<f32> =
-                (0..45 * 37).map(|at| libm::sinf(at as f32 * 0.31) * 9.0).collect();
-            heights[hole] = f32::NAN;
-            let lattice =
-                Arc::new(Lattice::new(DVec2::ZERO, DVec2::new(4.0, 5.0), 45, heights).expect("sound"));
-            let options = DynamicOptions {
-                patch: 16,
-                measure: ErrorMeasure::Exact,
-                radius: Radius::Bounding,
-                reach: 3.0,
-            };
-            let terrain = DynamicTerrain::new(Arc::clone(&lattice), options).expect("sound");
-            let mut mesh = Deferred::new(terrain, 4.0).expect("small patches");
+            let (lattice, mut mesh) = waves(hole);
             let listed: Vec<Vertex> = mesh.source().layout().patches().skip(1).collect();
             mesh.update(Vec3::new(x * 180.0, y * 185.0, z), &listed).expect("in memory");
             let whole = lattice.extent().grown(1.0);

@@ -1,0 +1,14 @@
+//! What a scene file defines and no table uses.
+
+use crate::description::stated::Stated;
+
+/// Names of definitions that have no effect, each with its place.
+#[derive(Clone, Debug, Default)]
+pub struct UnusedDefinitions {
+    /// Styles of the scene file itself that no table names; an included file may hold styles for many scenes.
+    pub styles: Vec<Stated<String>>,
+    /// Phases that no table names.
+    pub phases: Vec<Stated<String>>,
+    /// Included files that state nothing.
+    pub includes: Vec<Stated<String>>,
+}

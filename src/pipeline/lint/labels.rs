@@ -1,0 +1,105 @@
+//! Labels that the picture of the first camera does not show, or not as they are stated.
+//!
+//! Only placing them tells, so the picture is drawn: without light and colors, which decide about no label, and only
+//! where the scene file states labels.
+
+use std::collections::BTreeMap;
+
+use crate::annotate::paint::compose_sheet;
+use crate::annotate::report::AnnotationReport;
+use crate::description::finding_code::FindingCode;
+use crate::message::suggest::quoted;
+use crate::pipeline::labels::annotations;
+use crate::pipeline::lint::context::LintContext;
+use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::picture::{PictureSize, framed_camera};
+use crate::render::cpu::render_buffers;
+use crate::scene::picture::build_shapes;
+use crate::scene::{SceneModel, SceneView};
+
+/// The most texts that a message quotes.
+const MOST_QUOTED: usize = 3;
+
+/// The most characters of a text that a message quotes.
+const MOST_CHARACTERS: usize = 40;
+
+/// Finds labels that are not drawn, and those that cannot be read, on the picture of the first camera.
+pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let scene = context.scene;
+    let Some(view) = scene.cameras.first().filter(|_| !context.document.labels.is_empty()) else { return };
+    // A camera without a picture is another finding.
+    let Some(report) = placed(scene, view) else { return };
+    for (texts, why) in [
+        (&report.hidden, "the ground or something on it hides their places"),
+        (&report.outside, "their places are outside the picture, or too close to its border"),
+        (&report.crowded_out, "no position near their places is free beside more important ones"),
+    ] {
+        for ((start, end), dropped) in by_table(scene, texts.iter().map(String::as_str)) {
+            let span = start..end;
+            let count = scene.labels.iter().filter(|label| label.stated == span).count();
+            let message = format!(
+                "camera '{}' shows {} of the {count} labels of this table not, {}: {why}",
+                view.name,
+                dropped.len(),
+                listed(&dropped)
+            );
+            sink.add(context.finding(FindingCode::LabelDropped, span, message));
+        }
+    }
+    let missing = report.missing_glyphs.iter().map(|missing| missing.text.as_str());
+    for (texts, why, help) in [
+        (
+            by_table(scene, report.shortened.iter().map(String::as_str)),
+            "cut short with an ellipsis: too long for the picture",
+            "say it in fewer words",
+        ),
+        (
+            by_table(scene, missing),
+            "drawn with boxes in place of letters that no font of the scene has",
+            "state a `font` that has them",
+        ),
+    ] {
+        for ((start, end), texts) in texts {
+            let message = format!("on the picture of camera '{}' {} {why}", view.name, are(&texts));
+            sink.add(context.finding(FindingCode::LabelIllegible, start..end, message).with_help(help));
+        }
+    }
+}
+
+/// What becomes of the labels of a view; `None` where it has no picture.
+fn placed(scene: &SceneModel, view: &SceneView) -> Option<AnnotationReport> {
+    let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
+    let drawn = build_shapes(scene, &camera, &|_| ());
+    let picture = render_buffers(&drawn.list, &camera).ok()?;
+    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
+    Some(compose_sheet(picture.pixels, &annotations).1)
+}
+
+/// Texts by the place of the table that states them, in the order of the file; spot heights are stated by none.
+fn by_table<'a>(
+    scene: &SceneModel,
+    texts: impl Iterator<Item = &'a str>,
+) -> BTreeMap<(usize, usize), Vec<&'a str>> {
+    let mut tables: BTreeMap<(usize, usize), Vec<&str>> = BTreeMap::new();
+    for text in texts {
+        let label = scene.labels.iter().find(|label| label.text == text && label.stated != (0..0));
+        if let Some(label) = label {
+            tables.entry((label.stated.start, label.stated.end)).or_default().push(text);
+        }
+    }
+    tables
+}
+
+fn listed(texts: &[&str]) -> String {
+    let short =
+        |text: &&str| format!("'{}'", quoted(&text.chars().take(MOST_CHARACTERS).collect::<String>()));
+    let mut list: Vec<String> = texts.iter().take(MOST_QUOTED).map(short).collect();
+    if let Some(more @ 1..) = texts.len().checked_sub(MOST_QUOTED) {
+        list.push(format!("and {more} more"));
+    }
+    list.join(", ")
+}
+
+fn are(texts: &[&str]) -> String {
+    format!("{} {}", listed(texts), if texts.len() == 1 { "is" } else { "are" })
+}

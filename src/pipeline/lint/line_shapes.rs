@@ -1,0 +1,120 @@
+//! Roads, rivers and shores whose lines cannot be what they stand for: too narrow, folded, crossing or coming back on
+//! themselves.
+
+use crate::description::finding_code::FindingCode;
+use crate::earthworks::alignment::Width;
+use crate::geom::own_crossing::own_crossing;
+use crate::geom::tight_bend::{REVERSAL_RAD, tight_bends, turns};
+use crate::pipeline::lint::context::LintContext;
+use crate::pipeline::lint::ground_line::place;
+use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::lint::worst::WorstOfTables;
+use crate::scene::FeatureKind;
+use crate::scene::symbols::LineSymbol;
+
+/// The narrowest road in meters: what one foot before the other needs.
+const NARROWEST_ROAD_M: f64 = 0.3;
+
+/// The narrowest river in meters: a ditch that a spade digs.
+const NARROWEST_RIVER_M: f64 = 0.1;
+
+/// Finds the lines of roads and rivers that have such a shape.
+pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let [mut narrow, mut tight, mut crossed, mut back] = std::array::from_fn(|_| WorstOfTables::default());
+    for line in &context.scene.symbols {
+        if line.is_shore() {
+            add_crossed(context, line, &mut crossed);
+            continue;
+        }
+        let kind = context.kind(line.feature);
+        if !matches!(kind, Some(FeatureKind::Road | FeatureKind::River)) {
+            continue;
+        }
+        let least_m = if kind == Some(FeatureKind::Road) { NARROWEST_ROAD_M } else { NARROWEST_RIVER_M };
+        add_narrow(context, line, least_m, &mut narrow);
+        add_tight(context, line, &mut tight);
+        add_crossed(context, line, &mut crossed);
+        add_reversals(context, line, &mut back);
+    }
+    for (worst, code, help, more) in [
+        (narrow, FindingCode::NarrowWidth, "widths are meters: 3.5 for a lane", "are as narrow"),
+        (
+            tight,
+            FindingCode::TightCurve,
+            "draw the curve wider, or the road narrower: its inner edge folds over itself there",
+            "have such a curve",
+        ),
+        (
+            crossed,
+            FindingCode::CrossesItself,
+            "split the line there, or mend the order of its points",
+            "cross themselves",
+        ),
+        (
+            back,
+            FindingCode::DoublesBack,
+            "remove the point that the line comes back from",
+            "come back on themselves",
+        ),
+    ] {
+        for (span, message) in worst.into_messages(|count| format!("{count} more of this table {more}")) {
+            sink.add(context.finding(code, span, message).with_help(help));
+        }
+    }
+}
+
+fn add_narrow(context: &LintContext<'_>, line: &LineSymbol, least_m: f64, worst: &mut WorstOfTables) {
+    let narrowest_m = match &line.alignment.width {
+        Width::Constant(width_m) => *width_m,
+        Width::Varying(widths) => widths.values().iter().copied().fold(f64::INFINITY, f64::min),
+    };
+    if narrowest_m < least_m {
+        worst.add(context.origin(line.feature), -narrowest_m, || {
+            format!(
+                "{} is {narrowest_m} m wide; none is narrower than {least_m} m",
+                context.name(line.feature)
+            )
+        });
+    }
+}
+
+fn add_tight(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTables) {
+    let alignment = &line.alignment;
+    for bend in tight_bends(&alignment.line, |station_m| alignment.width.at(station_m) / 2.0) {
+        let half_m = alignment.width.at(bend.from) / 2.0;
+        worst.add(context.origin(line.feature), half_m / bend.radius, || {
+            format!(
+                "{} turns by {:.0}° from station {:.1} to {:.1} m at {}, with a radius of {:.1} m; half its width is \
+                 {half_m:.1} m",
+                context.name(line.feature),
+                bend.turn_rad.to_degrees(),
+                bend.from,
+                bend.to,
+                place(context.scene, alignment.line.at(bend.from)),
+                bend.radius
+            )
+        });
+    }
+}
+
+fn add_crossed(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTables) {
+    let Some(crossing) = own_crossing(line.alignment.line.points(), false) else { return };
+    worst.add(context.origin(line.feature), 1.0, || {
+        let stations = line.alignment.line.stations();
+        let [one, other] = crossing.legs.map(|leg| stations[leg]);
+        let (name, at) = (context.name(line.feature), place(context.scene, crossing.at));
+        format!("{name} crosses itself at {at}: its stretches from {one:.0} m and from {other:.0} m on")
+    });
+}
+
+fn add_reversals(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTables) {
+    let turns = turns(&line.alignment.line);
+    let sharpest =
+        (0..turns.len()).max_by(|&a, &b| turns[a].abs().total_cmp(&turns[b].abs()).then(b.cmp(&a)));
+    let Some(vertex) = sharpest.filter(|&vertex| turns[vertex].abs() >= REVERSAL_RAD) else { return };
+    worst.add(context.origin(line.feature), turns[vertex].abs(), || {
+        let (points, stations) = (line.alignment.line.points(), line.alignment.line.stations());
+        let (name, at) = (context.name(line.feature), place(context.scene, points[vertex]));
+        format!("{name} comes back on itself at station {:.1} m at {at}", stations[vertex])
+    });
+}

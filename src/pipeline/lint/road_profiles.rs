@@ -1,0 +1,115 @@
+//! Roads that no vehicle climbs, and embankments and cuttings that nobody builds.
+//!
+//! A road that lies on the ground is as steep as that; it is measured on the scene's ground, after all earthworks. A road
+//! that the ground follows keeps its grade, and pays for it in earth: its design is compared with the ground before.
+
+use crate::description::finding_code::FindingCode;
+use crate::earthworks::alignment::Support;
+use crate::pipeline::lint::context::LintContext;
+use crate::pipeline::lint::ground_line::{ground_along, place, steepest_over};
+use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::lint::worst::WorstOfTables;
+use crate::ribbon::texture::RibbonSurface;
+use crate::scene::FeatureKind;
+use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::symbols::LineSymbol;
+
+/// The steepest road, meters a meter: the steepest paved street of the world, Baldwin Street in Dunedin, rises by 34.8 %.
+/// Lower, and streets of San Francisco would be found; higher, and no road is as steep.
+const STEEPEST: f64 = 0.35;
+
+/// Grades are measured over this many meters at least: over less, a curb or a post that is off is a cliff.
+const GRADE_OVER_M: f64 = 30.0;
+
+/// And over so many cells: the slope of a single cell is mostly the error of its posts.
+const GRADE_OVER_CELLS: f64 = 2.0;
+
+/// The highest embankment in meters: where more fill is needed, a viaduct costs less.
+const HIGHEST_FILL_M: f64 = 15.0;
+
+/// The deepest cutting in meters: where more is dug, a tunnel costs less, and slopes need more care than a rule gives.
+const DEEPEST_CUT_M: f64 = 25.0;
+
+/// Finds roads that are too steep, and those on too much earth.
+pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
+    steep(context, sink);
+    earthworks(context, sink);
+}
+
+fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let scene = context.scene;
+    let base_m = GRADE_OVER_M.max(GRADE_OVER_CELLS * scene.lattice.measured_cell().max_element());
+    let mut worst = WorstOfTables::default();
+    for road in scene.symbols.iter().filter(|symbol| is_draped_road(context, symbol)) {
+        let line = &road.alignment.line;
+        if line.length() < base_m {
+            continue;
+        }
+        let steepest = ground_along(scene, line).and_then(|ground| steepest_over(&ground, base_m));
+        let Some((grade, from_m)) = steepest.filter(|(grade, _)| *grade > STEEPEST) else { continue };
+        worst.add(context.origin(road.feature), grade, || {
+            format!(
+                "{} is {:.0} % steep over the {base_m:.0} m from station {from_m:.0} m at {}; the steepest street of the \
+                 world has 35 %",
+                context.name(road.feature),
+                grade * 100.0,
+                place(scene, line.at(from_m))
+            )
+        });
+    }
+    let help = "set `profile = \"conform\"`, so that the ground follows the road, or let it wind; where the ground itself is \
+                wrong there, it is the elevation model's trees or houses";
+    for (span, message) in worst.into_messages(|more| format!("{more} more of this table are as steep")) {
+        sink.add(context.finding(FindingCode::RoadSteep, span, message).with_help(help));
+    }
+}
+
+/// Whether a line is a road for wheels that lies on the ground as that is. Paths and tracks climb what feet climb.
+fn is_draped_road(context: &LintContext<'_>, symbol: &LineSymbol) -> bool {
+    let is_road = context.kind(symbol.feature) == Some(FeatureKind::Road);
+    let is_track = matches!(symbol.surface, RibbonSurface::Track | RibbonSurface::TrackJunction);
+    is_road && !is_track && symbol.alignment.is_on_ground() && symbol.alignment.level.is_none()
+}
+
+fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let scene = context.scene;
+    let mut worst = [WorstOfTables::default(), WorstOfTables::default()];
+    for road in &scene.profiles {
+        for (worst, (sign, most_m, what)) in worst
+            .iter_mut()
+            .zip([(1.0, HIGHEST_FILL_M, "on an embankment of"), (-1.0, DEEPEST_CUT_M, "in a cutting of")])
+        {
+            let Some((rise_m, station_m)) = greatest(road, sign).filter(|(rise_m, _)| *rise_m > most_m)
+            else {
+                continue;
+            };
+            worst.add(context.origin(road.feature), rise_m, || {
+                format!(
+                    "{} runs {what} {rise_m:.1} m at station {station_m:.0} m at {}; more than {most_m:.0} m are hardly ever \
+                     built",
+                    context.name(road.feature),
+                    place(scene, road.line.at(station_m))
+                )
+            });
+        }
+    }
+    for (worst, help) in worst.into_iter().zip([
+        "let a bridge stand there: `max_fill = 15`; or allow a higher `max_grade`, or another line",
+        "let a tunnel run there: `max_cut = 25`; or allow a higher `max_grade`, or another line",
+    ]) {
+        for (span, message) in worst.into_messages(|more| format!("{more} more of this table do")) {
+            sink.add(context.finding(FindingCode::DeepEarthwork, span, message).with_help(help));
+        }
+    }
+}
+
+/// How far the design lies above the ground at most, times `sign`, where the ground carries the road, with the station.
+fn greatest(road: &RoadProfile, sign: f64) -> Option<(f64, f64)> {
+    let stations = road.design.stations().iter().zip(road.design.values().iter().zip(road.ground.values()));
+    let carried = stations.zip(&road.supports).filter(|(_, support)| **support == Support::Ground);
+    let rises =
+        carried.map(|((&station_m, (design_m, ground_m)), _)| ((design_m - ground_m) * sign, station_m));
+    rises
+        .filter(|(rise_m, _)| rise_m.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
+}

@@ -1,0 +1,170 @@
+//! Whether what a table states lies on the ground.
+//!
+//! Every source is measured as it is placed, which costs a comparison a vertex. What lies wholly off the ground is an error:
+//! nobody describes a scene's roads to see none of them.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
+use crate::message::suggest::quoted;
+use crate::scene::misplacement::{Misplacement, misplacement};
+use crate::scene::world_frame::WorldFrame;
+
+/// The most vertices of a source that are kept, as they are written, to find out why it lies off the ground.
+const SAMPLED: usize = 256;
+
+/// Where the shapes of one source lie.
+#[derive(Clone, Debug)]
+pub struct SourceReach {
+    /// The bytes of the scene file that state its points, or the name of its file.
+    pub span: Range<usize>,
+    /// The name of its file; `None` where the scene file states its points.
+    pub file: Option<String>,
+    /// The system of its points.
+    crs: Crs,
+    /// The first vertices, as they are written.
+    written: Vec<DVec2>,
+    /// The vertices of a source that the scene file states, in world coordinates; of a file none.
+    path: Vec<DVec2>,
+    /// The world box of each shape.
+    boxes: Vec<Rect>,
+}
+
+/// How much of a source lies off the ground.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceOverlap {
+    /// The bytes of the scene file that state its points, or the name of its file.
+    pub span: Range<usize>,
+    /// The name of its file; `None` where the scene file states its points.
+    pub file: Option<String>,
+    /// Its shapes: lines, polygons or points.
+    pub shapes: usize,
+    /// Those that lie wholly off the ground.
+    pub off: usize,
+    /// Those that lie partly off.
+    pub partly: usize,
+    /// Of a source that the scene file states, the share of its length that is off, or of its points.
+    pub share_off: f64,
+}
+
+impl SourceReach {
+    /// A source without shapes yet.
+    pub fn new(span: Range<usize>, file: Option<String>, crs: Crs) -> Self {
+        Self { span, file, crs, written: Vec::new(), path: Vec::new(), boxes: Vec::new() }
+    }
+
+    /// Begins the next shape.
+    pub fn begin_shape(&mut self) {
+        self.boxes.push(Rect::around([]));
+    }
+
+    /// Adds a vertex of the shape, as it is written and in world coordinates.
+    pub fn add(&mut self, written: DVec2, world: DVec2) {
+        if self.written.len() < SAMPLED {
+            self.written.push(written);
+        }
+        if self.file.is_none() {
+            self.path.push(world);
+        }
+        if let Some(last) = self.boxes.last_mut() {
+            *last = last.with(world);
+        }
+    }
+
+    /// How much of it lies off the ground, whose extent is in world coordinates.
+    pub fn overlap(&self, extent: &Rect) -> SourceOverlap {
+        let is_inside = |rect: &Rect| extent.contains(rect.min) && extent.contains(rect.max);
+        let off = self.boxes.iter().filter(|rect| !rect.meets(extent)).count();
+        let inside = self.boxes.iter().filter(|rect| is_inside(rect)).count();
+        let shapes = self.boxes.len();
+        SourceOverlap {
+            span: self.span.clone(),
+            file: self.file.clone(),
+            shapes,
+            off,
+            partly: shapes - off - inside,
+            share_off: self.share_off(extent),
+        }
+    }
+
+    fn share_off(&self, extent: &Rect) -> f64 {
+        let length = |from: DVec2, to: DVec2| from.distance(to);
+        let all: f64 = self.path.windows(2).map(|ends| length(ends[0], ends[1])).sum();
+        if self.boxes.len() > 1 || all == 0.0 {
+            let off = self.path.iter().filter(|at| !extent.contains(**at)).count();
+            return off as f64 / self.path.len().max(1) as f64;
+        }
+        let clipped = self.path.windows(2).filter_map(|ends| extent.clip_line(ends[0], ends[1]));
+        let inside: f64 = clipped.map(|(from, to)| length(from, to)).sum();
+        (1.0 - inside / all).clamp(0.0, 1.0)
+    }
+
+    /// The error of a source of which nothing lies on the ground; `None` where some of it does.
+    pub fn error(&self, frame: &WorldFrame<'_>, extent: &Rect) -> Option<Finding> {
+        let overlap = self.overlap(extent);
+        if overlap.shapes == 0 || overlap.off < overlap.shapes {
+            return None;
+        }
+        let what = match (&self.file, overlap.shapes) {
+            (None, _) => "the feature lies".to_owned(),
+            (Some(file), 1) => format!("the only feature of '{}' that is taken lies", quoted(file)),
+            (Some(file), shapes) => format!("all {shapes} features of '{}' that are taken lie", quoted(file)),
+        };
+        let rect = Rect::around(self.boxes.iter().flat_map(|rect| [rect.min, rect.max]));
+        let far_km = gap(&rect, extent) / 1000.0;
+        let map = Rect { min: extent.min + frame.origin, max: extent.max + frame.origin };
+        let found = misplacement(&self.written, &self.crs, frame.crs, &map);
+        let message = format!("{what} off the elevation model, {far_km:.1} km from it");
+        let (code, help) = match found {
+            Some(found) => (found.code(), found.help(&self.crs)),
+            None => (FindingCode::OffTerrain, help(&map, frame.crs)),
+        };
+        let finding = Finding::new(code, message).at(&frame.document.source, self.span.clone());
+        Some(finding.with_help(help))
+    }
+}
+
+/// The distance between two boxes in meters; 0 where they meet.
+fn gap(one: &Rect, other: &Rect) -> f64 {
+    (one.min - other.max).max(other.min - one.max).max(DVec2::ZERO).length()
+}
+
+fn help(map: &Rect, crs: &Crs) -> String {
+    format!(
+        "the model covers {:.0} to {:.0} east and {:.0} to {:.0} north in {}",
+        map.min.x,
+        map.max.x,
+        map.min.y,
+        map.max.y,
+        crs.name()
+    )
+}
+
+impl Misplacement {
+    fn code(&self) -> FindingCode {
+        match self {
+            Self::AxesSwapped => FindingCode::AxesSwapped,
+            Self::Zone(_) => FindingCode::WrongZone,
+            Self::System(_) => FindingCode::CrsMismatch,
+        }
+    }
+
+    fn help(&self, stated: &Crs) -> String {
+        match self {
+            Self::AxesSwapped if stated.is_geographic() => {
+                "it lies on it as [latitude, longitude]: exchange the two coordinates of each point".into()
+            }
+            Self::AxesSwapped => {
+                "it lies on it as [northing, easting]: exchange the two coordinates of each point".into()
+            }
+            Self::Zone(crs) | Self::System(crs) => {
+                format!("it lies on it in {}: say crs = \"{0}\" in its table", crs.name())
+            }
+        }
+    }
+}
