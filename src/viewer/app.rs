@@ -18,6 +18,7 @@ use crate::viewer::commands::{ViewCommand, pressed};
 use crate::viewer::drawing_job::DrawingJob;
 use crate::viewer::following::FollowedFiles;
 use crate::viewer::frame_times::FrameTimes;
+use crate::viewer::lettering;
 use crate::viewer::loading::{LoadingTask, SceneLoading, opening_error};
 use crate::viewer::measuring::{MeasureKind, Measuring};
 use crate::viewer::moving::PickedPart;
@@ -160,6 +161,7 @@ impl ViewerApp {
             title: String::new(),
             requests: Vec::new(),
         };
+        lettering::set_fonts(context, None);
         if let Some(file) = &options.file {
             app.open(file);
         }

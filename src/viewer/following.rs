@@ -9,6 +9,7 @@ use crate::draw::list::FeatureId;
 use crate::pipeline::files;
 use crate::pipeline::fingerprint::fingerprint;
 use crate::viewer::app::{OpeningFailure, ViewerApp};
+use crate::viewer::lettering;
 use crate::viewer::loading::{LoadedFile, opening_error};
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::tree::TreePanel;
@@ -101,6 +102,10 @@ impl ViewerApp {
             }
         }
         self.view.forget();
+        let given = self.opened.as_ref().and_then(|before| before.scene.font.as_ref());
+        if given != opened.scene.font.as_ref() {
+            lettering::set_fonts(&self.context, opened.scene.font.as_ref());
+        }
         self.detail.tolerance_px = opened.walk.tolerance_px();
         self.detail.frozen = false;
         self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));

@@ -23,6 +23,8 @@ mod frame_times;
 mod graphics;
 mod labels;
 mod layout;
+mod lettering;
+mod line_names;
 mod loading;
 mod measuring;
 mod moving;

@@ -1,6 +1,6 @@
 //! What was picked as a part of the scene file: moved and turned with the mouse, resized, removed.
 //!
-//! A click picks. Dragging from what is picked moves a model or a label over the ground, with Alt it turns a model; until the
+//! A click picks. Dragging from what is picked moves a model or a label over the ground, with Ctrl it turns a model; until the
 //! button is released, a ring shows where it will stand.
 
 use egui::{DragValue, Ui};
@@ -73,7 +73,7 @@ impl ViewerApp {
         ui.weak(part.place.to_string());
         if part.grab.is_some() {
             ui.weak(match part.grab {
-                Some(GrabTarget::Model(_)) => "Drag it to move it, with Alt to turn it",
+                Some(GrabTarget::Model(_)) => "Drag it to move it, with Ctrl to turn it",
                 _ => "Drag it to move it",
             });
         }

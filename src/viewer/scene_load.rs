@@ -31,7 +31,7 @@ impl SceneLoad {
 }
 
 impl LoaderSlot {
-    /// There is a renderer.
+    /// There is a renderer, or it has made more pipelines.
     pub fn fill(&self, loader: LiveLoader) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(loader);
     }
@@ -50,6 +50,11 @@ impl LoaderSlot {
         let mut prepared = loader.prepare(list, &view.shadows(list)?)?;
         loader.update(&mut prepared, first)?;
         Ok(Some(prepared))
+    }
+
+    /// Whether there is a renderer.
+    pub fn is_filled(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
     /// The renderer's loader; `None` where there is no renderer yet.

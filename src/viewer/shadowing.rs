@@ -97,11 +97,7 @@ impl OpenedScene {
             self.shadows.ready = done??;
         }
         let Ok(camera) = self.camera(self.size) else { return Ok(()) };
-        if slot.loader().is_none()
-            || self.is_relisting()
-            || self.shadows.job.is_some()
-            || !self.is_stale(&camera)
-        {
+        if !slot.is_filled() || self.is_relisting() || self.shadows.job.is_some() || !self.is_stale(&camera) {
             return Ok(());
         }
         let rest = self.shadows.rest(&camera);

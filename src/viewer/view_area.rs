@@ -1,8 +1,8 @@
 //! The scene's picture in the window: pointer and keys move the camera; labels lie over it.
 
 use egui::{
-    Color32, EventFilter, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId, Ui,
-    WidgetInfo, pos2,
+    Color32, EventFilter, FontId, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId,
+    Ui, WidgetInfo, pos2,
 };
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -13,6 +13,8 @@ use crate::view::camera::Camera;
 use crate::view::navigation::{NavigationMode, NavigationSteps};
 use crate::viewer::commands::{HeldMotion, held};
 use crate::viewer::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
+use crate::viewer::lettering::font;
+use crate::viewer::line_names::{LineNames, LinePicture};
 use crate::viewer::opened::OpenedScene;
 use crate::viewer::symbol_layer::SymbolLayer;
 
@@ -55,6 +57,7 @@ pub struct ViewArea {
     steps: NavigationSteps,
     pace: f64,
     labels: LabelLayer,
+    names: LineNames,
     symbols: SymbolLayer,
 }
 
@@ -85,7 +88,7 @@ pub enum ViewEvent {
     DoubleClick(Vec2),
     /// Pressed Enter or the space bar.
     Enter,
-    /// Dragged what was picked to a place on the ground, map coordinates, with Alt or without.
+    /// Dragged what was picked to a place on the ground, map coordinates, with Ctrl or without.
     Dragged {
         /// Where to.
         to: DVec2,
@@ -110,6 +113,7 @@ impl ViewArea {
         self.labels = LabelLayer::default();
         self.symbols.clear();
         self.placed.clear();
+        self.names = LineNames::default();
     }
 
     /// Draws the picture `texture` over all of what `ui` has left, and moves the camera of `opened`.
@@ -174,7 +178,7 @@ impl ViewArea {
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin()).or(pointer);
             if origin.is_some_and(|at| self.is_on_part(opened, camera, to_pixel(at))) {
-                let turns = ui.input(|input| input.modifiers.alt);
+                let turns = ui.input(|input| input.modifiers.command);
                 self.moving = Some(PartMotion { turns, to: None });
             }
             let place = origin.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
@@ -306,15 +310,32 @@ impl ViewArea {
     fn show_labels(&mut self, ui: &Ui, rect: Rect, opened: &OpenedScene, camera: &Camera) {
         let painter: Painter = ui.painter_at(rect);
         let size = |label: &SceneLabel| {
-            painter.layout_no_wrap(label.text.clone(), labels::font(label.kind), Color32::BLACK).size()
+            painter.layout_no_wrap(label.text.clone(), font(label.kind), Color32::BLACK).size()
+        };
+        let widths = |letters: &[String], font: &FontId| {
+            let width = |letter: &String| {
+                painter.layout_no_wrap(letter.clone(), font.clone(), Color32::BLACK).size().x
+            };
+            (letters.iter().map(width).collect(), font.size)
         };
         let is_seen = |at: Vec3| opened.is_seen(camera, at);
         let taken = self.symbols.show(&painter, rect, opened, camera);
-        let picture = LabelPicture { camera, rect, taken: &taken, is_seen: &is_seen, size: &size };
+        let is_at_place = |label: usize| self.names.is_at_place(label);
+        let picture = LabelPicture {
+            camera,
+            rect,
+            taken: &taken,
+            is_seen: &is_seen,
+            is_at_place: &is_at_place,
+            size: &size,
+        };
         let placed = self.labels.place(&opened.scene.labels, &picture);
+        let taken: Vec<Rect> = taken.into_iter().chain(placed.iter().map(|label| label.letters)).collect();
+        let picture = LinePicture { camera, rect, taken: &taken, is_seen: &is_seen, widths: &widths };
+        self.names.show(&painter, opened, &picture);
         labels::paint(&painter, &opened.scene.labels, &placed);
         self.placed = placed;
-        if self.labels.is_changing() {
+        if self.labels.is_changing() || self.names.is_changing() {
             ui.ctx().request_repaint();
         }
     }

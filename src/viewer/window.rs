@@ -182,9 +182,13 @@ impl ShownWindow {
         }
         let mut scene = self.scene.take()?;
         let options = LiveOptions { wireframe: app.shows_edges() };
+        let is_loaded = frame.load.is_some();
         let drawn = scene.draw(&mut self.graphics, encoder, frame, &options);
         match drawn {
             Ok(drawn) => {
+                if is_loaded {
+                    app.slot.fill(scene.loader());
+                }
                 self.scene = Some(scene);
                 Some(drawn)
             }

@@ -139,7 +139,7 @@ mod tests {
             pier_spacing_m: None,
             name: String::new(),
             origin: SpanOrigin::Tag,
-            place: 0..0,
+            place: Default::default(),
         }
     }
 
