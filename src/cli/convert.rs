@@ -89,12 +89,12 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
 
 /// Refuses a file that may have been meant as one of those to read.
 fn refuse_elevation(out: &Path, options: &DemOptions) -> Result<(), CliError> {
-    match dem::open(out, options) {
-        Ok(_) => Err(CliError::input(format!(
-            "{}: it is elevation, and would be written over; name the file to write with -o, or add --force",
+    match dem::format_by_head(out, options) {
+        Some(format) => Err(CliError::input(format!(
+            "{}: it is elevation ({format}), and would be written over; name the file to write with -o, or add --force",
             out.display()
         ))),
-        Err(_) => Ok(()),
+        None => Ok(()),
     }
 }
 

@@ -49,6 +49,9 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
     let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();
     let surface = arguments.surface.unwrap_or_else(|| dataset.default_surface());
     let crs = arguments.dataset.crs(&dataset);
+    if surface != Surface::Source {
+        arguments.dataset.ground(&dataset)?;
+    }
     let answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
     stream(|out| match arguments.dataset.json {
         true => write_json(out, &points, &answers),

@@ -50,7 +50,7 @@ pub struct LosArguments {
 pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
     arguments.chart.check(&arguments.dataset.file)?;
     let dataset = arguments.dataset.open()?;
-    let snapshot = dataset.service()?.snapshot();
+    let snapshot = arguments.dataset.ground(&dataset)?;
     let end = |position: RaisedPosition, default_m: f64| SightEnd {
         at: position.at,
         above_m: position.above_m.unwrap_or(default_m),

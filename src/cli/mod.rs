@@ -28,6 +28,8 @@ mod render_series;
 mod report;
 mod schema;
 mod serve;
+#[cfg(unix)]
+mod signals;
 mod values;
 mod view;
 mod viewshed;
@@ -68,6 +70,11 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 }
 
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
+    // The service ends by itself, when its last answers are read, and writes no files.
+    #[cfg(unix)]
+    if !matches!(arguments.command, Command::Serve(_)) {
+        signals::handle();
+    }
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Pick(arguments) => pick::run(arguments),

@@ -1,6 +1,7 @@
 //! Options that commands share.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -14,6 +15,7 @@ use crate::pipeline::dataset::{Dataset, DatasetOptions};
 use crate::pipeline::dem::DemOptions;
 use crate::pipeline::files;
 use crate::pipeline::picture::PictureSize;
+use crate::terrain::query::service::Snapshot;
 
 /// The scene file of a command, and the files it may read.
 #[derive(Debug, Args)]
@@ -100,6 +102,13 @@ impl DatasetArguments {
         let dataset = Dataset::open(&self.file, &options)?;
         dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
         Ok(dataset)
+    }
+
+    /// The ground in meters of the dataset; prints its note.
+    pub fn ground(&self, dataset: &Dataset) -> Result<Arc<Snapshot>, CliError> {
+        let snapshot = dataset.service()?.snapshot();
+        dataset.ground_note().iter().for_each(|note| warn(&format!("note: {note}")));
+        Ok(snapshot)
     }
 
     /// The coordinate system of positions.

@@ -51,7 +51,7 @@ pub fn run(arguments: &ProfileArguments) -> Result<(), CliError> {
     arguments.chart.check(&arguments.dataset.file)?;
     let dataset = arguments.dataset.open()?;
     let line = line(arguments, &dataset)?;
-    let snapshot = dataset.service()?.snapshot();
+    let snapshot = arguments.dataset.ground(&dataset)?;
     let sampling = Sampling { interpolation: arguments.interpolation, step_m: arguments.step };
     let profile = GroundProfile::new(&snapshot, line, sampling).map_err(|error| match error {
         ProfileError::Query(error) => error.into(),

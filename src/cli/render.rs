@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
 use crate::cli::check::contents;
 use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
+use crate::cli::options::AccessArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
-use crate::cli::render_series::{RenderedPicture, RenderedScene, contact_sheet, render};
+use crate::cli::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
 use crate::cli::values::{choice, picture_size};
 use crate::message::suggest::{nearest, quoted};
 use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
@@ -25,9 +25,13 @@ const LONGEST_LABEL: usize = 60;
 
 #[derive(Debug, Args)]
 pub struct RenderArguments {
+    /// The scene files; with several, a bad one does not keep the others from being rendered
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
     #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Write the picture to this .png, .pdf or .svg file [default: the scene's name with .png, in the current folder]
+    pub access: AccessArguments,
+    /// Write the picture to this .png, .pdf or .svg file [default: the scene's name with .png, in the current folder];
+    /// those of several scenes to this folder
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]
@@ -75,34 +79,100 @@ impl RenderArguments {
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
-    let scene_file = &arguments.scene.scene;
-    let path = arguments.output.clone().unwrap_or_else(|| default_output(scene_file));
-    let check = if arguments.sheet { files::check_picture_output } else { files::check_sheet_output };
-    check(&path, &[scene_file]).map_err(|error| named_by_option(error, "this is the scene file itself"))?;
-    let steps = StepTimer::default();
-    let scenes = pool.install(|| render(arguments, &path, &steps))?;
-    if arguments.sheet {
-        steps.begin("writing the sheet");
-        files::write_picture(&path, &contact_sheet(arguments, &scenes)?)?;
+    let outputs = outputs(arguments)?;
+    let is_batch = outputs.len() > 1;
+    let (mut failures, mut values) = (Vec::new(), Vec::new());
+    for (file, path) in &outputs {
+        let steps = StepTimer::default();
+        match pool.install(|| render(arguments, file, path, &steps)) {
+            Ok(RenderedFile { scenes, failures: missing }) => {
+                let times = steps.finish();
+                match arguments.json {
+                    true => values.extend(scenes.iter().flat_map(|scene| scene.as_json(&times))),
+                    false => print_lines(&summary(arguments, path, &scenes, &times))?,
+                }
+                failures.extend(missing);
+            }
+            Err(error) if is_batch => {
+                failures.push(RenderFailure { name: file.display().to_string(), error });
+            }
+            Err(error) => return Err(error),
+        }
     }
-    let times = steps.finish();
-    let pictures = || scenes.iter().flat_map(|scene| &scene.pictures);
     if arguments.json {
-        let all: Vec<Value> = scenes.iter().flat_map(|scene| scene.as_json(&times)).collect();
-        return match &all[..] {
-            [one] if !arguments.all_cameras && !arguments.all_phases => print(&format!("{one:#}\n")),
-            all => print(&format!("{:#}\n", Value::from(all))),
-        };
+        match &values[..] {
+            [one] if !arguments.all_cameras && !arguments.all_phases && !is_batch => {
+                print(&format!("{one:#}\n"))?
+            }
+            _ => print(&format!("{:#}\n", Value::from(values)))?,
+        }
+    }
+    report(&failures)
+}
+
+/// The scene files, each with the file of its picture.
+fn outputs(arguments: &RenderArguments) -> Result<Vec<(&Path, PathBuf)>, CliError> {
+    if let [scene] = &arguments.scenes[..] {
+        let path = arguments.output.clone().unwrap_or_else(|| default_output(scene));
+        return Ok(vec![(scene, path)]);
+    }
+    let folder = arguments.output.as_deref().unwrap_or(Path::new(""));
+    if folder.is_file() {
+        return Err(CliError::usage(format!(
+            "{} is a file; the pictures of several scenes are written to a folder",
+            folder.display()
+        )));
+    }
+    if arguments.output.is_some() {
+        files::make_folder(folder)?;
+    }
+    let mut outputs: Vec<(&Path, PathBuf)> = Vec::new();
+    for scene in &arguments.scenes {
+        let path = folder.join(default_output(scene));
+        if let Some((other, _)) = outputs.iter().find(|(_, taken)| *taken == path) {
+            return Err(CliError::usage(format!(
+                "the pictures of {} and {} would both be {}; render them one by one, each with -o",
+                other.display(),
+                scene.display(),
+                path.display()
+            )));
+        }
+        outputs.push((scene, path));
+    }
+    Ok(outputs)
+}
+
+/// The lines about the pictures of a scene file; warns of letters that its font lacks.
+fn summary(
+    arguments: &RenderArguments,
+    path: &Path,
+    scenes: &[RenderedScene],
+    times: &[(&'static str, f64)],
+) -> Vec<String> {
+    for missing in scenes
+        .iter()
+        .flat_map(|scene| &scene.pictures)
+        .flat_map(|picture| &picture.annotations.missing_glyphs)
+    {
+        warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
     }
     let mut lines: Vec<String> = arguments.sheet.then(|| path.display().to_string()).into_iter().collect();
     lines.extend(scenes.iter().flat_map(RenderedScene::lines));
     let times: Vec<String> = times.iter().map(|(step, seconds)| format!("{step} {seconds:.2} s")).collect();
     lines.push(row(9, "time", times.join(", ")));
-    print_lines(&lines)?;
-    for missing in pictures().flat_map(|picture| &picture.annotations.missing_glyphs) {
-        warn(&format!("warning: the font lacks {} characters of '{}'", missing.count, missing.text));
+    lines
+}
+
+/// Says what was not rendered, where anything was not.
+fn report(failures: &[RenderFailure]) -> Result<(), CliError> {
+    if failures.is_empty() {
+        return Ok(());
     }
-    Ok(())
+    for failure in failures {
+        let _ = failure.error.report();
+    }
+    let names: Vec<&str> = failures.iter().map(|failure| failure.name.as_str()).collect();
+    Err(CliError::input(format!("not rendered: {}; the rest is written", names.join(", "))))
 }
 
 /// The error with `reason` and the option to change, where the picture would replace an input.

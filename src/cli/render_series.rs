@@ -6,14 +6,16 @@ use std::path::{Path, PathBuf};
 use crate::annotate::contact_sheet::{ContactPicture, ContactSheet};
 use crate::annotate::report::AnnotationReport;
 use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
 use crate::cli::progress::StepTimer;
 use crate::cli::render::{RenderArguments, find_camera, named_by_option};
 use crate::draw::list::DrawList;
 use crate::draw::pixels::Pixels;
+use crate::export::encode_png;
+use crate::message::suggest::quoted;
 use crate::pipeline::files;
 use crate::pipeline::fingerprint::fingerprint;
-use crate::pipeline::picture::{ComposedView, PictureSize, compose_view, draw_view};
+use crate::pipeline::output_files::OutputFiles;
+use crate::pipeline::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
 use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
@@ -56,115 +58,182 @@ impl RenderedPicture {
     }
 }
 
-/// Renders the pictures that the arguments ask for, and writes those that are files of their own.
+/// The pictures of a scene file.
+pub struct RenderedFile {
+    pub scenes: Vec<RenderedScene>,
+    /// What could not be drawn beside other pictures that could.
+    pub failures: Vec<RenderFailure>,
+}
+
+/// A scene, phase or camera that could not be rendered.
+pub struct RenderFailure {
+    pub name: String,
+    pub error: CliError,
+}
+
+/// Renders the pictures of a scene file that the arguments ask for and writes them, once all are there. A phase or camera
+/// that cannot be drawn is left out where there are others, but not of a sheet.
 pub fn render(
     arguments: &RenderArguments,
+    file: &Path,
     path: &Path,
     steps: &StepTimer,
-) -> Result<Vec<RenderedScene>, CliError> {
-    let progress = |step| steps.begin(step);
-    let SceneArguments { scene: file, access } = &arguments.scene;
-    if !arguments.all_phases {
-        let scene = match &arguments.phase {
-            Some(phase) => open_scene_in_phase(file, &access.allow, phase, &progress)?,
-            None => open_scene(file, &access.allow, &progress)?,
+) -> Result<RenderedFile, CliError> {
+    let check = if arguments.sheet { files::check_picture_output } else { files::check_sheet_output };
+    check(path, &[file]).map_err(|error| named_by_option(error, "this is the scene file itself"))?;
+    let mut series =
+        RenderSeries { arguments, file, steps, outputs: OutputFiles::default(), failures: Vec::new() };
+    let scenes = series.scenes(path)?;
+    if arguments.sheet {
+        steps.begin("writing the sheet");
+        series.outputs.write(path, &encode_png(&contact_sheet(arguments, &scenes)?))?;
+    }
+    series.outputs.publish()?;
+    Ok(RenderedFile { scenes, failures: series.failures })
+}
+
+/// The pictures of a scene file while they are made.
+struct RenderSeries<'a> {
+    arguments: &'a RenderArguments,
+    /// The scene file.
+    file: &'a Path,
+    steps: &'a StepTimer,
+    outputs: OutputFiles,
+    failures: Vec<RenderFailure>,
+}
+
+/// Where a picture goes.
+struct PictureTarget<'a> {
+    path: PathBuf,
+    /// Its size on a sheet.
+    small: Option<[u32; 2]>,
+    /// The scene's, where a sidecar states it.
+    fingerprint: Option<&'a str>,
+}
+
+impl RenderSeries<'_> {
+    /// The scene in each phase that the arguments ask for, rendered.
+    fn scenes(&mut self, path: &Path) -> Result<Vec<RenderedScene>, CliError> {
+        let (arguments, file, steps) = (self.arguments, self.file, self.steps);
+        let progress = |step| steps.begin(step);
+        let allowed = &arguments.access.allow;
+        if !arguments.all_phases {
+            let scene = match &arguments.phase {
+                Some(phase) => open_scene_in_phase(file, allowed, phase, &progress)?,
+                None => open_scene(file, allowed, &progress)?,
+            };
+            return Ok(vec![self.scene(scene, path, 1)?]);
+        }
+        let names = phases(file, allowed)?;
+        if names.is_empty() {
+            let message = "--all-phases has no effect: the scene has no [[phase]]; remove it";
+            return Err(CliError::Usage(message.into()));
+        }
+        let mut scenes = Vec::new();
+        for (phase, path) in names.iter().zip(named_paths(path, &names)) {
+            let scene = open_scene_in_phase(file, allowed, phase, &progress);
+            match scene {
+                Ok(scene) => scenes.push(self.scene(scene, &path, names.len())?),
+                Err(error) => self.leave_out("phase", phase, error.into(), names.len())?,
+            }
+        }
+        Ok(scenes)
+    }
+
+    /// Notes what cannot be rendered; an error where nothing else can be.
+    fn leave_out(&mut self, what: &str, name: &str, error: CliError, all: usize) -> Result<(), CliError> {
+        if all == 1 || self.arguments.sheet {
+            return Err(error);
+        }
+        let name = format!("{what} {} of {}", quoted(name), self.file.display());
+        self.failures.push(RenderFailure { name, error });
+        Ok(())
+    }
+
+    /// Renders one of `scenes` scenes.
+    fn scene(&mut self, scene: SceneModel, path: &Path, scenes: usize) -> Result<RenderedScene, CliError> {
+        let arguments = self.arguments;
+        let views: Vec<&SceneView> = match arguments.shows_all_cameras() {
+            true => scene.cameras.iter().collect(),
+            false => vec![find_camera(&scene, arguments.camera.as_deref())?],
         };
-        return Ok(vec![render_scene(arguments, scene, path, 1, &progress)?]);
-    }
-    let names = phases(file, &access.allow)?;
-    if names.is_empty() {
-        let message = "--all-phases has no effect: the scene has no [[phase]]; remove it";
-        return Err(CliError::Usage(message.into()));
-    }
-    let paths = named_paths(path, &names);
-    let phases = names.iter().zip(paths);
-    let render = |(phase, path): (&String, PathBuf)| {
-        let scene = open_scene_in_phase(file, &access.allow, phase, &progress)?;
-        render_scene(arguments, scene, &path, names.len(), &progress)
-    };
-    phases.map(render).collect()
-}
-
-fn render_scene(
-    arguments: &RenderArguments,
-    scene: SceneModel,
-    path: &Path,
-    scenes: usize,
-    progress: &dyn Fn(&'static str),
-) -> Result<RenderedScene, CliError> {
-    let views: Vec<&SceneView> = match arguments.shows_all_cameras() {
-        true => scene.cameras.iter().collect(),
-        false => vec![find_camera(&scene, arguments.camera.as_deref())?],
-    };
-    let small = if arguments.sheet { Some(sheet_of(arguments, views.len() * scenes)?) } else { None };
-    let small = small.map(|sheet| sheet.picture_size());
-    let names: Vec<String> = views.iter().map(|view| view.name.clone()).collect();
-    let paths =
-        if arguments.all_cameras { named_paths(path, &names) } else { vec![path.to_owned(); views.len()] };
-    for path in &paths {
-        let sidecar = arguments.sidecar.then(|| sidecar_path(path));
-        for output in std::iter::once(path).chain(&sidecar) {
-            files::check_output(output, &scene.files)
-                .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
+        let small = if arguments.sheet { Some(sheet_of(arguments, views.len() * scenes)?) } else { None };
+        let small = small.map(|sheet| sheet.picture_size());
+        let names: Vec<String> = views.iter().map(|view| view.name.clone()).collect();
+        let paths = if arguments.all_cameras {
+            named_paths(path, &names)
+        } else {
+            vec![path.to_owned(); views.len()]
+        };
+        for path in &paths {
+            let sidecar = arguments.sidecar.then(|| sidecar_path(path));
+            for output in std::iter::once(path).chain(&sidecar) {
+                files::check_output(output, &scene.files)
+                    .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
+            }
         }
-    }
-    let fingerprint = match arguments.sidecar {
-        true => Some(fingerprint(&arguments.scene.scene, &scene.files)?),
-        false => None,
-    };
-    let mut pictures = Vec::new();
-    for (view, path) in views.into_iter().zip(paths) {
-        pictures.push(render_picture(
-            arguments,
-            &scene,
-            view,
-            (path, small, fingerprint.as_deref()),
-            progress,
-        )?);
-    }
-    Ok(RenderedScene { scene, pictures })
-}
-
-/// Renders a picture to a file, or of the size `small` for a sheet; with a sidecar where the scene has a fingerprint.
-fn render_picture(
-    arguments: &RenderArguments,
-    scene: &SceneModel,
-    camera: &SceneView,
-    (path, small, fingerprint): (PathBuf, Option<[u32; 2]>, Option<&str>),
-    progress: &dyn Fn(&'static str),
-) -> Result<RenderedPicture, CliError> {
-    let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(camera));
-    let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
-    let drawn = draw_view(scene, camera, size, arguments.backend, progress)?;
-    let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
-    if let Some(folder) = &arguments.buffers {
-        progress("writing buffers");
-        // The buffers of several pictures lie in folders named as the pictures are.
-        let is_one = !arguments.all_cameras && !arguments.all_phases;
-        let folder = if is_one { folder.clone() } else { folder.join(files::file_stem(&path)) };
-        files::make_folder(&folder)?;
-        PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture }.write(&folder)?;
-    }
-    let draft = fingerprint.map(|fingerprint| {
-        progress("describing the picture");
-        SidecarDraft::new(scene, (&arguments.scene.scene, fingerprint), camera, &drawn)
-    });
-    let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, progress);
-    let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
-    let output = if small.is_some() {
-        PictureOutput::Sheet(sheet.painted())
-    } else {
-        progress("writing the picture");
-        let description = picture_description(scene, camera);
-        write_sheet(&path, sheet, camera.dpi(), (scene.title.as_deref(), &description))?;
-        if let Some(draft) = draft {
-            let text = format!("{:#}\n", draft.finished(&annotations));
-            files::write(&sidecar_path(&path), text.as_bytes())?;
+        let fingerprint = match arguments.sidecar {
+            true => Some(fingerprint(self.file, &scene.files)?),
+            false => None,
+        };
+        let mut pictures = Vec::new();
+        for (&view, path) in views.iter().zip(paths) {
+            let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(view));
+            let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
+            let steps = self.steps;
+            match draw_view(&scene, view, size, arguments.backend, &|step| steps.begin(step)) {
+                Ok(drawn) => {
+                    let target = PictureTarget { path, small, fingerprint: fingerprint.as_deref() };
+                    pictures.push(self.picture(&scene, view, drawn, target)?);
+                }
+                Err(error) => self.leave_out("camera", &view.name, error.into(), views.len())?,
+            }
         }
-        PictureOutput::File(path)
-    };
-    let camera = camera.name.clone();
-    Ok(RenderedPicture { output, camera, triangles, ground_triangles, annotations, statistics })
+        Ok(RenderedScene { scene, pictures })
+    }
+
+    /// Writes a picture to its file, with a sidecar where the scene has a fingerprint, or keeps it for a sheet.
+    fn picture(
+        &mut self,
+        scene: &SceneModel,
+        camera: &SceneView,
+        drawn: DrawnView,
+        target: PictureTarget,
+    ) -> Result<RenderedPicture, CliError> {
+        let (arguments, steps, outputs) = (self.arguments, self.steps, &mut self.outputs);
+        let progress = |step| steps.begin(step);
+        let PictureTarget { path, small, fingerprint } = target;
+        let statistics = arguments.json.then(|| PictureStatistics::new(&drawn.picture));
+        if let Some(folder) = &arguments.buffers {
+            progress("writing buffers");
+            // The buffers of several pictures lie in folders named as the pictures are.
+            let is_one = !arguments.all_cameras && !arguments.all_phases && arguments.scenes.len() == 1;
+            let folder = if is_one { folder.clone() } else { folder.join(files::file_stem(&path)) };
+            files::make_folder(&folder)?;
+            let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
+            buffers.write(outputs, &folder)?;
+        }
+        let draft = fingerprint.map(|fingerprint| {
+            progress("describing the picture");
+            SidecarDraft::new(scene, (self.file, fingerprint), camera, &drawn)
+        });
+        let ComposedView { sheet, drawn, annotations } = compose_view(scene, drawn, &progress);
+        let (triangles, ground_triangles) = (triangles(scene, &drawn.list), drawn.ground_triangles);
+        let output = if small.is_some() {
+            PictureOutput::Sheet(sheet.painted())
+        } else {
+            progress("writing the picture");
+            let description = picture_description(scene, camera);
+            write_sheet(outputs, &path, sheet, camera.dpi(), (scene.title.as_deref(), &description))?;
+            if let Some(draft) = draft {
+                let text = format!("{:#}\n", draft.finished(&annotations));
+                outputs.write(&sidecar_path(&path), text.as_bytes())?;
+            }
+            PictureOutput::File(path)
+        };
+        let camera = camera.name.clone();
+        Ok(RenderedPicture { output, camera, triangles, ground_triangles, annotations, statistics })
+    }
 }
 
 /// The size of a contact sheet where none is stated.
@@ -181,7 +250,7 @@ fn sheet_of(arguments: &RenderArguments, pictures: usize) -> Result<ContactSheet
 }
 
 /// The pictures of all scenes on one sheet.
-pub fn contact_sheet(arguments: &RenderArguments, scenes: &[RenderedScene]) -> Result<Pixels, CliError> {
+fn contact_sheet(arguments: &RenderArguments, scenes: &[RenderedScene]) -> Result<Pixels, CliError> {
     let caption = |scene: &SceneModel, picture: &RenderedPicture| {
         let phase = scene.phase.as_ref().filter(|_| arguments.all_phases);
         match (phase, arguments.shows_all_cameras()) {

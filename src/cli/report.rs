@@ -10,6 +10,7 @@ use crate::cli::options::SceneArguments;
 use crate::cli::output::{aligned, print, print_lines};
 use crate::cli::progress::StepTimer;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::scene_file::open_scene_true_to_scale;
 use crate::scene::SceneModel;
 use crate::scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
@@ -89,13 +90,16 @@ fn write_csv_files(scene: &SceneModel, folder: &Path) -> Result<Vec<String>, Wri
         let separator = if name.is_empty() { "" } else { "_" };
         (format!("profile_{}{separator}{name}", profile.feature.0), profile.csv())
     });
-    let written = tables.chain(profiles).map(|(name, csv)| {
+    let mut outputs = OutputFiles::default();
+    let mut written = Vec::new();
+    for (name, csv) in tables.chain(profiles) {
         let path = folder.join(format!("{name}.csv"));
         files::check_output(&path, &scene.files)?;
-        files::write(&path, csv.as_bytes())?;
-        Ok(path.display().to_string())
-    });
-    written.collect()
+        outputs.write(&path, csv.as_bytes())?;
+        written.push(path.display().to_string());
+    }
+    outputs.publish()?;
+    Ok(written)
 }
 
 /// A table as CSV (RFC 4180) with a header.

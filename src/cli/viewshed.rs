@@ -72,7 +72,7 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     steps.begin("reading the ground");
     let dataset = arguments.dataset.open()?;
-    let snapshot = dataset.service()?.snapshot();
+    let snapshot = arguments.dataset.ground(&dataset)?;
     let options = options(arguments, &dataset, snapshot.crs())?;
     steps.begin("looking around");
     let viewshed = viewshed(snapshot.lattice(), &options).map_err(|answer| QueryError::NoGround {

@@ -9,7 +9,7 @@ use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
 
 /// The bytes of a packed file that are unpacked before it is known what it is.
-const HEAD_BYTES: u64 = 64 << 10;
+pub const HEAD_BYTES: u64 = 64 << 10;
 
 /// The most bytes of a packed companion: a mask of the largest raster, a bit a sample.
 const MOST_COMPANION_BYTES: u64 = 64 << 20;
@@ -161,6 +161,17 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
         raster.samples.clear(nodata);
     }
     Ok(raster)
+}
+
+/// The name of the format that a file seems to have by its name and its first bytes, of which [`HEAD_BYTES`] are enough;
+/// `None` where it is none of elevation. A PNG is elevation where the hints say what its colors mean; an archive may be.
+pub fn format_by_head(name: &str, head: &[u8], hints: &DemHints) -> Option<&'static str> {
+    if archive::is_gzip(head) || archive::is_zip(head) {
+        return Some("packed");
+    }
+    let format = format_of(&DemFile { name, bytes: head, hints }).ok()?;
+    let is_picture = hints.height_scale.is_none() && hints.height_encoding.is_none() && format.name == "PNG";
+    (!is_picture).then_some(format.name)
 }
 
 fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {

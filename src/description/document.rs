@@ -77,9 +77,9 @@ table! {
         /// Second line under the title.
         subtitle: Option<String> = key::text(), otherwise "none";
         /// Coordinate system of the scene, `EPSG:n` or a proj string, in meters.
-        crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center where it is in degrees";
+        crs: Option<Crs> = key::metric_crs(), otherwise "the DEM's, or the UTM zone of its center where it is in degrees or its lengths are off by more than 1 %";
         /// Coordinate system of inline points, unless a table has its own `crs`.
-        points_crs: Option<Crs> = key::crs(), otherwise "the scene's";
+        points_crs: Option<Crs> = key::crs(), otherwise "`crs`, or the DEM's where that is in meters, or the scene's";
         /// A TTF or OTF file, or a collection (TTC): the font of characters that the built-in one lacks. That one has Latin,
         /// Greek and Cyrillic.
         font: Option<Stated<String>> = key::file(), otherwise "none; characters that the built-in font lacks are boxes, and reported";

@@ -73,6 +73,10 @@ finding_codes! {
     NoSystem = "no-system", Note,
         "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
          Earth, so that data in other systems cannot be added.";
+    LengthsNotTrue = "lengths-not-true", Warning,
+        "Lengths in the system of the elevation differ from those on the ground by more than 1 %, as in Web Mercator. The scene is \
+         made in the UTM zone of its center instead, so that slopes, distances, volumes and lines of sight are in true meters; \
+         positions are still read in the system that is stated. State a system with true lengths to choose another.";
     FarFromZone = "far-from-zone", Warning,
         "The scene lies far from the zone of its coordinate system. Lengths are off by more than 0.1 % there, or the zone is \
          wrong and with it every longitude and latitude. The zone that fits is named.";

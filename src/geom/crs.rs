@@ -252,6 +252,21 @@ impl Crs {
         Definition::from_proj(text, base)
     }
 
+    /// Longitude and latitude in degrees on the datum of a projected system: WGS 84 where the shift to it is known, so that
+    /// the two transform to each other; `None` for a geographic system and for [`Crs::local`].
+    pub(crate) fn geographic_base(&self) -> Option<Self> {
+        /// The words of a proj string that state a datum.
+        const DATUM: [&str; 8] = ["datum", "ellps", "a", "b", "rf", "R", "nadgrids", "pm"];
+        if self.is_geographic() || self.inner.text.is_empty() {
+            return None;
+        }
+        if self.inner.datum == DatumTie::Known {
+            return Some(Self::wgs84());
+        }
+        let text = format!("+proj=longlat {}", ProjString(&self.inner.text).only(&DATUM));
+        Self::build(text.clone(), None, ProjString(&text)).ok()
+    }
+
     /// The proj string of the system; empty for [`Crs::local`].
     pub fn proj_text(&self) -> &str {
         &self.inner.text

@@ -13,6 +13,7 @@ pub mod geodesic;
 pub mod isolines;
 pub mod join;
 pub mod leg_tree;
+pub mod map_scale;
 pub mod mgrs;
 pub mod morton;
 pub mod offset;

@@ -10,10 +10,12 @@ use rayon::prelude::*;
 
 use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
+use crate::dem::warp::metric_crs::off_scale;
 use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::dem::{self, DemOptions, OpenDemError};
 use crate::pipeline::ground::{self, GroundError};
 use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
+use crate::scene::SceneGround;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Interpolation, Surface};
@@ -40,7 +42,7 @@ enum DatasetContent {
         ground: OnceLock<Result<HeightService, Arc<GroundError>>>,
         warning: Option<String>,
     },
-    Scene(HeightService),
+    Scene(SceneGround),
 }
 
 /// A dataset that cannot be opened.
@@ -94,7 +96,7 @@ impl Dataset {
         let name = path.display().to_string();
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
             let ground = open_scene_ground(path, &options.allowed)?;
-            return Ok(Self { name, content: DatasetContent::Scene(ground.heights) });
+            return Ok(Self { name, content: DatasetContent::Scene(ground) });
         }
         let mosaic = dem::open(path, &options.dem)?;
         let warning = dem::warning(path, &mosaic);
@@ -110,11 +112,22 @@ impl Dataset {
         }
     }
 
+    /// A note for the user where the ground lies in another system than [`Dataset::crs`] because lengths in that are not
+    /// true. It does not concern heights of the source.
+    pub fn ground_note(&self) -> Option<String> {
+        let note = match &self.content {
+            // A raster without ground says so when its ground is made.
+            DatasetContent::Raster { raster, .. } => off_scale(raster, None).ok()?.map(|off| off.to_string()),
+            DatasetContent::Scene(ground) => ground.scale_note.clone(),
+        };
+        note.map(|note| format!("{}: {note}", self.name))
+    }
+
     /// The coordinate system of positions unless the caller states another: the file's or the scene's.
     pub fn crs(&self) -> Crs {
         match &self.content {
             DatasetContent::Raster { raster, .. } => raster.crs.clone().unwrap_or_else(Crs::local),
-            DatasetContent::Scene(service) => service.snapshot().crs().clone(),
+            DatasetContent::Scene(ground) => ground.stated_crs.clone(),
         }
     }
 
@@ -130,7 +143,7 @@ impl Dataset {
     pub fn source(&self) -> Arc<Raster> {
         match &self.content {
             DatasetContent::Raster { raster, .. } => Arc::clone(raster),
-            DatasetContent::Scene(service) => Arc::clone(service.snapshot().source()),
+            DatasetContent::Scene(ground) => Arc::clone(ground.heights.snapshot().source()),
         }
     }
 
@@ -140,7 +153,7 @@ impl Dataset {
     /// [`QueryError::Ground`].
     pub fn service(&self) -> Result<&HeightService, QueryError> {
         match &self.content {
-            DatasetContent::Scene(service) => Ok(service),
+            DatasetContent::Scene(ground) => Ok(&ground.heights),
             DatasetContent::Raster { raster, ground, .. } => {
                 ground.get_or_init(|| ground::height_service(raster).map_err(Arc::new)).as_ref().map_err(
                     |error| QueryError::Ground { dataset: self.name.clone(), source: Arc::clone(error) },

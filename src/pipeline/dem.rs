@@ -55,6 +55,13 @@ pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<M
     Ok(tiles.join()?)
 }
 
+/// The name of the format of an elevation file, by its head; `None` where it seems to be no elevation or cannot be read.
+pub fn format_by_head(path: &Path, options: &DemOptions) -> Option<&'static str> {
+    let head = files::read_head(path, read::HEAD_BYTES).ok()?;
+    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
+    read::format_by_head(&files::file_name(path), &head, &hints)
+}
+
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
     let bytes = files::read(path)?;
     let hints = DemHints { companions: &files::beside(path), ..options.clone() };

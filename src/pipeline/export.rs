@@ -6,6 +6,7 @@ use crate::draw::list::DrawList;
 use crate::export::{SceneExport, glb, obj, prepare};
 use crate::mesh::write::Remarks;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::scene::SceneModel;
 use crate::scene::picture;
 
@@ -60,19 +61,21 @@ pub fn export(
     let name_of = |feature| scene.feature_name(feature);
     let export = SceneExport { list: &list, name_of: &name_of, remarks: &remarks };
     let mut written = vec![path.to_owned()];
+    let mut outputs = OutputFiles::default();
     match format {
-        ExportFormat::Glb => files::write_with(path, |out| glb::write(&export, out))?,
+        ExportFormat::Glb => outputs.write_with(path, |out| glb::write(&export, out))?,
         ExportFormat::Obj => {
             let stem = files::file_stem(path);
             for companion in obj::companions(&list, &stem) {
                 let path = path.with_file_name(companion.name);
                 files::check_output(&path, &scene.files)?;
-                files::write(&path, &companion.bytes)?;
+                outputs.write(&path, &companion.bytes)?;
                 written.push(path);
             }
-            files::write_with(path, |out| obj::write(&export, &stem, out))?;
+            outputs.write_with(path, |out| obj::write(&export, &stem, out))?;
         }
     }
+    outputs.publish()?;
     Ok(ExportedScene { files: written, list })
 }
 

@@ -8,6 +8,7 @@ use std::string::FromUtf8Error;
 use crate::draw::pixels::Pixels;
 use crate::export::encode_png;
 use crate::pipeline::error::FileError;
+use crate::pipeline::output_files::OutputFiles;
 
 /// The largest input file: more than any elevation tile in use, less than the memory of today's machines.
 const MAX_BYTES: u64 = 4 << 30;
@@ -49,6 +50,8 @@ pub enum WriteFileCause {
     NoName,
     #[error("this is a file that is read; name another to write to")]
     Input,
+    #[error("this file may not be written over; name another, or let it be written to")]
+    ReadOnly,
     /// The name has another extension than `.png`.
     #[error("pictures are written as PNG; name one that ends in .png")]
     NotPng,
@@ -68,6 +71,12 @@ pub enum SystemError {
     /// No permission.
     #[error("permission denied")]
     Denied,
+    /// No space on the disk, or none that this user may take.
+    #[error("the disk is full")]
+    Full,
+    /// A disk that is mounted to be read.
+    #[error("the disk is read-only")]
+    ReadOnlyDisk,
     /// Anything else.
     #[error(transparent)]
     Other(io::Error),
@@ -78,6 +87,8 @@ impl From<io::Error> for SystemError {
         match error.kind() {
             io::ErrorKind::NotFound => Self::NotFound,
             io::ErrorKind::PermissionDenied => Self::Denied,
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::Full,
+            io::ErrorKind::ReadOnlyFilesystem => Self::ReadOnlyDisk,
             _ => Self::Other(error),
         }
     }
@@ -100,6 +111,20 @@ pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
         return Err(ReadFileError::new(path, ReadFileCause::TooLarge(metadata.len())));
     }
     fs::read(path).map_err(system(path))
+}
+
+/// The first `most` bytes of a regular file.
+///
+/// # Errors
+/// See [`ReadFileCause`].
+pub fn read_head(path: &Path, most: u64) -> Result<Vec<u8>, ReadFileError> {
+    let file = fs::File::open(path).map_err(system(path))?;
+    if !file.metadata().map_err(system(path))?.is_file() {
+        return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
+    }
+    let mut head = Vec::new();
+    file.take(most).read_to_end(&mut head).map_err(system(path))?;
+    Ok(head)
 }
 
 /// The text of a file, or of standard input for the path `-`.
@@ -160,7 +185,8 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// work and not after it.
 ///
 /// # Errors
-/// The folder does not exist; `path` is a folder, a device or one of `inputs`, whose links are followed.
+/// The folder does not exist; `path` is a folder, a device, a file that may not be written to or one of `inputs`, whose
+/// links are followed.
 pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let is_input = || {
@@ -174,6 +200,7 @@ pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), Wri
         Ok(metadata) if metadata.is_dir() => WriteFileCause::Folder,
         Ok(metadata) if !metadata.is_file() => WriteFileCause::Device,
         Ok(_) if is_input() => WriteFileCause::Input,
+        Ok(metadata) if metadata.permissions().readonly() => WriteFileCause::ReadOnly,
         _ if path.file_name().is_none() => WriteFileCause::NoName,
         _ => return Ok(()),
     };
@@ -226,7 +253,7 @@ pub fn write_picture(path: &Path, pixels: &Pixels) -> Result<(), WriteFileError>
     write(path, &encode_png(pixels))
 }
 
-/// Writes a file: first under another name beside `path`, then renamed to it.
+/// Writes a file, whole or not at all.
 ///
 /// # Errors
 /// The system refuses.
@@ -240,20 +267,9 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteFileError> {
 /// The system or `content` fails.
 pub fn write_with(
     path: &Path,
-    content: impl FnOnce(&mut BufWriter<fs::File>) -> io::Result<()>,
+    content: impl FnOnce(&mut BufWriter<&fs::File>) -> io::Result<()>,
 ) -> Result<(), WriteFileError> {
-    let name = path.file_name().ok_or_else(|| WriteFileError::new(path, WriteFileCause::NoName))?;
-    let mut partial = name.to_owned();
-    partial.push(format!(".{}.part", std::process::id()));
-    let partial = path.with_file_name(partial);
-    let fill = |file| {
-        let mut out = BufWriter::new(file);
-        content(&mut out)?;
-        out.into_inner()?.sync_all()
-    };
-    let written = fs::File::create(&partial).and_then(fill).and_then(|()| fs::rename(&partial, path));
-    written.map_err(|error| {
-        let _ = fs::remove_file(&partial);
-        WriteFileError::new(path, SystemError::from(error))
-    })
+    let mut files = OutputFiles::default();
+    files.write_with(path, content)?;
+    files.publish()
 }

@@ -43,7 +43,8 @@ fn warp_reason(error: &WarpError) -> String {
 }
 
 impl MetricGround {
-    /// The ground of a raster; one in degrees is brought to the UTM zone of its center.
+    /// The ground of a raster; one in degrees, or in a system whose lengths are not true, is brought to the UTM zone of its
+    /// center.
     ///
     /// # Errors
     /// See [`GroundError`].

@@ -1,6 +1,6 @@
 //! What a picture shows at each pixel: where it is, how high and of which feature.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{DAffine2, DMat2, DVec2, Vec2, Vec3};
 use rayon::prelude::*;
@@ -11,7 +11,9 @@ use crate::dem::raster::{Raster, Samples};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
+use crate::export::encode_png;
 use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::picture::{PictureError, PictureSize, framed_camera};
 use crate::pipeline::raster_file::{self, WriteRasterError};
 use crate::render::cpu::render_buffers;
@@ -99,12 +101,12 @@ impl PictureBuffers<'_> {
     }
 
     /// Writes `depth.tif` and `elevation.tif` in meters without data for sky, `normal.png`, `feature.tif` with the number
-    /// of a feature at each pixel (0 for sky, 1 for ground) and `features.csv` with their names, all into `folder`. In a
-    /// plan the rasters have the scene's georeference.
+    /// of a feature at each pixel (0 for sky, 1 for ground) and `features.csv` with their names, all into `folder`, among the other
+    /// `files`. In a plan the rasters have the scene's georeference.
     ///
     /// # Errors
     /// A file cannot be written, or would replace one of the scene's.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, WriteRasterError> {
+    pub fn write(&self, files: &mut OutputFiles, folder: &Path) -> Result<(), WriteRasterError> {
         let Rendering { depth_m, features, .. } = self.rendering;
         let finite = |&depth_m: &f32| if depth_m.is_finite() { depth_m } else { f32::NAN };
         let depths = Samples::F32(depth_m.par_iter().map(finite).collect());
@@ -116,22 +118,18 @@ impl PictureBuffers<'_> {
         // The plinth is the last number there is.
         let numbers = features.iter().map(|feature| f64::from(feature.0));
         let numbers = Samples::F64(numbers.collect());
-        let mut written = Vec::new();
         for (name, samples) in
             [("depth.tif", depths), ("elevation.tif", elevations), ("feature.tif", numbers)]
         {
             let path = folder.join(name);
             files::check_output(&path, &self.scene.files)?;
             let format = DemFormat::to_write("tif").expect("GeoTIFF is written");
-            raster_file::write(&self.raster(samples), format, &path, &self.scene.files)?;
-            written.push(path);
+            raster_file::add(files, &self.raster(samples), format, &path, &self.scene.files)?;
         }
-        written.push(self.write_normals(folder)?);
+        self.write_normals(files, folder)?;
         let path = folder.join("features.csv");
         files::check_output(&path, &self.scene.files)?;
-        files::write(&path, self.feature_table().as_bytes())?;
-        written.push(path);
-        Ok(written)
+        Ok(files.write(&path, self.feature_table().as_bytes())?)
     }
 
     fn each_pixel<T: Send>(&self, value: impl Fn((u32, u32)) -> T + Sync) -> Vec<T> {
@@ -180,7 +178,7 @@ impl PictureBuffers<'_> {
 
     /// Unit normals in world space, their X, Y and Z from -1 to 1 as red, green and blue; transparent for sky. Each is that
     /// of the surface through a pixel's neighbors, on the sides where the depth changes less.
-    fn write_normals(&self, folder: &Path) -> Result<PathBuf, WriteFileError> {
+    fn write_normals(&self, files: &mut OutputFiles, folder: &Path) -> Result<(), WriteFileError> {
         let normal = |(column, row): (u32, u32)| {
             let Some((_, at)) = self.world(column, row) else { return Srgba([0; 4]) };
             let toward = |before: Option<(u32, u32)>, after: (u32, u32)| {
@@ -204,8 +202,7 @@ impl PictureBuffers<'_> {
         pixels.data_mut().copy_from_slice(&self.each_pixel(normal));
         let path = folder.join("normal.png");
         files::check_output(&path, &self.scene.files)?;
-        files::write_picture(&path, &pixels)?;
-        Ok(path)
+        files.write(&path, &encode_png(&pixels))
     }
 
     /// The features that the picture shows, with the pixels that each covers and the box around them.

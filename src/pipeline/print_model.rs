@@ -17,6 +17,7 @@ use crate::mesh::write::three_mf::{self, PlacedSolid};
 use crate::mesh::write::{Remarks, stl};
 use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::render::cpu::{CpuRenderError, render_buffers};
 use crate::scene::picture::build_relief;
 use crate::scene::{FeatureKind, SceneModel};
@@ -182,9 +183,11 @@ pub fn write(
             let named = |piece: &PlacedSolid| path.with_file_name(format!("{stem}-{}.stl", piece.name));
             let paths: Vec<PathBuf> = pieces.iter().map(named).collect();
             paths.iter().try_for_each(|path| files::check_output(path, &scene.files))?;
+            let mut files = OutputFiles::default();
             for (path, piece) in paths.iter().zip(pieces) {
-                files::write_with(path, |out| stl::write(&piece.mesh, &remarks, out))?;
+                files.write_with(path, |out| stl::write(&piece.mesh, &remarks, out))?;
             }
+            files.publish()?;
             Ok(paths)
         }
     }

@@ -7,6 +7,7 @@ use crate::dem::raster::Raster;
 use crate::dem::write::{self, Companion, WriteError, WrittenDem};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 
 /// A raster that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -22,11 +23,29 @@ pub enum WriteRasterError {
     File(#[from] WriteFileError),
 }
 
-/// Writes a raster to `path`, first the files that belong beside it. `inputs` are the files that it was made of.
+/// Writes a raster to `path` and the files that belong beside it, all or none. `inputs` are the files that it was made
+/// of.
 ///
 /// # Errors
 /// See [`WriteRasterError`]; nothing replaces one of `inputs` or a sidecar of one.
 pub fn write(
+    raster: &Raster,
+    format: &DemFormat,
+    path: &Path,
+    inputs: &[PathBuf],
+) -> Result<WrittenDem, WriteRasterError> {
+    let mut files = OutputFiles::default();
+    let written = add(&mut files, raster, format, path, inputs)?;
+    files.publish()?;
+    Ok(written)
+}
+
+/// [`write`] among other files.
+///
+/// # Errors
+/// As [`write`].
+pub fn add(
+    files: &mut OutputFiles,
     raster: &Raster,
     format: &DemFormat,
     path: &Path,
@@ -37,9 +56,9 @@ pub fn write(
         check_companion(&path.with_extension(companion.extension), companion, inputs)?;
     }
     for companion in &written.companions {
-        files::write(&path.with_extension(companion.extension), &companion.bytes)?;
+        files.write(&path.with_extension(companion.extension), &companion.bytes)?;
     }
-    files::write(path, &written.bytes)?;
+    files.write(path, &written.bytes)?;
     Ok(written)
 }
 

@@ -6,7 +6,8 @@ use crate::annotate::paint::ComposedSheet;
 use crate::annotate::pdf::PdfError;
 use crate::export::{PngNotes, encode_png, encode_png_with};
 use crate::pipeline::error::FileError;
-use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::files::WriteFileError;
+use crate::pipeline::output_files::OutputFiles;
 use crate::scene::{SceneModel, SceneView};
 
 /// Pixels per inch where a view has no print in mind.
@@ -27,12 +28,13 @@ pub fn picture_description(scene: &SceneModel, view: &SceneView) -> String {
     format!("camera {}, coordinates {}, heights times {}", view.name, scene.crs.name(), scene.scale.0)
 }
 
-/// Writes a sheet: with letters and lines as vectors where the name ends in `.pdf` or `.svg`, otherwise as PNG. `dpi` are
+/// Writes a sheet among other `files`: with letters and lines as vectors where the name ends in `.pdf` or `.svg`, otherwise as PNG. `dpi` are
 /// the pixels per inch of its print, where it has one in mind; a PNG holds `description` as well.
 ///
 /// # Errors
 /// See [`WriteSheetError`].
 pub fn write_sheet(
+    files: &mut OutputFiles,
     path: &Path,
     sheet: ComposedSheet,
     dpi: Option<f64>,
@@ -50,5 +52,5 @@ pub fn write_sheet(
             encode_png_with(&sheet.painted(), &PngNotes { dpi, texts })
         }
     };
-    Ok(files::write(path, &bytes)?)
+    Ok(files.write(path, &bytes)?)
 }

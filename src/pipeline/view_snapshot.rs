@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use glam::{DVec2, Vec3};
 
 use crate::pipeline::editing::editor::SceneSource;
-use crate::pipeline::files;
+use crate::pipeline::files::{self, WriteFileError};
+use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::picture::{ComposedView, PictureError, PictureSize, compose_view, draw_view};
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::pipeline::sheet_file::{WriteSheetError, picture_description, write_sheet};
@@ -55,6 +56,8 @@ pub enum ViewSnapshotError {
     Picture(#[from] PictureError),
     #[error(transparent)]
     Write(#[from] WriteSheetError),
+    #[error(transparent)]
+    File(#[from] WriteFileError),
 }
 
 /// The first name `view-N` that neither a camera of `scene` nor a picture beside `file` has.
@@ -171,7 +174,9 @@ impl ViewSnapshot {
             return Err(ViewSnapshotError::Exists(path));
         }
         let description = picture_description(&scene, view);
-        write_sheet(&path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
+        let mut files = OutputFiles::default();
+        write_sheet(&mut files, &path, sheet, view.dpi(), (scene.title.as_deref(), &description))?;
+        files.publish()?;
         Ok(path)
     }
 }

@@ -57,14 +57,15 @@ use crate::terrain::triangle_surface::SurfaceTriangle;
 pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
     let loaded = ground::load(document, assets)?;
     let mut lattice = loaded.lattice;
-    let frame = WorldFrame::new(document, &loaded.crs, lattice.origin());
+    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, lattice.origin());
     let sources = Sources::new(&frame, assets);
     let mut collected = SceneBuilder::new(loaded.findings);
     shape(document, &sources, &mut lattice, &mut collected)?;
     models::level_pads(&sources, &mut lattice)?;
     let lattice = Arc::new(lattice);
     let heights = height_service(document, loaded.source, loaded.crs.clone(), lattice, &collected.decks)?;
-    Ok(SceneGround { heights, files: assets.files_read() })
+    let (stated_crs, scale_note) = (loaded.stated_crs, loaded.scale_note);
+    Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
 }
 
 /// Builds the scene that `document` describes. `progress` is called with the name of each pass as it begins.
@@ -78,8 +79,8 @@ pub fn build(
 ) -> Result<SceneModel, Diagnostic> {
     progress("reading elevation");
     let loaded = ground::load(document, assets)?;
-    let (crs, mut lattice) = (loaded.crs, loaded.lattice);
-    let frame = WorldFrame::new(document, &crs, lattice.origin());
+    let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
+    let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.origin());
 
     progress("laying features");
     let sources = Sources::new(&frame, assets);
@@ -172,6 +173,7 @@ pub fn build(
         report: collected.report,
         profiles: collected.profiles,
         crs,
+        stated_crs,
         files: assets.files_read(),
     })
 }

@@ -61,7 +61,7 @@ pub fn flight(
     scene: &SceneModel,
 ) -> Result<SceneFlight, Diagnostic> {
     let lattice = &scene.lattice;
-    let frame = &WorldFrame::new(document, &scene.crs, lattice.origin());
+    let frame = &WorldFrame::new(document, &scene.crs, &scene.stated_crs, lattice.origin());
     let sources = Sources::new(frame, assets);
     let lines = sources.lines(&table.source)?;
     let paths = lines.into_iter().filter_map(|line| Polyline::new(line.shape, MERGE_M));

@@ -15,6 +15,7 @@ use crate::dem::read::{self, DemHints};
 use crate::dem::undeclared::{NodataSign, undeclared_nodata};
 use crate::dem::voids;
 use crate::dem::warp;
+use crate::dem::warp::metric_crs::{metric_crs, off_scale};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
@@ -33,6 +34,10 @@ pub struct LoadedGround {
     pub lattice: Lattice,
     /// The scene's system.
     pub crs: Crs,
+    /// The system that the scene file or its elevation states in meters: the scene's but where its lengths are not true.
+    pub stated_crs: Crs,
+    /// A note where the two differ; it is among `findings`.
+    pub scale_note: Option<String>,
     /// What was found, for the user.
     pub findings: SceneFindings,
 }
@@ -69,7 +74,13 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     let metric = metric(document, filled.as_ref().unwrap_or(&source), &mut findings)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
-    Ok(LoadedGround { source: Arc::new(source), lattice, crs, findings })
+    let off = off_scale(&source, document.crs.as_ref()).map_err(|error| document.error(dem, error))?;
+    let scale_note = off.as_ref().map(ToString::to_string);
+    if let Some(note) = &scale_note {
+        findings.add(FindingCode::LengthsNotTrue, span, note.as_str());
+    }
+    let stated_crs = off.map_or_else(|| crs.clone(), |off| off.stated);
+    Ok(LoadedGround { source: Arc::new(source), lattice, crs, stated_crs, scale_note, findings })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system.
@@ -89,10 +100,12 @@ fn metric<'a>(
             false => metric,
         });
     };
-    let crs = warp::metric_crs(source, document.crs.as_ref()).map_err(failed)?;
+    let crs = metric_crs(source, document.crs.as_ref()).map_err(failed)?;
     let scene = crs.clone().unwrap_or_else(Crs::local);
-    let given = document.points_crs.as_ref().unwrap_or(&scene);
-    let own = source.crs.as_ref().unwrap_or(&scene);
+    let off = off_scale(source, document.crs.as_ref()).map_err(failed)?;
+    let stated = off.map_or_else(|| scene.clone(), |off| off.stated);
+    let given = document.points_crs.as_ref().unwrap_or(&stated);
+    let own = source.crs.as_ref().unwrap_or(&stated);
     let misplaced = |error| document.error(extent, error);
     let corners: Result<Vec<DVec2>, _> =
         extent.iter().map(|&at| given.transform(&scene, DVec2::from(at))).collect();

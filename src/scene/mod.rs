@@ -111,6 +111,9 @@ pub struct SceneModel {
     pub phase: Option<String>,
     /// The map coordinates' system.
     pub crs: Crs,
+    /// The system that the scene file or its elevation states in meters: that of inline points unless `points_crs` names
+    /// another. It is `crs` but where its lengths are not true.
+    pub stated_crs: Crs,
     /// The elevations of the ground, true to scale.
     pub lattice: Arc<Lattice>,
     /// The lowest and the highest of them, meters.
@@ -201,6 +204,10 @@ pub struct SceneModel {
 pub struct SceneGround {
     /// Answers height queries in map coordinates.
     pub heights: HeightService,
+    /// The system that the scene file or its elevation states in meters: that of positions unless another is named.
+    pub stated_crs: Crs,
+    /// A note where that is not the ground's, because its lengths are not true.
+    pub scale_note: Option<String>,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }

@@ -27,9 +27,10 @@ pub struct WorldFrame<'a> {
 }
 
 impl<'a> WorldFrame<'a> {
-    /// The frame of a document whose ground lies in `crs`, from `origin` on.
-    pub fn new(document: &'a Document, crs: &'a Crs, origin: DVec2) -> Self {
-        let points_crs = document.points_crs.as_ref().unwrap_or(crs).clone();
+    /// The frame of a document whose ground lies in `crs`, from `origin` on; `stated_crs` is the system that the document
+    /// or its elevation states.
+    pub fn new(document: &'a Document, crs: &'a Crs, stated_crs: &Crs, origin: DVec2) -> Self {
+        let points_crs = document.points_crs.as_ref().unwrap_or(stated_crs).clone();
         let scale = VerticalScale(document.terrain.vertical_exaggeration as f32);
         Self { document, crs, points_crs, origin, scale }
     }

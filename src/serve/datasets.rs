@@ -36,6 +36,7 @@ impl Datasets {
             let dataset = Dataset::open(file.path(), &options.dataset)?;
             let warn = |warning: &str| (options.write_line)(&format!("warning: {warning}"));
             dataset.warning().into_iter().for_each(warn);
+            dataset.ground_note().iter().for_each(|note| (options.write_line)(&format!("note: {note}")));
             Ok(ServedDataset { name: file.name().to_owned(), dataset })
         };
         options.datasets.iter().map(open).collect::<Result<_, _>>().map(Self)

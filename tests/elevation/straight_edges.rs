@@ -52,11 +52,11 @@ fn a_warped_model_has_straight_edges_and_a_stated_extent_counts_before_them() {
     assert_eq!(filled, all, "no empty wedge is left");
     // The wedges of a turn by 2.1° along 4.9 km by 6.7 km.
     assert!((4300..5200).contains(&all), "{all} of {} samples", COLUMNS * ROWS);
-    assert!(told(&whole, "% of the elevation model is cut off along its border"), "{:?}", whole.notes);
+    assert!(told(&whole, "% of the elevation model is cut off along its border"), "{:?}", whole.notes());
     let stated = scene("extent = [[0, 0], [9000000, 9000000]]\n", hills);
     let (filled, all) = posts(&stated);
     assert!(filled < all && all > 5600, "{filled} of {all}");
-    assert!(!told(&stated, "cut off"), "{:?}", stated.notes);
+    assert!(!told(&stated, "cut off"), "{:?}", stated.notes());
 }
 
 #[test]
@@ -106,8 +106,8 @@ fn values_that_mean_no_data_without_saying_so_are_told() {
         "540 samples (10.0 %) are -32767: if that means no data, say `nodata = -32767` under [terrain]";
     let scene_of = |terrain: &str| scene(terrain, sunken);
     let told_of = scene_of("");
-    assert!(told(&told_of, noted), "{:?}", told_of.notes);
+    assert!(told(&told_of, noted), "{:?}", told_of.notes());
     let stated = scene_of("nodata = -32767\n");
-    assert!(!told(&stated, "if that means no data"), "{:?}", stated.notes);
+    assert!(!told(&stated, "if that means no data"), "{:?}", stated.notes());
     assert!(stated.height_range_m.0 > 100.0);
 }

@@ -3,10 +3,14 @@
 mod attacks;
 mod convert;
 mod export;
+#[cfg(unix)]
+mod faults;
 mod fly;
 mod grid;
 mod heights;
 mod info;
+#[cfg(unix)]
+mod interrupts;
 mod lod;
 mod los;
 mod manners;
@@ -22,6 +26,7 @@ mod series;
 mod serve;
 mod sheets;
 mod viewshed;
+mod web_mercator;
 mod wrong_scenes;
 
 use std::io::Write;

@@ -6,6 +6,7 @@ use glam::DVec2;
 use sandtable::dem::answer::Answer;
 use sandtable::draw::list::FeatureId;
 use sandtable::pipeline::dem::{self, DemOptions};
+use sandtable::pipeline::output_files::OutputFiles;
 use sandtable::pipeline::picture::{PictureSize, draw_view};
 use sandtable::pipeline::picture_buffers::{PictureBuffers, pick};
 use sandtable::pipeline::scene_file::open_scene;
@@ -85,7 +86,9 @@ fn rasters_of_a_plan_lie_on_the_map() {
     let view = plan(0.4);
     let drawn = draw_view(&scene, &view, SIZE, RenderBackend::Cpu, &|_| ()).expect("drawn");
     let buffers = PictureBuffers { scene: &scene, camera: &drawn.camera, rendering: &drawn.picture };
-    buffers.write(scratch.folder()).expect("written");
+    let mut files = OutputFiles::default();
+    buffers.write(&mut files, scratch.folder()).expect("written");
+    files.publish().expect("put in place");
     assert_eq!(scratch.names(), ["depth.tif", "elevation.tif", "feature.tif", "features.csv", "normal.png"]);
     let raster = |name: &str| dem::open(&scratch.at(name), &DemOptions::default()).expect("GeoTIFF").raster;
     let [elevations, features] = ["elevation.tif", "feature.tif"].map(raster);

@@ -236,7 +236,7 @@ fn the_ground_and_its_look_are_read() {
     let terrain = &document.terrain;
     assert_eq!(*terrain.dem, ["data/hill.tif"]);
     assert_eq!((terrain.height_scale, terrain.height_offset, terrain.cell), (Some(0.5), -10.0, Some(30.0)));
-    assert_eq!((terrain.vertical_exaggeration, terrain.tolerance_px), (1.5, 0.5));
+    assert_eq!((terrain.vertical_exaggeration, *terrain.tolerance_px), (1.5, 0.5));
     let style = &document.style;
     let stops = vec![
         (0.0, Color([0x1b, 0x78, 0x37, 255])),

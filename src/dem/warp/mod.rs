@@ -2,6 +2,7 @@
 
 mod crs_transform;
 mod data_extent;
+pub mod metric_crs;
 pub mod reproject;
 mod resample;
 pub(crate) mod row_positions;
@@ -12,16 +13,11 @@ use glam::{DVec2, U64Vec2};
 
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::data_extent::{data_extent, outline};
+use crate::dem::warp::data_extent::data_extent;
+use crate::dem::warp::metric_crs::metric_crs;
 use crate::dem::warp::resample::Resampler;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
-
-/// How far from its meridian a UTM zone is used where no system is chosen; at 9° lengths are off by up to 1.2 %.
-const UTM_REACH_DEG: f64 = 9.0;
-
-/// UTM ends at 84° north and 80° south.
-const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
 
 /// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -74,9 +70,9 @@ pub enum WarpError {
 
 /// The raster in a metric system, north up, with elevations in meters; borrowed where nothing changes.
 ///
-/// A raster in meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
-/// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or
-/// by default in the UTM zone (WGS 84) of its center: a cell's area is that of the source's cells at the center, the
+/// A raster in true meters, and in `target` where that is given, keeps its samples (its cells need not be square); one that
+/// only runs the other way along an axis is mirrored. Any other is resampled bilinearly to square cells in `target`, or in
+/// the UTM zone (WGS 84) of its center where none is given or its lengths are not true ([`metric_crs::off_scale`]): a cell's area is that of the source's cells at the center, the
 /// grid lies on multiples of the cell size, its extent covers the valid samples, and cells outside them are NaN.
 ///
 /// A raster without a system is taken to be in `target`, or in plain meters.
@@ -97,7 +93,7 @@ pub enum WarpError {
 /// ```
 pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a, Raster>, WarpError> {
     let system = metric_crs(raster, target)?;
-    let own = raster.crs.as_ref().or(system.as_ref());
+    let own = raster.crs.as_ref().or(target).or(system.as_ref());
     let north_up = if own == system.as_ref() && raster.is_axis_aligned() {
         raster.turned_north_up()
     } else {
@@ -117,7 +113,7 @@ pub fn to_metric<'a>(raster: &'a Raster, target: Option<&Crs>) -> Result<Cow<'a,
 /// [`WarpError`]: see [`to_metric`].
 pub fn resamples(raster: &Raster, target: Option<&Crs>) -> Result<bool, WarpError> {
     let system = metric_crs(raster, target)?;
-    Ok(raster.crs.as_ref().or(system.as_ref()) != system.as_ref() || !raster.is_axis_aligned())
+    Ok(raster.crs.as_ref().or(target).or(system.as_ref()) != system.as_ref() || !raster.is_axis_aligned())
 }
 
 /// A raster with data all through the smallest rectangle of its grid around the samples with data, and none beyond: warped,
@@ -128,23 +124,6 @@ pub fn framed(raster: &Raster) -> Raster {
     let center = |index: usize| DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5);
     let sample = |index: usize| if frame.contains(center(index)) { 0.0 } else { f32::NAN };
     Raster { samples: Samples::F32((0..count).map(sample).collect()), ..raster.without_samples() }
-}
-
-/// The system that [`to_metric`] brings a raster to; `None` where the raster names none and no `target` is given.
-///
-/// # Errors
-/// [`WarpError`]: see [`to_metric`].
-pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, WarpError> {
-    check_source(raster)?;
-    if let Some(target) = target.filter(|target| !target.is_metric()) {
-        return Err(WarpError::TargetNotMetric(target.name().into()));
-    }
-    Ok(match (&raster.crs, target) {
-        (_, Some(target)) => Some(target.clone()),
-        (Some(own), None) if own.is_metric() => Some(own.clone()),
-        (Some(own), None) => Some(utm_zone(raster, own)?),
-        (None, None) => None,
-    })
 }
 
 /// Checks that the raster lies in a system in meters already; its samples are ignored.
@@ -170,30 +149,6 @@ fn check_source(raster: &Raster) -> Result<(), WarpError> {
         return Err(WarpError::LooksLikeDegrees { min_x: min.x, max_x: max.x, min_y: min.y, max_y: max.y });
     }
     Ok(())
-}
-
-/// The UTM zone of the raster's center, if its valid samples lie near enough.
-fn utm_zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
-    let valid = data_extent(raster).ok_or(WarpError::Empty)?;
-    let degrees = Crs::wgs84();
-    let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
-    let center = at(valid.center())?;
-    let border = outline(valid).map(at).collect::<Result<Vec<_>, _>>()?;
-    // Measured from the center, so that a raster across the date line stays in one piece.
-    let east_of_center = |point: &DVec2| (point.x - center.x + 540.0).rem_euclid(360.0) - 180.0;
-    let around =
-        Rect::around(border.iter().map(|point| DVec2::new(center.x + east_of_center(point), point.y)));
-    let meridian = ((center.x + 180.0) / 6.0).floor() * 6.0 - 177.0;
-    let reach = (around.max.x - meridian).max(meridian - around.min.x);
-    // All around the globe both borders are the same meridian: the samples' own span counts.
-    let span =
-        if own.is_geographic() { valid.size().x * raster.map_from_grid.matrix2.x_axis.x.abs() } else { 0.0 };
-    let (south, north) = UTM_LATITUDES_DEG;
-    if reach > UTM_REACH_DEG || span > 2.0 * UTM_REACH_DEG || around.min.y < south || around.max.y > north {
-        let (west, east) = (around.min.x, around.max.x.max(around.min.x + span));
-        return Err(WarpError::NoZone { west, east, south: around.min.y, north: around.max.y });
-    }
-    Ok(Crs::utm_at(center.x, center.y))
 }
 
 /// The raster with another name for its system; cloned only where that changes.

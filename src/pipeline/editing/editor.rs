@@ -193,7 +193,7 @@ impl SceneEditor {
     /// # Errors
     /// See [`EditError`].
     pub fn apply(&mut self, edit: &SceneEdit, scene: &SceneModel) -> Result<EditEffect, EditError> {
-        let text = self.edited(edit, &scene.crs)?;
+        let text = self.edited(edit, scene)?;
         let assets = Assets::new(&self.source.path, &self.source.allowed)?;
         let document = self.source.decode(&text, &assets)?;
         let effect = effect::effect(edit, [&self.document, &document], &assets, scene)?;
@@ -217,7 +217,7 @@ impl SceneEditor {
         scene: &SceneModel,
         ground: &Lattice,
     ) -> Result<EditPreview, EditError> {
-        let text = self.edited(edit, &scene.crs)?;
+        let text = self.edited(edit, scene)?;
         let assets = Assets::new(&self.source.path, &self.source.allowed)?;
         let document = self.source.decode(&text, &assets)?;
         Ok(effect::preview(edit, [&self.document, &document], &assets, scene, ground)?)
@@ -317,19 +317,19 @@ impl SceneEditor {
         }
     }
 
-    /// The text after an edit whose places are in `scene_crs`.
-    fn edited(&self, edit: &SceneEdit, scene_crs: &Crs) -> Result<String, EditError> {
-        self.edited_text(self.text(), edit, scene_crs)
+    /// The text after an edit whose places are in the system of `scene`.
+    fn edited(&self, edit: &SceneEdit, scene: &SceneModel) -> Result<String, EditError> {
+        self.edited_text(self.text(), edit, scene)
     }
 
-    fn edited_text(&self, text: &str, edit: &SceneEdit, scene_crs: &Crs) -> Result<String, EditError> {
+    fn edited_text(&self, text: &str, edit: &SceneEdit, scene: &SceneModel) -> Result<String, EditError> {
         match edit {
             SceneEdit::Add(table) => {
-                let crs = self.points_crs(scene_crs);
+                let crs = self.points_crs(scene);
                 let keys = table
                     .keys
                     .iter()
-                    .map(|(key, value)| Ok::<_, EditError>((key.clone(), placed(value, scene_crs, crs)?)));
+                    .map(|(key, value)| Ok::<_, EditError>((key.clone(), placed(value, &scene.crs, crs)?)));
                 let keys = keys.collect::<Result<_, _>>()?;
                 Ok(scene_text::with_table(text, &NewTable { name: table.name.clone(), keys })?)
             }
@@ -339,19 +339,19 @@ impl SceneEditor {
                     EditPlace::Root => None,
                 };
                 let own = stated.map(|stated| Crs::parse(&stated)).transpose()?;
-                let crs = own.as_ref().unwrap_or_else(|| self.points_crs(scene_crs));
-                Ok(scene_text::with_value(text, place, keys, &placed(value, scene_crs, crs)?)?)
+                let crs = own.as_ref().unwrap_or_else(|| self.points_crs(scene));
+                Ok(scene_text::with_value(text, place, keys, &placed(value, &scene.crs, crs)?)?)
             }
             SceneEdit::Remove(place) => Ok(scene_text::without_table(text, place)?),
             SceneEdit::Together(edits) => {
-                edits.iter().try_fold(text.to_owned(), |text, edit| self.edited_text(&text, edit, scene_crs))
+                edits.iter().try_fold(text.to_owned(), |text, edit| self.edited_text(&text, edit, scene))
             }
         }
     }
 
     /// The system of inline points of tables that state none.
-    fn points_crs<'a>(&'a self, scene_crs: &'a Crs) -> &'a Crs {
-        self.document.points_crs.as_ref().unwrap_or(scene_crs)
+    fn points_crs<'a>(&'a self, scene: &'a SceneModel) -> &'a Crs {
+        self.document.points_crs.as_ref().unwrap_or(&scene.stated_crs)
     }
 }
 

@@ -6,7 +6,6 @@ use crate::description::document::Document;
 use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
-use crate::scene::assets::Assets;
 use crate::scene::sources::Sources;
 use crate::scene::{FeatureKind, SceneFeature, SceneModel};
 
@@ -14,8 +13,6 @@ use crate::scene::{FeatureKind, SceneFeature, SceneModel};
 pub struct LintContext<'a> {
     /// The scene file, as it was read.
     pub document: &'a Document,
-    /// The files that it may read.
-    pub assets: &'a Assets,
     /// The scene.
     pub scene: &'a SceneModel,
     /// Reads the vector files of its tables, each once.

@@ -69,9 +69,9 @@ const CHECKS: &[(&str, LintCheck)] = &[
 /// The findings about `scene`, which was built of `document` and `assets`, in the order of output: those of building it, and
 /// those of every check.
 pub fn lint(document: &Document, assets: &Assets, scene: &SceneModel) -> Vec<Finding> {
-    let frame = WorldFrame::new(document, &scene.crs, scene.lattice.origin());
+    let frame = WorldFrame::new(document, &scene.crs, &scene.stated_crs, scene.lattice.origin());
     let sources = Sources::new(&frame, assets);
-    let context = LintContext { document, assets, scene, sources: &sources };
+    let context = LintContext { document, scene, sources: &sources };
     let mut sink = FindingSink::default();
     scene.findings.iter().cloned().for_each(|finding| sink.add(finding));
     for (_, check) in CHECKS {

@@ -128,6 +128,7 @@ impl<'a> SpanMeetings<'a> {
 mod tests {
     use super::*;
     use crate::geom::offset::Continuations;
+    use crate::scene::feature_origin::FeatureOrigin;
     use crate::scene::roads::centerline;
     use crate::scene::roads::spans::SpanOrigin;
 
@@ -139,7 +140,7 @@ mod tests {
             pier_spacing_m: None,
             name: String::new(),
             origin: SpanOrigin::Tag,
-            place: Default::default(),
+            place: FeatureOrigin::default(),
         }
     }
 

@@ -49,7 +49,7 @@ fn what_is_included_comes_first_and_what_is_stated_counts() {
     let document = sound(text, &[("common.toml", common)]);
     assert_eq!((document.title.as_deref(), document.subtitle.as_deref()), (Some("own"), Some("kept")));
     assert_eq!(*document.terrain.dem, ["a.tif"]);
-    assert_eq!(document.terrain.tolerance_px, 2.0);
+    assert_eq!(*document.terrain.tolerance_px, 2.0);
     let light = &document.style.light;
     assert_eq!(light.azimuth, Some(90.0));
     assert_eq!(light.altitude, Some(60.0));

@@ -30,6 +30,7 @@ use crate::terrain::sight::crossings::crossings;
 use crate::terrain::sight::line::{SightEnd, SightLine};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 use crate::terrain::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
+use crate::terrain::stop_flag::StopFlag;
 
 /// The parameters of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,12 +133,26 @@ impl Viewshed {
 /// # Errors
 /// The ground's answer at the observer, where it has no height there.
 pub fn viewshed(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed, Answer> {
+    let never = StopFlag::default();
+    Ok(viewshed_until(lattice, options, &never)?.expect("nothing stops it"))
+}
+
+/// [`viewshed`] as long as `stop` is not set; `None` where it was set before the end. It ends within a ring of posts on each
+/// thread.
+///
+/// # Errors
+/// As for [`viewshed`].
+pub fn viewshed_until(
+    lattice: &Lattice,
+    options: &ViewshedOptions,
+    stop: &StopFlag,
+) -> Result<Option<Viewshed>, Answer> {
     let observer = Observer::new(lattice, options)?;
     let visible: Vec<AtomicBool> = lattice.heights().par_iter().map(|_| AtomicBool::new(false)).collect();
-    let sees = |post: Post| observer.reaches(post) && observer.sees(post);
+    let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
     let is_clear_of_diagonals = |post: Post| !observer.may_meet_a_diagonal_at(post);
     let tests = PostTests { sees: &sees, is_clear_of_diagonals: &is_clear_of_diagonals };
-    let scene = observer.scene();
+    let scene = observer.scene(stop);
     let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
     let lines = AtomicUsize::new(0);
     wedges.par_iter().with_max_len(1).for_each(|(frame, rays)| {
@@ -146,9 +161,12 @@ pub fn viewshed(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed
     for post in observer.own_posts() {
         visible[lattice.index(post)].store(sees(post), Ordering::Relaxed);
     }
+    if stop.is_stopped() {
+        return Ok(None);
+    }
     let posts = observer.posts(|index, _| visible[index].load(Ordering::Relaxed));
     let (columns, rows) = (lattice.columns(), lattice.rows());
-    Ok(Viewshed { columns, rows, posts, lines: lines.into_inner() })
+    Ok(Some(Viewshed { columns, rows, posts, lines: lines.into_inner() }))
 }
 
 /// [`viewshed`] by its definition, a line for each post: the reference for tests.
@@ -258,7 +276,10 @@ impl<'a> Observer<'a> {
         (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Post { column, row }))
     }
 
-    fn scene(&self) -> SweepScene<'a> {
+    fn scene<'s>(&self, stop: &'s StopFlag) -> SweepScene<'s>
+    where
+        'a: 's,
+    {
         let drop_per_square_m = self.options.curvature.drop_per_square_m();
         SweepScene {
             lattice: self.lattice,
@@ -267,6 +288,7 @@ impl<'a> Observer<'a> {
             drop_per_square_m,
             range_m: self.options.range_m,
             margins: self.margins(drop_per_square_m),
+            stop,
         }
     }
 

@@ -25,6 +25,7 @@ use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 use crate::terrain::sight::viewshed::horizon::{Doubt, Horizon, HorizonEdge};
 use crate::terrain::sight::viewshed::ring::{PostRing, RingChunk, RingPost};
+use crate::terrain::stop_flag::StopFlag;
 
 /// How far the sweep's numbers may differ from those of a line of sight.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +64,8 @@ pub(super) struct SweepScene<'a> {
     pub drop_per_square_m: f64,
     pub range_m: f64,
     pub margins: Margins,
+    /// Set where nobody waits for the answer any more.
+    pub stop: &'a StopFlag,
 }
 
 /// The tests of single posts that the sweep falls back on.
@@ -133,8 +136,8 @@ impl Sweep<'_> {
         let far = (self.scene.range_m / self.frame.ring_cell_m + 1.0).min(self.frame.rings as f64) as usize;
         // Ring 0 lies at the observer or behind: it only bounds the first strip.
         for ring in 0..=far.min(self.frame.rings.saturating_sub(1)) {
-            if self.posts_at(self.frame.distance(ring)).is_empty() {
-                // The wedge has left the lattice sideways.
+            if self.scene.stop.is_stopped() || self.posts_at(self.frame.distance(ring)).is_empty() {
+                // Nobody waits, or the wedge has left the lattice sideways.
                 break;
             }
             std::mem::swap(&mut self.before, &mut self.ring);

@@ -1,0 +1,54 @@
+//! Signals that end the program: it leaves no half-written file behind.
+//!
+//! A thread waits for them. It removes the [parts](crate::pipeline::part_file) of files that are being written and then
+//! lets the signal do what it does to any program, so that a shell sees why it ended. A second signal ends the program
+//! at once, should a file system not answer. What the parent told this program to ignore, as `nohup` does, it ignores.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::thread;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+use signal_hook::flag;
+use signal_hook::iterator::Signals;
+use signal_hook::low_level::emulate_default_handler;
+
+use crate::pipeline::part_file::abandon_all;
+
+/// The signals by which users and systems end programs.
+const ENDING: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+
+/// Handles signals from now on, as far as the system lets it.
+pub fn handle() {
+    // Without a thread or a handler the program ends as any other; the next one removes what it leaves.
+    let _ = try_to_handle();
+}
+
+fn try_to_handle() -> io::Result<()> {
+    // A file beyond the limit of `ulimit -f` is an error of writing, not the program's end.
+    flag::register(SIGXFSZ, Arc::default())?;
+    let heeded: Vec<i32> = ENDING.into_iter().filter(|&signal| !is_ignored(signal)).collect();
+    let is_second = Arc::new(AtomicBool::new(false));
+    for &signal in &heeded {
+        flag::register_conditional_default(signal, Arc::clone(&is_second))?;
+        flag::register(signal, Arc::clone(&is_second))?;
+    }
+    let mut signals = Signals::new(&heeded)?;
+    let wait = move || {
+        for signal in signals.forever() {
+            let _nobody_writes = abandon_all();
+            let _ = emulate_default_handler(signal);
+        }
+    };
+    thread::Builder::new().name("signals".into()).spawn(wait)?;
+    Ok(())
+}
+
+/// Whether this program was started with `signal` ignored; where the system does not tell, it was not.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
+}

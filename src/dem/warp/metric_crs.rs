@@ -1,0 +1,170 @@
+//! The system in which a raster's ground is in true meters: its own, the one that is asked for, or a UTM zone.
+//!
+//! A system in meters may stretch lengths: Web Mercator by 1/cos φ, to twice their length at 60° north. Where lengths at the
+//! center of the raster are off by more than [`MOST_SCALE_ERROR`], the ground is made in the UTM zone there instead.
+
+use std::fmt;
+
+use glam::DVec2;
+
+use crate::dem::raster::Raster;
+use crate::dem::warp::data_extent::{data_extent, outline};
+use crate::dem::warp::{WarpError, check_source};
+use crate::geom::crs::Crs;
+use crate::geom::map_scale::MapScale;
+use crate::geom::rect::Rect;
+
+/// The largest error of lengths at the center of a raster that a system in meters may have. National and UTM grids stay
+/// below 0.3 %; the systems beyond are made for maps of the world or of a continent.
+pub const MOST_SCALE_ERROR: f64 = 0.01;
+
+/// How far from its meridian a UTM zone is used where no system is chosen; at 9° lengths are off by up to 1.2 %.
+const UTM_REACH_DEG: f64 = 9.0;
+
+/// UTM ends at 84° north and 80° south.
+const UTM_LATITUDES_DEG: (f64, f64) = (-80.0, 84.0);
+
+/// A system in meters whose lengths are not those of the ground, and what is used instead. Its text is a note for the user.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffScale {
+    /// The system that the raster names or that was asked for.
+    pub stated: Crs,
+    /// Its scale at the center of the raster.
+    pub scale: MapScale,
+    /// The UTM zone in which the ground is made; `None` where no zone covers the raster, which stays in `stated`.
+    pub zone: Option<Crs>,
+}
+
+impl fmt::Display for OffScale {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let stated = self.stated.name();
+        let longer = self.scale.most >= 1.0 && self.scale.most - 1.0 >= 1.0 - self.scale.least;
+        let comparison = if longer { "longer" } else { "shorter" };
+        write!(
+            f,
+            "lengths in {stated} are {:.1} % {comparison} here than on the ground: ",
+            self.scale.error() * 100.0
+        )?;
+        match &self.zone {
+            Some(zone) => write!(f, "the ground is made in {}, in true meters; positions stay in {stated}", zone.name()),
+            None => f.write_str(
+                "distances, slopes and sight lines are off by as much, since no UTM zone covers the elevation; cut it, or \
+                 state a system that suits its place as crs of the scene",
+            ),
+        }
+    }
+}
+
+/// The system that [`to_metric`](crate::dem::warp::to_metric) brings a raster to; `None` where the raster names none and no
+/// `target` is given.
+///
+/// # Errors
+/// [`WarpError`]: see [`to_metric`](crate::dem::warp::to_metric).
+pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, WarpError> {
+    check_source(raster)?;
+    if let Some(target) = target.filter(|target| !target.is_metric()) {
+        return Err(WarpError::TargetNotMetric(target.name().into()));
+    }
+    let Some(own) = raster.crs.as_ref().or(target) else { return Ok(None) };
+    let stated = target.unwrap_or(own);
+    if !stated.is_metric() {
+        return utm_zone(raster, own).map(Some);
+    }
+    let off = off_scale(raster, target)?;
+    Ok(Some(off.and_then(|off| off.zone).unwrap_or_else(|| stated.clone())))
+}
+
+/// What is off where a raster in meters, or `target`, stretches lengths by more than [`MOST_SCALE_ERROR`] at the center of
+/// the raster; `None` where lengths are true.
+///
+/// # Errors
+/// [`WarpError`]: the raster holds no data, or its border lies outside what its system covers.
+pub fn off_scale(raster: &Raster, target: Option<&Crs>) -> Result<Option<OffScale>, WarpError> {
+    let Some(own) = raster.crs.as_ref().or(target) else { return Ok(None) };
+    let stated = target.unwrap_or(own);
+    let center = own.transform(stated, raster.center()).ok();
+    let scale = center.filter(|_| stated.is_metric()).and_then(|center| MapScale::at(stated, center));
+    let Some(scale) = scale.filter(|scale| scale.error() > MOST_SCALE_ERROR) else { return Ok(None) };
+    let zone = match utm_zone(raster, own) {
+        Ok(zone) => Some(zone),
+        // The datum's shift is not known, or no zone suits: there is nothing better than what is stated.
+        Err(WarpError::NoZone { .. } | WarpError::Crs(_)) => None,
+        Err(error) => return Err(error),
+    };
+    Ok(Some(OffScale { stated: stated.clone(), scale, zone }))
+}
+
+/// The UTM zone of the raster's center, if its valid samples lie near enough.
+fn utm_zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
+    let valid = data_extent(raster).ok_or(WarpError::Empty)?;
+    let degrees = Crs::wgs84();
+    let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
+    let center = at(valid.center())?;
+    let border = outline(valid).map(at).collect::<Result<Vec<_>, _>>()?;
+    // Measured from the center, so that a raster across the date line stays in one piece.
+    let east_of_center = |point: &DVec2| (point.x - center.x + 540.0).rem_euclid(360.0) - 180.0;
+    let around =
+        Rect::around(border.iter().map(|point| DVec2::new(center.x + east_of_center(point), point.y)));
+    let meridian = ((center.x + 180.0) / 6.0).floor() * 6.0 - 177.0;
+    let reach = (around.max.x - meridian).max(meridian - around.min.x);
+    // All around the globe both borders are the same meridian: the samples' own span counts.
+    let span =
+        if own.is_geographic() { valid.size().x * raster.map_from_grid.matrix2.x_axis.x.abs() } else { 0.0 };
+    let (south, north) = UTM_LATITUDES_DEG;
+    if reach > UTM_REACH_DEG || span > 2.0 * UTM_REACH_DEG || around.min.y < south || around.max.y > north {
+        let (west, east) = (around.min.x, around.max.x.max(around.min.x + span));
+        return Err(WarpError::NoZone { west, east, south: around.min.y, north: around.max.y });
+    }
+    Ok(Crs::utm_at(center.x, center.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::north_up;
+    use crate::dem::raster::tests::small;
+
+    fn raster(code: u32, west: f64, north: f64, cell: f64) -> Raster {
+        let crs = Some(Crs::from_epsg(code).expect("known"));
+        let map_from_grid = north_up(DVec2::new(west, north), DVec2::splat(cell));
+        Raster { crs, map_from_grid, ..small(3, 3, vec![1.0; 9]) }
+    }
+
+    fn found(raster: &Raster, target: Option<u32>) -> Option<u32> {
+        let target = target.map(|code| Crs::from_epsg(code).expect("known"));
+        metric_crs(raster, target.as_ref()).expect("metric").and_then(|crs| crs.epsg())
+    }
+
+    #[test]
+    fn web_mercator_gives_way_to_a_utm_zone_but_at_the_equator() {
+        let north = raster(3857, -8_998_000.0, 5_998_000.0, 30.0);
+        assert_eq!(found(&north, None), Some(32617));
+        let off = off_scale(&north, None).expect("metric").expect("off");
+        assert!((off.scale.error() - 0.475).abs() < 0.01, "{off:?}");
+        let note = off.to_string();
+        assert!(
+            note.contains("EPSG:3857") && note.contains("EPSG:32617") && note.contains("% longer"),
+            "{note}"
+        );
+        assert_eq!(found(&raster(3857, -8_998_000.0, 1000.0, 30.0), None), Some(3857));
+    }
+
+    #[test]
+    fn a_target_that_stretches_lengths_gives_way_too() {
+        let utm = raster(32617, 530_000.0, 5_221_300.0, 30.0);
+        assert_eq!(found(&utm, None), Some(32617));
+        assert_eq!(found(&utm, Some(3857)), Some(32617));
+        assert_eq!(found(&utm, Some(32616)), Some(32616), "a neighboring zone is off by less");
+        let unnamed = Raster { crs: None, ..raster(3857, -8_998_000.0, 5_998_000.0, 30.0) };
+        assert_eq!(found(&unnamed, Some(3857)), Some(32617), "a raster without a system lies in the target");
+    }
+
+    #[test]
+    fn what_no_zone_covers_stays_and_is_reported() {
+        // Half of Greenland in the polar system, 3 % longer at 62 degrees north.
+        let wide = raster(3413, 0.0, -2_000_000.0, 500_000.0);
+        assert_eq!(found(&wide, None), Some(3413));
+        let note = off_scale(&wide, None).expect("metric").expect("off").to_string();
+        assert!(note.contains("no UTM zone"), "{note}");
+    }
+}
