@@ -40,10 +40,10 @@ impl<T: Send + 'static> WorkerJob<T> {
     }
 }
 
-/// Does `work` with threads of its own, one fewer than the machine has processors: one is the window's.
+/// Does `work` with threads of its own, as many as the machine has processors.
 pub fn run_apart<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    match ThreadPoolBuilder::new().num_threads((processors - 1).max(1)).build() {
+    match ThreadPoolBuilder::new().num_threads(processors).build() {
         Ok(threads) => threads.install(work),
         // A machine that has no thread left does it on this one.
         Err(_) => work(),
@@ -58,6 +58,7 @@ pub fn drop_apart(unused: impl Send + 'static) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rayon::prelude::*;
     use std::time::{Duration, Instant};
 
     fn result_of<T: Send + 'static>(job: &WorkerJob<T>) -> Result<T, WorkerFailure> {
@@ -86,10 +87,31 @@ mod tests {
     }
 
     #[test]
-    fn a_job_leaves_the_threads_that_all_share_alone() {
-        let own =
-            result_of(&WorkerJob::start(|| rayon::join(|| rayon::current_num_threads(), || ()).0, || ()));
-        let processors = thread::available_parallelism().map_or(1, usize::from);
-        assert_eq!(own, Ok((processors - 1).max(1)));
+    fn a_job_goes_on_while_the_threads_that_all_share_are_taken() {
+        let taken = thread::available_parallelism().map_or(1, usize::from) * 2;
+        let end = Instant::now() + Duration::from_secs(5);
+        // They are taken for five seconds, or until the job is done.
+        let (sender, done) = channel();
+        let job = WorkerJob::start(move || (0..10_000u64).into_par_iter().sum::<u64>(), || ());
+        rayon::in_place_scope(|scope| {
+            let is_done = std::sync::atomic::AtomicBool::new(false);
+            let is_done = std::sync::Arc::new(is_done);
+            for _ in 0..taken {
+                let is_done = std::sync::Arc::clone(&is_done);
+                scope.spawn(move |_| {
+                    while Instant::now() < end && !is_done.load(std::sync::atomic::Ordering::Relaxed) {
+                        thread::sleep(Duration::from_millis(1));
+                    }
+                });
+            }
+            while Instant::now() < end && !is_done.load(std::sync::atomic::Ordering::Relaxed) {
+                if let Some(result) = job.poll() {
+                    is_done.store(true, std::sync::atomic::Ordering::Relaxed);
+                    sender.send(result).expect("awaited");
+                }
+                thread::sleep(Duration::from_millis(1));
+            }
+        });
+        assert_eq!(done.try_recv(), Ok(Ok(49_995_000)), "it had threads of its own");
     }
 }
