@@ -267,7 +267,7 @@ fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
     let to = glam::DVec2::new(749_350.0, 4_017_820.0);
     harness.state_mut().as_mut().expect("shown").move_part(to, false);
     harness.state_mut().as_mut().expect("shown").move_part(to + glam::DVec2::X * 10.0, true);
-    assert!(text(&harness).contains("at = [749350.0, 4017820.0]"), "{}", text(&harness));
+    assert!(text(&harness).contains("at = [749350, 4017820]"), "{}", text(&harness));
     assert!(text(&harness).contains("heading = 90"), "{}", text(&harness));
     assert!(app(&harness).loading.is_none(), "the scene is not built anew");
     let opened = app(&harness).opened.as_ref().expect("open");

@@ -92,7 +92,6 @@ mod tests {
         let end = Instant::now() + Duration::from_secs(5);
         // They are taken for five seconds, or until the job is done.
         let (sender, done) = channel();
-        let job = WorkerJob::start(move || (0..10_000u64).into_par_iter().sum::<u64>(), || ());
         rayon::in_place_scope(|scope| {
             let is_done = std::sync::atomic::AtomicBool::new(false);
             let is_done = std::sync::Arc::new(is_done);
@@ -104,6 +103,8 @@ mod tests {
                     }
                 });
             }
+            thread::sleep(Duration::from_millis(50));
+            let job = WorkerJob::start(|| (0..10_000u64).into_par_iter().sum::<u64>(), || ());
             while Instant::now() < end && !is_done.load(std::sync::atomic::Ordering::Relaxed) {
                 if let Some(result) = job.poll() {
                     is_done.store(true, std::sync::atomic::Ordering::Relaxed);
