@@ -112,7 +112,7 @@ struct LineLetter {
 
 /// A vertex of a line on the picture.
 #[derive(Clone, Copy, Debug)]
-struct LinePoint {
+struct NamePoint {
     at: Vec2,
     world: Vec3,
     /// Along the line on the ground, meters.
@@ -388,10 +388,10 @@ fn place_share(tried: usize) -> f32 {
 }
 
 /// The parts of a line that are on the picture.
-fn pieces(line: &[Vec3], picture: &LinePicture<'_>) -> Vec<Vec<LinePoint>> {
+fn pieces(line: &[Vec3], picture: &LinePicture<'_>) -> Vec<Vec<NamePoint>> {
     let (camera, rect) = (picture.camera, picture.rect);
     let (width, height) = camera.size();
-    let (mut found, mut open): (Vec<Vec<LinePoint>>, Vec<LinePoint>) = (Vec::new(), Vec::new());
+    let (mut found, mut open): (Vec<Vec<NamePoint>>, Vec<NamePoint>) = (Vec::new(), Vec::new());
     let (mut station_m, mut before) = (0.0, None);
     for &world in line {
         station_m += before.map_or(0.0, |before: Vec3| before.distance(world));
@@ -403,7 +403,7 @@ fn pieces(line: &[Vec3], picture: &LinePicture<'_>) -> Vec<Vec<LinePoint>> {
         match at.filter(|at| rect.contains(Pos2::new(at.x, at.y))) {
             Some(at) => {
                 let along = open.last().map_or(0.0, |last| last.along + last.at.distance(at));
-                open.push(LinePoint { at, world, station_m, along });
+                open.push(NamePoint { at, world, station_m, along });
             }
             None => found.push(std::mem::take(&mut open)),
         }
@@ -415,7 +415,7 @@ fn pieces(line: &[Vec3], picture: &LinePicture<'_>) -> Vec<Vec<LinePoint>> {
 }
 
 /// Where a station on the ground is along a piece; `None` where the piece lacks it.
-fn along_at(piece: &[LinePoint], station_m: f32) -> Option<f32> {
+fn along_at(piece: &[NamePoint], station_m: f32) -> Option<f32> {
     let after = piece.partition_point(|point| point.station_m < station_m);
     let (from, to) = (piece.get(after.checked_sub(1)?)?, piece.get(after)?);
     let share = (station_m - from.station_m) / (to.station_m - from.station_m).max(1e-6);
@@ -423,7 +423,7 @@ fn along_at(piece: &[LinePoint], station_m: f32) -> Option<f32> {
 }
 
 /// The place on the picture, on the ground, and the station of a length along a piece.
-fn point_at(piece: &[LinePoint], along: f32) -> (Vec2, Vec3, f32) {
+fn point_at(piece: &[NamePoint], along: f32) -> (Vec2, Vec3, f32) {
     let after = piece.partition_point(|point| point.along < along).clamp(1, piece.len() - 1);
     let (from, to) = (piece[after - 1], piece[after]);
     let share = ((along - from.along) / (to.along - from.along).max(1e-6)).clamp(0.0, 1.0);
@@ -445,7 +445,7 @@ struct LetterRun<'a> {
 impl LetterRun<'_> {
     /// The letters with their middle at a length along a piece, so that they are read from the left; `None` where they
     /// reach past its ends or bend too much.
-    fn set(&self, piece: &[LinePoint], middle: f32) -> Option<(bool, Vec<LineLetter>)> {
+    fn set(&self, piece: &[NamePoint], middle: f32) -> Option<(bool, Vec<LineLetter>)> {
         let width: f32 = self.widths.iter().sum();
         let (start, end) = (middle - width * 0.5, middle + width * 0.5);
         if start < 0.0 || end > piece[piece.len() - 1].along {
@@ -508,12 +508,12 @@ fn paint(painter: &Painter, name: &LineName, state: &NameState) {
 mod tests {
     use super::*;
 
-    fn piece(points: &[(f32, f32)]) -> Vec<LinePoint> {
-        let mut piece: Vec<LinePoint> = Vec::new();
+    fn piece(points: &[(f32, f32)]) -> Vec<NamePoint> {
+        let mut piece: Vec<NamePoint> = Vec::new();
         for &(x, y) in points {
             let at = Vec2::new(x, y);
             let along = piece.last().map_or(0.0, |last| last.along + last.at.distance(at));
-            piece.push(LinePoint { at, world: at.extend(0.0), station_m: along * 10.0, along });
+            piece.push(NamePoint { at, world: at.extend(0.0), station_m: along * 10.0, along });
         }
         piece
     }

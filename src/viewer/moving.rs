@@ -1,7 +1,7 @@
 //! What was picked as a part of the scene file: moved and turned with the mouse, resized, removed.
 //!
 //! A click picks. Dragging from what is picked moves a model or a label over the ground, with Ctrl it turns a model; until the
-//! button is released, a ring shows where it will stand.
+//! button is released, a line leads to where it will stand.
 
 use egui::{DragValue, Ui};
 use glam::DVec2;
