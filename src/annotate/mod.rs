@@ -28,7 +28,7 @@ mod credit;
 mod drawing;
 pub mod figure;
 mod fixed_text;
-mod fonts;
+pub mod fonts;
 pub mod grid;
 mod halo;
 mod label_style;

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 
 use crate::pipeline::editing::editor::SceneSource;
 use crate::pipeline::files::{self, WriteFileError};
@@ -83,29 +83,53 @@ pub fn picture_path(file: &Path, name: &str) -> PathBuf {
 /// # Errors
 /// [`ViewSnapshotError::NoGround`] and [`ViewSnapshotError::Parallel`].
 pub fn camera_table(scene: &SceneModel, camera: &Camera, name: &str) -> Result<String, ViewSnapshotError> {
-    let ViewProjection::Perspective { tan_half_fov } = camera.projection() else {
-        return Err(ViewSnapshotError::Parallel);
-    };
-    let target = ground_ahead(scene, camera).ok_or(ViewSnapshotError::NoGround)?;
-    let origin = scene.lattice.origin();
-    let eye = origin + camera.eye().truncate().as_dvec2();
-    let look_at = origin + target.at.truncate().as_dvec2();
+    let ViewedCamera { eye, eye_elevation_m, look_at, look_at_height_m, field_of_view_deg } =
+        ViewedCamera::new(scene, camera)?;
     let name = toml_edit::Value::from(name);
     let system = match scene.crs.epsg() {
         Some(code) => format!("crs = \"EPSG:{code}\"\n"),
         None => String::new(),
     };
     Ok(format!(
-        "[[camera]]\nname = {name}\neye = [{:?}, {:?}]\neye_elevation = {:?}\nlook_at = [{:?}, {:?}]\n\
-         look_at_height = {:?}\n{system}field_of_view = {:?}\n",
-        eye.x,
-        eye.y,
-        scene.scale.elevation_m(f64::from(camera.eye().z)),
-        look_at.x,
-        look_at.y,
-        target.above_m,
-        (2.0 * libm::atan(f64::from(tan_half_fov))).to_degrees(),
+        "[[camera]]\nname = {name}\neye = [{:?}, {:?}]\neye_elevation = {eye_elevation_m:?}\n\
+         look_at = [{:?}, {:?}]\nlook_at_height = {look_at_height_m:?}\n{system}field_of_view = {field_of_view_deg:?}\n",
+        eye.x, eye.y, look_at.x, look_at.y,
     ))
+}
+
+/// A camera in perspective as a scene file states it. Places are map coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewedCamera {
+    /// Where the eye is.
+    pub eye: DVec2,
+    /// Its elevation in meters, true to scale.
+    pub eye_elevation_m: f64,
+    /// What it looks at.
+    pub look_at: DVec2,
+    /// Meters above the ground there, as drawn.
+    pub look_at_height_m: f64,
+    /// The vertical field of view, degrees.
+    pub field_of_view_deg: f64,
+}
+
+impl ViewedCamera {
+    /// What states `camera`.
+    ///
+    /// # Errors
+    /// [`ViewSnapshotError::NoGround`] and [`ViewSnapshotError::Parallel`].
+    pub fn new(scene: &SceneModel, camera: &Camera) -> Result<Self, ViewSnapshotError> {
+        let ViewProjection::Perspective { tan_half_fov } = camera.projection() else {
+            return Err(ViewSnapshotError::Parallel);
+        };
+        let target = ground_ahead(scene, camera).ok_or(ViewSnapshotError::NoGround)?;
+        Ok(Self {
+            eye: scene.lattice.map_point(camera.eye()),
+            eye_elevation_m: scene.scale.elevation_m(f64::from(camera.eye().z)),
+            look_at: scene.lattice.map_point(target.at),
+            look_at_height_m: target.above_m,
+            field_of_view_deg: (2.0 * libm::atan(f64::from(tan_half_fov))).to_degrees(),
+        })
+    }
 }
 
 /// A point on the viewing direction, above or below ground.

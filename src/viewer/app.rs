@@ -16,11 +16,14 @@ use crate::view::navigation::pose::{ViewPose, wrapped};
 use crate::view::navigation::{NavigationMode, TRANSITION_S};
 use crate::viewer::commands::{ViewCommand, pressed};
 use crate::viewer::drawing_job::DrawingJob;
+use crate::viewer::following::FollowedFiles;
 use crate::viewer::frame_times::FrameTimes;
+use crate::viewer::lettering;
 use crate::viewer::loading::{LoadingTask, SceneLoading, opening_error};
 use crate::viewer::measuring::{MeasureKind, Measuring};
+use crate::viewer::moving::PickedPart;
 use crate::viewer::notices::ViewerNotices;
-use crate::viewer::opened::{OpenedScene, SceneFrame};
+use crate::viewer::opened::{OpenedScene, OpeningView, SceneFrame};
 use crate::viewer::panels::detail::DetailSettings;
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::open::OpenPanel;
@@ -28,10 +31,11 @@ use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::place::PlaceText;
 use crate::viewer::recent::RecentFiles;
 use crate::viewer::saving::{Leaving, SavingQuestion};
+use crate::viewer::scene_load::LoaderSlot;
 use crate::viewer::session::EditingSession;
 use crate::viewer::tool_use::{ActiveTool, ToolPreview};
 use crate::viewer::view_area::ViewArea;
-use crate::viewer::watch::FileWatch;
+use crate::viewer::viewsheds::ViewshedOverlay;
 
 /// What the window has to do for the app.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +77,8 @@ pub struct PickedText {
     pub feature: String,
     /// The place on the ground; `None` for the sky.
     pub place: Option<PlaceText>,
+    /// The table of the scene file that states it; `None` where it cannot be edited.
+    pub part: Option<PickedPart>,
 }
 
 /// The window's state.
@@ -81,6 +87,8 @@ pub struct ViewerApp {
     pub adapter: String,
     /// How long frames took.
     pub frames: FrameTimes,
+    /// What brings scenes to the window's renderer.
+    pub slot: LoaderSlot,
     pub(super) options: ViewerOptions,
     pub(super) context: Context,
     pub(super) recent: RecentFiles,
@@ -104,10 +112,9 @@ pub struct ViewerApp {
     pub(super) session: Option<EditingSession>,
     pub(super) tool: Option<ActiveTool>,
     pub(super) preview: Option<ToolPreview>,
+    pub(super) viewshed: Option<ViewshedOverlay>,
     pub(super) question: Option<SavingQuestion>,
-    /// What the files of the scene held when they were read or saved last.
-    pub(super) fingerprint: Option<String>,
-    pub(super) watch: Option<FileWatch>,
+    pub(super) files: FollowedFiles,
     title: String,
     pub(super) requests: Vec<WindowRequest>,
 }
@@ -125,6 +132,7 @@ impl ViewerApp {
         let mut app = Self {
             adapter: String::new(),
             frames: FrameTimes::default(),
+            slot: LoaderSlot::default(),
             options: options.clone(),
             context: context.clone(),
             recent,
@@ -147,12 +155,13 @@ impl ViewerApp {
             session: None,
             tool: None,
             preview: None,
+            viewshed: None,
             question: None,
-            fingerprint: None,
-            watch: None,
+            files: FollowedFiles::default(),
             title: String::new(),
             requests: Vec::new(),
         };
+        lettering::set_fonts(context, None);
         if let Some(file) = &options.file {
             app.open(file);
         }
@@ -180,6 +189,9 @@ impl ViewerApp {
         match opened.frame(self.view.size) {
             Ok(frame) => {
                 self.view.camera = Some(frame.camera);
+                if frame.statistics.waiting_patches > 0 {
+                    self.context.request_repaint();
+                }
                 Some(frame)
             }
             Err(error) => {
@@ -201,9 +213,11 @@ impl ViewerApp {
         }
     }
 
-    /// Whether a file is being opened or a picture drawn.
+    /// Whether a file is being opened, a picture drawn, or what stands set anew.
     pub fn is_busy(&self) -> bool {
-        self.loading.is_some() || self.drawing.is_some()
+        let is_relisting = self.opened.as_ref().is_some_and(|opened| opened.is_relisting());
+        let is_looking = self.viewshed.as_ref().is_some_and(ViewshedOverlay::is_busy);
+        self.loading.is_some() || self.drawing.is_some() || is_relisting || is_looking
     }
 
     /// What is said in the window, the oldest first.
@@ -238,8 +252,15 @@ impl ViewerApp {
     }
 
     fn start_loading(&mut self, task: LoadingTask) {
+        let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
+        let before = self.opened.as_ref().filter(|before| before.path == *path);
+        let view = before.map_or_else(OpeningView::default, |before| OpeningView {
+            seen: Some(before.seen_from(self.view.size)),
+            hidden: self.tree.hidden.clone(),
+        });
         let context = self.context.clone();
-        self.loading = Some(SceneLoading::start(task, move || context.request_repaint()));
+        let wake = move || context.request_repaint();
+        self.loading = Some(SceneLoading::start(task, view, self.slot.clone(), wake));
         self.failure = None;
     }
 
@@ -255,6 +276,8 @@ impl ViewerApp {
     pub fn show(&mut self, ui: &mut Ui, texture: Option<TextureId>) {
         self.follow_loading(ui);
         self.follow_drawing(ui);
+        self.follow_viewshed();
+        self.follow_relisting();
         self.follow_files(ui);
         if !ui.ctx().text_edit_focused() {
             let commands = ui.input_mut(pressed);
@@ -304,12 +327,18 @@ impl ViewerApp {
     /// Says what the picture shows at a pixel.
     pub(super) fn pick(&mut self, pixel: Vec2) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        if let Some(label) = self.view.label_at(pixel).filter(|&label| label < opened.scene.labels.len()) {
+            let feature = format!("label {}", opened.scene.labels[label].text);
+            self.picked = Some(PickedText { feature, place: None, part: self.part_of_label(label) });
+            return;
+        }
         self.picked = Some(match opened.pick(&camera, pixel) {
             Some(pick) => PickedText {
                 feature: feature_text(opened, pick.place.feature),
                 place: Some(PlaceText::of(&opened.scene, &pick)),
+                part: self.part_of_feature(pick.place.feature),
             },
-            None => PickedText { feature: "sky".to_owned(), place: None },
+            None => PickedText { feature: "sky".to_owned(), place: None, part: None },
         });
     }
 
@@ -336,6 +365,7 @@ impl ViewerApp {
             ViewCommand::Freeze => self.set_frozen(!self.detail.frozen),
             ViewCommand::Find => (self.shows_panels, self.tree.focuses_find) = (true, true),
             ViewCommand::Snapshot => self.take_snapshot(),
+            ViewCommand::KeepCamera => self.keep_camera(),
             ViewCommand::Home => self.go_to_camera(0),
             ViewCommand::NextCamera => self.go_to_camera(self.camera_number + 1),
             ViewCommand::PreviousCamera => self.go_to_camera(self.camera_number + usize::MAX),

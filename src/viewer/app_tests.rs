@@ -173,6 +173,121 @@ fn an_edit_is_undone_redone_saved_and_closing_with_one_asks() {
 }
 
 #[test]
+fn the_sun_and_what_is_hidden_wait_for_a_thread_and_the_picture_stays() {
+    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let low = glam::Vec3::new(0.8, 0.0, 0.6);
+    let app_mut = |harness: &mut AppHarness, act: &dyn Fn(&mut ViewerApp)| {
+        act(harness.state_mut().as_mut().expect("shown"));
+    };
+    let sun = |app: &ViewerApp| app.opened.as_ref().expect("open").walk.to_sun();
+    let before = sun(app(&harness));
+    app_mut(&mut harness, &|app| app.opened.as_mut().expect("open").set_sun(low));
+    harness.step();
+    assert!(app(&harness).is_busy(), "it is being lit");
+    assert_eq!(sun(app(&harness)), before, "as it was");
+    until(&mut harness, |app| !app.is_busy());
+    assert_eq!(sun(app(&harness)), low);
+    let items = |app: &ViewerApp| app.opened.as_ref().expect("open").list.items.len();
+    let (all, plinth) = (items(app(&harness)), crate::draw::list::FeatureId::PLINTH);
+    app_mut(&mut harness, &|app| app.opened.as_mut().expect("open").hide(&[plinth].into()));
+    assert_eq!(items(app(&harness)), all, "as it was");
+    until(&mut harness, |app| !app.is_busy());
+    assert!(items(app(&harness)) < all, "hidden");
+}
+
+#[test]
+fn a_view_is_kept_as_a_camera_and_undone() {
+    let scene = TestScene::new("camera");
+    let mut harness = window(Some(&scene.file));
+    let names = |app: &ViewerApp| -> Vec<String> {
+        let cameras = &app.opened.as_ref().expect("open").scene.cameras;
+        cameras.iter().map(|view| view.name.clone()).collect()
+    };
+    let before = names(app(&harness));
+    key(&mut harness, Modifiers::SHIFT, Key::P);
+    until(&mut harness, |app| !app.is_busy());
+    assert!(names(app(&harness)).contains(&"view-1".to_owned()), "{:?}", names(app(&harness)));
+    assert!(is_changed(&harness), "an edit");
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    until(&mut harness, |app| !app.is_busy());
+    assert_eq!(names(app(&harness)), before);
+    assert!(!is_changed(&harness), "undone");
+}
+
+#[test]
+fn a_viewshed_is_tinted_until_it_is_cleared() {
+    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    harness.get_by_label("Viewshed").click();
+    harness.run_steps(2);
+    click(&mut harness, IN_VIEW);
+    until(&mut harness, |app| !app.is_busy());
+    harness.get_by_label_contains("are seen");
+    let is_tinted = |app: &ViewerApp| {
+        let list = &app.opened.as_ref().expect("open").list;
+        list.materials.iter().any(|material| material.name == "sight")
+    };
+    assert!(is_tinted(app(&harness)));
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    key(&mut harness, Modifiers::NONE, Key::Escape);
+    harness.get_by_label("Clear viewshed").click();
+    harness.run_steps(2);
+    assert!(app(&harness).viewshed.is_none() && harness.query_by_label("Clear viewshed").is_none());
+}
+
+#[test]
+fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
+    let scene = TestScene::new("parts");
+    let mut text = fs::read_to_string(&scene.file).expect("there");
+    text.push_str("\n[[model]]\nfile = \"conifer\"\nat = [749300, 4017800]\n");
+    text.push_str(
+        "\n[[road]]\nname = \"lane\"\npoints = [[748900, 4017500], [749200, 4017600]]\nwidth = 5\n",
+    );
+    fs::write(&scene.file, text).expect("written");
+    let mut harness = window(Some(&scene.file));
+    let feature = |app: &ViewerApp, name: &str| {
+        let scene = &app.opened.as_ref().expect("open").scene;
+        let is_named = |feature: &crate::scene::SceneFeature| {
+            if name.is_empty() {
+                feature.kind == crate::scene::FeatureKind::Model
+            } else {
+                feature.name == name
+            }
+        };
+        let index = scene.features.iter().position(is_named).expect("there");
+        crate::draw::list::FeatureId(crate::draw::list::FeatureId::GROUND.0 + 1 + index as u32)
+    };
+    let take = |harness: &mut AppHarness, name: &str| {
+        let app = harness.state_mut().as_mut().expect("shown");
+        let part = app.part_of_feature(feature(app, name));
+        assert!(part.is_some(), "'{name}' has a table");
+        app.picked = Some(crate::viewer::app::PickedText { feature: name.to_owned(), place: None, part });
+    };
+    let text = |harness: &AppHarness| app(harness).session.as_ref().expect("open").editor.text().to_owned();
+    take(&mut harness, "");
+    let to = glam::DVec2::new(749_350.0, 4_017_820.0);
+    harness.state_mut().as_mut().expect("shown").move_part(to, false);
+    harness.state_mut().as_mut().expect("shown").move_part(to + glam::DVec2::X * 10.0, true);
+    assert!(text(&harness).contains("at = [749350, 4017820]"), "{}", text(&harness));
+    assert!(text(&harness).contains("heading = 90"), "{}", text(&harness));
+    assert!(app(&harness).loading.is_none(), "the scene is not built anew");
+    let opened = app(&harness).opened.as_ref().expect("open");
+    let at = opened.walk.model_at(0).as_dvec2() + opened.scene.lattice.origin();
+    assert!(at.distance(to) < 0.1, "{at}");
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert!(!is_changed(&harness), "undone");
+    until(&mut harness, |app| !app.is_busy());
+    take(&mut harness, "lane");
+    harness.run_steps(2);
+    assert_eq!(app(&harness).picked.as_ref().and_then(|picked| picked.part.as_ref()?.width_m), Some(5.0));
+    harness.get_by_label("Remove").click();
+    harness.run_steps(2);
+    assert!(!text(&harness).contains("lane"), "{}", text(&harness));
+    until(&mut harness, |app| !app.is_busy());
+    assert!(text(&harness).contains("conifer"));
+}
+
+#[test]
 fn a_file_that_breaks_leaves_the_scene_and_one_that_is_mended_is_read_again() {
     let scene = TestScene::new("reload");
     let mut harness = window(Some(&scene.file));

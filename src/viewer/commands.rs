@@ -19,6 +19,8 @@ pub enum ViewCommand {
     Redo,
     /// Writes a picture of this very view.
     Snapshot,
+    /// Writes this view into the scene as a camera.
+    KeepCamera,
     /// Looks at the whole scene.
     Home,
     /// Goes to the next camera of the scene.
@@ -144,6 +146,7 @@ pub const KEYS: &[KeyBinding] = &[
     press(NONE, Key::H, ViewCommand::Home, ""),
     press(NONE, Key::N, ViewCommand::North, "Look north"),
     press(NONE, Key::V, ViewCommand::Down, "Look straight down"),
+    press(Modifiers::SHIFT, Key::P, ViewCommand::KeepCamera, "Keep this view as a camera of the scene"),
     press(NONE, Key::P, ViewCommand::Snapshot, "Save a picture of this view"),
     press(NONE, Key::K, ViewCommand::Crater, "Dig a crater"),
     press(NONE, Key::M, ViewCommand::MeasureLine, "Measure a line"),

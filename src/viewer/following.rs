@@ -9,13 +9,52 @@ use crate::draw::list::FeatureId;
 use crate::pipeline::files;
 use crate::pipeline::fingerprint::fingerprint;
 use crate::viewer::app::{OpeningFailure, ViewerApp};
-use crate::viewer::loading::LoadedFile;
+use crate::viewer::lettering;
+use crate::viewer::loading::{LoadedFile, opening_error};
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::session::EditingSession;
 use crate::viewer::watch::{FileWatch, WatchState};
+use crate::viewer::worker::{WorkerJob, drop_apart};
+
+/// The files of the scene that is shown.
+#[derive(Default)]
+pub struct FollowedFiles {
+    /// What they held when they were read or saved last.
+    fingerprint: Option<String>,
+    watch: Option<FileWatch>,
+    check: Option<FileCheck>,
+    /// Whether a file changed while they were read.
+    changed_meanwhile: bool,
+}
+
+/// Files that are being read, to know whether they hold what they held.
+struct FileCheck {
+    purpose: CheckPurpose,
+    job: WorkerJob<Option<String>>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CheckPurpose {
+    /// The scene is read again where they hold something else.
+    Compare,
+    /// The window itself has written them.
+    Acknowledge,
+}
 
 impl ViewerApp {
+    /// Takes over what stands, where it was set anew meanwhile.
+    pub(super) fn follow_relisting(&mut self) {
+        let Some(opened) = &mut self.opened else { return };
+        let followed = [
+            opened.follow_relisting(&self.context, &self.slot),
+            opened.follow_shadows(&self.context, &self.slot),
+        ];
+        for error in followed.into_iter().filter_map(Result::err) {
+            self.notices.warn(opening_error(&error));
+        }
+    }
+
     /// Takes over a scene that was opened meanwhile.
     pub(super) fn follow_loading(&mut self, ui: &Ui) {
         let Some(loading) = &mut self.loading else { return };
@@ -37,17 +76,16 @@ impl ViewerApp {
 
     /// Shows a scene; the camera stays where the same file was shown before.
     fn take_over(&mut self, path: PathBuf, loaded: LoadedFile, ui: &Ui) {
-        let LoadedFile { mut opened, editor, source } = loaded;
+        let LoadedFile { mut opened, editor, source, fingerprint } = loaded;
         match self.opened.as_ref().filter(|before| before.path == path) {
             Some(before) => {
-                let mut pose = before.navigator.pose();
-                pose.eye.z *= f64::from(opened.scene.scale.0 / before.scene.scale.0);
+                let pose = before.seen_from(self.view.size).pose_at(opened.scene.scale.0);
                 opened.navigator.set_mode(before.navigator.mode());
                 opened.navigator.place(pose, &|_| None);
                 opened.fov_y_rad = before.fov_y_rad;
                 let count = opened.scene.features.len();
                 self.tree.hidden.retain(|id: &FeatureId| id.index().is_some_and(|index| index < count));
-                if !self.tree.hidden.is_empty() {
+                if self.tree.hidden != opened.hidden {
                     opened.hide(&self.tree.hidden);
                 }
                 if editor.is_some() {
@@ -58,59 +96,92 @@ impl ViewerApp {
             None => {
                 self.camera_number = 0;
                 (self.tree, self.picked, self.tool) = (TreePanel::default(), None, None);
+                self.viewshed = None;
                 self.notices.clear();
                 self.recent.add(&path);
             }
         }
         self.view.forget();
+        let given = self.opened.as_ref().and_then(|before| before.scene.font.as_ref());
+        if given != opened.scene.font.as_ref() {
+            lettering::set_fonts(&self.context, opened.scene.font.as_ref());
+        }
         self.detail.tolerance_px = opened.walk.tolerance_px();
         self.detail.frozen = false;
         self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));
         let watched: Vec<PathBuf> = opened.scene.files.iter().cloned().chain([source.path.clone()]).collect();
         self.watch_files(&watched);
-        match (editor, &mut self.session) {
+        let before = match (editor, &mut self.session) {
             (Some(editor), _) => {
-                self.fingerprint = fingerprint(&source.path, &opened.scene.files).ok();
+                (self.files.fingerprint, self.files.check) = (fingerprint, None);
                 self.session = Some(EditingSession::new(editor, &opened));
-                self.opened = Some(opened);
+                self.opened.replace(opened)
             }
             (None, Some(session)) => {
-                session.rebuilt();
                 let is_outdated = session.editor.text() != source.text;
-                self.opened = Some(opened);
+                session.rebuilt(source.text);
+                let before = self.opened.replace(opened);
                 if is_outdated {
                     self.rebuild();
                 }
+                before
             }
-            (None, None) => self.opened = Some(opened),
-        }
+            (None, None) => self.opened.replace(opened),
+        };
+        drop_apart(before);
+        self.renew_viewshed();
     }
 
     fn watch_files(&mut self, files: &[PathBuf]) {
         let context = self.context.clone();
-        self.watch = FileWatch::start(files, move || context.request_repaint());
+        self.files.watch = FileWatch::start(files, move || context.request_repaint());
     }
 
     /// Reads files again that changed on disk.
     pub(super) fn follow_files(&mut self, ui: &Ui) {
-        let Some(watch) = &mut self.watch else { return };
+        self.follow_check();
+        let Some(watch) = &mut self.files.watch else { return };
         match watch.poll(Instant::now()) {
             WatchState::Unchanged => {}
             WatchState::Changing(rest) => ui.ctx().request_repaint_after(rest),
-            WatchState::Changed => self.follow_change(),
+            WatchState::Changed if self.files.check.is_some() => self.files.changed_meanwhile = true,
+            WatchState::Changed => self.check_files(CheckPurpose::Compare),
+        }
+    }
+
+    /// Takes the files as they are for what is shown.
+    pub(super) fn acknowledge_files(&mut self) {
+        self.check_files(CheckPurpose::Acknowledge);
+    }
+
+    fn check_files(&mut self, purpose: CheckPurpose) {
+        let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_ref()) else {
+            // A file that could not be opened.
+            return self.reload();
+        };
+        let (path, files) = (session.editor.source().path.clone(), opened.scene.files.clone());
+        let context = self.context.clone();
+        let wake = move || context.request_repaint();
+        let job = WorkerJob::start(move || fingerprint(&path, &files).ok(), wake);
+        self.files.check = Some(FileCheck { purpose, job });
+    }
+
+    fn follow_check(&mut self) {
+        let Some(check) = &self.files.check else { return };
+        let Some(now) = check.job.poll() else { return };
+        let (now, purpose) = (now.ok().flatten(), check.purpose);
+        self.files.check = None;
+        let is_known = now.is_some() && now == self.files.fingerprint;
+        self.files.fingerprint = now;
+        if purpose == CheckPurpose::Compare && !is_known {
+            self.follow_change();
+        } else if std::mem::take(&mut self.files.changed_meanwhile) {
+            self.check_files(CheckPurpose::Compare);
         }
     }
 
     /// Reads files again that another program changed; edits that are not saved come before.
     fn follow_change(&mut self) {
-        let held = self.opened.as_ref().zip(self.session.as_ref());
-        let held =
-            held.map(|(opened, session)| (session.editor.source().path.clone(), opened.scene.files.clone()));
-        let now = held.and_then(|(path, files)| fingerprint(&path, &files).ok());
-        if now.is_some() && now == self.fingerprint {
-            return;
-        }
-        self.fingerprint = now;
         if self.session.as_ref().is_some_and(|session| session.editor.is_changed()) {
             self.notices
                 .warn("the file has changed on disk; Ctrl+R reads it, without the edits that are not saved");

@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::text::LayoutJob;
-use egui::{Align, Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use crate::description::words::LabelKind;
 use crate::scene::SceneLabel;
 use crate::view::camera::Camera;
+use crate::viewer::lettering::font;
 
 /// A label that is shown comes as if its rank were lower by this: labels of one rank do not take turns.
 const SHOWN_BONUS: f64 = 0.5;
@@ -64,6 +65,8 @@ pub struct LabelPicture<'a> {
     pub taken: &'a [Rect],
     /// Whether a place in world space is in sight.
     pub is_seen: &'a dyn Fn(Vec3) -> bool,
+    /// Whether a label, by its number, stands at its place and not along a line.
+    pub is_at_place: &'a dyn Fn(usize) -> bool,
     /// The size of a label's letters, in points.
     pub size: &'a dyn Fn(&SceneLabel) -> egui::Vec2,
 }
@@ -73,6 +76,10 @@ impl LabelLayer {
     pub fn place(&mut self, labels: &[SceneLabel], picture: &LabelPicture<'_>) -> Vec<PlacedLabel> {
         let mut candidates: Vec<(f64, f32, usize, Pos2, Pos2)> = Vec::new();
         for (index, label) in labels.iter().enumerate() {
+            // One that has found a place along its line goes as it came.
+            if !(picture.is_at_place)(index) && !self.states.contains_key(&index) {
+                continue;
+            }
             let Some((ground, depth_m)) = on_screen(label.ground, picture) else { continue };
             let top = on_screen(label.anchor, picture).map_or(ground, |(top, _)| top);
             let top = pos2(top.x, top.y.min(ground.y - leader(label.kind)));
@@ -87,7 +94,9 @@ impl LabelLayer {
             let before = self.states.get(&index).copied().unwrap_or_default();
             let letters = Align2::CENTER_BOTTOM.anchor_size(top, (picture.size)(&labels[index]));
             let needed = if before.is_placed { letters.shrink(2.0) } else { letters.expand(NEW_MARGIN) };
-            let has_room = placed.len() < MOST_SHOWN && !taken.iter().any(|other| other.intersects(needed));
+            let has_room = placed.len() < MOST_SHOWN
+                && (picture.is_at_place)(index)
+                && !taken.iter().any(|other| other.intersects(needed));
             let is_seen = has_room && (picture.is_seen)(labels[index].anchor.max(labels[index].ground));
             let hidden_for = if is_seen { 0 } else { before.hidden_for.saturating_add(1) };
             let is_placed = has_room && (is_seen || (before.is_placed && hidden_for <= PATIENCE));
@@ -132,16 +141,8 @@ fn leader(kind: LabelKind) -> f32 {
     }
 }
 
-/// The type size of a label, in points.
-pub fn font(kind: LabelKind) -> FontId {
-    FontId::proportional(match kind {
-        LabelKind::Summit | LabelKind::Place => 15.0,
-        LabelKind::Water | LabelKind::Area => 14.0,
-        LabelKind::Road | LabelKind::Point => 12.5,
-    })
-}
-
-fn ink(kind: LabelKind) -> Color32 {
+/// The color of a name.
+pub fn ink(kind: LabelKind) -> Color32 {
     match kind {
         LabelKind::Water => Color32::from_rgb(18, 68, 120),
         LabelKind::Area => Color32::from_rgb(70, 66, 58),
@@ -197,7 +198,8 @@ mod tests {
         let camera = Camera::new(eye, target, 0.8, (800, 600), (1.0, 1e5)).expect("sound");
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
         let size = |_: &SceneLabel| vec2(60.0, 14.0);
-        let picture = LabelPicture { camera: &camera, rect, taken: &[], is_seen, size: &size };
+        let picture =
+            LabelPicture { camera: &camera, rect, taken: &[], is_seen, is_at_place: &|_| true, size: &size };
         let mut placed: Vec<usize> = Vec::new();
         for label in layer.place(labels, &picture) {
             if layer.is_shown(label.index) {

@@ -16,6 +16,7 @@ use crate::viewer::panels::timing::timing_panel;
 use crate::viewer::panels::tree::{TreeEvent, tree_panel};
 use crate::viewer::place::PlaceText;
 use crate::viewer::saving::Leaving;
+use crate::viewer::viewsheds::ViewshedOverlay;
 
 /// The width of the sections at the side, in points.
 const SIDE_WIDTH: f32 = 290.0;
@@ -28,8 +29,12 @@ const MODES: [(&str, NavigationMode, ViewCommand); 3] = [
 ];
 
 /// The commands that are buttons while a scene is open.
-const BUTTONS: [(&str, ViewCommand); 3] =
-    [("Whole scene", ViewCommand::Home), ("Picture", ViewCommand::Snapshot), ("Panels", ViewCommand::Panels)];
+const BUTTONS: [(&str, ViewCommand); 4] = [
+    ("Whole scene", ViewCommand::Home),
+    ("Picture", ViewCommand::Snapshot),
+    ("Keep view", ViewCommand::KeepCamera),
+    ("Panels", ViewCommand::Panels),
+];
 
 /// A button that says the key of its command; whether it is clicked.
 fn command_button(ui: &mut Ui, text: &str, command: ViewCommand) -> bool {
@@ -90,6 +95,14 @@ impl ViewerApp {
                 if self.drawing.is_some() {
                     ui.spinner();
                     ui.label("drawing the picture");
+                }
+                if self.viewshed.as_ref().is_some_and(ViewshedOverlay::is_busy) {
+                    ui.spinner();
+                    ui.label("looking around");
+                }
+                if self.opened.as_ref().is_some_and(|opened| opened.is_relisting()) {
+                    ui.spinner();
+                    ui.label("setting light and models");
                 }
             });
         });
@@ -179,7 +192,12 @@ impl ViewerApp {
             return;
         };
         ui.label(RichText::new(&picked.feature).strong());
-        let Some(place) = &picked.place else { return };
+        self.show_picked_place(ui);
+        self.show_part(ui);
+    }
+
+    fn show_picked_place(&self, ui: &mut Ui) {
+        let Some(place) = self.picked.as_ref().and_then(|picked| picked.place.as_ref()) else { return };
         Grid::new("picked").num_columns(2).show(ui, |ui| {
             for (name, value) in [
                 ("Map", &place.map),
@@ -226,6 +244,8 @@ impl ViewerApp {
             }
             ViewerStage::Ready => {
                 let Some(opened) = &mut self.opened else { return };
+                let part = self.picked.as_ref().and_then(|picked| picked.part.as_ref());
+                self.view.grabbed_part = part.filter(|_| self.tool.is_none()).and_then(|part| part.grab);
                 let event = self.view.show(ui, opened, texture);
                 if let Some(event) = event {
                     self.take_view_event(event);

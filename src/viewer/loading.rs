@@ -8,8 +8,11 @@ use std::time::Instant;
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::message::chain::error_text;
 use crate::pipeline::editing::editor::{SceneEditor, SceneSource};
+use crate::pipeline::fingerprint::fingerprint;
 use crate::pipeline::viewing::open_to_view;
-use crate::viewer::opened::OpenedScene;
+use crate::viewer::opened::{OpenedScene, OpeningView};
+use crate::viewer::scene_load::LoaderSlot;
+use crate::viewer::worker::run_apart;
 
 /// A file that is being opened.
 pub struct SceneLoading {
@@ -38,6 +41,8 @@ pub struct LoadedFile {
     pub editor: Option<SceneEditor>,
     /// What it was built of.
     pub source: SceneSource,
+    /// What its files held; `None` where one of them cannot be read any more.
+    pub fingerprint: Option<String>,
 }
 
 enum LoadingNews {
@@ -46,8 +51,14 @@ enum LoadingNews {
 }
 
 impl SceneLoading {
-    /// Begins to open a scene. `wake` is called whenever [`SceneLoading::poll`] has news.
-    pub fn start(task: LoadingTask, wake: impl Fn() + Send + 'static) -> Self {
+    /// Begins to open a scene, first seen as `view` says, for the renderer of `slot`. `wake` is called whenever
+    /// [`SceneLoading::poll`] has news.
+    pub fn start(
+        task: LoadingTask,
+        view: OpeningView,
+        slot: LoaderSlot,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Self {
         let (sender, news) = channel();
         let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
         let path = path.clone();
@@ -57,7 +68,7 @@ impl SceneLoading {
                 let _ = sender.send(news);
                 wake();
             };
-            let loaded = load(task, &|step| tell(LoadingNews::Step(step)));
+            let loaded = run_apart(|| load(task, &view, &slot, &|step| tell(LoadingNews::Step(step))));
             tell(LoadingNews::Done(Box::new(loaded)));
         });
         Self { path, step: "starting", since: Instant::now(), news }
@@ -78,7 +89,12 @@ impl SceneLoading {
     }
 }
 
-fn load(task: LoadingTask, progress: &dyn Fn(&'static str)) -> Result<LoadedFile, String> {
+fn load(
+    task: LoadingTask,
+    view: &OpeningView,
+    slot: &LoaderSlot,
+    progress: &dyn Fn(&'static str),
+) -> Result<LoadedFile, String> {
     progress("reading the scene file");
     let (path, source, editor) = match task {
         LoadingTask::File(path, allowed) => {
@@ -88,8 +104,10 @@ fn load(task: LoadingTask, progress: &dyn Fn(&'static str)) -> Result<LoadedFile
         LoadingTask::Edited(path, source) => (path, source, None),
     };
     let scene = source.build(progress).map_err(|error| opening_error(&error))?;
-    let opened = OpenedScene::new(path, scene, progress).map_err(|error| opening_error(&error))?;
-    Ok(LoadedFile { opened: Box::new(opened), editor, source })
+    let fingerprint = fingerprint(&source.path, &scene.files).ok();
+    let opened =
+        OpenedScene::new(path, scene, view, slot, progress).map_err(|error| opening_error(&error))?;
+    Ok(LoadedFile { opened: Box::new(opened), editor, source, fingerprint })
 }
 
 /// The text of an error, beginning with the place in the scene file where there is one.
@@ -107,7 +125,12 @@ mod tests {
     use std::time::Duration;
 
     fn opened(path: &str) -> Result<LoadedFile, String> {
-        let mut loading = SceneLoading::start(LoadingTask::File(path.into(), Vec::new()), || ());
+        let mut loading = SceneLoading::start(
+            LoadingTask::File(path.into(), Vec::new()),
+            OpeningView::default(),
+            LoaderSlot::default(),
+            || (),
+        );
         loop {
             match loading.poll() {
                 Some(result) => return result,

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::pipeline::viewshed::ViewshedSummary;
 use crate::pipeline::walk::Walk;
 use crate::terrain::profile::ProfileStation;
 use crate::terrain::sight::line::{Sight, SightEnd};
@@ -93,7 +94,7 @@ impl Measuring {
             MeasureKind::Line => self.line(walk),
             MeasureKind::Area => area(&self.points, walk),
             MeasureKind::Sight => sight(self.points[0], self.points[1], walk),
-            MeasureKind::Viewshed => seen_from(self.points[0], walk),
+            MeasureKind::Viewshed => vec!["looking around …".to_owned()],
         };
     }
 
@@ -153,13 +154,19 @@ fn heights_note() -> String {
     format!("both {EYE_M} m above ground")
 }
 
-fn seen_from(at: DVec2, walk: &Walk) -> Vec<String> {
-    match walk.viewshed(&ViewshedOptions::new(SightEnd { at, above_m: EYE_M })) {
-        Ok(seen) => vec![
-            format!("{} are seen", area_text(seen.summary.visible_m2)),
-            format!("{:.1} % of the scene, from {EYE_M} m above ground", seen.summary.visible_share * 100.0),
+/// The viewshed from an eye at a place.
+pub fn viewshed_from(at: DVec2) -> ViewshedOptions {
+    ViewshedOptions::new(SightEnd { at, above_m: EYE_M })
+}
+
+/// What a viewshed comes to; `None` for a place without ground.
+pub fn seen_facts(seen: Option<&ViewshedSummary>) -> Vec<String> {
+    match seen {
+        Some(seen) => vec![
+            format!("{} are seen", area_text(seen.visible_m2)),
+            format!("{:.1} % of the scene, from {EYE_M} m above ground", seen.visible_share * 100.0),
         ],
-        Err(_) => vec!["there is no ground here".to_owned()],
+        None => vec!["there is no ground here".to_owned()],
     }
 }
 
@@ -228,6 +235,9 @@ mod tests {
         assert_eq!(sight.points.len(), 1);
         let mut viewshed = Measuring::new(MeasureKind::Viewshed);
         viewshed.click(at, &walk);
+        assert_eq!(viewshed.facts, ["looking around …"]);
+        let seen = walk.viewshed_task(viewshed_from(viewshed.points[0])).seen().expect("ground");
+        viewshed.facts = seen_facts(Some(&seen.summary));
         assert!(viewshed.facts[0].ends_with("are seen"), "{:?}", viewshed.facts);
     }
 

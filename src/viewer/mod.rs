@@ -3,8 +3,9 @@
 //! ```text
 //! window ─► keys, pointer ─► app ─► panels ─► commands        egui; no adapter needed: tests run it without a window
 //!   │                         │
-//!   │                         ├─ loading ─► scene              on a thread, with progress
-//!   │                         └─ opened scene: walk, camera
+//!   │                         ├─ loading ─► scene              on a thread, with progress; and on others:
+//!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; shadowing; drawing:
+//!   │                         │                                   pictures; all of them: worker
 //!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
 //! ```
 //!
@@ -22,24 +23,32 @@ mod frame_times;
 mod graphics;
 mod labels;
 mod layout;
+mod lettering;
+mod line_names;
 mod loading;
 mod measuring;
+mod moving;
 mod notices;
 mod opened;
 mod panels;
 mod place;
 mod recent;
+mod relisting;
 mod saving;
 mod scene_graphics;
+mod scene_load;
 mod script;
 mod script_run;
 mod session;
+mod shadowing;
 mod snapshots;
 mod symbol_layer;
 mod tool_use;
 mod view_area;
+mod viewsheds;
 mod watch;
 mod window;
+mod worker;
 
 use crate::pipeline::viewing::ViewerOptions;
 use crate::viewer::error::ViewerError;

@@ -14,15 +14,23 @@ use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::Walk;
 use crate::pipeline::walk::frame::{WalkError, WalkOptions, WalkStatistics};
 use crate::pipeline::walk::pick::{StandingIndex, WalkPick, pixel_ray};
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::KeptPatches;
+use crate::render::gpu::live::prepared::PreparedShadows;
 use crate::scene::picture;
 use crate::scene::{SceneModel, SceneView};
 use crate::terrain::sight::ray::Ray;
 use crate::view::camera::{Camera, CameraError, far_m};
 use crate::view::navigation::pose::{ViewPicture, ViewPose};
 use crate::view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
+use crate::viewer::relisting::Relisting;
+use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
+use crate::viewer::shadowing::{ShadowState, ShadowedView};
 
 /// The size that cameras are fitted to before the window has one.
-const FIRST_SIZE: (u32, u32) = (1280, 720);
+pub const FIRST_SIZE: (u32, u32) = (1280, 720);
+/// The picture that the ground is first made for where the window has none yet: as high as a new window's.
+const OPENING_SIZE: (u32, u32) = (1280, 800);
 /// How much farther the eye may go before models in the form for their distance are made anew, as a share of the scene's
 /// diagonal: less would make them anew on every flight across it.
 const EYE_SHARE: f32 = 0.1;
@@ -49,18 +57,62 @@ pub struct OpenedScene {
     pub fov_y_rad: f32,
     /// The pose whose triangles are shown while the camera flies on; `None` for the camera's own.
     pub frozen: Option<ViewPose>,
-    list: Arc<DrawList>,
-    standing: StandingIndex,
+    /// What stands.
+    pub(super) list: Arc<DrawList>,
+    pub(super) standing: StandingIndex,
     /// Where the eye was when the list was made.
-    list_eye: Vec3,
-    hidden: BTreeSet<FeatureId>,
-    needs_load: bool,
+    pub(super) list_eye: Vec3,
+    /// Unit vector toward the sun of the next list.
+    pub(super) wanted_sun: Vec3,
+    pub(super) hidden: BTreeSet<FeatureId>,
+    /// What the renderer is to take over.
+    pub(super) load: Option<SceneLoad>,
+    /// The next list, while it is made.
+    pub(super) relisting: Option<Relisting>,
+    /// Whether the list is of old, or will be when the next one is there.
+    pub(super) wants_list: bool,
+    pub(super) shadows: ShadowState,
+    /// The size of the picture, pixels.
+    pub(super) size: (u32, u32),
+}
+
+/// How a scene that is opened will first be seen, so that nothing is left to be made for its first frame.
+#[derive(Clone, Debug, Default)]
+pub struct OpeningView {
+    /// From where; `None` for its first camera.
+    pub seen: Option<SeenFrom>,
+    /// The features that are not shown.
+    pub hidden: BTreeSet<FeatureId>,
+}
+
+/// From where a scene is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenFrom {
+    /// The pose, in a scene of a vertical scale.
+    pub pose: ViewPose,
+    /// That scale.
+    pub scale: f32,
+    /// The vertical field of view, radians.
+    pub fov_y_rad: f32,
+    /// The picture, pixels.
+    pub size: (u32, u32),
+}
+
+impl SeenFrom {
+    /// The pose in a scene of another vertical scale.
+    pub fn pose_at(&self, scale: f32) -> ViewPose {
+        let mut pose = self.pose;
+        pose.eye.z *= f64::from(scale / self.scale);
+        pose
+    }
 }
 
 /// What a frame shows.
 pub struct SceneFrame {
     /// The list to load before anything else; `None` where the renderer has it.
-    pub load: Option<Arc<DrawList>>,
+    pub load: Option<SceneLoad>,
+    /// Shadows to take over; `None` where the renderer has them.
+    pub shadows: Option<PreparedShadows>,
     /// What changed on the ground.
     pub changes: GroundChanges,
     /// How it is seen.
@@ -82,39 +134,86 @@ pub enum SceneFrameError {
     /// The ground cannot be read.
     #[error(transparent)]
     Walk(#[from] WalkError),
+    /// The device cannot hold the scene.
+    #[error(transparent)]
+    Graphics(#[from] GpuError),
 }
 
 impl OpenedScene {
-    /// A scene, seen through its first camera. Measures the ground, lights it and sets the models: it is for a thread.
+    /// A scene, seen through its first camera. Measures the ground, lights it, sets the models and brings all of it to the
+    /// renderer of `slot`, with the ground as `view` shows it: it is for a thread.
     ///
     /// # Errors
-    /// Its first camera sees nothing.
+    /// Its first camera sees nothing, or the device cannot hold it.
     pub fn new(
         path: PathBuf,
         scene: SceneModel,
+        view: &OpeningView,
+        slot: &LoaderSlot,
         progress: &dyn Fn(&'static str),
-    ) -> Result<Self, CameraError> {
+    ) -> Result<Self, SceneFrameError> {
         let scene = Arc::new(scene);
         progress("measuring the ground");
         let camera = picture::camera(&scene, &scene.cameras[0], FIRST_SIZE)?;
         let to_sun = Some(scene.sunlight.to_sun(Some(&camera)));
         let walk = Walk::new(Arc::clone(&scene), WalkOptions { to_sun, ..WalkOptions::default() });
-        let list = Arc::new(walk.static_list(&camera, progress));
+        let mut list = walk.static_list(&camera, progress);
+        list.items.retain(|item| !view.hidden.contains(&item.feature));
+        let list = Arc::new(list);
         let (min, max) = scene.bounds;
         let space = NavigatedSpace { min: min.as_dvec3(), max: max.as_dvec3() };
-        Ok(Self {
+        let mut opened = Self {
             path,
             navigator: Navigator::new(ViewPose::of_camera(&camera), space),
             fov_y_rad: field_of_view(&camera),
             frozen: None,
             standing: StandingIndex::new(Arc::clone(&list)),
-            list,
             list_eye: camera.eye(),
-            hidden: BTreeSet::new(),
-            needs_load: true,
+            wanted_sun: walk.to_sun(),
+            hidden: view.hidden.clone(),
+            load: Some(SceneLoad::unprepared(&list)),
+            relisting: None,
+            wants_list: false,
+            shadows: ShadowState::default(),
+            size: FIRST_SIZE,
+            list,
             scene,
             walk,
-        })
+        };
+        progress("showing the ground");
+        // Rays of the pointer need it.
+        opened.walk.sight();
+        let seen = opened.opening_camera(view)?;
+        let first = opened.walk.update(&seen)?.changes;
+        let first = opened.without_hidden(first);
+        progress("sending the scene to the adapter");
+        let shadowed = ShadowedView { camera: seen, ground: opened.walk.shown_ground() };
+        let prepared = slot.prepare(&opened.list, &shadowed, &first)?;
+        if prepared.is_some() {
+            opened.shadows.made_for(seen);
+            let list = Arc::clone(&opened.list);
+            opened.load = Some(SceneLoad { list, prepared, kept: KeptPatches::None });
+        }
+        Ok(opened)
+    }
+
+    /// The camera that it is first seen through.
+    fn opening_camera(&self, view: &OpeningView) -> Result<Camera, CameraError> {
+        let (pose, fov_y_rad, size) = match &view.seen {
+            Some(seen) => (seen.pose_at(self.scene.scale.0), seen.fov_y_rad, seen.size),
+            None => (self.navigator.pose(), self.fov_y_rad, OPENING_SIZE),
+        };
+        self.camera_of(&pose, fov_y_rad, size)
+    }
+
+    /// Changes of the ground without what is hidden.
+    fn without_hidden(&self, mut changes: GroundChanges) -> GroundChanges {
+        if !self.hidden.is_empty() {
+            for drapes in &mut changes.drapes {
+                drapes.pieces.retain(|piece| !self.hidden.contains(&piece.feature));
+            }
+        }
+        changes
     }
 
     /// The box of the scene in world space.
@@ -132,8 +231,18 @@ impl OpenedScene {
     }
 
     fn camera_from(&self, pose: &ViewPose, size: (u32, u32)) -> Result<Camera, CameraError> {
+        self.camera_of(pose, self.fov_y_rad, size)
+    }
+
+    fn camera_of(&self, pose: &ViewPose, fov_y_rad: f32, size: (u32, u32)) -> Result<Camera, CameraError> {
         let planes = (NEAR_M, far_m(&self.bounds(), pose.eye.as_vec3()));
-        pose.camera(&ViewPicture { fov_y_rad: self.fov_y_rad, size, planes })
+        pose.camera(&ViewPicture { fov_y_rad, size, planes })
+    }
+
+    /// From where it is seen now, on a picture of `size` pixels.
+    pub fn seen_from(&self, size: (u32, u32)) -> SeenFrom {
+        let (pose, scale) = (self.navigator.pose(), self.scene.scale.0);
+        SeenFrom { pose, scale, fov_y_rad: self.fov_y_rad, size: (size.0.max(16), size.1.max(16)) }
     }
 
     /// Goes to one of the scene's cameras, on a picture of `size` pixels.
@@ -187,14 +296,16 @@ impl OpenedScene {
     /// # Errors
     /// See [`SceneFrameError`].
     pub fn frame(&mut self, size: (u32, u32)) -> Result<SceneFrame, SceneFrameError> {
+        self.size = size;
         let camera = self.camera(size)?;
         let (min, max) = self.scene.bounds;
         let has_moved = self.list_eye.distance(camera.eye()) > (max - min).length() * EYE_SHARE;
-        if self.walk.list_depends_on_eye() && has_moved && !self.navigator.is_on_its_way() {
-            self.renew_list(&camera);
+        let is_near = !has_moved || self.relisting.is_some() || self.navigator.is_on_its_way();
+        if self.walk.list_depends_on_eye() && !is_near {
+            self.relist();
         }
-        let load = std::mem::take(&mut self.needs_load).then(|| Arc::clone(&self.list));
-        if load.is_some() {
+        let load = self.load.take();
+        if load.as_ref().is_some_and(|load| load.prepared.is_none()) {
             self.walk.forget_handed();
         }
         let started = Instant::now();
@@ -202,53 +313,38 @@ impl OpenedScene {
             Some(pose) => self.camera_from(&pose, size)?,
             None => camera,
         };
-        let mut frame = self.walk.update(&refined_for)?;
+        let frame = self.walk.update(&refined_for)?;
         let update_ms = started.elapsed().as_secs_f32() * 1e3;
-        if !self.hidden.is_empty() {
-            for drapes in &mut frame.changes.drapes {
-                drapes.pieces.retain(|piece| !self.hidden.contains(&piece.feature));
-            }
-        }
-        let (changes, statistics) = (frame.changes, frame.statistics);
-        Ok(SceneFrame { load, changes, lighting: self.walk.lighting(&camera), camera, statistics, update_ms })
+        let (changes, statistics) = (self.without_hidden(frame.changes), frame.statistics);
+        let shadows = self.shadows.take_ready();
+        Ok(SceneFrame {
+            load,
+            shadows,
+            changes,
+            lighting: self.walk.lighting(&camera),
+            camera,
+            statistics,
+            update_ms,
+        })
     }
 
     /// Hands everything over again: to a renderer that starts anew.
     pub fn reload(&mut self) {
-        self.needs_load = true;
+        self.load = Some(SceneLoad::unprepared(&self.list));
+        self.shadows.forget();
     }
 
-    /// Hides these features and shows all others.
+    /// Hides these features and shows all others, as soon as they are there.
     pub fn hide(&mut self, hidden: &BTreeSet<FeatureId>) {
         self.hidden.clone_from(hidden);
-        if let Ok(camera) = self.camera(FIRST_SIZE) {
-            self.renew_list(&camera);
-        }
+        self.walk.renew_laid();
+        self.relist();
     }
 
-    /// Moves the sun, and lights the ground anew.
+    /// Moves the sun; the ground is lit anew as soon as that is computed.
     pub fn set_sun(&mut self, to_sun: Vec3) {
-        self.walk.set_sun(to_sun);
-        if let Ok(camera) = self.camera(FIRST_SIZE) {
-            self.renew_list(&camera);
-        }
-    }
-
-    /// Sets what stands anew, where the eye is now.
-    pub fn renew_list(&mut self, camera: &Camera) {
-        let mut list = self.walk.static_list(camera, &|_| ());
-        list.items.retain(|item| !self.hidden.contains(&item.feature));
-        self.list = Arc::new(list);
-        self.standing = StandingIndex::new(Arc::clone(&self.list));
-        self.list_eye = camera.eye();
-        self.needs_load = true;
-    }
-
-    /// Sets what stands anew where an edit moved ground under it.
-    pub fn follow_ground(&mut self, moves_standing: bool) {
-        if moves_standing && let Ok(camera) = self.camera(FIRST_SIZE) {
-            self.renew_list(&camera);
-        }
+        self.wanted_sun = to_sun;
+        self.relist();
     }
 
     /// What the picture of `camera` shows at a pixel; `None` for the sky.

@@ -6,7 +6,6 @@ use egui::{Context, Id, Modal};
 
 use crate::pipeline::editing::editor::{OnConflict, SaveError};
 use crate::pipeline::files;
-use crate::pipeline::fingerprint::fingerprint;
 use crate::viewer::app::{ViewerApp, WindowRequest};
 use crate::viewer::loading::opening_error;
 
@@ -51,7 +50,7 @@ impl ViewerApp {
 
     /// Saves the edits into the scene file.
     pub(super) fn save(&mut self, on_conflict: OnConflict) {
-        let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_mut()) else { return };
+        let Some(session) = &mut self.session else { return };
         let path = session.editor.source().path.clone();
         let name = files::file_name(&path);
         if !session.editor.is_changed() && path.exists() {
@@ -59,7 +58,7 @@ impl ViewerApp {
         }
         match session.editor.save(on_conflict) {
             Ok(()) => {
-                self.fingerprint = fingerprint(&path, &opened.scene.files).ok();
+                self.acknowledge_files();
                 self.tell(format!("{name} is saved"));
             }
             Err(error @ (SaveError::ChangedOnDisk(_) | SaveError::Exists(_))) => {

@@ -8,10 +8,12 @@ use egui::TextureId;
 
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::prepared::LiveLoader;
 use crate::render::gpu::live::{LiveOptions, LiveRenderer};
 use crate::viewer::frame_times::{FrameLoad, FrameTime};
 use crate::viewer::graphics::WindowGraphics;
 use crate::viewer::opened::SceneFrame;
+use crate::viewer::scene_load::SceneLoad;
 
 /// What the panels blend: colors as they are shown.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -40,6 +42,11 @@ impl SceneGraphics {
         Ok(Self { renderer: LiveRenderer::new(&gpu, FORMAT)?, picture: None, texture: None })
     }
 
+    /// What prepares scenes for this renderer on other threads.
+    pub fn loader(&self) -> LiveLoader {
+        self.renderer.loader()
+    }
+
     /// Records the picture of a frame; returns what it took and what it showed.
     ///
     /// # Errors
@@ -48,12 +55,18 @@ impl SceneGraphics {
         &mut self,
         graphics: &mut WindowGraphics,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &SceneFrame,
+        frame: &mut SceneFrame,
         options: &LiveOptions,
     ) -> Result<(FrameTime, FrameLoad), GpuError> {
         let uploading = Instant::now();
-        if let Some(list) = &frame.load {
-            self.renderer.load(list)?;
+        if let Some(SceneLoad { list, prepared, kept }) = frame.load.take() {
+            match prepared {
+                Some(prepared) => self.renderer.show(prepared, kept),
+                None => self.renderer.load(&list)?,
+            }
+        }
+        if let Some(shadows) = frame.shadows.take() {
+            self.renderer.show_shadows(shadows)?;
         }
         self.renderer.set_lighting(frame.lighting);
         let sent = self.renderer.update(&frame.changes)?;

@@ -10,6 +10,10 @@
 //! | `fly X,Y,Z X,Y,Z N` | flies to an eye that looks at a place in N frames, heights as elevations |
 //! | `camera NAME` | goes to a camera of the scene |
 //! | `pick X,Y` | says what the picture shows at a pixel |
+//! | `sun AZIMUTH,ALTITUDE` | moves the sun, degrees |
+//! | `heights FACTOR` | draws heights so many times as high |
+//! | `hide KIND`, `show KIND` | hides or shows features of a kind, such as `roads` |
+//! | `viewshed X,Y` | tints what is seen from a place |
 //! | `edit crater X,Y RADIUS` | digs |
 //! | `undo`, `redo`, `save`, `snapshot`, `quit` | as the keys do |
 //! | `resize WxH` | gives the window a size in pixels |
@@ -50,6 +54,19 @@ pub enum ScriptCommand {
         /// Meters.
         radius_m: f64,
     },
+    /// Moves the sun: degrees clockwise from north and above the horizon.
+    Sun(DVec2),
+    /// Tints what is seen from a place.
+    Viewshed(DVec2),
+    /// Exaggerates heights.
+    Heights(f64),
+    /// Hides or shows features of a kind, by its plural.
+    Visibility {
+        /// The plural.
+        kind: String,
+        /// Whether they are shown.
+        shown: bool,
+    },
     /// Gives the window a size.
     Resize(u32, u32),
 }
@@ -63,8 +80,8 @@ pub struct ScriptError {
     expected: &'static str,
 }
 
-const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, edit crater X,Y RADIUS, undo, redo, \
-                        save, snapshot, resize WxH or quit";
+const EXPECTED: &str = "wait N, key NAME, fly X,Y,Z X,Y,Z N, camera NAME, pick X,Y, sun AZIMUTH,ALTITUDE, heights FACTOR, \
+                        hide KIND, show KIND, viewshed X,Y, edit crater X,Y RADIUS, undo, redo, save, snapshot, resize WxH or quit";
 
 /// The commands of a script, each with its line as it is written.
 ///
@@ -92,10 +109,14 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
         }
         ["camera", _, ..] => ScriptCommand::Camera(words[1..].join(" ")),
         ["pick", at] => ScriptCommand::Pick(place(at)?),
-        ["edit", "crater", at, radius] => ScriptCommand::Crater {
-            at: place(at)?,
-            radius_m: radius.parse().ok().filter(|radius: &f64| radius.is_finite() && *radius > 0.0)?,
-        },
+        ["sun", angles] => ScriptCommand::Sun(place(angles)?),
+        ["viewshed", at] => ScriptCommand::Viewshed(place(at)?),
+        ["heights", factor] => ScriptCommand::Heights(positive(factor)?),
+        ["hide", _, ..] => ScriptCommand::Visibility { kind: words[1..].join(" "), shown: false },
+        ["show", _, ..] => ScriptCommand::Visibility { kind: words[1..].join(" "), shown: true },
+        ["edit", "crater", at, radius] => {
+            ScriptCommand::Crater { at: place(at)?, radius_m: positive(radius)? }
+        }
         ["resize", size] => {
             let (width, height) = size.split_once('x')?;
             let side = |text: &str| text.parse().ok().filter(|side| (1..=16_384).contains(side));
@@ -112,6 +133,10 @@ fn command(words: &[&str]) -> Option<ScriptCommand> {
 
 fn frames(text: &str) -> Option<u32> {
     text.parse().ok().filter(|count| *count <= MOST_FRAMES)
+}
+
+fn positive(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0)
 }
 
 fn numbers<const COUNT: usize>(text: &str) -> Option<[f64; COUNT]> {
@@ -142,15 +167,18 @@ mod tests {
     #[test]
     fn every_command_is_read() {
         let text = "# a comment\n\nwait 3\nkey Ctrl+Shift+Z\nfly 1,2,3 4,5,6 60\ncamera from the south\npick 10,20\n\
-                    edit crater 7,8 30\nresize 640x480\nundo\nquit\n";
+                    edit crater 7,8 30\nresize 640x480\nundo\nsun 120,30\nheights 2\nhide tactical graphics\nshow roads\nquit\n";
         let commands: Vec<ScriptCommand> =
             parse_script(text).expect("sound").into_iter().map(|(_, command)| command).collect();
-        assert_eq!(commands.len(), 9);
+        assert_eq!(commands.len(), 13);
         assert_eq!(commands[1], ScriptCommand::Run(ViewCommand::Redo));
         let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0));
         assert_eq!(commands[2], ScriptCommand::Fly { eye, target, frames: 60 });
         assert_eq!(commands[3], ScriptCommand::Camera("from the south".to_owned()));
         assert_eq!(commands[5], ScriptCommand::Crater { at: DVec2::new(7.0, 8.0), radius_m: 30.0 });
+        assert_eq!(commands[8], ScriptCommand::Sun(DVec2::new(120.0, 30.0)));
+        let kind = "tactical graphics".to_owned();
+        assert_eq!(commands[10], ScriptCommand::Visibility { kind, shown: false });
     }
 
     #[test]
@@ -160,6 +188,9 @@ mod tests {
             "wait -1",
             "fly 1,2 3,4 5",
             "edit crater 1,2 0",
+            "sun 120",
+            "heights -1",
+            "hide",
             "resize 0x5",
             "pick nan,1",
             "key W",

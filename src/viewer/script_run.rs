@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
+use crate::draw::list::FeatureId;
 use crate::pipeline::editing::edit::{EarthworkDraft, SceneEdit};
 use crate::view::navigation::pose::ViewPose;
 use crate::viewer::app::{ViewerApp, ViewerStage, WindowRequest};
@@ -32,7 +33,21 @@ pub struct ScriptRun {
     done: Vec<Value>,
     /// A command whose effect is awaited.
     awaited: Option<(String, usize)>,
+    /// When the frame before was begun; `None` before the first picture.
+    begun: Option<Instant>,
+    /// The longest time from frame to frame, and the longest of the window's own work in one, in milliseconds: of the command
+    /// that is carried out, and of all.
+    longest: [LongestFrame; 2],
     is_over: bool,
+}
+
+/// The longest times of frames, milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct LongestFrame {
+    /// From the begin of a frame to the begin of the next.
+    gap_ms: f32,
+    /// What the window's thread did in a frame, but for waiting for the surface.
+    own_ms: f32,
 }
 
 impl ScriptRun {
@@ -51,13 +66,29 @@ impl ScriptRun {
             bytes: 0,
             done: Vec::new(),
             awaited: None,
+            begun: None,
+            longest: [LongestFrame::default(); 2],
             is_over: false,
         }
     }
 
-    /// Notes that a frame without a scene was shown.
-    pub fn note_window(&mut self) {
+    /// Notes that a frame is begun.
+    pub fn note_begin(&mut self, now: Instant) {
+        if self.first_picture_s.is_none() {
+            return;
+        }
+        if let Some(before) = self.begun.replace(now) {
+            let gap_ms = now.duration_since(before).as_secs_f32() * 1e3;
+            self.longest.iter_mut().for_each(|longest| longest.gap_ms = longest.gap_ms.max(gap_ms));
+        }
+    }
+
+    /// Notes that a frame was shown, with a scene or without, for which the window's thread worked so long.
+    pub fn note_window(&mut self, own_ms: f32) {
         self.first_window_s.get_or_insert(self.started.elapsed().as_secs_f64());
+        if self.begun.is_some() {
+            self.longest.iter_mut().for_each(|longest| longest.own_ms = longest.own_ms.max(own_ms));
+        }
     }
 
     /// Notes a frame of the scene.
@@ -74,14 +105,18 @@ impl ScriptRun {
         if self.is_over || app.is_busy() {
             return;
         }
-        if let Some((line, notices)) = self.awaited.take() {
-            let said: Vec<String> = app.notice_texts().skip(notices).map(str::to_owned).collect();
-            let camera = app.snapshot_camera.take();
-            self.done.push(json!({ "command": line, "said": said, "camera": camera }));
-        }
         if self.waits > 0 {
             self.waits -= 1;
             return;
+        }
+        if let Some((line, notices)) = self.awaited.take() {
+            let said: Vec<String> = app.notice_texts().skip(notices).map(str::to_owned).collect();
+            let camera = app.snapshot_camera.take();
+            let LongestFrame { gap_ms, own_ms } = std::mem::take(&mut self.longest[0]);
+            self.done.push(json!({
+                "command": line, "said": said, "camera": camera,
+                "longest_gap_ms": gap_ms, "longest_own_ms": own_ms,
+            }));
         }
         let is_late = self.most_frames.is_some_and(|most| self.frames >= most);
         let has_failed = app.stage() == ViewerStage::Failed;
@@ -139,6 +174,30 @@ impl ScriptRun {
                 self.done.push(json!({ "command": line, "picked": picked }));
                 return;
             }
+            ScriptCommand::Sun(angles) => {
+                let angles = angles.as_vec2();
+                (app.light.azimuth_deg, app.light.altitude_deg) = (angles.x, angles.y);
+                if let Some(opened) = &mut app.opened {
+                    opened.set_sun(app.light.to_sun());
+                }
+                app.keep_light();
+            }
+            ScriptCommand::Heights(factor) => app.exaggerate(factor),
+            ScriptCommand::Viewshed(at) => app.look_around(at),
+            ScriptCommand::Visibility { kind, shown } => {
+                if let Some(opened) = &mut app.opened {
+                    let features = (FeatureId::GROUND.0 + 1..).map(FeatureId).zip(&opened.scene.features);
+                    let meant = features.filter(|(_, feature)| feature.kind.noun(2) == kind);
+                    for (id, _) in meant {
+                        if shown {
+                            app.tree.hidden.remove(&id)
+                        } else {
+                            app.tree.hidden.insert(id)
+                        };
+                    }
+                    opened.hide(&app.tree.hidden);
+                }
+            }
             ScriptCommand::Crater { at, radius_m } => {
                 let draft = EarthworkDraft::Crater { radius_m, depth_m: None };
                 let is_made = app.edit(&SceneEdit::add_earthwork(&draft, vec![at.to_array()]));
@@ -174,6 +233,8 @@ impl ScriptRun {
             "commands": self.done,
             "frames": self.frames,
             "over_33_ms": dropped,
+            "longest_gap_ms": self.longest[1].gap_ms,
+            "longest_own_ms": self.longest[1].own_ms,
             "milliseconds": {
                 "frame": part(FrameTime::total_ms),
                 "update": part(|time| time.update_ms),

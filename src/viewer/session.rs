@@ -6,9 +6,10 @@
 use crate::earthworks::earthwork::dig;
 use crate::pipeline::editing::edit::SceneEdit;
 use crate::pipeline::editing::editor::SceneEditor;
-use crate::pipeline::editing::effect::EditEffect;
+use crate::pipeline::editing::effect::{EditEffect, MovedModel};
 use crate::pipeline::editing::tool::ToolSettings;
 use crate::pipeline::walk::edit::WalkEdit;
+use crate::scene::picture::models::PlacementMove;
 use crate::terrain::volumes::Volumes;
 use crate::viewer::loading::opening_error;
 use crate::viewer::opened::OpenedScene;
@@ -28,6 +29,8 @@ pub struct EditingSession {
     pub editor: SceneEditor,
     /// The sizes that tools draw with.
     pub settings: ToolSettings,
+    /// The text that the scene was built of: the places of its features are in it.
+    pub built_of: String,
     /// The earth that the last edit moved; `None` where it moved none.
     pub moved: Option<Volumes>,
     /// What was dug since the scene was built, the last at the end; `None` for a digging that changed nothing.
@@ -38,11 +41,13 @@ impl EditingSession {
     /// The edits of a scene that was just opened.
     pub fn new(editor: SceneEditor, opened: &OpenedScene) -> Self {
         let cell_m = opened.walk.lattice().cell().max_element();
-        Self { editor, settings: ToolSettings::for_cell(cell_m), moved: None, dug: Vec::new() }
+        let built_of = editor.text().to_owned();
+        Self { editor, settings: ToolSettings::for_cell(cell_m), built_of, moved: None, dug: Vec::new() }
     }
 
-    /// The scene was built of the text as it is now.
-    pub fn rebuilt(&mut self) {
+    /// The scene was built of `text`.
+    pub fn rebuilt(&mut self, text: String) {
+        self.built_of = text;
         self.dug.clear();
     }
 
@@ -70,7 +75,8 @@ impl EditingSession {
     fn show(&mut self, effect: EditEffect, opened: &mut OpenedScene) -> EditOutcome {
         self.moved = None;
         match effect {
-            EditEffect::Views => EditOutcome::Shown,
+            // The list of cameras, and the texts of pictures.
+            EditEffect::Views => EditOutcome::Rebuild,
             EditEffect::Dig(works) => {
                 let held = std::sync::Arc::clone(&opened.scene.held);
                 let made = opened.walk.edit(|lattice| dig(&works, lattice, &held));
@@ -92,13 +98,21 @@ impl EditingSession {
                     Err(_) => EditOutcome::Rebuild,
                 }
             }
-            EditEffect::Move(_) | EditEffect::Rebuild => EditOutcome::Rebuild,
+            EditEffect::Move(MovedModel { placement, at, heading_rad }) => {
+                opened.walk.move_model(placement, PlacementMove { at, heading_rad });
+                opened.relist();
+                EditOutcome::Shown
+            }
+            EditEffect::Rebuild => EditOutcome::Rebuild,
         }
     }
 
     /// Lets what stands on the ground follow an edit.
     fn shown(&self, made: WalkEdit, opened: &mut OpenedScene) -> WalkEdit {
-        opened.follow_ground(made.moves_standing);
+        match made.moves_standing {
+            true => opened.relist(),
+            false => opened.shadows.forget(),
+        }
         made
     }
 }

@@ -2,8 +2,9 @@
 
 use egui::Ui;
 
+use crate::pipeline::editing::edit::SceneEdit;
 use crate::pipeline::picture::PictureSize;
-use crate::pipeline::view_snapshot::{self, ViewSnapshot};
+use crate::pipeline::view_snapshot::{self, ViewSnapshot, ViewedCamera};
 use crate::viewer::app::ViewerApp;
 use crate::viewer::drawing_job::DrawingJob;
 use crate::viewer::loading::opening_error;
@@ -28,6 +29,25 @@ impl ViewerApp {
             Err(error) => self.notices.warn(error),
         }
         ui.ctx().request_repaint();
+    }
+
+    /// Adds the view to the scene as a camera: an edit.
+    pub(super) fn keep_camera(&mut self) {
+        let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
+        let Some(session) = &self.session else { return };
+        let known: Vec<&str> =
+            session.editor.document().cameras.iter().map(|camera| camera.name.as_str()).collect();
+        let mut names = (1..=u32::MAX).map(|number| format!("view-{number}"));
+        let Some(name) = names.find(|name| !known.contains(&name.as_str())) else { return };
+        match ViewedCamera::new(&opened.scene, &camera) {
+            Ok(camera) => {
+                if self.edit(&SceneEdit::add_camera(&name, &camera)) {
+                    let now = self.context.input(|input| input.time);
+                    self.notices.tell(now, format!("this view is the camera '{name}' of the scene"));
+                }
+            }
+            Err(error) => self.notices.warn(opening_error(&error)),
+        }
     }
 
     /// Draws a picture of the view on a thread.

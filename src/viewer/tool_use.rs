@@ -78,6 +78,7 @@ impl ViewerApp {
                     self.use_tool_at(place.place.at);
                 }
             }
+            (ViewEvent::Dragged { to, turns }, _) => self.move_part(to, turns),
             (ViewEvent::DoubleClick(_) | ViewEvent::Enter, Some(_)) => self.finish_tool(),
         }
     }
@@ -87,6 +88,9 @@ impl ViewerApp {
         let edit = match &mut self.tool {
             Some(ActiveTool::Measure(measuring)) => {
                 measuring.click(at, &opened.walk);
+                if measuring.kind == MeasureKind::Viewshed {
+                    return self.look_around(at);
+                }
                 None
             }
             Some(ActiveTool::Draw(tool)) => tool.click(at.to_array(), &session.settings),
@@ -127,6 +131,7 @@ impl ViewerApp {
     /// Lets the window follow an edit.
     pub(super) fn note_outcome(&mut self, outcome: EditOutcome) {
         self.preview = None;
+        self.renew_viewshed();
         if outcome == EditOutcome::Rebuild {
             self.rebuild();
         }
@@ -191,6 +196,7 @@ impl ViewerApp {
             preview: self.preview.map(|preview| preview.preview),
             moved,
             history,
+            has_viewshed: self.viewshed.is_some(),
         };
         let header =
             CollapsingHeader::new(RichText::new("Tools").strong()).id_salt("Tools").default_open(true);
@@ -199,6 +205,7 @@ impl ViewerApp {
             Some(ToolEvent::Draw(kind)) => self.take_tool(Some(ActiveTool::Draw(DrawingTool::new(kind)))),
             Some(ToolEvent::Measure(kind)) => self.take_tool(Some(ActiveTool::Measure(Measuring::new(kind)))),
             Some(ToolEvent::Away) => self.take_tool(None),
+            Some(ToolEvent::ClearViewshed) => self.clear_viewshed(),
             Some(ToolEvent::Run(command)) => self.run(command),
             None => {}
         }
@@ -209,7 +216,11 @@ impl ViewerApp {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
         let hovered = self.view.hovered.as_ref().map(|place| place.place.at);
         let (points, shape, radius_m) = match &mut self.tool {
-            None => return,
+            None => {
+                let from = self.picked.as_ref().and_then(|picked| picked.part.as_ref()).map(|part| part.at);
+                let Some((from, to)) = from.zip(self.view.dragged_to()) else { return };
+                (vec![from, to], ToolLine::Line, None)
+            }
             Some(ActiveTool::Draw(tool)) => {
                 tool.hover(hovered.map(|at| at.to_array()));
                 let points: Vec<DVec2> = tool.drawn().into_iter().map(DVec2::from).collect();

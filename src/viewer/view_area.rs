@@ -1,17 +1,20 @@
 //! The scene's picture in the window: pointer and keys move the camera; labels lie over it.
 
 use egui::{
-    Color32, EventFilter, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId, Ui,
-    WidgetInfo, pos2,
+    Color32, EventFilter, FontId, Id, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, TextureId,
+    Ui, WidgetInfo, pos2,
 };
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use crate::draw::list::FeatureId;
 use crate::pipeline::walk::pick::WalkPick;
 use crate::scene::SceneLabel;
 use crate::view::camera::Camera;
 use crate::view::navigation::{NavigationMode, NavigationSteps};
 use crate::viewer::commands::{HeldMotion, held};
-use crate::viewer::labels::{self, LabelLayer, LabelPicture};
+use crate::viewer::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
+use crate::viewer::lettering::font;
+use crate::viewer::line_names::{LineNames, LinePicture};
 use crate::viewer::opened::OpenedScene;
 use crate::viewer::symbol_layer::SymbolLayer;
 
@@ -43,11 +46,37 @@ pub struct ViewArea {
     pub fixed_step_s: Option<f64>,
     /// What is shown over the picture.
     pub shows_labels: bool,
+    /// What is moved by dragging from it.
+    pub grabbed_part: Option<GrabTarget>,
+    /// What is being moved, and how.
+    moving: Option<PartMotion>,
     grabbed: Option<DVec3>,
+    /// The labels of the frame before, and the pixels of a point.
+    placed: Vec<PlacedLabel>,
+    scale: f32,
     steps: NavigationSteps,
     pace: f64,
     labels: LabelLayer,
+    names: LineNames,
     symbols: SymbolLayer,
+}
+
+/// What can be moved by dragging from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GrabTarget {
+    /// A model.
+    Model(FeatureId),
+    /// A label, by its number.
+    Label(usize),
+}
+
+/// A part of the scene that is being moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PartMotion {
+    /// Whether it turns where it is.
+    turns: bool,
+    /// Map coordinates of the ground under the pointer; `None` off the ground.
+    to: Option<DVec2>,
 }
 
 /// What the user did in the view besides moving.
@@ -59,6 +88,13 @@ pub enum ViewEvent {
     DoubleClick(Vec2),
     /// Pressed Enter or the space bar.
     Enter,
+    /// Dragged what was picked to a place on the ground, map coordinates, with Ctrl or without.
+    Dragged {
+        /// Where to.
+        to: DVec2,
+        /// Whether it turns toward it.
+        turns: bool,
+    },
 }
 
 impl ViewArea {
@@ -76,6 +112,8 @@ impl ViewArea {
     pub fn forget(&mut self) {
         self.labels = LabelLayer::default();
         self.symbols.clear();
+        self.placed.clear();
+        self.names = LineNames::default();
     }
 
     /// Draws the picture `texture` over all of what `ui` has left, and moves the camera of `opened`.
@@ -91,6 +129,7 @@ impl ViewArea {
         ui.advance_cursor_after_rect(rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "View of the scene"));
         let scale = ui.ctx().pixels_per_point();
+        self.scale = scale;
         let side = |points: f32| (points * scale).round().clamp(1.0, 16_384.0) as u32;
         self.size = (side(rect.width()), side(rect.height()));
         let event = match opened.camera(self.size) {
@@ -138,10 +177,16 @@ impl ViewArea {
         }
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin()).or(pointer);
+            if origin.is_some_and(|at| self.is_on_part(opened, camera, to_pixel(at))) {
+                let turns = ui.input(|input| input.modifiers.command);
+                self.moving = Some(PartMotion { turns, to: None });
+            }
             let place = origin.and_then(|at| opened.pick_ground(camera, to_pixel(at)));
             self.grabbed = Some(place.map_or_else(|| opened.focus(camera), |place| place.world));
         }
-        if response.dragged()
+        if let Some(moving) = &mut self.moving {
+            moving.to = self.hovered.as_ref().map(|place| place.place.at).or(moving.to);
+        } else if response.dragged()
             && let (Some(grabbed), Some(at)) = (self.grabbed, pointer)
         {
             let is_moved =
@@ -155,6 +200,9 @@ impl ViewArea {
         }
         if response.drag_stopped() {
             self.grabbed = None;
+            if let Some(PartMotion { turns, to: Some(to) }) = self.moving.take() {
+                return Some(ViewEvent::Dragged { to, turns });
+            }
         }
         self.take_wheel(ui, opened, hovered.is_some(), camera);
         self.take_keys(ui, opened, response, camera);
@@ -165,6 +213,29 @@ impl ViewArea {
             None if response.clicked() => Some(ViewEvent::Enter),
             _ => None,
         }
+    }
+
+    /// Whether a pixel shows what can be dragged.
+    fn is_on_part(&self, opened: &OpenedScene, camera: &Camera, pixel: Vec2) -> bool {
+        match self.grabbed_part {
+            Some(GrabTarget::Model(feature)) => {
+                opened.pick(camera, pixel).is_some_and(|pick| pick.place.feature == feature)
+            }
+            Some(GrabTarget::Label(label)) => self.label_at(pixel) == Some(label),
+            None => false,
+        }
+    }
+
+    /// Where what is being dragged would stand, map coordinates.
+    pub fn dragged_to(&self) -> Option<DVec2> {
+        self.moving.and_then(|moving| moving.to)
+    }
+
+    /// The label whose letters are at a pixel, by its number.
+    pub fn label_at(&self, pixel: Vec2) -> Option<usize> {
+        let rect = self.rect.filter(|_| self.shows_labels)?;
+        let at = rect.min + egui::vec2(pixel.x, pixel.y) / self.scale.max(0.1);
+        self.placed.iter().find(|label| label.letters.contains(at)).map(|label| label.index)
     }
 
     /// Turns by a drag in pixels: about what was grabbed, which follows the pointer, or the head, which follows it too.
@@ -239,14 +310,32 @@ impl ViewArea {
     fn show_labels(&mut self, ui: &Ui, rect: Rect, opened: &OpenedScene, camera: &Camera) {
         let painter: Painter = ui.painter_at(rect);
         let size = |label: &SceneLabel| {
-            painter.layout_no_wrap(label.text.clone(), labels::font(label.kind), Color32::BLACK).size()
+            painter.layout_no_wrap(label.text.clone(), font(label.kind), Color32::BLACK).size()
+        };
+        let widths = |letters: &[String], font: &FontId| {
+            let width = |letter: &String| {
+                painter.layout_no_wrap(letter.clone(), font.clone(), Color32::BLACK).size().x
+            };
+            (letters.iter().map(width).collect(), font.size)
         };
         let is_seen = |at: Vec3| opened.is_seen(camera, at);
         let taken = self.symbols.show(&painter, rect, opened, camera);
-        let picture = LabelPicture { camera, rect, taken: &taken, is_seen: &is_seen, size: &size };
+        let is_at_place = |label: usize| self.names.is_at_place(label);
+        let picture = LabelPicture {
+            camera,
+            rect,
+            taken: &taken,
+            is_seen: &is_seen,
+            is_at_place: &is_at_place,
+            size: &size,
+        };
         let placed = self.labels.place(&opened.scene.labels, &picture);
+        let taken: Vec<Rect> = taken.into_iter().chain(placed.iter().map(|label| label.letters)).collect();
+        let picture = LinePicture { camera, rect, taken: &taken, is_seen: &is_seen, widths: &widths };
+        self.names.show(&painter, opened, &picture);
         labels::paint(&painter, &opened.scene.labels, &placed);
-        if self.labels.is_changing() {
+        self.placed = placed;
+        if self.labels.is_changing() || self.names.is_changing() {
             ui.ctx().request_repaint();
         }
     }

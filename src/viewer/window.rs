@@ -159,27 +159,36 @@ impl ShownWindow {
 }
 
 impl ShownWindow {
+    /// Makes the renderer of scenes. What fails is said in the window, which stays.
+    fn open_scene(&mut self, app: &mut ViewerApp) {
+        match SceneGraphics::new(&self.graphics) {
+            Ok(scene) => {
+                app.slot.fill(scene.loader());
+                self.scene = Some(scene);
+            }
+            Err(error) => app.warn(error_text(&error)),
+        }
+    }
+
     /// Records the scene's picture. What fails is said in the window, which stays.
     fn draw_scene(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        frame: &SceneFrame,
+        frame: &mut SceneFrame,
         app: &mut ViewerApp,
     ) -> Option<(FrameTime, FrameLoad)> {
-        let mut scene = match self.scene.take() {
-            Some(scene) => scene,
-            None => match SceneGraphics::new(&self.graphics) {
-                Ok(scene) => scene,
-                Err(error) => {
-                    app.warn(error_text(&error));
-                    return None;
-                }
-            },
-        };
+        if self.scene.is_none() {
+            self.open_scene(app);
+        }
+        let mut scene = self.scene.take()?;
         let options = LiveOptions { wireframe: app.shows_edges() };
+        let is_loaded = frame.load.is_some();
         let drawn = scene.draw(&mut self.graphics, encoder, frame, &options);
         match drawn {
             Ok(drawn) => {
+                if is_loaded {
+                    app.slot.fill(scene.loader());
+                }
                 self.scene = Some(scene);
                 Some(drawn)
             }
@@ -199,8 +208,9 @@ impl ApplicationHandler<WindowNews> for ViewerWindow {
             return;
         }
         match ShownWindow::open(event_loop, &self.context, &self.proxy) {
-            Ok(shown) => {
+            Ok(mut shown) => {
                 self.app.adapter = shown.graphics.name();
+                shown.open_scene(&mut self.app);
                 shown.window.request_redraw();
                 self.shown = Some(shown);
             }
@@ -276,12 +286,14 @@ impl ViewerWindow {
     }
 
     fn draw(&mut self, event_loop: &ActiveEventLoop) -> Result<(), ViewerError> {
+        let begun = Instant::now();
         let Some(shown) = &mut self.shown else { return Ok(()) };
         let size = shown.window.inner_size();
         if size.width == 0 || size.height == 0 {
             return Ok(());
         }
         if let Some(script) = &mut self.script {
+            script.note_begin(begun);
             script.step(&mut self.app);
             self.context.request_repaint();
         }
@@ -295,14 +307,15 @@ impl ViewerWindow {
         let label = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = shown.graphics.device.create_command_encoder(&label);
         let requests = self.app.take_requests();
-        let frame = self.app.scene_frame();
-        let drawn = frame.as_ref().and_then(|frame| shown.draw_scene(&mut encoder, frame, &mut self.app));
+        let mut frame = self.app.scene_frame();
+        let drawn = frame.as_mut().and_then(|frame| shown.draw_scene(&mut encoder, frame, &mut self.app));
         let panels = PaintedPanels {
             primitives: &primitives,
             textures: output.textures_delta,
             pixels_per_point: output.pixels_per_point,
         };
         let presenting = Instant::now();
+        let own_ms = milliseconds(begun);
         let presented = shown.graphics.present(encoder, panels)?;
         if let Some((mut time, load)) = drawn {
             time.draw_ms += milliseconds(presenting);
@@ -313,7 +326,7 @@ impl ViewerWindow {
             }
         }
         if let Some(script) = &mut self.script {
-            script.note_window();
+            script.note_window(own_ms);
         }
         if shown.scene.as_ref().and_then(|scene| scene.texture) != texture {
             self.context.request_repaint();

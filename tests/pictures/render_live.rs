@@ -13,7 +13,9 @@ use sandtable::draw::patches::{
 };
 use sandtable::mesh::sink::{MeshSink, VertexId};
 use sandtable::render::gpu::adapter::Gpu;
-use sandtable::render::gpu::live::{LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes};
+use sandtable::render::gpu::live::{
+    KeptPatches, LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes,
+};
 use sandtable::render::gpu::render_on;
 use sandtable::view::camera::Camera;
 
@@ -256,6 +258,33 @@ fn a_changed_ground_map_shows_as_one_loaded_anew() {
         let error = renderer.update(&GroundChanges { map: vec![beside], ..Default::default() });
         assert!(error.is_err(), "it lies beside the map");
         list = scene();
+    }
+}
+
+#[test]
+fn a_scene_prepared_on_another_thread_shows_as_one_that_is_loaded() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let shadows = LiveShadows::new(&list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        renderer.set_shadows(&shadows).unwrap_or_else(|error| panic!("{error}"));
+        let before = window.frame(&mut renderer, &camera);
+        let loader = renderer.loader();
+        let prepare = || {
+            let prepared = loader.prepare(&list, &shadows).unwrap_or_else(|error| panic!("{error}"));
+            let mut first = loader.prepare(&list, &shadows).unwrap_or_else(|error| panic!("{error}"));
+            loader.update(&mut first, &changes(&list)).unwrap_or_else(|error| panic!("{error}"));
+            (prepared, first)
+        };
+        let (kept, first) = std::thread::scope(|scope| scope.spawn(prepare).join().expect("prepared"));
+        renderer.show(kept, KeptPatches::All);
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "the ground stays");
+        renderer.show(first, KeptPatches::None);
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &before), 0.0, "it brings its ground");
+        let bare = loader.prepare(&list, &shadows).unwrap_or_else(|error| panic!("{error}"));
+        renderer.show(bare, KeptPatches::None);
+        assert!(share_apart(&window.frame(&mut renderer, &camera), &before) > 0.05, "without ground");
     }
 }
 

@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use glam::DVec2;
+
+use crate::pipeline::view_snapshot::ViewedCamera;
+
 /// A place in a scene file: outside tables, or a table of a list such as `[[model]]`, by its number there counted from 0.
 /// Tables of included files are not counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -211,13 +215,14 @@ impl SceneEdit {
         Self::Add(NewTable::new("area").with("points", EditValue::Points(points)).with_text("cover", cover))
     }
 
-    /// Adds a camera in perspective: its eye by place and elevation, and what it looks at by place and height above the
-    /// ground there.
-    pub fn add_camera(name: &str, eye: [f64; 2], elevation_m: f64, look_at: [f64; 2], height_m: f64) -> Self {
-        let table = NewTable::new("camera").with_text("name", name).with("eye", EditValue::Point(eye));
-        let table =
-            table.with_number("eye_elevation", elevation_m).with("look_at", EditValue::Point(look_at));
-        Self::Add(table.with_number("look_at_height", height_m))
+    /// Adds a camera in perspective.
+    pub fn add_camera(name: &str, camera: &ViewedCamera) -> Self {
+        let place = |at: DVec2| EditValue::Point(at.to_array());
+        let table = NewTable::new("camera").with_text("name", name).with("eye", place(camera.eye));
+        let table = table.with_number("eye_elevation", camera.eye_elevation_m);
+        let table = table.with("look_at", place(camera.look_at));
+        let table = table.with_number("look_at_height", camera.look_at_height_m);
+        Self::Add(table.with_number("field_of_view", camera.field_of_view_deg))
     }
 
     /// Sets a value outside lists of tables by its dotted key, such as `style.light.azimuth`.

@@ -15,9 +15,9 @@ use crate::pipeline::editing::scene_text::{self, SceneTextError};
 use crate::pipeline::editing::text_change::TextChange;
 use crate::pipeline::files::{self, ReadFileError, SystemError, WriteFileError};
 use crate::pipeline::scene_file::OpenSceneError;
-use crate::scene::SceneModel;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::build;
+use crate::scene::{SceneFeature, SceneModel};
 use crate::terrain::lattice::Lattice;
 
 /// Decimals of coordinates that are written in degrees: a millimeter.
@@ -233,6 +233,24 @@ impl SceneEditor {
     /// can be edited.
     pub fn place_of_label(&self, label: usize, scene: &SceneModel) -> Option<EditPlace> {
         effect::place_of_label(&self.document, self.text(), label, scene)
+    }
+
+    /// The table that states a feature of a scene that was built of the text `built_of`; `None` for what an included file
+    /// states. Since then tables were added after those of their lists alone.
+    pub fn place_of_feature(&self, built_of: &str, feature: &SceneFeature) -> Option<EditPlace> {
+        let span = &feature.origin.span;
+        let is_stated = !span.is_empty() && span.end <= built_of.len();
+        is_stated.then(|| scene_text::table_at(built_of, span.start)).flatten()
+    }
+
+    /// The number that a table states for a key; `None` where it states none, or an expression.
+    pub fn stated_number(&self, place: &EditPlace, key: &str) -> Option<f64> {
+        scene_text::stated_number(self.text(), place, key)
+    }
+
+    /// The text that a table states for a key; `None` where it states none.
+    pub fn stated_text(&self, place: &EditPlace, key: &str) -> Option<String> {
+        scene_text::stated_text(self.text(), place, key)
     }
 
     /// Undoes the last edit; `None` where there is none.

@@ -208,6 +208,21 @@ pub(super) fn stated_text(text: &str, place: &EditPlace, key: &str) -> Option<St
     Some(found.to_owned())
 }
 
+/// The number that a table states for a key; `None` where it states none.
+pub(super) fn stated_number(text: &str, place: &EditPlace, key: &str) -> Option<f64> {
+    let parsed = ParsedText::new(text).ok()?;
+    let found = parsed.table(place).ok()?.get(key)?;
+    found.as_float().or_else(|| found.as_integer().map(|number| number as f64))
+}
+
+/// The table of a list in whose text, or whose subtables' text, the byte `at` stands.
+pub(super) fn table_at(text: &str, at: usize) -> Option<EditPlace> {
+    let parsed = ParsedText::new(text).ok()?;
+    let holder = parsed.tables.iter().filter(|table| table.start <= at).max_by_key(|table| table.start)?;
+    let step = holder.path.first()?;
+    Some(EditPlace::table(&step.key, step.number?))
+}
+
 /// The number of the table of the list `name` in whose text, or whose subtables' text, the byte `at` stands.
 pub(super) fn number_at(text: &str, name: &str, at: usize) -> Option<usize> {
     let parsed = ParsedText::new(text).ok()?;

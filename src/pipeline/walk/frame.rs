@@ -59,6 +59,8 @@ pub struct WalkStatistics {
     pub changed_patches: usize,
     /// Patches on which what lies is handed over.
     pub cut_patches: usize,
+    /// Patches on which what lies is to be handed over in the updates that follow, though nothing moves.
+    pub waiting_patches: usize,
     /// Bytes of vertices of patches that are handed over.
     pub vertex_bytes: usize,
     /// Bytes of triangles of patches that are handed over.

@@ -1,5 +1,7 @@
 //! What lies on the ground of a walk, cut again where the ground or the view of it changed.
 
+use std::sync::Arc;
+
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
@@ -15,7 +17,7 @@ use crate::roam::refine::deferred::Deferred;
 use crate::roam::refine::deferred::surface::DeferredSurface;
 use crate::scene::SceneModel;
 use crate::scene::picture::placed_text::PlacedText;
-use crate::scene::picture::recut::GroundSheets;
+use crate::scene::picture::recut::{GroundSheets, SeenTint};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
@@ -46,6 +48,8 @@ struct LaidPatch {
     is_cut: bool,
     /// Whether other symbols are planned in it than it was cut of.
     is_replanned: bool,
+    /// Whether it is to be handed over again as it is.
+    is_wanted: bool,
     /// From where it was seen when it was handed over; `None` where the renderer does not have it.
     eye: Option<Vec3>,
 }
@@ -53,20 +57,79 @@ struct LaidPatch {
 /// What lies on the ground, by patch.
 pub(super) struct LaidGround {
     sheets: GroundSheets,
+    /// The materials.
+    head: Arc<DrawList>,
     patches: Vec<LaidPatch>,
+    /// How many patches in view wait to be handed over again.
+    waiting: usize,
     /// From where symbols were planned.
     planned: Option<Vec3>,
+    /// A tint that is laid when a list has its texture.
+    tint: Option<SeenTint>,
+    /// How many tints there were.
+    tints: u32,
 }
 
 impl LaidGround {
     pub fn new(scene: &SceneModel, ground: PatchedGround<'_>) -> Self {
         let patches = vec![LaidPatch::default(); ground.layout.patch_count()];
-        Self { sheets: GroundSheets::new(scene, ground), patches, planned: None }
+        let sheets = GroundSheets::new(scene, ground);
+        Self {
+            head: Arc::new(sheets.head().clone()),
+            sheets,
+            patches,
+            waiting: 0,
+            planned: None,
+            tint: None,
+            tints: 0,
+        }
     }
 
     /// The materials.
-    pub fn head(&self) -> &DrawList {
-        self.sheets.head()
+    pub fn head(&self) -> &Arc<DrawList> {
+        &self.head
+    }
+
+    /// Adds the texture of a tint to the materials; the tint before goes.
+    pub fn add_tint(&mut self, mut tint: SeenTint) {
+        self.clear_tint();
+        self.sheets.add_texture(&mut tint);
+        self.head = Arc::new(self.sheets.head().clone());
+        self.tint = Some(tint);
+        self.tints += 1;
+    }
+
+    /// How many tints there were.
+    pub fn tints(&self) -> u32 {
+        self.tints
+    }
+
+    /// Lays the last tint over the ground.
+    pub fn lay_tint(&mut self) {
+        if let Some(tint) = self.tint.take() {
+            self.replan(|sheets| sheets.lay_tint(Some(&tint)));
+        }
+    }
+
+    /// Takes the tint away.
+    pub fn clear_tint(&mut self) {
+        self.tint = None;
+        self.replan(|sheets| sheets.lay_tint(None));
+    }
+
+    fn replan(&mut self, plan: impl FnOnce(&mut GroundSheets) -> Vec<usize>) {
+        let replanned = plan(&mut self.sheets);
+        replanned.into_iter().for_each(|patch| self.patches[patch].is_replanned = true);
+    }
+
+    /// Hands all of it over again, a few patches an update.
+    pub fn renew(&mut self) {
+        self.patches.iter_mut().for_each(|patch| patch.is_wanted = patch.eye.is_some());
+    }
+
+    /// How many patches in view wait to be handed over in later updates.
+    pub fn waiting(&self) -> usize {
+        self.waiting
     }
 
     /// Marks what lies on a patch as off the ground, which has moved.
@@ -111,8 +174,9 @@ impl LaidGround {
             let laid = self.patches[patch];
             let is_due = match laid.eye {
                 Some(eye) if laid.is_cut && !has_changed(patch) => {
-                    let looks_otherwise =
-                        laid.is_replanned || self.looks_otherwise(terrain, patch, eye, camera.eye());
+                    let looks_otherwise = laid.is_replanned
+                        || laid.is_wanted
+                        || self.looks_otherwise(terrain, patch, eye, camera.eye());
                     renewed += usize::from(looks_otherwise);
                     looks_otherwise && renewed <= MOST_RENEWED
                 }
@@ -122,6 +186,7 @@ impl LaidGround {
                 due.push(patch);
             }
         }
+        self.waiting = usize::saturating_sub(renewed, MOST_RENEWED);
         if due.is_empty() {
             // Threads would be woken for nothing.
             return Vec::new();
@@ -138,7 +203,7 @@ impl LaidGround {
             self.sheets.recut(&stale, &DeferredSurface::new(mesh, terrain.lattice().cell()));
         }
         for &patch in &due {
-            self.patches[patch] = LaidPatch { is_cut: true, is_replanned: false, eye: Some(camera.eye()) };
+            self.patches[patch] = LaidPatch { is_cut: true, eye: Some(camera.eye()), ..LaidPatch::default() };
         }
         let pieces = |patch: usize| self.sheets.pieces(patch, camera);
         due.into_par_iter()

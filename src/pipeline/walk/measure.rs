@@ -2,12 +2,16 @@
 //!
 //! Positions are map coordinates in the scene's system; elevations are meters, true to scale, with all edits.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
 use crate::geom::polygon;
 use crate::pipeline::viewshed::ViewshedSummary;
 use crate::pipeline::walk::Walk;
+use crate::scene::picture::recut::SeenTint;
+use crate::terrain::lattice::Lattice;
 use crate::terrain::profile::{ProfileStation, ProfileSummary, profile};
 use crate::terrain::query::pieces::{GridRegion, RegionError};
 use crate::terrain::query::zone::{Zone, zone};
@@ -43,6 +47,29 @@ pub struct SeenGround {
     pub summary: ViewshedSummary,
 }
 
+/// What is seen from a place, to be computed on another thread. While it is kept, the next edit copies the heights.
+pub struct ViewshedTask {
+    elevations: Arc<Lattice>,
+    options: ViewshedOptions,
+}
+
+impl ViewshedTask {
+    /// All that is seen.
+    ///
+    /// # Errors
+    /// The ground's answer at the observer, where it has no height there.
+    pub fn seen(&self) -> Result<SeenGround, Answer> {
+        let viewshed = viewshed(&self.elevations, &self.options)?;
+        let summary = ViewshedSummary::new(&self.elevations, &viewshed);
+        Ok(SeenGround { viewshed, summary })
+    }
+
+    /// The tint of what is seen; `None` where nobody looked.
+    pub fn tint(&self, seen: &SeenGround) -> Option<SeenTint> {
+        SeenTint::new(&seen.viewshed, &self.elevations)
+    }
+}
+
 impl Walk {
     /// The ground along a line of at least one vertex.
     pub fn measure_line(&self, line: &[DVec2]) -> LineMeasure {
@@ -74,8 +101,11 @@ impl Walk {
     /// # Errors
     /// The ground's answer at the observer, where it has no height there.
     pub fn viewshed(&self, options: &ViewshedOptions) -> Result<SeenGround, Answer> {
-        let viewshed = viewshed(self.elevations(), options)?;
-        let summary = ViewshedSummary::new(self.elevations(), &viewshed);
-        Ok(SeenGround { viewshed, summary })
+        self.viewshed_task(*options).seen()
+    }
+
+    /// The task of computing [`Walk::viewshed`].
+    pub fn viewshed_task(&self, options: ViewshedOptions) -> ViewshedTask {
+        ViewshedTask { elevations: Arc::clone(self.elevations()), options }
     }
 }

@@ -19,10 +19,12 @@ pub mod paged;
 pub mod pick;
 mod relief_map;
 mod shown;
+pub mod shown_ground;
+pub mod standing_task;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::draw::lighting::Lighting;
 use crate::draw::list::DrawList;
@@ -38,7 +40,8 @@ use crate::roam::spheres;
 use crate::scene::SceneModel;
 use crate::scene::picture::models::{PlacementMove, PlacementMoves};
 use crate::scene::picture::placed_text::PlacedText;
-use crate::scene::picture::standing::{self, WalkedGround};
+use crate::scene::picture::recut::SeenTint;
+use crate::scene::picture::standing;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::ground::SightGround;
 use crate::view::camera::Camera;
@@ -150,10 +153,9 @@ impl Walk {
     /// Its first material is that of the ground; those of [`DrapedPiece`](crate::draw::patches::DrapedPiece)s are among those
     /// that follow, with the same numbers in every list of this walk.
     pub fn static_list(&self, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
-        let walked = WalkedGround { moves: &self.moves, lattice: self.lattice(), to_sun: self.to_sun() };
-        let mut list = standing::standing(&self.scene, walked, camera, self.laid.head(), progress);
-        if let Some(map) = &mut list.ground {
-            self.map.load(map, self.elevations());
+        let list = self.standing_task(self.to_sun()).list(camera, progress);
+        if let Some(map) = &list.ground {
+            self.map.keep(map);
         }
         list
     }
@@ -161,6 +163,11 @@ impl Walk {
     /// Lets a model, by its number among the scene's placements, stand elsewhere in the next [`Walk::static_list`].
     pub fn move_model(&mut self, placement: usize, to: PlacementMove) {
         self.moves.insert(placement, to);
+    }
+
+    /// World X and Y of a model, by its number among the scene's placements, where it stands now.
+    pub fn model_at(&self, placement: usize) -> Vec2 {
+        self.moves.get(&placement).map_or(self.scene.placements[placement].at, |moved| moved.at)
     }
 
     /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
@@ -191,6 +198,7 @@ impl Walk {
         self.forget_meshes();
         changes.drapes = self.laid.update(&self.scene, &self.mesh, &self.shown, camera);
         changes.map = self.map.take_new();
+        statistics.waiting_patches = self.laid.waiting();
         statistics.examined = self.mesh.examined();
         statistics.count(&self.mesh, &changes);
         Ok(WalkFrame { changes, statistics })
@@ -205,6 +213,22 @@ impl Walk {
     pub fn forget_handed(&mut self) {
         self.shown.forget();
         self.laid.forget_handed();
+    }
+
+    /// Hands over what lies on the ground again, a few patches an update: for a viewer that shows other features of it.
+    pub fn renew_laid(&mut self) {
+        self.laid.renew();
+    }
+
+    /// Lays a tint over the ground, instead of the one before; the list that a task made from now on has its texture, and the
+    /// tint is seen from [`Walk::take_standing`] on.
+    pub fn lay_tint(&mut self, tint: SeenTint) {
+        self.laid.add_tint(tint);
+    }
+
+    /// Takes the tint away.
+    pub fn clear_tint(&mut self) {
+        self.laid.clear_tint();
     }
 
     /// Where the camera's spheres are seen from. Parallel rays come from very far away.

@@ -15,34 +15,60 @@ use crate::terrain::post_rect::PostRect;
 #[derive(Debug, Default)]
 pub(super) struct ReliefMap {
     loaded: Mutex<Option<Arc<GroundMap>>>,
-    /// All that was edited, in order: maps that are loaded later are changed by it, too.
-    edited: Vec<PostRect>,
-    /// How elevations are drawn; `None` before the first edit.
-    scale: Option<VerticalScale>,
+    /// All that was edited: maps that are loaded later are changed by it, too.
+    edits: ReliefEdits,
     new: Vec<GroundMapPatch>,
 }
 
-impl ReliefMap {
-    /// Changes a map that is about to be loaded as edits did, and keeps it.
-    pub fn load(&self, map: &mut Arc<GroundMap>, elevations: &Lattice) {
-        if let Some(scale) = self.scale {
-            let patches: Vec<GroundMapPatch> =
-                self.edited.iter().filter_map(|&posts| patch(map, elevations, scale, posts)).collect();
-            let own = Arc::make_mut(map);
-            for GroundMapPatch { first: [column, row], columns, posts } in patches {
-                for (at, posts) in posts.chunks_exact(columns as usize).enumerate() {
-                    let start = (row as usize + at) * own.columns as usize + column as usize;
-                    own.posts[start..start + posts.len()].copy_from_slice(posts);
-                }
+/// The posts that edits changed, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ReliefEdits {
+    posts: Vec<PostRect>,
+    /// How elevations are drawn; `None` before the first edit.
+    scale: Option<VerticalScale>,
+}
+
+impl ReliefEdits {
+    /// Changes a map as the edits did.
+    pub fn apply(&self, map: &mut Arc<GroundMap>, elevations: &Lattice) {
+        let Some(scale) = self.scale else { return };
+        let patches: Vec<GroundMapPatch> =
+            self.posts.iter().filter_map(|&posts| patch(map, elevations, scale, posts)).collect();
+        let own = Arc::make_mut(map);
+        for GroundMapPatch { first: [column, row], columns, posts } in patches {
+            for (at, posts) in posts.chunks_exact(columns as usize).enumerate() {
+                let start = (row as usize + at) * own.columns as usize + column as usize;
+                own.posts[start..start + posts.len()].copy_from_slice(posts);
             }
         }
+    }
+}
+
+impl ReliefMap {
+    /// The edits so far.
+    pub fn edits(&self) -> &ReliefEdits {
+        &self.edits
+    }
+
+    /// Keeps the map that is loaded, which the edits so far have changed.
+    pub fn keep(&self, map: &Arc<GroundMap>) {
         *self.loaded.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(map));
+    }
+
+    /// Keeps the map that is loaded, which `known` have changed: what was edited since is new.
+    pub fn take_over(&mut self, map: &Arc<GroundMap>, known: &ReliefEdits, elevations: &Lattice) {
+        self.keep(map);
+        self.new.clear();
+        if let Some(scale) = self.edits.scale {
+            let later = self.edits.posts.iter().skip(known.posts.len());
+            self.new.extend(later.filter_map(|&posts| patch(map, elevations, scale, posts)));
+        }
     }
 
     /// Notes that the elevations of posts have changed.
     pub fn edit(&mut self, elevations: &Lattice, scale: VerticalScale, posts: PostRect) {
-        self.scale = Some(scale);
-        self.edited.push(posts);
+        self.edits.scale = Some(scale);
+        self.edits.posts.push(posts);
         let loaded = self.loaded.get_mut().unwrap_or_else(PoisonError::into_inner);
         self.new.extend(loaded.as_deref().and_then(|map| patch(map, elevations, scale, posts)));
     }
@@ -107,17 +133,20 @@ mod tests {
             ..GroundMap::level()
         };
         let mut relief = ReliefMap::default();
-        relief.load(&mut Arc::new(map.clone()), &lattice);
+        let first = relief.edits().clone();
+        relief.keep(&Arc::new(map.clone()));
         let edited = PostRect { first: Post { column: 3, row: 4 }, last: Post { column: 4, row: 4 } };
         relief.edit(&lattice, VerticalScale(3.0), edited);
         let new = relief.take_new();
         assert_eq!((new.len(), new[0].first, new[0].columns, new[0].posts.len()), (1, [2, 3], 4, 12));
         assert!(new[0].posts.iter().all(|post| post.slope_east == 1.5 && post.sun_visibility == 0.25));
         assert_eq!(relief.take_new(), []);
-        let mut later = Arc::new(map);
-        relief.load(&mut later, &lattice);
+        let mut later = Arc::new(map.clone());
+        relief.edits().apply(&mut later, &lattice);
         let changed = later.posts.iter().filter(|post| **post != blank).count();
         assert_eq!(changed, 12);
         assert_eq!(later.posts[4 * 9 + 3].height_m, 3.0);
+        relief.take_over(&Arc::new(map), &first, &lattice);
+        assert_eq!(relief.take_new(), new, "what was edited while the map was made is handed over after it");
     }
 }

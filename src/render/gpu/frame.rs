@@ -57,9 +57,8 @@ impl FrameTextures {
     }
 
     /// Replaces the maps of shadows.
-    pub fn replace_shadows(&mut self, loader: &Loader<'_>, shadows: &Shadows) -> Result<(), GpuError> {
-        self.shadows = ShadowTextures::upload(loader, shadows)?;
-        Ok(())
+    pub fn replace_shadows(&mut self, shadows: ShadowTextures) {
+        self.shadows = shadows;
     }
 }
 

@@ -128,7 +128,7 @@ impl Gpu {
     }
 
     /// Waits until the device has taken what was written.
-    fn finish_sending(&self) -> Result<(), GpuError> {
+    pub(super) fn finish_sending(&self) -> Result<(), GpuError> {
         let submission_index = Some(self.queue.submit([]));
         let wait = wgpu::PollType::Wait { submission_index, timeout: None };
         let done = self.device.poll(wait);

@@ -92,7 +92,7 @@ pub struct PassTarget {
 }
 
 /// The pipelines of a pass, each made when it is first asked for.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pipelines {
     target: PassTarget,
     shader: wgpu::ShaderModule,
@@ -182,6 +182,11 @@ impl Pipelines {
                 self.by_key.insert(key, made);
             }
         }
+    }
+
+    /// Takes over pipelines that were made elsewhere for the same target.
+    pub fn adopt(&mut self, made: Self) {
+        self.by_key.extend(made.by_key);
     }
 
     /// The pipeline of a key; `None` before it is made.

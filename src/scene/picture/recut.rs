@@ -32,6 +32,8 @@ use crate::scene::picture::symbols::{PlannedSymbol, RibbonShow, planned};
 use crate::scene::picture::{ground, overlay};
 use crate::scene::symbols::LineSymbol;
 use crate::scene::{Ribbon, SceneModel};
+use crate::terrain::lattice::Lattice;
+use crate::terrain::sight::viewshed::Viewshed;
 use crate::terrain::triangle_surface::TriangleSurface;
 use crate::view::camera::Camera;
 
@@ -53,6 +55,16 @@ fn borders(ground: PatchedGround<'_>) -> Borders {
     }
 }
 
+/// The tint of a viewshed that a user looks at, before it is laid over the ground.
+pub struct SeenTint(TintPlan);
+
+impl SeenTint {
+    /// The tint of the posts of a viewshed over `lattice`; `None` where nobody looked.
+    pub fn new(seen: &Viewshed, lattice: &Lattice) -> Option<Self> {
+        sight::seen_tint(seen, lattice).map(Self)
+    }
+}
+
 /// What lies on the ground that somebody walks over, by patch, and its materials.
 pub struct GroundSheets {
     head: DrawList,
@@ -62,6 +74,9 @@ pub struct GroundSheets {
     symbols: DrapeSheet,
     /// Tints of sight.
     tints: DrapeSheet,
+    /// What a user looks at is seen from a place.
+    seen: DrapeSheet,
+    seen_material: Option<MaterialId>,
     /// Lines of sight and tactical graphics.
     graphics: DrapeSheet,
     graphic_colors: BTreeMap<[u8; 4], MaterialId>,
@@ -98,6 +113,8 @@ impl GroundSheets {
             ribbons: DrapeSheet::EMPTY,
             symbols: DrapeSheet::EMPTY,
             tints: DrapeSheet::EMPTY,
+            seen: DrapeSheet::EMPTY,
+            seen_material: None,
             graphics: DrapeSheet::EMPTY,
             graphic_colors: BTreeMap::new(),
             texts: Vec::new(),
@@ -146,8 +163,35 @@ impl GroundSheets {
         &self.texts
     }
 
-    fn sheets(&self) -> [&DrapeSheet; 4] {
-        [&self.ribbons, &self.symbols, &self.tints, &self.graphics]
+    fn sheets(&self) -> [&DrapeSheet; 5] {
+        [&self.ribbons, &self.symbols, &self.tints, &self.seen, &self.graphics]
+    }
+
+    /// Adds the texture of a tint to the materials: it is to be laid when a list has them.
+    pub fn add_texture(&mut self, SeenTint(tint): &mut SeenTint) {
+        let texture = tint.texture.take();
+        let known = self.seen_material.and_then(|id| self.head.materials[id.0 as usize].texture);
+        match (known, texture) {
+            // The tint before lies nowhere any more.
+            (Some(id), Some(pixels)) => self.head.textures[id.0 as usize] = pixels,
+            (_, texture) => {
+                self.seen_material = Some(sight::add_material(&mut self.head, tint.color, texture));
+            }
+        }
+    }
+
+    /// Lays a tint whose texture was added over the ground, or takes away the one that lies there. It is not cut yet;
+    /// returns the patches in which what lies has changed.
+    pub fn lay_tint(&mut self, tint: Option<&SeenTint>) -> Vec<usize> {
+        let laid = tint.zip(self.seen_material).map(|(SeenTint(tint), material)| {
+            let (layer, feature) = (sight::TINT_LAYER, tint.feature);
+            let plans = vec![SheetPlan { material, markings: None, lake: None, layer, feature }];
+            DrapeSheet { drapes: Drapes::new(&self.borders, [&tint.plan]), plans }
+        });
+        let before = std::mem::replace(&mut self.seen, laid.unwrap_or(DrapeSheet::EMPTY));
+        let is_held =
+            |&patch: &usize| before.drapes.is_occupied(patch) || self.seen.drapes.is_occupied(patch);
+        (0..self.borders.patch_count()).filter(is_held).collect()
     }
 
     /// The materials of the ground, which is the first, and of all that lies on it, and their textures.
@@ -162,7 +206,8 @@ impl GroundSheets {
 
     /// Cuts what lies in `stale` to what is displayed there.
     pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
-        for sheet in [&mut self.ribbons, &mut self.symbols, &mut self.tints, &mut self.graphics] {
+        let Self { ribbons, symbols, tints, seen, graphics, .. } = self;
+        for sheet in [ribbons, symbols, tints, seen, graphics] {
             sheet.drapes.recut(stale, ground);
         }
     }
@@ -272,7 +317,7 @@ impl GroundSheets {
             }
         }
         symbols.for_each(|(at, mesh)| self.symbols.plans[at].add(mesh.clone(), &mut pieces));
-        for sheet in [&self.tints, &self.graphics] {
+        for sheet in [&self.tints, &self.seen, &self.graphics] {
             let cut = sheet.drapes.in_patch(patch);
             cut.for_each(|(at, mesh)| sheet.plans[at].add(mesh.clone(), &mut pieces));
         }

@@ -28,7 +28,7 @@ use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
 use crate::terrain::sight::outlook::visible_stretches;
-use crate::terrain::sight::viewshed::PostVisibility;
+use crate::terrain::sight::viewshed::{PostVisibility, Viewshed};
 
 /// Tints lie under lines.
 pub(super) const TINT_LAYER: u8 = LAYER - 1;
@@ -134,9 +134,22 @@ pub(super) fn draw(
     }
 }
 
-/// The seen and the hidden posts in two colors; `None` where nobody looked.
+/// The tint of the seen and the hidden posts of a viewshed over `lattice`; `None` where nobody looked.
+pub(super) fn seen_tint(seen: &Viewshed, lattice: &Lattice) -> Option<TintPlan> {
+    posts_tint(seen, lattice, [Some(SEEN), Some(HIDDEN)], FeatureId::GROUND)
+}
+
 fn viewshed_tint(layer: &SceneViewshed, lattice: &Lattice, colors: [Option<Srgba>; 2]) -> Option<TintPlan> {
-    let seen = layer.seen(lattice)?;
+    posts_tint(layer.seen(lattice)?, lattice, colors, layer.feature)
+}
+
+/// The seen and the hidden posts in two colors; `None` where nobody looked.
+fn posts_tint(
+    seen: &Viewshed,
+    lattice: &Lattice,
+    colors: [Option<Srgba>; 2],
+    feature: FeatureId,
+) -> Option<TintPlan> {
     // Only the posts that somebody looked at.
     let columns = seen.columns as usize;
     let is_looked_at =
@@ -194,7 +207,7 @@ fn viewshed_tint(layer: &SceneViewshed, lattice: &Lattice, colors: [Option<Srgba
     let ids = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].map(|share| plan.vertex(corner(share)));
     plan.triangle([ids[0], ids[1], ids[2]]);
     plan.triangle([ids[0], ids[2], ids[3]]);
-    Some(TintPlan { plan, color: Srgba::WHITE, texture: Some(pixels), feature: layer.feature })
+    Some(TintPlan { plan, color: Srgba::WHITE, texture: Some(pixels), feature })
 }
 
 /// The mean of colors weighted by their alpha; where there is none, a color of the tint that nothing shows of, so that a

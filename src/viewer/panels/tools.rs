@@ -29,6 +29,8 @@ pub struct ToolsPanel<'a> {
     pub moved: Option<String>,
     /// Whether there is an edit to undo, to redo, and something to save.
     pub history: [bool; 3],
+    /// Whether what is seen from a place is tinted.
+    pub has_viewshed: bool,
 }
 
 /// What was chosen.
@@ -40,6 +42,8 @@ pub enum ToolEvent {
     Measure(MeasureKind),
     /// Puts the tool away.
     Away,
+    /// Takes the tint of a viewshed away.
+    ClearViewshed,
     /// A command of the history.
     Run(ViewCommand),
 }
@@ -96,6 +100,9 @@ pub fn tools_panel(ui: &mut Ui, panel: &mut ToolsPanel<'_>) -> Option<ToolEvent>
             }
         }
     });
+    if panel.has_viewshed && ui.button("Clear viewshed").clicked() {
+        event = Some(ToolEvent::ClearViewshed);
+    }
     if let Some(measuring) = panel.measuring {
         if measuring.facts.is_empty() {
             ui.label("Click on the ground");
@@ -197,6 +204,7 @@ mod tests {
                 preview: None,
                 moved: None,
                 history: [true, false, true],
+                has_viewshed: false,
             };
             match tools_panel(ui, &mut panel) {
                 Some(ToolEvent::Draw(kind)) => state.drawing = Some(kind),

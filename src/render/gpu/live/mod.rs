@@ -4,6 +4,8 @@
 //! load(DrawList) ─► materials, ground map, solids ┐
 //! update(GroundChanges) ─► patches, drapes        ├─► draw: sky ─ ground ─ drapes ─ solids ─ transparent solids
 //! set_shadows(LiveShadows) ─► shadow maps         ┘   pick: the same to a single pixel
+//!
+//! loader() ─► another thread: prepare ─► show, show_shadows      as load and set_shadows, without a late frame
 //! ```
 //!
 //! The ground and what lies on it come by patches ([`crate::draw::patches`]); everything else is drawn as in a picture, by
@@ -20,6 +22,7 @@ mod encode;
 mod ground_map;
 mod patches;
 pub mod pick;
+pub mod prepared;
 mod targets;
 
 use std::sync::Arc;
@@ -28,19 +31,19 @@ use glam::Vec2;
 
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
-use crate::draw::list::{DepthLayer, DrawList, DrawListError};
+use crate::draw::list::{DrawList, DrawListError};
 use crate::draw::patches::GroundChanges;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
 use crate::render::gpu::geometry::GpuGeometry;
-use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::ground_map::EditedMap;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
+use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene, PreparedShadows};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
-use crate::render::gpu::materials::{GpuMaterials, TexturePlaces, TextureScope};
+use crate::render::gpu::materials::GpuMaterials;
 use crate::render::gpu::memory::Loader;
 use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::passes::{PassViews, ScenePass};
@@ -100,12 +103,21 @@ pub struct LiveShadows(Shadows);
 pub struct LiveRenderer {
     gpu: Gpu,
     format: LiveFormat,
-    layouts: Layouts,
+    layouts: Arc<Layouts>,
     colors: Pipelines,
     features: Pipelines,
     encoder: Option<Encoder>,
     targets: Option<LiveTargets>,
     scene: Option<LoadedScene>,
+}
+
+/// What becomes of the patches that are shown when another list is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPatches {
+    /// They stay: the list is of the same walk, so that its materials of what lies on the ground have the same numbers.
+    All,
+    /// They go: the scene is another one.
+    None,
 }
 
 /// A scene on the device.
@@ -199,7 +211,7 @@ impl LiveRenderer {
             let colors = target(GpuPass::Color, format.drawn(), samples);
             let features = target(GpuPass::Feature, FEATURE, 1);
             let encoder = (format.drawn() != format.window).then(|| Encoder::new(&gpu, format.window));
-            Ok((layouts, colors, features, encoder))
+            Ok((Arc::new(layouts), colors, features, encoder))
         });
         let (layouts, colors, features, encoder) = made?;
         Ok(Self { gpu, format, layouts, colors, features, encoder, targets: None, scene: None })
@@ -216,34 +228,27 @@ impl LiveRenderer {
     /// # Errors
     /// See [`GpuError`]; the scene loaded before stays.
     pub fn load(&mut self, list: &DrawList) -> Result<(), GpuError> {
-        list.check()?;
-        let Self { gpu, layouts, colors, features, .. } = self;
-        let scene = gpu.guarded("loading the scene", || {
-            let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
-            let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
-            let patches = PatchStore::new(list, &places);
-            let loader = Loader::new(gpu);
-            let shadows = Shadows::default();
-            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), &shadows)?;
-            let scene = LoadedScene {
-                map: EditedMap::new(list.ground.clone()),
-                lighting: list.lighting,
-                parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, [false; 2]),
-                shadows: ShadowView::both(&shadows),
-                row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
-                frame: FrameGroup::new(&loader, layouts, &textures)?,
-                textures,
-                materials: GpuMaterials::upload(&loader, layouts, list, &places)?,
-                geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
-                plan,
-                patches,
-                pick: PickTarget::new(&loader)?,
-            };
-            scene.make(gpu, colors, features);
-            Ok(scene)
-        });
-        self.scene = Some(scene?);
+        let prepared = self.loader().prepare(list, &LiveShadows::default())?;
+        self.show(prepared, KeptPatches::None);
         Ok(())
+    }
+
+    /// What prepares scenes for this renderer on other threads.
+    pub fn loader(&self) -> LiveLoader {
+        LiveLoader::new(&self.gpu, &self.layouts, [&self.colors, &self.features])
+    }
+
+    /// Shows a scene that a loader of this renderer has prepared.
+    pub fn show(&mut self, prepared: PreparedScene, kept: KeptPatches) {
+        let PreparedScene { mut scene, pipelines: [colors, features] } = prepared;
+        self.colors.adopt(colors);
+        self.features.adopt(features);
+        if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
+            let added = std::mem::replace(&mut scene.patches, before.patches);
+            scene.patches.adopt_materials(added);
+        }
+        scene.make(&self.gpu, &mut self.colors, &mut self.features);
+        self.scene = Some(*scene);
     }
 
     /// Takes over what changed on the ground, and says what was sent for it. Does nothing before a scene is loaded.
@@ -265,8 +270,11 @@ impl LiveRenderer {
     pub fn set_lighting(&mut self, lighting: Lighting) {
         if let Some(scene) = &mut self.scene {
             scene.lighting = lighting;
-            scene.parts = scene.parts.with(ShaderParts::of_picture(None, &lighting, [false; 2]));
-            scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            let parts = scene.parts.with(ShaderParts::of_picture(None, &lighting, [false; 2]));
+            if parts != scene.parts {
+                scene.parts = parts;
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
         }
     }
 
@@ -296,15 +304,26 @@ impl LiveRenderer {
     /// # Errors
     /// See [`GpuError`]; the shadows before stay.
     pub fn set_shadows(&mut self, shadows: &LiveShadows) -> Result<(), GpuError> {
+        let prepared = self.loader().prepare_shadows(shadows)?;
+        self.show_shadows(prepared)
+    }
+
+    /// Replaces the shadows of solids by those that a loader of this renderer has prepared.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the shadows before stay.
+    pub fn show_shadows(&mut self, prepared: PreparedShadows) -> Result<(), GpuError> {
         let Some(scene) = &mut self.scene else { return Ok(()) };
-        self.gpu.guarded("sending the shadows", || {
-            let loader = Loader::new(&self.gpu);
-            scene.textures.replace_shadows(&loader, &shadows.0)?;
-            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
-            scene.shadows = ShadowView::both(&shadows.0);
-            let has_shadows = [&shadows.0.sun, &shadows.0.sky].map(Option::is_some);
-            scene.parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
-            scene.make(&self.gpu, &mut self.colors, &mut self.features);
+        self.gpu.guarded("showing the shadows", || {
+            let PreparedShadows { textures, views, has_shadows } = prepared;
+            scene.textures.replace_shadows(textures);
+            scene.frame = FrameGroup::new(&Loader::new(&self.gpu), &self.layouts, &scene.textures)?;
+            scene.shadows = views;
+            let parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
+            if parts != scene.parts {
+                scene.parts = parts;
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
             Ok(())
         })
     }

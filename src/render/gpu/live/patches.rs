@@ -132,6 +132,11 @@ impl PatchStore {
         }
     }
 
+    /// Takes over the materials of the store of another list, in which those of what is stored have the same numbers.
+    pub fn adopt_materials(&mut self, other: Self) {
+        self.materials = other.materials;
+    }
+
     /// The keys that drapes are drawn with in a picture that has the parts `picture`.
     pub fn keys(&self, pass: GpuPass, picture: ShaderParts) -> impl Iterator<Item = PipelineKey> + '_ {
         let untextured =

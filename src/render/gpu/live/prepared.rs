@@ -1,0 +1,116 @@
+//! Scenes that are brought to the device on another thread, so that no frame waits for them.
+//!
+//! A [`LiveLoader`] has what a scene needs of its renderer: the device and its bindings. What it makes, buffers, textures and
+//! pipelines, is shown by [`LiveRenderer::show`](super::LiveRenderer::show), which only swaps them in.
+
+use std::sync::Arc;
+
+use crate::draw::list::{DepthLayer, DrawList};
+use crate::draw::patches::GroundChanges;
+use crate::render::gpu::adapter::Gpu;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::frame::{FrameGroup, FrameTextures};
+use crate::render::gpu::geometry::GpuGeometry;
+use crate::render::gpu::ground::row_bits;
+use crate::render::gpu::live::ground_map::EditedMap;
+use crate::render::gpu::live::patches::PatchStore;
+use crate::render::gpu::live::pick::PickTarget;
+use crate::render::gpu::live::{LiveShadows, LoadedScene};
+use crate::render::gpu::materials::{GpuMaterials, TexturePlaces, TextureScope};
+use crate::render::gpu::memory::Loader;
+use crate::render::gpu::parts::ShaderParts;
+use crate::render::gpu::pipelines::{Layouts, Pipelines};
+use crate::render::gpu::plan::Plan;
+use crate::render::gpu::shadow::{ShadowTextures, ShadowView};
+
+/// Prepares scenes for a renderer, on any thread.
+#[derive(Clone, Debug)]
+pub struct LiveLoader {
+    gpu: Gpu,
+    layouts: Arc<Layouts>,
+    /// Of colors and of features.
+    pipelines: [Pipelines; 2],
+}
+
+/// A scene on the device that is not shown yet.
+#[derive(Debug)]
+pub struct PreparedScene {
+    pub(super) scene: Box<LoadedScene>,
+    pub(super) pipelines: [Pipelines; 2],
+}
+
+/// Shadow maps on the device that are not shown yet.
+#[derive(Debug)]
+pub struct PreparedShadows {
+    pub(super) textures: ShadowTextures,
+    /// Of the sun and of the sky.
+    pub(super) views: [ShadowView; 2],
+    pub(super) has_shadows: [bool; 2],
+}
+
+impl LiveLoader {
+    pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, pipelines: [&Pipelines; 2]) -> Self {
+        Self { gpu: gpu.clone(), layouts: Arc::clone(layouts), pipelines: pipelines.map(Pipelines::clone) }
+    }
+
+    /// Brings a list to the device as [`LiveRenderer::load`](super::LiveRenderer::load) does, and waits until it is there.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn prepare(&self, list: &DrawList, shadows: &LiveShadows) -> Result<PreparedScene, GpuError> {
+        list.check()?;
+        let Self { gpu, layouts, pipelines } = self;
+        gpu.guarded("loading the scene", || {
+            let places = TexturePlaces::new(list, TextureScope::All, &gpu.limits);
+            let plan = Plan::new(list, &places, |layer| layer == DepthLayer::Solid);
+            let patches = PatchStore::new(list, &places);
+            let loader = Loader::new(gpu);
+            let LiveShadows(shadows) = shadows;
+            let textures = FrameTextures::upload(&loader, list.ground.as_deref(), shadows)?;
+            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            let scene = LoadedScene {
+                map: EditedMap::new(list.ground.clone()),
+                lighting: list.lighting,
+                parts: ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows),
+                shadows: ShadowView::both(shadows),
+                row_bits: row_bits(gpu.limits.max_texture_dimension_2d),
+                frame: FrameGroup::new(&loader, layouts, &textures)?,
+                textures,
+                materials: GpuMaterials::upload(&loader, layouts, list, &places)?,
+                geometry: GpuGeometry::upload(&loader, list, &plan, None)?,
+                plan,
+                patches,
+                pick: PickTarget::new(&loader)?,
+            };
+            let mut pipelines = pipelines.clone();
+            let [colors, features] = &mut pipelines;
+            scene.make(gpu, colors, features);
+            gpu.finish_sending()?;
+            Ok(PreparedScene { scene: Box::new(scene), pipelines })
+        })
+    }
+
+    /// Brings shadow maps to the device, and waits until they are there.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn prepare_shadows(&self, LiveShadows(shadows): &LiveShadows) -> Result<PreparedShadows, GpuError> {
+        self.gpu.guarded("sending the shadows", || {
+            let textures = ShadowTextures::upload(&Loader::new(&self.gpu), shadows)?;
+            self.gpu.finish_sending()?;
+            let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
+            Ok(PreparedShadows { textures, views: ShadowView::both(shadows), has_shadows })
+        })
+    }
+
+    /// Brings the first ground of a prepared scene to the device.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn update(&self, prepared: &mut PreparedScene, changes: &GroundChanges) -> Result<(), GpuError> {
+        self.gpu.guarded("sending the ground", || {
+            prepared.scene.patches.update(&self.gpu, changes)?;
+            self.gpu.finish_sending()
+        })
+    }
+}

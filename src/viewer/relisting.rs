@@ -1,0 +1,117 @@
+//! Making the list of what stands anew while the one before is shown: for another sun, features that are hidden, ground that
+//! was moved under models, an eye that is far from where it was.
+
+use std::sync::Arc;
+
+use egui::Context;
+use glam::Vec3;
+
+use crate::draw::list::DrawList;
+use crate::draw::patches::GroundChanges;
+use crate::pipeline::walk::pick::StandingIndex;
+use crate::pipeline::walk::standing_task::StandingTask;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::KeptPatches;
+use crate::render::gpu::live::prepared::PreparedScene;
+use crate::view::camera::Camera;
+use crate::viewer::opened::{FIRST_SIZE, OpenedScene};
+use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
+use crate::viewer::shadowing::ShadowedView;
+use crate::viewer::worker::{WorkerFailure, WorkerJob, drop_apart};
+
+/// A list that is being made.
+pub struct Relisting {
+    task: StandingTask,
+    job: WorkerJob<Result<RelistedScene, GpuError>>,
+}
+
+/// A list that was made.
+struct RelistedScene {
+    list: Arc<DrawList>,
+    standing: StandingIndex,
+    prepared: Option<PreparedScene>,
+    eye: Vec3,
+    /// The camera that its shadows are for.
+    seen: Camera,
+}
+
+/// Why a list cannot be shown; the one before stays.
+#[derive(Debug, thiserror::Error)]
+pub enum RelistingError {
+    /// The device cannot hold it.
+    #[error(transparent)]
+    Graphics(#[from] GpuError),
+    /// A fault of the program.
+    #[error(transparent)]
+    Worker(#[from] WorkerFailure),
+}
+
+impl OpenedScene {
+    /// Asks for what stands to be set anew; it is shown when it is there.
+    pub fn relist(&mut self) {
+        self.wants_list = true;
+    }
+
+    /// Whether what stands is being set anew.
+    pub fn is_relisting(&self) -> bool {
+        self.wants_list || self.relisting.is_some()
+    }
+
+    /// Takes over the list that was made meanwhile, and begins the next one that was asked for.
+    ///
+    /// # Errors
+    /// See [`RelistingError`].
+    pub fn follow_relisting(&mut self, context: &Context, slot: &LoaderSlot) -> Result<(), RelistingError> {
+        let done = self.relisting.as_ref().and_then(|relisting| relisting.job.poll());
+        let taken = done.map_or(Ok(()), |done| self.take_relisted(done));
+        if self.relisting.is_none() && std::mem::take(&mut self.wants_list) {
+            self.start_relisting(context, slot);
+        }
+        taken
+    }
+
+    fn take_relisted(
+        &mut self,
+        done: Result<Result<RelistedScene, GpuError>, WorkerFailure>,
+    ) -> Result<(), RelistingError> {
+        let Some(relisting) = self.relisting.take() else { return Ok(()) };
+        let RelistedScene { list, standing, prepared, eye, seen } = done??;
+        self.walk.take_standing(&relisting.task, &list);
+        drop_apart((
+            std::mem::replace(&mut self.list, list),
+            std::mem::replace(&mut self.standing, standing),
+        ));
+        self.list_eye = eye;
+        // A list that was not shown yet took the ground with it.
+        let load = match (&self.load, prepared) {
+            (None, Some(prepared)) => {
+                self.shadows.made_for(seen);
+                SceneLoad { list: Arc::clone(&self.list), prepared: Some(prepared), kept: KeptPatches::All }
+            }
+            _ => {
+                self.shadows.forget();
+                SceneLoad::unprepared(&self.list)
+            }
+        };
+        self.load = Some(load);
+        Ok(())
+    }
+
+    fn start_relisting(&mut self, context: &Context, slot: &LoaderSlot) {
+        let (Ok(camera), Ok(seen)) = (self.camera(FIRST_SIZE), self.camera(self.size)) else { return };
+        let shadowed = ShadowedView { camera: seen, ground: self.walk.shown_ground() };
+        let task = self.walk.standing_task(self.wanted_sun);
+        let (made, hidden, slot, context) =
+            (task.clone(), self.hidden.clone(), slot.clone(), context.clone());
+        let work = move || {
+            let mut list = made.list(&camera, &|_| ());
+            list.items.retain(|item| !hidden.contains(&item.feature));
+            let prepared = slot.prepare(&list, &shadowed, &GroundChanges::default())?;
+            let list = Arc::new(list);
+            let standing = StandingIndex::new(Arc::clone(&list));
+            Ok(RelistedScene { list, standing, prepared, eye: camera.eye(), seen })
+        };
+        let job = WorkerJob::start(work, move || context.request_repaint());
+        self.relisting = Some(Relisting { task, job });
+    }
+}

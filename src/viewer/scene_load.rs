@@ -1,0 +1,64 @@
+//! What a renderer takes over of a scene, prepared on the threads that open scenes and change them.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::draw::list::DrawList;
+use crate::draw::patches::GroundChanges;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::KeptPatches;
+use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene};
+use crate::viewer::shadowing::ShadowedView;
+
+/// A list that the renderer is to show.
+pub struct SceneLoad {
+    /// The list.
+    pub list: Arc<DrawList>,
+    /// The list on the device; `None` where it is not there yet.
+    pub prepared: Option<PreparedScene>,
+    /// What becomes of the ground that is shown.
+    pub kept: KeptPatches,
+}
+
+/// What prepares scenes for the window's renderer; empty until there is one.
+#[derive(Clone, Debug, Default)]
+pub struct LoaderSlot(Arc<Mutex<Option<LiveLoader>>>);
+
+impl SceneLoad {
+    /// A list that is not on the device, of another scene.
+    pub fn unprepared(list: &Arc<DrawList>) -> Self {
+        Self { list: Arc::clone(list), prepared: None, kept: KeptPatches::None }
+    }
+}
+
+impl LoaderSlot {
+    /// There is a renderer, or it has made more pipelines.
+    pub fn fill(&self, loader: LiveLoader) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(loader);
+    }
+
+    /// Brings a list, its shadows and its first ground to the device; `None` where there is no renderer yet.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn prepare(
+        &self,
+        list: &DrawList,
+        view: &ShadowedView,
+        first: &GroundChanges,
+    ) -> Result<Option<PreparedScene>, GpuError> {
+        let Some(loader) = self.loader() else { return Ok(None) };
+        let mut prepared = loader.prepare(list, &view.shadows(list)?)?;
+        loader.update(&mut prepared, first)?;
+        Ok(Some(prepared))
+    }
+
+    /// Whether there is a renderer.
+    pub fn is_filled(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    /// The renderer's loader; `None` where there is no renderer yet.
+    pub fn loader(&self) -> Option<LiveLoader> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}

@@ -1,0 +1,131 @@
+//! Shadows of what stands, made beside the window when the camera has come to rest.
+//!
+//! A shadow map is right wherever it reaches, whatever the eye does; only how fine it is depends on where the eye was. So it
+//! stays while the camera moves, and is made anew when that rests elsewhere.
+
+use std::time::{Duration, Instant};
+
+use egui::Context;
+use glam::Vec3;
+
+use crate::draw::list::DrawList;
+use crate::pipeline::walk::shown_ground::ShownGround;
+use crate::render::gpu::error::GpuError;
+use crate::render::gpu::live::LiveShadows;
+use crate::render::gpu::live::prepared::PreparedShadows;
+use crate::view::camera::Camera;
+use crate::viewer::opened::OpenedScene;
+use crate::viewer::relisting::RelistingError;
+use crate::viewer::scene_load::LoaderSlot;
+use crate::viewer::worker::WorkerJob;
+
+/// How long the camera rests before shadows are made for it: shorter makes them during a flight with pauses.
+const REST: Duration = Duration::from_millis(200);
+/// The share of its height above the ground by which the eye may have moved: texels are then a tenth too large or too small.
+const STALE_SHARE: f32 = 0.1;
+/// The cosine of the angle by which the view may have turned, 4 degrees: shadows may be missing so far inside its border.
+const STALE_COSINE: f32 = 0.9976;
+/// The least height above the ground that is counted with, in meters.
+const LEAST_HEIGHT_M: f32 = 20.0;
+
+/// What shadows are made of.
+pub struct ShadowedView {
+    /// How it is seen.
+    pub camera: Camera,
+    /// The ground as it is shown.
+    pub ground: ShownGround,
+}
+
+/// The shadows of an open scene.
+#[derive(Default)]
+pub struct ShadowState {
+    /// The camera that they were made for last; `None` where they are to be made anew.
+    made_for: Option<Camera>,
+    /// The camera of the frame before, and since when it is the same.
+    rests: Option<(Camera, Instant)>,
+    job: Option<WorkerJob<Result<Option<PreparedShadows>, GpuError>>>,
+    /// What the renderer is to take over.
+    ready: Option<PreparedShadows>,
+}
+
+impl ShadowedView {
+    /// The shadows of a list.
+    ///
+    /// # Errors
+    /// [`GpuError::List`] where the list is unsound.
+    pub fn shadows(&self, list: &DrawList) -> Result<LiveShadows, GpuError> {
+        LiveShadows::new(&self.ground.with_list(list), &self.camera)
+    }
+}
+
+impl ShadowState {
+    /// The renderer gets shadows for `camera` with a list.
+    pub fn made_for(&mut self, camera: Camera) {
+        (self.made_for, self.job, self.ready) = (Some(camera), None, None);
+    }
+
+    /// What stands or the ground is otherwise now.
+    pub fn forget(&mut self) {
+        self.made_for = None;
+    }
+
+    /// Shadows that the renderer has not taken over.
+    pub fn take_ready(&mut self) -> Option<PreparedShadows> {
+        self.ready.take()
+    }
+
+    /// How long `camera` is the same.
+    fn rest(&mut self, camera: &Camera) -> Duration {
+        match &self.rests {
+            Some((before, since)) if before == camera => since.elapsed(),
+            _ => {
+                self.rests = Some((*camera, Instant::now()));
+                Duration::ZERO
+            }
+        }
+    }
+}
+
+impl OpenedScene {
+    /// Takes over the shadows that were made meanwhile, and begins to make others where the camera rests elsewhere.
+    ///
+    /// # Errors
+    /// See [`RelistingError`]; the shadows before stay.
+    pub fn follow_shadows(&mut self, context: &Context, slot: &LoaderSlot) -> Result<(), RelistingError> {
+        if let Some(done) = self.shadows.job.as_ref().and_then(WorkerJob::poll) {
+            self.shadows.job = None;
+            self.shadows.ready = done??;
+        }
+        let Ok(camera) = self.camera(self.size) else { return Ok(()) };
+        if !slot.is_filled() || self.is_relisting() || self.shadows.job.is_some() || !self.is_stale(&camera) {
+            return Ok(());
+        }
+        let rest = self.shadows.rest(&camera);
+        if rest < REST {
+            context.request_repaint_after(REST - rest);
+            return Ok(());
+        }
+        let view = ShadowedView { camera, ground: self.walk.shown_ground() };
+        let (list, slot, context) = (std::sync::Arc::clone(&self.list), slot.clone(), context.clone());
+        let work = move || {
+            let Some(loader) = slot.loader() else { return Ok(None) };
+            loader.prepare_shadows(&view.shadows(&list)?).map(Some)
+        };
+        self.shadows.made_for = Some(camera);
+        self.shadows.job = Some(WorkerJob::start(work, move || context.request_repaint()));
+        Ok(())
+    }
+
+    /// Whether the shadows were made for another view than `camera` has.
+    fn is_stale(&self, camera: &Camera) -> bool {
+        let Some(before) = &self.shadows.made_for else { return true };
+        let eye = camera.eye();
+        let below = self.walk.ground_z(eye.truncate().as_dvec2());
+        let height_m = below.map_or(eye.z - self.bounds().min.z, |z| eye.z - z as f32).max(LEAST_HEIGHT_M);
+        let is_turned = |of: fn(&Camera) -> Vec3| of(before).dot(of(camera)) < STALE_COSINE;
+        before.eye().distance(eye) > STALE_SHARE * height_m
+            || is_turned(Camera::forward)
+            || is_turned(Camera::right)
+            || before.tan_half_fov() != camera.tan_half_fov()
+    }
+}
