@@ -228,7 +228,7 @@ fn labels_that_are_not_drawn_are_noted_with_the_reason() {
     let camera = "[[camera]]\nname = \"c\"\neye = [500, 50]\neye_height = 40\nlook_at = [500, 300]\n";
     for (label, why) in [
         ("text = \"A\" # here\nat = [500, 10]", "behind the eye"),
-        ("text = \"A\" # here\nat = [900, 990]", "the ground or something on it hides"),
+        ("text = \"A\" # here\nat = [900, 990]", "the ground hides"),
     ] {
         let (text, all) = found(&format!("[[label]]\n{label}\n{camera}"));
         let line = 1 + text.lines().position(|line| line.ends_with("# here")).expect("a marked line");

@@ -1,7 +1,6 @@
 //! Labels that the picture of the first camera does not show, or not as they are stated.
 //!
-//! Only placing them tells, so the picture is drawn: without light and colors, which decide about no label, and only
-//! where the scene file states labels.
+//! Only placing them tells, so they are placed, on a picture of which only is known what the ground hides.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,10 +10,9 @@ use crate::description::finding_code::FindingCode;
 use crate::message::suggest::quoted;
 use crate::pipeline::labels::annotations;
 use crate::pipeline::lint::context::LintContext;
+use crate::pipeline::lint::label_sight::label_depths;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::picture::{PictureSize, framed_camera};
-use crate::render::cpu::render_buffers;
-use crate::scene::picture::build_shapes;
 use crate::scene::{SceneModel, SceneView};
 
 /// The most texts that a message quotes.
@@ -31,7 +29,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let Some(report) = placed(scene, view) else { return };
     let behind = behind(scene, &report);
     for (texts, why) in [
-        (&report.hidden, "the ground or something on it hides their places"),
+        (&report.hidden, "the ground hides their places"),
         (&report.outside, "their places are outside the picture, or too close to its border"),
         (&behind, "their places are behind the eye"),
         (&report.crowded_out, "no position near their places is free beside more important ones"),
@@ -71,9 +69,8 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
 /// What becomes of the labels of a view; `None` where it has no picture.
 fn placed(scene: &SceneModel, view: &SceneView) -> Option<AnnotationReport> {
     let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
-    let drawn = build_shapes(scene, &camera, &|_| ());
-    let picture = render_buffers(&drawn.list, &camera).ok()?;
-    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
+    let picture = label_depths(scene, &camera);
+    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &[]);
     Some(compose_sheet(picture.pixels, &annotations).1)
 }
 

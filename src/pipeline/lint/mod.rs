@@ -16,6 +16,7 @@ mod ground_line;
 mod heights;
 mod imagery;
 mod junctions;
+mod label_sight;
 mod labels;
 mod lakes;
 mod line_shapes;
