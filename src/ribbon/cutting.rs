@@ -22,9 +22,9 @@ pub(in crate::ribbon) const SLIVER_M2: f64 = 1e-3;
 /// Pieces smaller than this are dropped while a polygon is being cut: many of them may still lie side by side.
 const NOTHING_M2: f64 = 1e-9;
 
-/// A polygon with more cuts than this is parted. Fewer would part triangles of common scenes, whose pieces then have
+/// A polygon with more cuts than this is parted. Fewer would part the triangles of common scenes, whose pieces then have
 /// corners more than they need; more make the comparison of every piece with every cut felt.
-const MOST_TOGETHER: usize = 192;
+const MOST_TOGETHER: usize = 4096;
 
 /// A polygon whose parts still hold more than this share of its cuts is not parted: they lie all over each other.
 const MOST_SHARED: f64 = 0.75;
