@@ -286,7 +286,6 @@ fn client_address(address: IpAddr) -> IpAddr {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::task::Waker;
 
     fn clients(most: usize) -> Arc<Clients> {
         let shares = ClientShares {
