@@ -44,13 +44,19 @@ fn check_host<B>(request: &axum::http::Request<B>, names: &[String]) -> Result<(
         Some(host) => {
             let found = String::from_utf8_lossy(host.as_bytes());
             let authority = found.parse::<Authority>();
-            let authority = authority.ok().filter(|authority| !authority.as_str().contains('@'));
+            let authority = authority.ok().filter(is_host_and_port);
             let wrong = || {
                 HttpError::wrong(format!("the Host header is {}; write NAME or NAME:PORT", quoted(&found)))
             };
             check_name(&authority.ok_or_else(wrong)?, names)
         }
     }
+}
+
+/// Whether an authority is a host with or without a port, and nothing before it.
+fn is_host_and_port(authority: &Authority) -> bool {
+    let text = authority.as_str();
+    !text.contains('@') && (text == authority.host() || authority.port_u16().is_some())
 }
 
 fn check_name(authority: &Authority, names: &[String]) -> Result<(), HttpError> {
