@@ -288,8 +288,8 @@ fn graphic_names(texts: &[PlacedText], picture: &LinePicture<'_>) -> Vec<LineNam
                 add(0, lines.clone(), NameSide::Above)
             }
             PlacedCourse::Ends(lines) => {
-                for (number, half) in halves(lines).into_iter().enumerate() {
-                    add(number, vec![half], NameSide::On);
+                for (number, third) in end_thirds(lines).into_iter().enumerate() {
+                    add(number, vec![third], NameSide::On);
                 }
             }
         }
@@ -298,7 +298,7 @@ fn graphic_names(texts: &[PlacedText], picture: &LinePicture<'_>) -> Vec<LineNam
 }
 
 /// The first and the last third of the longest line.
-fn halves(lines: &[Vec<Vec3>]) -> Vec<Vec<Vec3>> {
+fn end_thirds(lines: &[Vec<Vec3>]) -> Vec<Vec<Vec3>> {
     let Some(line) = lines.iter().max_by_key(|line| line.len()) else { return Vec::new() };
     let third = line.len().div_ceil(3).max(2).min(line.len());
     vec![line[..third].to_vec(), line[line.len() - third..].to_vec()]
@@ -384,7 +384,7 @@ fn place(
 /// The share of a piece at which the middle of a name is tried: the middle first, then outward.
 fn place_share(tried: usize) -> f32 {
     let step = tried.div_ceil(2) as f32 / (TRIED as f32 + 1.0);
-    if tried % 2 == 0 { 0.5 + step } else { 0.5 - step }
+    if tried.is_multiple_of(2) { 0.5 + step } else { 0.5 - step }
 }
 
 /// The parts of a line that are on the picture.
