@@ -31,8 +31,7 @@ pub struct RenderArguments {
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub access: AccessArguments,
-    /// Write the picture to this .png, .pdf or .svg file [default: the scene's name with .png, in the current folder];
-    /// those of several scenes to this folder
+    /// Write to this .png, .pdf or .svg file, of several scenes to this folder [default: the scene's name with .png]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]

@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn json_holds_every_row_and_print_the_first_of_them() {
         let report = report(30);
-        let json = as_json(&report, &["a note".into()]);
+        let json = as_json(&report, &["a note"]);
         assert_eq!(json["tables"]["trenches"].as_array().map(Vec::len), Some(30));
         assert_eq!(json["tables"]["trenches"][2]["cut_m3"], json!(2469.0));
         let lines = printed(&report.tables()[0]);

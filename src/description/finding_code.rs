@@ -170,7 +170,7 @@ finding_codes! {
     LakesShareCells = "lakes-share-cells", Note,
         "Two lakes lie so near to each other that they share cells of the elevation model. The lower level holds there.";
     EarthMoved = "earth-moved", Note,
-        "How much earth was cut and filled.";
+        "How much earth all that changes the ground cuts and fills: roads, water, pads and earthworks.";
     NoEarthMoved = "no-earth-moved", Warning,
         "An earthwork moved no earth: it lies off the elevation model, between its posts, or under water.";
     PadRefused = "pad-refused", Warning,

@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn a_long_ring_is_searched_in_little_time() {
         let ring: Vec<DVec2> = (0..100_000)
-            .map(|index| DVec2::from_angle(f64::from(index) / 100_000.0 * 6.28) * 900.0)
+            .map(|index| DVec2::from_angle(f64::from(index) / 100_000.0 * 6.25) * 900.0)
             .collect();
         assert_eq!(own_crossing(&ring, true), None);
     }

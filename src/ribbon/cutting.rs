@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn cuts_all_over_each_other_leave_nothing_and_cuts_beside_it_all() {
         let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from);
-        let corner = [(-20.0, -20.0), (15.0, -20.0), (-20.0, 15.0)].map(DVec2::from);
+        let corner = [(-20.0, -20.0), (30.0, -20.0), (-20.0, 30.0)].map(DVec2::from);
         let all = [(-20.0, -20.0), (40.0, -20.0), (-20.0, 40.0)].map(DVec2::from);
         assert_eq!(rest(&square, [corner, all, corner]), Some(Vec::new()));
         let nearly = std::iter::repeat_n(corner, 1000);

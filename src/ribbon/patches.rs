@@ -51,7 +51,8 @@ impl Borders {
 
     /// How far beside its patch a part may lie, in meters: world positions are f32.
     fn rounding_m(&self) -> f64 {
-        let ends = [&self.east, &self.north].into_iter().flat_map(|borders| [borders.first(), borders.last()]);
+        let ends =
+            [&self.east, &self.north].into_iter().flat_map(|borders| [borders.first(), borders.last()]);
         ends.flatten().fold(0.0, |most, &border| f64::max(most, border.abs())) * f64::from(f32::EPSILON)
     }
 

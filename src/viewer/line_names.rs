@@ -121,6 +121,9 @@ struct NamePoint {
     along: f32,
 }
 
+/// Measures letters in points: the width of each, and the height of all.
+pub type LetterWidths<'a> = &'a dyn Fn(&[String], &FontId) -> (Vec<f32>, f32);
+
 /// The picture that names are placed on.
 pub struct LinePicture<'a> {
     /// How it is seen.
@@ -132,7 +135,7 @@ pub struct LinePicture<'a> {
     /// Whether a place in world space is in sight.
     pub is_seen: &'a dyn Fn(Vec3) -> bool,
     /// The widths of letters, and their height, in points.
-    pub widths: &'a dyn Fn(&[String], &FontId) -> (Vec<f32>, f32),
+    pub widths: LetterWidths<'a>,
 }
 
 /// The names along lines of the frames before.

@@ -105,12 +105,8 @@ impl ViewerApp {
                     self.edit(&SceneEdit::set(part.place, "width", EditValue::Number(width_m)));
                 }
             }
-            Some(PartEvent::Remove) => {
-                if self.edit(&SceneEdit::Remove(part.place)) {
-                    self.picked = None;
-                }
-            }
-            None => {}
+            Some(PartEvent::Remove) if self.edit(&SceneEdit::Remove(part.place)) => self.picked = None,
+            Some(PartEvent::Remove) | None => {}
         }
     }
 

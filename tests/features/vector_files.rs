@@ -240,7 +240,14 @@ fn what_is_beside_a_shape_comes_with_it() {
 
 /// The folders of broken files, and of those the ones that are refused, with a word of the reason.
 const BROKEN: [(&str, &[(&str, &str)]); 7] = [
-    ("shp_gdal", &[("buggymultipoly.shp", "record 1"), ("multipatch.shp", "multipatch")]),
+    (
+        "shp_gdal",
+        &[
+            ("bigoffset.shp", "no coordinate of a map"),
+            ("buggymultipoly.shp", "record 1"),
+            ("multipatch.shp", "multipatch"),
+        ],
+    ),
     ("fgb", &[("flatgeobuf-invalid.fgb", "properties")]),
     (
         "fgb_gdal",

@@ -50,7 +50,7 @@ fn features_are_labeled_by_rank_and_what_has_no_label_is_counted() {
     assert_eq!(labels(&all), [("Town", [500.0, 400.0]), ("Hamlet", [200.0, 300.0])]);
     assert_eq!(all.labels.iter().map(|label| label.rank).collect::<Vec<_>>(), [2.0, 5.0]);
     let note = "features of 'places.geojson' without a label: 1 give no text, 1 lie off the elevation model";
-    assert!(all.notes().iter().any(|told| *told == note), "{:?}", all.notes());
+    assert!(all.notes().contains(&note), "{:?}", all.notes());
     let one = scene("most", &format!("{table}most = 1\n")).expect("sound");
     assert_eq!(labels(&one), [("Town", [500.0, 400.0])]);
     assert!(

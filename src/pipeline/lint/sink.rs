@@ -17,7 +17,7 @@ pub struct FindingSink {
 }
 
 impl FindingSink {
-    /// Adds a finding, unless its code has enough of them or it is a repetition.
+    /// Adds a finding, unless its code has enough of them, which counts it, or it repeats one that is kept.
     pub fn add(&mut self, finding: Finding) {
         if self.list.contains(&finding) {
             return;
@@ -59,11 +59,13 @@ mod tests {
     #[test]
     fn repetitions_are_dropped_and_more_than_enough_are_counted() {
         let mut sink = FindingSink::default();
-        for number in 0..MOST_OF_A_CODE + 3 {
-            let finding = Finding::new(FindingCode::UnusedStyle, format!("m{number:03}"));
-            sink.add(finding.clone());
-            sink.add(finding);
+        let finding = |number: usize| Finding::new(FindingCode::UnusedStyle, format!("m{number:03}"));
+        for number in 0..MOST_OF_A_CODE {
+            sink.add(finding(number));
+            sink.add(finding(number));
         }
+        assert!(!sink.is_full(FindingCode::UnusedStyle));
+        (0..3).for_each(|more| sink.add(finding(MOST_OF_A_CODE + more)));
         assert!(sink.is_full(FindingCode::UnusedStyle) && !sink.is_full(FindingCode::UnknownKey));
         let found = sink.into_findings();
         assert_eq!(found.len(), MOST_OF_A_CODE);

@@ -276,7 +276,7 @@ fn phases_that_cannot_be_built_are_left_out_and_named() {
     scratch.write("two.toml", TWO_PHASES);
     let ran = run_in(scratch.folder(), &["render", "two.toml", "--all-phases", "--size", "64x48"]);
     assert_eq!(ran.code, 1, "{ran:?}");
-    assert!(ran.err.starts_with("two.toml:11:8: error: there is no file"), "{ran:?}");
+    assert!(ran.err.starts_with("two.toml:11:8: error[missing-file]: there is no file"), "{ran:?}");
     assert!(
         ran.err.ends_with("error: not rendered: phase bad of two.toml; the rest is written\n"),
         "{ran:?}"

@@ -45,7 +45,7 @@ impl<'a, S: BlockSource> DeferredSurface<'a, S> {
             }
             return;
         };
-        let descent = Descent { mesh, topology, rect };
+        let descent = FacetDescent { mesh, topology, rect };
         for &root in topology.roots() {
             let facet = root.map(|number| position(mesh, topology, number));
             descent.visit(triangle(root[0], 0), root, facet, visit);
@@ -54,13 +54,13 @@ impl<'a, S: BlockSource> DeferredSurface<'a, S> {
 }
 
 /// A way down the bintree of a patch to the displayed triangles that meet a rectangle.
-struct Descent<'a> {
+struct FacetDescent<'a> {
     mesh: &'a PatchMesh,
     topology: &'a Topology,
     rect: &'a Rect,
 }
 
-impl Descent<'_> {
+impl FacetDescent<'_> {
     /// Visits what is displayed of the triangle `at` with these corners, apex first, counter-clockwise.
     fn visit(
         &self,
