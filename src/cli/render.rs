@@ -31,7 +31,7 @@ pub struct RenderArguments {
     pub scenes: Vec<PathBuf>,
     #[command(flatten)]
     pub access: AccessArguments,
-    /// Write to this .png, .pdf or .svg file, of several scenes to this folder [default: the scene's name with .png]
+    /// Write to this .png, .pdf or .svg file; several scenes to this folder [default: the scene's name]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]

@@ -181,7 +181,7 @@ finding_codes! {
     PylonsAdded = "pylons-added", Note,
         "Pylons were added to keep the wires of a power line off the ground.";
     Scattered = "scattered", Note,
-        "How many models were strewn over areas.";
+        "How many models were strewn over the areas of a table.";
     Crowded = "crowded", Note,
         "Fewer models stand than `density` asks for, because `spacing` leaves no place for more.";
     UnknownVariant = "unknown-variant", Warning,
