@@ -71,7 +71,7 @@ fn a_plan_is_true_to_its_scale_and_heights_do_not_move_it() {
 fn straight_lines_of_the_map_stay_straight_and_parallel() {
     for projection in ["plan", "orthographic", "oblique"] {
         let keys = format!("projection = \"{projection}\"\nscale = 10000\nazimuth = 25");
-        let (_, camera) = with_camera(projection, &keys);
+        let (_, camera) = with_camera(&format!("rays-{projection}"), &keys);
         let way = Vec3::new(700.0, 400.0, 0.0);
         let step = pixel(&camera, way) - pixel(&camera, Vec3::ZERO);
         for at in places() {
@@ -110,7 +110,8 @@ fn an_orthographic_picture_foreshortens_the_ground_by_its_pitch_everywhere() {
 #[test]
 fn without_a_scale_all_of_the_ground_fits_at_a_round_one() {
     for projection in ["plan", "orthographic", "oblique"] {
-        let (scene, camera) = with_camera(projection, &format!("projection = \"{projection}\""));
+        let (scene, camera) =
+            with_camera(&format!("fitted-{projection}"), &format!("projection = \"{projection}\""));
         let denominator = camera.scale_denominator().expect("a map");
         let unit = 10f64.powi(denominator.log10().floor() as i32 - 1);
         assert!(((denominator / unit).round() * unit - denominator).abs() < 1e-3 * unit, "1:{denominator}");
@@ -152,7 +153,8 @@ fn the_ground_is_as_fine_as_the_scale_shows_it() {
 #[test]
 fn one_and_four_threads_draw_the_same_bytes() {
     for projection in ["plan", "orthographic", "oblique"] {
-        let (scene, _) = with_camera(projection, &format!("projection = \"{projection}\""));
+        let (scene, _) =
+            with_camera(&format!("threads-{projection}"), &format!("projection = \"{projection}\""));
         let size = PictureSize { width: 320, height: 240 };
         let drawn = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
