@@ -213,7 +213,7 @@ finding_codes! {
          stand there; a higher `max_grade` or a line that winds needs less earth.";
     RoadInWater = "road-in-water", Warning,
         "A road on the ground crosses a river at least 3 m wide, or runs more than 10 m through a lake, and no bridge carries \
-         it. The picture shows it in the water. Say by `bridge` which lines are bridges, add a [[bridge]], or leave out water \
+         it. The picture shows it in the water. Say by `bridge` which lines are bridges, add a `[[bridge]]`, or leave out water \
          in pipes by `where`.";
     LakeLevelWrong = "lake-level-wrong", Error,
         "A lake's `level` is more than 100 m below or above all ground along its shore: a slip of the pen, or a level in feet \

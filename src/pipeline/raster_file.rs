@@ -40,10 +40,10 @@ pub fn write(
     Ok(written)
 }
 
-/// [`write`] among other files.
+/// [`write()`] among other files.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn add(
     files: &mut OutputFiles,
     raster: &Raster,

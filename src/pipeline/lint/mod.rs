@@ -4,7 +4,7 @@
 //! document, assets, scene ─► LintContext ─► CHECKS, one after the other ─► FindingSink ─► findings by place
 //! ```
 //!
-//! A check is a function in a file of its subject, and a row of [`CHECKS`]. It computes what no picture needs, so it runs
+//! A check is a function in a file of its subject, and a row of `CHECKS`. It computes what no picture needs, so it runs
 //! only where a scene is checked; what building finds out anyway is in [`SceneModel::findings`].
 
 mod cameras;
