@@ -127,7 +127,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             "[[building]]\nheight = 9\npoints = [[500090, 4000090], [500120, 4000090], [500120, 4000110], [500090, 4000110]]\n",
             "[[label]]\ntext = \"a\"\nat = [500240, 4000240]\n[[camera]]\nname = \"c\"\neye = [500240, 3999900]\n\
              eye_elevation = 300\nlook_at = [500240, 4000240]\n",
-            "[[earthwork]]\nkind = \"crater\"\ndiameter = 40\npoints = [[500240, 4000240]]\n",
+            "[[earthwork]]\nkind = \"crater\"\nradius = 20\npoints = [[500240, 4000240]]\n",
         ]
         .map(|tables| tables.as_bytes().to_vec())
         .to_vec(),
@@ -185,10 +185,8 @@ fn seeds_reach_behind_the_first_check() {
     use sandtable::dem::read::{DemHints, read};
     let grid = &seeds("elevation")[2];
     assert!(read("a.asc", &grid[1..], &DemHints::default()).is_ok());
-    let folder = std::env::temp_dir();
-    assert!(folder.is_dir());
     for seed in seeds("scene_build") {
-        let text = String::from_utf8(seed).expect("text");
-        targets::scene_build(text.as_bytes());
+        let tables = String::from_utf8(seed).expect("text");
+        targets::on_hill(&tables).unwrap_or_else(|error| panic!("{tables}: {error:?}"));
     }
 }

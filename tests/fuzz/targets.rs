@@ -16,7 +16,8 @@ use sandtable::geom::crs::Crs;
 use sandtable::model::Companions;
 use sandtable::model::error::CompanionError;
 use sandtable::model::read as models;
-use sandtable::pipeline::scene_file::build_scene_text;
+use sandtable::pipeline::scene_file::{OpenSceneError, build_scene_text};
+use sandtable::scene::SceneModel;
 use sandtable::symbology::code::SymbolCode;
 use sandtable::vector::hints::VectorHints;
 use sandtable::vector::read as vectors;
@@ -108,8 +109,13 @@ pub fn scene_text(bytes: &[u8]) {
 /// Scenes on a small hill: the tables that follow `[terrain]`.
 pub fn scene_build(bytes: &[u8]) {
     let Ok(tables) = std::str::from_utf8(bytes) else { return };
+    let _ = on_hill(tables);
+}
+
+/// The scene of the hill with the tables `tables`.
+pub fn on_hill(tables: &str) -> Result<SceneModel, OpenSceneError> {
     let text = format!("crs = \"EPSG:32616\"\n[terrain]\ndem = \"hill.asc\"\n{tables}");
-    let _ = build_scene_text(&hill().join("a.toml"), &text, &[], &|_| ());
+    build_scene_text(&hill().join("a.toml"), &text, &[], &|_| ())
 }
 
 /// Scenes of features in any shape, whose draw lists are sound.
