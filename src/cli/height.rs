@@ -12,7 +12,11 @@ use crate::cli::options::DatasetArguments;
 use crate::cli::output::stream;
 use crate::cli::values::choice;
 use crate::dem::answer::Answer;
+use crate::dem::height_datum::HeightDatum;
+use crate::geom::geoid::Geoid;
+use crate::pipeline::error::FileError;
 use crate::pipeline::files;
+use crate::pipeline::heights_above::bring_heights;
 use crate::pipeline::positions::{WrittenPosition, parse_positions};
 use crate::terrain::query::{Interpolation, Surface};
 
@@ -36,6 +40,9 @@ pub struct HeightQueryArguments {
     /// How heights between posts are found
     #[arg(long, default_value = "bilinear", value_parser = choice::<Interpolation>())]
     pub interpolation: Interpolation,
+    /// Print heights above the WGS 84 ellipsoid or the EGM96 geoid [default: what the model counts from]
+    #[arg(long, value_parser = choice::<HeightDatum>())]
+    pub above: Option<HeightDatum>,
 }
 
 /// Prints `x,y,height,status` for every point, in order; x and y as they were written.
@@ -52,9 +59,15 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
     if surface != Surface::Source {
         arguments.dataset.ground(&dataset)?;
     }
-    let answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
+    let mut answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
+    let mut datum = dataset.source().vertical_datum.clone();
+    if let Some(above) = arguments.above {
+        let brought = bring_heights(&mut answers, (datum.as_deref(), above), (&crs, &at), &Geoid::default());
+        brought.map_err(FileError::at(&arguments.dataset.file))?;
+        datum = Some(above.name().to_owned());
+    }
     stream(|out| match arguments.dataset.json {
-        true => write_json(out, &points, &answers),
+        true => write_json(out, &points, &answers, datum.as_deref()),
         false => write_csv(out, &points, &answers),
     })
 }
@@ -71,13 +84,21 @@ fn write_csv(out: &mut dyn Write, points: &[WrittenPosition<'_>], answers: &[Ans
     Ok(())
 }
 
-/// Writes one object a line; a missing height is null.
-fn write_json(out: &mut dyn Write, points: &[WrittenPosition<'_>], answers: &[Answer]) -> io::Result<()> {
+/// Writes one object a line; a missing height is null. What heights are counted from is there where it is known.
+fn write_json(
+    out: &mut dyn Write,
+    points: &[WrittenPosition<'_>],
+    answers: &[Answer],
+    datum: Option<&str>,
+) -> io::Result<()> {
     write!(out, "[")?;
     for (index, (point, answer)) in points.iter().zip(answers).enumerate() {
-        let object = json!({
+        let mut object = json!({
             "x": point.at.x, "y": point.at.y, "height": answer.height_m(), "status": answer.status()
         });
+        if let Some(datum) = datum {
+            object["vertical_datum"] = datum.into();
+        }
         write!(out, "{}\n  {object}", if index == 0 { "" } else { "," })?;
     }
     writeln!(out, "\n]")

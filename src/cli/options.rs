@@ -10,6 +10,7 @@ use crate::cli::output::warn;
 use crate::cli::values::picture_size;
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
+use crate::dem::height_datum::HeightDatum;
 use crate::geom::crs::Crs;
 use crate::geom::datum_shift::DatumShift;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
@@ -36,7 +37,7 @@ pub struct AccessArguments {
 }
 
 /// Heights of files that do not state their unit or layout.
-#[derive(Clone, Copy, Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct HeightArguments {
     /// Meters per gray value of a PNG, which needs it, or of a RAW file [default: 1]
     #[arg(long, value_name = "METERS", allow_negative_numbers = true)]
@@ -50,6 +51,9 @@ pub struct HeightArguments {
     /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
+    /// What its heights are counted from, in place of what it states: egm96, ellipsoid, or a name to print
+    #[arg(long, value_name = "DATUM")]
+    pub vertical_datum: Option<String>,
     /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
     #[arg(long, value_name = "WxH:TYPE")]
     pub raw: Option<RawLayout>,
@@ -91,9 +95,15 @@ impl HeightArguments {
             nodata: self.nodata,
             height_encoding: self.height_encoding,
             raw: self.raw,
+            vertical_datum: self.vertical_datum.as_deref().map(full_datum_name),
             ..DemOptions::default()
         }
     }
+}
+
+/// The name of the vertical datum that a user calls `stated`.
+fn full_datum_name(stated: &str) -> String {
+    HeightDatum::from_name(stated).map_or_else(|| stated.to_owned(), |datum| datum.name().to_owned())
 }
 
 impl DatasetArguments {

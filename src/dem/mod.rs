@@ -9,6 +9,7 @@ pub mod error;
 pub mod formats;
 mod georef;
 pub mod gridding;
+pub mod height_datum;
 pub mod imagery;
 pub mod largest_rectangle;
 pub mod limits;

@@ -36,7 +36,7 @@ pub struct Raster {
     pub crs: Option<Crs>,
     /// The file's value for no data, before scale and offset.
     pub nodata: Option<f64>,
-    /// The vertical datum in the file's words (`NAVD88`), printed but never computed with; `None` where not stated.
+    /// The vertical datum in the file's words (`NAVD88`); `None` where not stated.
     pub vertical_datum: Option<String>,
 }
 

@@ -1,12 +1,14 @@
 //! Vertical datums by EPSG's numbers.
 //!
-//! The names are carried along and printed, never computed with; that two of them differ is for the user to see.
+//! The names are carried along and printed; that two of them differ is for the user to see. Heights are brought only between
+//! those of [`HeightDatum`](crate::dem::height_datum::HeightDatum).
 
 /// EPSG's numbers of vertical systems, and those of GeoTIFF 1.0 (5101 to 5106). A name's first number is written.
-const NAMES: [(&str, &[u16]); 29] = [
+const NAMES: [(&str, &[u16]); 30] = [
     ("NAVD88", &[5703, 6360, 8228, 5103]),
     ("NGVD29", &[7968, 5702, 5102]),
     ("EGM96 geoid", &[5773]),
+    ("WGS 84 ellipsoid", &[4979, 5030]),
     ("EGM2008 geoid", &[3855]),
     ("EGM84 geoid", &[5798]),
     ("mean sea level", &[5714]),

@@ -155,7 +155,7 @@ table! {
         height_encoding: Option<HeightEncodingWord> = key::word::<HeightEncodingWord>(), otherwise "none; color PNG needs it";
         /// That the file is RAW, and its layout, such as `1201x1201:i16be`.
         raw: Option<Stated<String>> = key::filled_text(), otherwise "the file is not RAW";
-        /// What heights are counted from, such as `NAVD88`; printed, never computed with.
+        /// What heights are counted from, such as `NAVD88`: printed; `height --above` needs `EGM96 geoid` or `WGS 84 ellipsoid`.
         vertical_datum: Option<String> = key::filled_text(), otherwise "what the file names, if anything";
         /// Whether samples without data that others enclose are filled by a membrane, up to 100000 at a place; `true` fills
         /// the source as well, so that height queries on it see no voids.

@@ -10,6 +10,7 @@ pub mod datum_shift;
 pub mod declination;
 pub mod distance_field;
 pub mod geodesic;
+pub mod geoid;
 pub mod isolines;
 pub mod join;
 pub mod leg_tree;

@@ -211,6 +211,9 @@ limits! {
         PROFILE_STEPS: f64 = 1e7, "steps",
             "along a profile",
             "take longer ones";
+        GEOID_NODES: usize = 1 << 14, "nodes",
+            "of the geoid that one query computes, a millisecond each: heights over 16 by 16 degrees",
+            "ask for fewer heights, or for heights closer together";
         FLIGHT_FRAMES: f64 = 90_000.0, "frames",
             "of a flight: an hour",
             "state fewer --seconds or a smaller --fps";

@@ -27,6 +27,7 @@ pub mod graphic_texts;
 pub mod grid;
 pub mod gridding;
 pub mod ground;
+pub mod heights_above;
 pub mod labels;
 pub mod legend;
 mod legend_overlay;

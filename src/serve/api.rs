@@ -2,6 +2,7 @@
 //!
 //! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it.
 
+use crate::dem::height_datum::HeightDatum;
 use crate::message::choice::Choice;
 use crate::pipeline::service::ServiceLimits;
 use crate::serve::api::ApiNeed::{Optional, Required};
@@ -151,6 +152,12 @@ pub const HEIGHTS: ApiAddress = ApiAddress {
             Words(|| vec!["source", "ground", "scene"]),
             Optional("source of a file, ground of a scene"),
             "as read; in meters, after earthworks; with decks on top",
+        ),
+        parameter(
+            "above",
+            Words(choices::<HeightDatum>),
+            Optional("what the dataset counts from"),
+            "heights above the WGS 84 ellipsoid or the EGM96 geoid",
         ),
         CRS,
     ],

@@ -10,6 +10,8 @@
 //! | `status` per result | `Ok`, `NoData` (a hole in the model) or `Outside` (beyond its edge) |
 //! | `surface` | `source` (as read), `ground` (after earthworks), `scene` (decks on top); the default is the source of a file and the ground of a scene |
 //! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is Keys' of 1981 with a = −1/2, as in [`crate::terrain::query`] |
+//! | `above` | heights above the WGS 84 `ellipsoid` or the `egm96` geoid, where the dataset says what it counts from |
+//! | `vertical_datum` per result | what the height is counted from, where that is known |
 //! | `crs` | coordinates in another system; see [`coordinates`](crate::serve::coordinates) |
 
 use std::io;
@@ -22,6 +24,9 @@ use serde_json::Serializer;
 use serde_json::ser::Formatter;
 
 use crate::dem::answer::Answer;
+use crate::dem::height_datum::HeightDatum;
+use crate::message::chain::error_text;
+use crate::pipeline::heights_above::bring_heights;
 use crate::serve::coordinates::{Coordinates, Location};
 use crate::serve::datasets::ServedDataset;
 use crate::serve::parameters::Parameters;
@@ -36,7 +41,7 @@ use crate::terrain::stop_flag::StopFlag;
 const LIGHT_POINTS: usize = 1000;
 
 /// The approximate size of a result in JSON.
-const RESULT_BYTES: usize = 128;
+const RESULT_BYTES: usize = 176;
 
 pub struct HeightsQuery {
     datasets: Vec<usize>,
@@ -45,6 +50,8 @@ pub struct HeightsQuery {
     /// The default surface of each dataset where `None`.
     surface: Option<Surface>,
     interpolation: Interpolation,
+    /// What heights are brought to; what each dataset counts from where `None`.
+    above: Option<HeightDatum>,
     missing: MissingHeight,
     format: HeightsFormat,
 }
@@ -71,6 +78,7 @@ impl Query for HeightsQuery {
         let most = service.limits.max_points as usize;
         let surface = parameters.choice("surface")?;
         let interpolation = interpolation(parameters)?;
+        let above = parameters.choice("above")?;
         let formats = [("json", HeightsFormat::Json), ("geojson", HeightsFormat::GeoJson)];
         let format = parameters.word("format", formats)?.unwrap_or(HeightsFormat::Json);
         let missing = missing(parameters)?;
@@ -86,14 +94,18 @@ impl Query for HeightsQuery {
             None => vertices,
             Some(count) => samples(&coordinates, &vertices, count, most)?,
         };
-        Ok(Self { datasets, coordinates, positions, surface, interpolation, missing, format })
+        Ok(Self { datasets, coordinates, positions, surface, interpolation, above, missing, format })
     }
 
     fn weight(&self, service: &Service) -> QueryWeight {
         let is_made = self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
             self.surface_of(served) == Surface::Source || served.dataset.service_if_made().is_some()
         });
-        if is_made && self.positions.len() <= LIGHT_POINTS { QueryWeight::Light } else { QueryWeight::Heavy }
+        if is_made && self.above.is_none() && self.positions.len() <= LIGHT_POINTS {
+            QueryWeight::Light
+        } else {
+            QueryWeight::Heavy
+        }
     }
 
     fn most_bytes(&self, _: &Service) -> usize {
@@ -104,6 +116,12 @@ impl Query for HeightsQuery {
         let heights = self.heights(service)?;
         let results = heights.iter().zip(&self.positions);
         let dataset = |found: &FoundHeight| service.datasets.at(found.dataset).name.as_str();
+        let datums: Vec<Option<String>> =
+            self.datasets.iter().map(|&index| self.vertical_datum(service.datasets.at(index))).collect();
+        let datum = |found: &FoundHeight| {
+            let place = self.datasets.iter().position(|&index| index == found.dataset)?;
+            datums[place].as_deref()
+        };
         Ok(match self.format {
             HeightsFormat::Json => self.serialized(
                 "application/json",
@@ -112,6 +130,7 @@ impl Query for HeightsQuery {
                         elevation: self.elevation(found.answer),
                         location: self.coordinates.location(at),
                         dataset: dataset(found),
+                        vertical_datum: datum(found),
                         status: found.answer.status(),
                     })),
                     status: OK,
@@ -125,6 +144,7 @@ impl Query for HeightsQuery {
                         properties: FeatureProperties {
                             status: found.answer.status(),
                             dataset: dataset(found),
+                            vertical_datum: datum(found),
                         },
                     })),
                 },
@@ -232,7 +252,20 @@ impl HeightsQuery {
             // Waits for the ground, and fails where it cannot be made.
             served.snapshot()?;
         }
-        Ok(served.dataset.heights(surface, self.interpolation, &self.coordinates.crs, at)?)
+        let crs = &self.coordinates.crs;
+        let mut answers = served.dataset.heights(surface, self.interpolation, crs, at)?;
+        if let Some(above) = self.above {
+            let own = served.dataset.source().vertical_datum.clone();
+            let brought = bring_heights(&mut answers, (own.as_deref(), above), (crs, at), &service.geoid);
+            brought.map_err(|error| HttpError::wrong(format!("{}: {}", served.name, error_text(&error))))?;
+        }
+        Ok(answers)
+    }
+
+    /// What the heights of a dataset are counted from in the answer, where that is known.
+    fn vertical_datum(&self, served: &ServedDataset) -> Option<String> {
+        let brought = self.above.map(|above| above.name().to_owned());
+        brought.or_else(|| served.dataset.source().vertical_datum.clone())
     }
 
     fn elevation(&self, answer: Answer) -> Option<f64> {
@@ -279,6 +312,8 @@ struct HeightResult<'a> {
     elevation: Option<f64>,
     location: Location,
     dataset: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertical_datum: Option<&'a str>,
     status: &'static str,
 }
 
@@ -305,4 +340,6 @@ struct PointGeometry {
 struct FeatureProperties<'a> {
     status: &'static str,
     dataset: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertical_datum: Option<&'a str>,
 }

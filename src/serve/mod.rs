@@ -46,6 +46,7 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{Semaphore, oneshot};
 
 use crate::geom::crs::Crs;
+use crate::geom::geoid::Geoid;
 use crate::pipeline::dataset::OpenError;
 use crate::pipeline::service::{ServiceLimits, ServiceOptions};
 use crate::serve::answers::{AnswerMemory, UNITS_OF_CLIENT};
@@ -83,6 +84,7 @@ pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
         hosts: options.hosts.clone(),
         clients: Clients::new(options.limits.max_connections as usize, shares(&options.limits)),
         answers: AnswerMemory::default(),
+        geoid: Geoid::default(),
         long_bodies: Arc::new(Semaphore::new(LONG_BODIES)),
         heavy: Arc::new(Semaphore::new(cores())),
         expensive: Arc::new(Semaphore::new(expensive_at_once())),

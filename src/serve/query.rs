@@ -7,6 +7,7 @@ use glam::DVec2;
 use tokio::sync::Semaphore;
 
 use crate::geom::crs::Crs;
+use crate::geom::geoid::Geoid;
 use crate::pipeline::service::{RequestLog, ServiceLimits};
 use crate::serve::answers::AnswerMemory;
 use crate::serve::api::ApiAddress;
@@ -35,6 +36,8 @@ pub struct Service {
     pub hosts: Vec<String>,
     pub clients: Arc<Clients>,
     pub answers: AnswerMemory,
+    /// The geoid, with the nodes that requests have needed.
+    pub geoid: Geoid,
     /// Permits for long bodies that are being received.
     pub long_bodies: Arc<Semaphore>,
     /// Permits for heavy queries that are worked on.

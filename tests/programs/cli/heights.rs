@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
+use sandtable::geom::geoid::Geoid;
 use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
 use sandtable::pipeline::dem::DemOptions;
 use sandtable::terrain::query::{Interpolation, Surface};
@@ -37,6 +38,38 @@ fn points_inside_in_a_hole_and_outside_are_answered_in_their_order() {
         "x,y,height,status\n35,25,40,Ok\n5.0,5,90,Ok\n15,15,,NoData\n-400,1e3,,Outside\n30,20,55,Ok\n"
     );
     assert_eq!(run_with_input(scratch.folder(), &HEIGHT, points).ok(), out, "standard input says the same");
+}
+
+#[test]
+fn heights_are_brought_to_the_ellipsoid_where_it_is_known_what_they_count_from() {
+    let scratch = grid();
+    scratch.write("grid.prj", "EPSG:32632");
+    let height = |more: &[&str]| {
+        run_in(
+            scratch.folder(),
+            &[&["height", "grid.asc", "--at", "10.5,48.1", "--crs", "EPSG:4326"], more].concat(),
+        )
+    };
+    // The grid lies elsewhere; at its own corner the geoid is asked for.
+    assert!(height(&[]).ok().ends_with(",Outside\n"));
+    let at =
+        |more: &[&str]| run_in(scratch.folder(), &[&["height", "grid.asc", "--at", "5,25"], more].concat());
+    let stated = at(&["--vertical-datum", "egm96", "--above", "ellipsoid", "--json"]).ok();
+    let answer: Value = serde_json::from_str(&stated).expect("JSON");
+    let place = Crs::parse("EPSG:32632").and_then(|utm| utm.transform(&Crs::wgs84(), DVec2::new(5.0, 25.0)));
+    let undulation = Geoid::default().undulations(&[place.expect("on Earth")], 16).expect("one place")[0];
+    assert!(undulation.abs() > 1.0, "{undulation} m would show little");
+    assert_eq!(answer[0]["height"].as_f64(), Some(10.0 + undulation));
+    assert_eq!(answer[0]["vertical_datum"], "WGS 84 ellipsoid");
+    assert_eq!(at(&["--vertical-datum", "egm96", "--above", "egm96"]).ok(), at(&[]).ok());
+    for (code, more, message) in [
+        (1, &["--above", "ellipsoid"][..], "grid.asc: nothing states what its heights are counted from"),
+        (1, &["--above", "egm96", "--vertical-datum", "NAVD88"], "counted from NAVD88, whose distance"),
+        (2, &["--above", "sea"], "ellipsoid, egm96"),
+    ] {
+        let said = at(more).failed(code);
+        assert!(said.contains(message), "{said}");
+    }
 }
 
 #[test]

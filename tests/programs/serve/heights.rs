@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
+use sandtable::geom::geoid::Geoid;
 use serde_json::{Value, json};
 
 use crate::common::scratch::Scratch;
@@ -88,6 +89,23 @@ fn a_polyline_is_the_same_as_its_locations() {
     let object = serde_json::json!({"locations": text}).to_string();
     assert_eq!(server.post("/v1/grid", "application/json", &object).body, answer.body);
     assert_eq!(answer.ok()["results"].as_array().map(Vec::len), Some(3));
+}
+
+#[test]
+fn heights_are_brought_to_the_ellipsoid() {
+    let scratch = folder();
+    let server = Server::start(scratch.folder(), &["grid.asc", "--vertical-datum", "egm96"]);
+    let asked = |above: &str| server.get(&format!("/v1/grid?locations=50.005,10.005{above}"));
+    let (plain, above) = (asked("").ok(), asked("&above=ellipsoid").ok());
+    assert_eq!(plain["results"][0]["vertical_datum"], "EGM96 geoid");
+    assert_eq!(above["results"][0]["vertical_datum"], "WGS 84 ellipsoid");
+    let undulation = Geoid::default().undulations(&[DVec2::new(10.005, 50.005)], 16).expect("one place")[0];
+    assert!((40.0..60.0).contains(&undulation), "{undulation}");
+    assert_eq!(elevations(&above)[0], json!(90.0 + undulation));
+    assert_eq!(asked("&above=sea").status, 400);
+    let unstated = Server::start(scratch.folder(), &["grid.asc"]);
+    let refused = unstated.get("/v1/grid?locations=50.005,10.005&above=ellipsoid");
+    assert!(refused.status == 400 && refused.body.contains("grid: nothing states"), "{}", refused.body);
 }
 
 #[test]
