@@ -2,6 +2,7 @@
 //! test of `cargo test` share them.
 
 mod byte_source;
+mod http;
 mod shapes;
 mod walks;
 
@@ -27,7 +28,7 @@ pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
 #[allow(dead_code, reason = "each fuzz target is a program that uses one of them")]
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     ("elevation", elevation),
     ("points", points),
     ("vectors", vectors),
@@ -38,6 +39,7 @@ pub const TARGETS: [Target; 10] = [
     ("scene_picture", scene_picture),
     ("walk", walk),
     ("words", words),
+    ("http_request", http_request),
 ];
 
 /// The names under which a rasters's bytes are read: some formats are known by the name alone.
@@ -137,6 +139,11 @@ pub fn walk(bytes: &[u8]) {
 pub fn words(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let _ = (Expression::parse(text), Crs::parse(text), SymbolCode::parse(text));
+}
+
+/// Requests to the service.
+pub fn http_request(bytes: &[u8]) {
+    http::ask(&hill().join("hill.asc"), bytes);
 }
 
 /// A folder with a hill of 17 by 17 posts, 30 m apart, from (500000, 4000000) on; left behind, a kilobyte.
