@@ -1,5 +1,7 @@
 //! `sandtable check`: load and validate a scene, draw nothing.
 
+use std::collections::BTreeMap;
+
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -22,7 +24,7 @@ const MOST_NOTES: usize = 20;
 pub struct CheckArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Print JSON: every finding with code, severity, file, line, column, message and help
+    /// Print JSON: counts by code, and every finding with code, severity, file, line, column, message and help
     #[arg(long)]
     pub json: bool,
     /// Fail where there are warnings, not only where there are errors
@@ -117,14 +119,20 @@ fn as_json(name: &str, findings: &[Finding]) -> Value {
             "column": position.map(|position| position.column),
             "message": finding.message,
             "help": finding.help,
+            "more": finding.more,
         })
     };
     let count = |severity| findings.iter().filter(|finding| finding.severity() == severity).count();
+    let mut codes: BTreeMap<&str, usize> = BTreeMap::new();
+    for finding in findings {
+        *codes.entry(finding.code.word()).or_default() += 1 + finding.more;
+    }
     json!({
         "scene": name,
         "errors": count(Severity::Error),
         "warnings": count(Severity::Warning),
         "notes": count(Severity::Note),
+        "codes": codes,
         "findings": findings.iter().map(object).collect::<Vec<_>>(),
     })
 }

@@ -27,7 +27,7 @@ mod stored;
 pub mod tiff;
 pub mod undeclared;
 mod units;
-mod vertical;
+pub mod vertical;
 pub mod voids;
 pub mod warp;
 pub mod windows;

@@ -11,6 +11,7 @@
 use glam::{DVec2, I64Vec2, U64Vec2};
 
 use crate::dem::raster::{Raster, SampleFloat, Samples};
+use crate::dem::units::FOOT_M;
 use crate::geom::crs::Crs;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::TILE_SAMPLES;
@@ -31,6 +32,8 @@ pub struct Mosaic {
     pub differing: u64,
     /// The greatest difference among them, in the vertical unit; 0 where none differs.
     pub greatest_difference: f64,
+    /// How many of those have the ratio of a foot to a meter, within 1 %.
+    pub in_feet: u64,
     /// Samples that no tile covers.
     pub gaps: u64,
     /// How many tiles state no vertical datum where others do.
@@ -122,15 +125,15 @@ impl Tiles {
     pub fn join(mut self) -> Result<Mosaic, MosaicError> {
         if self.rasters.len() < 2 {
             let raster = self.rasters.pop().ok_or(MosaicError::Empty)?;
-            let (overlaps, differing, greatest_difference, gaps, without_datum) = (0, 0, 0.0, 0, 0);
             return Ok(Mosaic {
                 raster,
                 tiles: 1,
-                overlaps,
-                differing,
-                greatest_difference,
-                gaps,
-                without_datum,
+                overlaps: 0,
+                differing: 0,
+                greatest_difference: 0.0,
+                in_feet: 0,
+                gaps: 0,
+                without_datum: 0,
             });
         }
         for index in 0..self.rasters.len() {
@@ -261,7 +264,7 @@ impl MosaicFrame {
 fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFrame) -> Mosaic {
     let mut values = vec![T::NODATA; frame.width * frame.height];
     let mut covered = vec![0u64; values.len().div_ceil(64)];
-    let (mut overlaps, mut differing, mut greatest_difference) = (0, 0, 0.0f64);
+    let (mut overlaps, mut differing, mut greatest_difference, mut in_feet) = (0, 0, 0.0f64, 0);
     for (tile, corner) in tiles.iter().zip(corners) {
         let at = *corner - frame.min;
         let width = tile.width as usize;
@@ -280,6 +283,7 @@ fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFram
             if earlier != value {
                 differing += 1;
                 greatest_difference = greatest_difference.max((earlier - value).abs());
+                in_feet += u64::from(is_foot_to_meter(earlier, value));
             }
         }
     }
@@ -301,7 +305,14 @@ fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFram
         vertical_datum: datum,
         ..first.without_samples()
     };
-    Mosaic { raster, tiles: tiles.len(), overlaps, differing, greatest_difference, gaps, without_datum }
+    let tiles = tiles.len();
+    Mosaic { raster, tiles, overlaps, differing, greatest_difference, in_feet, gaps, without_datum }
+}
+
+/// Whether one of two heights is the other in feet, within 1 %.
+fn is_foot_to_meter(one: f64, other: f64) -> bool {
+    let is_near = |ratio: f64| (ratio - FOOT_M).abs() < 0.01 * FOOT_M;
+    is_near(one / other) || is_near(other / one)
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ pub struct DemHints<'a> {
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,
+    /// Called with the system that the file states where `crs` takes its place.
+    pub overridden: &'a dyn Fn(&Crs),
     /// The bytes of a companion by its name: the name given to [`read`] with another extension, such as `.prj`; `None`
     /// where there is none.
     pub companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
@@ -48,6 +50,7 @@ impl Default for DemHints<'_> {
             vertical_datum: None,
             cell: None,
             crs: None,
+            overridden: &|_| (),
             companions: &|_| None,
         }
     }
@@ -103,9 +106,18 @@ impl DemFile<'_> {
         &self,
         stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
     ) -> Result<Option<Crs>, DemErrorKind> {
-        if let Some(crs) = &self.hints.crs {
-            return Ok(Some(crs.clone()));
+        let Some(crs) = &self.hints.crs else { return self.own_crs(stated) };
+        // What the file states may be unreadable: another is stated for that.
+        if let Ok(Some(own)) = self.own_crs(stated) {
+            (self.hints.overridden)(&own);
         }
+        Ok(Some(crs.clone()))
+    }
+
+    fn own_crs(
+        &self,
+        stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
+    ) -> Result<Option<Crs>, DemErrorKind> {
         if let Some(crs) = stated()? {
             return Ok(Some(crs));
         }

@@ -1,4 +1,4 @@
-//! Vertical datums by EPSG's numbers.
+//! Vertical datums by EPSG's numbers, and the vertical parts of compound systems in WKT.
 //!
 //! The names are carried along and printed; that two of them differ is for the user to see. Heights are brought only between
 //! those of [`HeightDatum`](crate::dem::height_datum::HeightDatum).
@@ -49,9 +49,36 @@ pub(crate) fn code(name: &str) -> Option<u16> {
     known.or_else(|| name.strip_prefix("EPSG:")?.parse().ok())
 }
 
+/// The vertical part of a compound system, from its keyword on.
+fn part_of_wkt(wkt: &str) -> Option<&str> {
+    let at = ["VERT_CS[", "VERTCS[", "VERTCRS["].iter().filter_map(|keyword| wkt.find(keyword)).min()?;
+    wkt.get(at..)
+}
+
+/// Meters in the unit of the vertical part of a compound system in WKT; `None` without one.
+pub fn unit_of_wkt(wkt: &str) -> Option<f64> {
+    let part = part_of_wkt(wkt)?;
+    let unit = &part[part.find("UNIT[")?..];
+    let factor = unit.split(',').nth(1)?.split(']').next()?.trim();
+    factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
+}
+
+/// The name of the vertical part of a compound system in WKT; `None` without one.
+pub fn name_of_wkt(wkt: &str) -> Option<String> {
+    part_of_wkt(wkt)?.split('"').nth(1).map(str::to_owned).filter(|name| !name.is_empty())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_vertical_part_gives_its_unit_and_name() {
+        let wkt = "COMPD_CS[\"x\",PROJCS[\"y\",UNIT[\"metre\",1]],VERT_CS[\"NAVD88 height (ftUS)\",VERT_DATUM[\"n\",2005],UNIT[\"US survey foot\",0.304800609601219,AUTHORITY[\"EPSG\",\"9003\"]],AXIS[\"Up\",UP]]]";
+        assert_eq!(unit_of_wkt(wkt), Some(0.304_800_609_601_219));
+        assert_eq!(name_of_wkt(wkt).as_deref(), Some("NAVD88 height (ftUS)"));
+        assert_eq!(unit_of_wkt("PROJCS[\"y\",UNIT[\"metre\",1]]"), None);
+    }
 
     #[test]
     fn names_lead_back_to_a_number_that_has_them() {

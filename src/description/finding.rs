@@ -55,12 +55,14 @@ pub struct Finding {
     pub message: String,
     /// The remedy.
     pub help: Option<String>,
+    /// How many more are like it in the same table, of which it is the worst.
+    pub more: usize,
 }
 
 impl Finding {
     /// A finding without a place and a remedy.
     pub fn new(code: FindingCode, message: impl Into<String>) -> Self {
-        Self { code, place: None, message: message.into(), help: None }
+        Self { code, place: None, message: message.into(), help: None, more: 0 }
     }
 
     /// The same about the bytes `span` of `source`; about none in particular where `span` is empty and at the start.
@@ -74,6 +76,12 @@ impl Finding {
     #[must_use]
     pub fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(help.into()), ..self }
+    }
+
+    /// The same as the worst of so many more like it.
+    #[must_use]
+    pub fn and_more(self, more: usize) -> Self {
+        Self { more, ..self }
     }
 
     /// How much it matters.
@@ -98,6 +106,7 @@ impl From<&Diagnostic> for Finding {
             place: Some(error.place().clone()),
             message: error.message(),
             help: error.help().map(str::to_owned),
+            more: 0,
         }
     }
 }

@@ -70,6 +70,9 @@ finding_codes! {
     CrsMismatch = "crs-mismatch", Error,
         "Coordinates cannot be brought from their system to the scene's: they lie outside what one of the two covers, or are \
          not in the system that is stated for them. State the right one with the key `crs`.";
+    CrsOverridden = "crs-overridden", Warning,
+        "A file states its coordinate system, and the scene states another in its place, which puts the file a meter or more \
+         elsewhere. The scene is believed. Leave `crs` out, unless the file is known to state the wrong system.";
     NoSystem = "no-system", Note,
         "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
          Earth, so that data in other systems cannot be added.";
@@ -89,6 +92,10 @@ finding_codes! {
     GeoidOffset = "geoid-offset", Warning,
         "Heights in a file, or of models at stated elevations, are off the ground by nearly the same number of meters everywhere. \
          Most likely one of the two is counted from the ellipsoid and the other from a geoid. Bring both to one datum.";
+    HeightsInFeet = "heights-in-feet", Warning,
+        "Heights are read as meters, and something says that they are feet: the vertical unit of a `.prj`, the name of a vertical \
+         datum or of a file; or the heights of a file are 3.28 times the ground's, or the other way round. Convert them, or let the \
+         file state its unit.";
     NoPlaceOnEarth = "no-place-on-earth", Warning,
         "The scene names no coordinate system, so that a grid, magnetic north or the sun of a date cannot be computed. State \
          `crs` under `[terrain]`.";
@@ -131,10 +138,11 @@ finding_codes! {
         "A feature lies wholly off the elevation model, so that no picture shows it; of a file, all features do. Most often \
          its coordinates are in another system than stated, or belong to another scene.";
     PartlyOffTerrain = "partly-off-terrain", Warning,
-        "A feature whose points the scene file states lies partly off the elevation model, and is cut off at its border. Move \
-         the points, or take a larger model.";
+        "A feature whose points the scene file states lies partly off the elevation model, or a part of a file does, and is cut off \
+         at its border. Move the points, choose features by `where`, or take a larger model.";
     ReachesBeyond = "reaches-beyond", Note,
-        "Features of a file reach beyond the elevation model, and are cut off at its border or left out.";
+        "Features of a file reach beyond the elevation model by little, cover the ground, or reach beyond the `extent` that the scene \
+         takes of it, and are cut off at its border or left out.";
     AxesSwapped = "axes-swapped", Error,
         "A feature lies off the elevation model, and on it where its two coordinates are exchanged: they are written as \
          northing and easting, or as latitude and longitude. Coordinates are `[easting, northing]` or `[longitude, latitude]`.";
@@ -151,7 +159,8 @@ finding_codes! {
         "Features were left out, for the reason that the message states: most often they lie off the elevation model, since \
          files hold more than a scene shows.";
     EmptyShape = "empty-shape", Warning,
-        "An outline encloses no area: it has fewer than three places, or runs back over itself. It is left out. Mend it.";
+        "An outline encloses no area: it has fewer than three places, or runs back over itself; or all points of a line are one \
+         place. It is left out. Mend it.";
     ShapeMended = "shape-mended", Note,
         "An outline crosses itself and was taken apart into pieces that do not.";
     DefaultTaken = "default-taken", Note,
@@ -184,6 +193,12 @@ finding_codes! {
         "How many models were strewn over the areas of a table.";
     Crowded = "crowded", Note,
         "Fewer models stand than `density` asks for, because `spacing` leaves no place for more.";
+    ScatterEmpty = "scatter-empty", Warning,
+        "A table of scattered models places none: its areas are too small for its `density`, or all of their ground is taken, too \
+         steep, too high or too low, or off the model. Mend the areas, `slope` or `elevation`, or remove the table.";
+    ScatterBlocked = "scatter-blocked", Warning,
+        "Of the places of scattered models, three quarters lie in water, on roads, buildings or other models, or off the ground, \
+         and stay free. Most often the areas are another map's than the roads and the water. Check both.";
     UnknownVariant = "unknown-variant", Warning,
         "Points name a variant that the table does not have; the model of `file` stands there. Add the variant, or mend the \
          property.";
@@ -191,8 +206,9 @@ finding_codes! {
         "A texture of a model is not there, or cannot be read: what it covers has a plain color. Put the picture beside the model, \
          under the name that the model states.";
     TextureStretched = "texture-stretched", Warning,
-        "A picture of the ground has so few pixels that one is stretched over several cells of the elevation model: the ground \
-         shows as a blur. Take a picture of finer pixels.";
+        "A picture is drawn much larger than it is: one of the ground has pixels wider than several cells of the elevation model, or \
+         on a quarter of a model's textured faces pixels are wider than 0.5 m, or ten times as long as wide, so that they show as \
+         streaks. Take a picture of finer pixels, or mend the model's texture coordinates.";
     ModelRead = "model-read", Warning,
         "A model file was read with a loss that the message states: a texture that is not there, faces that were left out.";
     SymbolIncomplete = "symbol-incomplete", Warning,
@@ -207,6 +223,10 @@ finding_codes! {
          the steepest paved street of the world, Baldwin Street in Dunedin, has 34.8 %. No vehicle climbs it. Most often the \
          road lies on a trace that the elevation model does not show, or its line is shifted. Let the ground follow it with \
          `profile = \"conform\"`, or mend the line.";
+    BridgeSteep = "bridge-steep", Warning,
+        "The deck of a bridge for vehicles is steeper than 15 % over 30 m, or over all of it where it is shorter: bridges are built \
+         with up to about 6 %. A deck runs from the ground at one end to the ground at the other, so that most often one end lies \
+         beside its bank, or in the valley. Move it, or state the level of a `[[bridge]]` with `deck`.";
     DeepEarthwork = "deep-earthwork", Warning,
         "A road that the ground follows stands on more than 15 m of fill, or lies in a cutting deeper than 25 m. Beyond about \
          that a viaduct or a tunnel costs less, so that nobody builds it. `max_fill` and `max_cut` let bridges and tunnels \
@@ -273,7 +293,7 @@ finding_codes! {
          everyone to see, or asks for less than a tenth of a pixel, which costs triangles that change no pixel. 1 is what an \
          eye can just see.";
     LabelDropped = "label-dropped", Note,
-        "Labels are not drawn on the picture of the first camera: the ground hides their places, they lie outside the picture, \
+        "Labels are not drawn on the picture of the first camera: the ground, a building or a model hides their places, they lie outside the picture, \
          or no position near them is free. Labels of a lower `rank` come first; one with a `height` stands above what hides it.";
     LabelIllegible = "label-illegible", Warning,
         "Labels cannot be read as they are stated: they are cut short because they are too long, or drawn with boxes because \
@@ -287,7 +307,8 @@ finding_codes! {
         "A model's `variants` name a value that none of its points has, so that its file is read for nothing. Remove the entry, \
          or mend the property.";
     UnusedInclude = "unused-include", Warning,
-        "An included file states nothing. Remove it from `include`, or write the tables that are meant.";
+        "An included file has no effect: it states nothing, or the scene file, or files that are included later, state each of its \
+         keys again. Remove it from `include`, or write the tables that are meant.";
     RepeatedName = "repeated-name", Warning,
         "Two tables give features of one kind the same name, so that reports, legends and messages do not tell them apart. \
          Rename one.";

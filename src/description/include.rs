@@ -216,6 +216,27 @@ pub(super) fn merged<'i>(file: usize, tables: &mut [DeTable<'i>], includes: &[Ve
     before
 }
 
+/// For each file, whether a value of its text is left in `root`, which is merged of all; `starts` holds the first bytes of
+/// the texts.
+pub(super) fn files_with_values(root: &DeTable<'_>, starts: &[usize]) -> Vec<bool> {
+    let mut has_value = vec![false; starts.len()];
+    root.values().for_each(|value| mark_file(value, starts, &mut has_value));
+    has_value
+}
+
+fn mark_file(value: &Spanned<DeValue<'_>>, starts: &[usize], has_value: &mut [bool]) {
+    match value.get_ref() {
+        DeValue::Table(table) => table.values().for_each(|value| mark_file(value, starts, has_value)),
+        DeValue::Array(list) if !list.is_empty() => {
+            list.iter().for_each(|value| mark_file(value, starts, has_value));
+        }
+        _ => {
+            let file = starts.partition_point(|&start| start <= value.span().start).saturating_sub(1);
+            has_value[file] = true;
+        }
+    }
+}
+
 /// How two lists under one key are merged.
 #[derive(Clone, Copy)]
 enum ListMerge {

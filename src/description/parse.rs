@@ -9,12 +9,13 @@ use toml::de::DeTable;
 use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
 use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
-use crate::description::include::{LoadFile, gather, merged, moved};
+use crate::description::include::{LoadFile, files_with_values, gather, merged, moved};
 use crate::description::phases::Phases;
 use crate::description::reader::{DecodeContext, TableReader};
 use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::styles::Styles;
+use crate::description::unused::UnusedInclude;
 use crate::limits::SCENE_BYTES;
 use crate::message::suggest::quoted;
 
@@ -73,13 +74,14 @@ pub fn parse_in_phase(
     }
     let tables: Vec<_> = source.texts().map(|(start, text)| toml_table(start, text, &mut report)).collect();
     let tables: Option<Vec<_>> = tables.into_iter().collect();
-    let empty_includes = empty_includes(&source, tables.as_deref().unwrap_or_default(), &gathered.named);
+    let own: Vec<OwnKeys> = tables.iter().flatten().map(OwnKeys::of).collect();
     let root = tables.map(|mut tables| merged(0, &mut tables, &gathered.includes));
+    let unused_includes = unused_includes(&source, &own, root.as_ref(), &gathered.named);
     let (parsed, report) = match &root {
         Some(root) => {
             let styles = Styles::read(root, &mut report);
             let mut context =
-                DecodeContext { report, styles, phases: Phases::read(root, phase), empty_includes };
+                DecodeContext { report, styles, phases: Phases::read(root, phase), unused_includes };
             (TableReader::read_root(&mut context, root), context.report)
         }
         None => (None, report),
@@ -95,15 +97,45 @@ pub fn parse_in_phase(
     }
 }
 
-/// The names of the included files that state nothing, each with its place; `named` holds the places.
-fn empty_includes(
+/// What a file states itself.
+#[derive(Clone, Copy, PartialEq)]
+enum OwnKeys {
+    Nothing,
+    /// Nothing but the files that it includes.
+    Includes,
+    Values,
+}
+
+impl OwnKeys {
+    fn of(table: &DeTable<'_>) -> Self {
+        match table.len() {
+            0 => Self::Nothing,
+            1 if table.contains_key("include") => Self::Includes,
+            _ => Self::Values,
+        }
+    }
+}
+
+/// The included files without effect on `root`, which is merged of all; `named` holds the places that name them.
+fn unused_includes(
     source: &SourceText,
-    tables: &[DeTable<'_>],
+    own: &[OwnKeys],
+    root: Option<&DeTable<'_>>,
     named: &[Range<usize>],
-) -> Vec<Stated<String>> {
-    let empty = tables.iter().skip(1).zip(named).filter(|(table, _)| table.is_empty());
-    let name = |span: &Range<usize>| source.text()[span.clone()].trim_matches(['"', '\'']).to_owned();
-    empty.map(|(_, span)| Stated::new(name(span), span.clone())).collect()
+) -> Vec<UnusedInclude> {
+    let Some(root) = root.filter(|_| !named.is_empty()) else { return Vec::new() };
+    let starts: Vec<usize> = source.texts().map(|(start, _)| start).collect();
+    let has_value = files_with_values(root, &starts);
+    let unused = own.iter().zip(has_value).skip(1).zip(named).filter_map(|((own, has_value), span)| {
+        let is_empty = match own {
+            OwnKeys::Nothing => true,
+            OwnKeys::Values if !has_value => false,
+            OwnKeys::Includes | OwnKeys::Values => return None,
+        };
+        let name = source.text()[span.clone()].trim_matches(['"', '\'']).to_owned();
+        Some(UnusedInclude { name: Stated::new(name, span.clone()), is_empty })
+    });
+    unused.collect()
 }
 
 /// The TOML parser's message about a key that is stated twice.

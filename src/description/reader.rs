@@ -19,7 +19,7 @@ use crate::description::source_text::SourceText;
 use crate::description::stated::Stated;
 use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
 use crate::description::table::{DefaultedField, Field, Table};
-use crate::description::unused::UnusedDefinitions;
+use crate::description::unused::{UnusedDefinitions, UnusedInclude};
 use crate::description::value::{KeyValue, type_name};
 use crate::limits::SCENE_TABLES;
 use crate::message::suggest::{listed, nearest, quoted};
@@ -29,8 +29,8 @@ pub(super) struct DecodeContext<'t> {
     pub report: DiagnosticSink,
     pub styles: Styles<'t>,
     pub phases: Phases<'t>,
-    /// The names of included files that state nothing.
-    pub empty_includes: Vec<Stated<String>>,
+    /// The included files without effect.
+    pub unused_includes: Vec<UnusedInclude>,
 }
 
 /// The name of a table.
@@ -111,7 +111,7 @@ impl<'r, 't> TableReader<'r, 't> {
 
     /// What no table uses; of the whole scene once all its tables are read.
     pub fn unused(&mut self) -> UnusedDefinitions {
-        let DecodeContext { report, styles, phases, empty_includes } = &mut *self.context;
+        let DecodeContext { report, styles, phases, unused_includes } = &mut *self.context;
         let source = report.source();
         let is_own = |name: &Stated<String>| {
             name.span().is_some_and(|span| source.name_at(span.start) == source.name())
@@ -119,7 +119,7 @@ impl<'r, 't> TableReader<'r, 't> {
         UnusedDefinitions {
             styles: styles.unused().into_iter().filter(is_own).collect(),
             phases: phases.unused(),
-            includes: std::mem::take(empty_includes),
+            includes: std::mem::take(unused_includes),
         }
     }
 

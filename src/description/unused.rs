@@ -9,6 +9,15 @@ pub struct UnusedDefinitions {
     pub styles: Vec<Stated<String>>,
     /// Phases that no table names.
     pub phases: Vec<Stated<String>>,
-    /// Included files that state nothing.
-    pub includes: Vec<Stated<String>>,
+    /// Included files without effect.
+    pub includes: Vec<UnusedInclude>,
+}
+
+/// An included file without effect.
+#[derive(Clone, Debug)]
+pub struct UnusedInclude {
+    /// Its name as it is stated.
+    pub name: Stated<String>,
+    /// Whether it states nothing; else all that it states is stated again by files that follow it.
+    pub is_empty: bool,
 }

@@ -4,6 +4,8 @@
 use geo::{Bearing, Destination, Distance, Geodesic, Point};
 use glam::DVec2;
 
+use crate::geom::crs::Crs;
+
 /// The shortest line from one position to another; degrees of longitude (x) and latitude (y).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geodesic {
@@ -17,6 +19,13 @@ impl Geodesic {
     pub fn between(start: DVec2, end: DVec2) -> Self {
         let (from, to) = (Point::new(start.x, start.y), Point::new(end.x, end.y));
         Self { start, bearing_deg: Geodesic.bearing(from, to), length_m: Geodesic.distance(from, to) }
+    }
+
+    /// The line from where a system puts the coordinates `at` to where another does; `None` where one of the two puts them
+    /// nowhere on Earth.
+    pub fn between_systems(one: &Crs, other: &Crs, at: DVec2) -> Option<Self> {
+        let place = |crs: &Crs| crs.transform(&Crs::wgs84(), at).ok();
+        Some(Self::between(place(one)?, place(other)?))
     }
 
     /// Its length in meters.

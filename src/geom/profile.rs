@@ -93,6 +93,21 @@ impl Profile {
         steps.map(grade).fold(0.0, f64::max)
     }
 
+    /// The steepest rise or fall over stretches `base` long, as value by run, with the station where that stretch begins.
+    /// `None` where no stretch of that length has values all along.
+    pub fn steepest_over(&self, base: f64) -> Option<(f64, f64)> {
+        let [first, last] = self.span();
+        // A straight profile is steepest over a stretch that begins or ends at one of its stations.
+        let starts = self.stations.iter().flat_map(|&at| [at, at - base]);
+        let starts = starts.filter(|&from| from >= first && from + base <= last);
+        let grade = |from: f64| (((self.at(from + base) - self.at(from)) / base).abs(), from);
+        // A NaN is less than any number.
+        starts
+            .map(grade)
+            .filter(|(grade, _)| grade.is_finite())
+            .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
+    }
+
     /// The means over windows of `window` about each station, narrower toward the ends, which keep their values.
     ///
     /// Over a kink between two grades that is a parabola as long as the window, and a mean of profiles that keep a grade
@@ -155,6 +170,17 @@ mod tests {
     fn profile(points: &[(f64, f64)]) -> Profile {
         let (stations, values) = points.iter().copied().unzip();
         Profile::new(stations, values).expect("stations rise")
+    }
+
+    #[test]
+    fn the_steepest_stretch_is_found_wherever_its_ends_are() {
+        let stations = vec![0.0, 40.0, 50.0, 65.0, 200.0];
+        let ground = Profile::new(stations, vec![0.0, 0.0, 5.0, 5.5, 5.5]).expect("stations rise");
+        let (grade, from) = ground.steepest_over(20.0).expect("there is ground");
+        assert!((grade - (5.0 + 10.0 / 30.0) / 20.0).abs() < 1e-12 && from == 40.0, "{grade} {from}");
+        assert_eq!(ground.steepest_over(201.0), None);
+        let hole = Profile::new(vec![0.0, 10.0, 20.0], vec![1.0, f64::NAN, 2.0]).expect("stations rise");
+        assert_eq!(hole.steepest_over(5.0), None);
     }
 
     #[test]

@@ -139,7 +139,8 @@ pub fn read_line(path: &Path, stated: Option<Crs>, native: &Crs) -> Result<Input
 
 fn first_line(path: &Path, stated: Option<Crs>) -> Result<InputLine, ReadLineError> {
     let bytes = files::read(path)?;
-    let hints = VectorHints { crs: stated.as_ref(), layer: None, companions: &files::beside(path) };
+    let hints =
+        VectorHints { crs: stated.as_ref(), companions: &files::beside(path), ..VectorHints::default() };
     let layer = read::read(&files::file_name(path), &bytes, &hints).map_err(FileError::at(path))?;
     let line = layer.features.iter().find_map(|feature| feature.lines().first().cloned());
     let vertices = line.ok_or_else(|| ReadLineError::NoLine(path.to_owned()))?;

@@ -9,11 +9,10 @@ use glam::DVec2;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::features::AreaTable;
-use crate::description::finding_code::FindingCode;
 use crate::description::words::{Border, Cover};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
-use crate::geom::own_crossing::own_crossing;
+use crate::geom::polygon;
 use crate::geom::rect::Rect;
 use crate::geom::region::{self, PolygonRings};
 use crate::ribbon::area;
@@ -22,7 +21,8 @@ use crate::ribbon::plan::PlanMesh;
 use crate::ribbon::texture::RibbonSurface;
 use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
 use crate::scene::FeatureKind;
-use crate::scene::builder::{SceneBuilder, described};
+use crate::scene::builder::SceneBuilder;
+use crate::scene::crossed_shapes::CrossedShapes;
 use crate::scene::near::Clipped;
 use crate::scene::scene_findings::FeatureTable;
 use crate::scene::sources::{Sourced, Sources};
@@ -40,45 +40,36 @@ pub fn lay(
     collected: &mut SceneBuilder,
 ) -> Result<(), Diagnostic> {
     for table in &document.areas {
-        let (mut bare, mut off) = (0, 0);
-        let mut crossed: Option<(String, DVec2, usize)> = None;
+        let (mut bare, mut off, mut empty) = (0, 0, 0);
+        let mut crossed = CrossedShapes::default();
         for Sourced { attributes, shape, crossings } in sources.polygons(&table.source)? {
             let Some(cover) = attributes.value(Some(&table.cover)) else {
                 bare += 1;
                 continue;
             };
             let Some(patch) = AreaPatch::of(table, cover, (&shape, crossings), extent) else {
-                off += 1;
+                let is_empty = crossings == 0 && polygon::doubled_area(&shape.exterior).abs() < LEAST_M2;
+                *if is_empty { &mut empty } else { &mut off } += 1;
                 continue;
             };
             let name = attributes.name(table.name.as_deref());
-            if crossings > 0
-                && let Some(crossing) = shape.rings().find_map(|ring| own_crossing(ring, true))
-            {
-                crossed.get_or_insert((name.clone(), crossing.at + sources.frame.origin, 0)).2 += 1;
-            }
+            crossed.add_polygon(&shape, crossings, || name.clone());
             let feature = collected.add(FeatureKind::Area, name, attributes.origin(&table.source));
             patch.lay(feature, collected);
         }
-        if let Some((name, at, count)) = crossed {
-            let others =
-                if count > 1 { format!("; {} more of this table do", count - 1) } else { String::new() };
-            let message = format!(
-                "{} crosses itself at ({:.0}, {:.0}): what an odd number of its turns runs around is covered{others}",
-                described("area", &name),
-                at.x,
-                at.y
-            );
-            collected.findings.add(FindingCode::CrossesItself, table.source.span(), message);
-        }
+        let outcome = "what an odd number of its turns runs around is covered";
+        crossed.report(("area", outcome), table.source.span(), sources.frame, collected);
         let named =
             FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
-        let why = "off the elevation model or without an area";
-        collected.findings.left_out(off, &named, why);
+        collected.findings.left_out(off, &named, "off the elevation model");
+        collected.findings.without_extent(empty, &named, "their outlines enclose no area");
         collected.findings.left_out(bare, &named, "their properties name no cover");
     }
     Ok(())
 }
+
+/// An outline around less encloses nothing, square meters.
+const LEAST_M2: f64 = 1e-6;
 
 /// The polygons that the rings of a polygon with so many crossings enclose; they cross nothing.
 fn without_crossings(shape: &Polygon, crossings: usize) -> Vec<PolygonRings> {

@@ -27,6 +27,7 @@ use crate::scene::report::SpanRow;
 use crate::scene::roads::centerline::Centerline;
 use crate::scene::roads::chains::{ChainEnd, SpanChain};
 use crate::scene::roads::levels::{self, ChainRun, Site};
+use crate::scene::roads::profiles::BridgeProfile;
 use crate::scene::roads::spans::{self, RoadSpan};
 use crate::scene::sources::Sources;
 use crate::scene::{Coat, FeatureKind, Solid};
@@ -168,8 +169,10 @@ impl PlannedBridge<'_> {
         let coat = Coat::Surface(street.surface);
         collected.solids.push(Solid { mesh: built.carriageway, coat, feature });
         collected.solids.push(Solid { mesh: built.body, coat: Coat::Painted, feature });
-        let grade = self.chain.level(self.link).steepest(0.0);
-        self.chain.report(self.link, Some(built.piers), None, grade, collected);
+        let level = self.chain.level(self.link);
+        self.chain.report(self.link, Some(built.piers), None, level.steepest(0.0), collected);
+        let (line, surface) = (street.alignment.line.clone(), street.surface);
+        collected.bridge_profiles.push(BridgeProfile { feature, line, level, surface });
     }
 }
 

@@ -121,7 +121,8 @@ pub fn build(
         height_service(document, loaded.source, crs.clone(), Arc::clone(&lattice), &collected.decks)?;
     let surroundings = Surroundings::new(document);
     if let Some(missing) = style::missing_place_note(document, &crs, lattice.map_extent().center()) {
-        collected.findings.add(FindingCode::NoPlaceOnEarth, 0..0, missing);
+        let span = document.terrain.dem.span().unwrap_or_default();
+        collected.findings.add(FindingCode::NoPlaceOnEarth, span, missing);
     }
     Ok(SceneModel {
         title: document.title.clone(),
@@ -172,6 +173,7 @@ pub fn build(
         overlaps,
         report: collected.report,
         profiles: collected.profiles,
+        bridge_profiles: collected.bridge_profiles,
         crs,
         stated_crs,
         files: assets.files_read(),

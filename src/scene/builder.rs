@@ -9,7 +9,7 @@ use crate::scene::attributes::DefaultCounts;
 use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::graphics::SceneGraphic;
 use crate::scene::report::SceneReport;
-use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::roads::profiles::{BridgeProfile, RoadProfile};
 use crate::scene::scene_findings::SceneFindings;
 use crate::scene::spot_heights::LakeSurface;
 use crate::scene::symbols::LineSymbol;
@@ -42,6 +42,8 @@ pub struct SceneBuilder {
     pub report: SceneReport,
     /// The longitudinal profile of every road that the ground follows.
     pub profiles: Vec<RoadProfile>,
+    /// The longitudinal profile of every bridge.
+    pub bridge_profiles: Vec<BridgeProfile>,
 }
 
 impl SceneBuilder {
@@ -60,6 +62,7 @@ impl SceneBuilder {
             default_counts: DefaultCounts::new(),
             report: SceneReport::default(),
             profiles: Vec::new(),
+            bridge_profiles: Vec::new(),
         }
     }
 

@@ -23,6 +23,7 @@ use crate::message::choice::Choice;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::building_colors::color_named;
+use crate::scene::crossed_shapes::CrossedShapes;
 use crate::scene::report::BuildingPadRow;
 use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::{Sourced, Sources};
@@ -118,7 +119,8 @@ pub fn lay_out(
     let (mut plots, mut tally) = (Vec::new(), BuildingTally::default());
     for (table, building) in document.buildings.iter().enumerate() {
         let wants_pad = building.base == BaseRule::Pad;
-        for Sourced { attributes, shape, .. } in sources.polygons(&building.source)? {
+        let mut crossed = CrossedShapes::default();
+        for Sourced { attributes, shape, crossings } in sources.polygons(&building.source)? {
             let parts = BuildingFootprint::parts(&shape.exterior, &shape.holes);
             if parts.is_empty() {
                 tally.empty += 1;
@@ -130,11 +132,14 @@ pub fn lay_out(
             };
             tally.mended += usize::from(parts.len() > 1);
             let name = attributes.name(building.name.as_deref());
+            crossed.add_polygon(&shape, crossings, || name.clone());
             let pad_m = wants_pad.then(|| pad(lattice, &parts, ground.mean_m, &name, collected)).flatten();
             tally.pads_refused += usize::from(wants_pad && pad_m.is_none());
             let feature = collected.add(FeatureKind::Building, name, attributes.origin(&building.source));
             plots.push(Plot { table, attributes, parts, pad_m, feature });
         }
+        let outcome = "it is built in pieces that do not";
+        crossed.report(("building", outcome), building.source.span(), sources.frame, collected);
     }
     tally.note(document, &mut collected.findings);
     Ok(plots)

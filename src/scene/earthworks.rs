@@ -69,12 +69,15 @@ pub fn build(
 ) -> Result<Vec<Change>, Diagnostic> {
     let (mut cost, mut unseen, mut dug) = (0.0, 0, Vec::new());
     for table in &document.earthworks {
+        let (mut count, mut still) = (0, 0);
         for NamedEarthwork { name, work } in of_table(table, sources, &mut collected.default_counts)? {
             cost += work.cost(lattice);
             if cost > EARTHWORK_STEPS {
                 return Err(too_much(document, table));
             }
             let changes = work.apply(lattice, held);
+            count += 1;
+            still += usize::from(changes.volumes.cut_m3 == 0.0 && changes.volumes.fill_m3 == 0.0);
             unseen += usize::from(!work.is_resolved(lattice.cell().max_element()));
             collected.report.earthworks.push(EarthworkRow {
                 name,
@@ -84,6 +87,13 @@ pub fn build(
                 fill: changes.volumes.fill_m3,
             });
             dug.extend(changes.pieces);
+        }
+        if still > 0 {
+            let message = format!(
+                "{still} of {count} {} moved no earth: off the elevation model, between its posts, or under water",
+                works(count)
+            );
+            collected.findings.add(FindingCode::NoEarthMoved, table.source.span(), message);
         }
     }
     note(unseen, lattice, collected);
@@ -111,8 +121,6 @@ pub fn water_beside(dug: &[Change], lattice: &Lattice) -> WaterCover {
 
 fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
     let rows = &collected.report.earthworks;
-    let still = rows.iter().filter(|row| row.cut == 0.0 && row.fill == 0.0).count();
-    let works = |count: usize| if count == 1 { "earthwork" } else { "earthworks" };
     if !rows.is_empty() {
         let (cut, fill) = rows.iter().fold((0.0, 0.0), |(cut, fill), row| (cut + row.cut, fill + row.fill));
         let count = rows.len();
@@ -128,13 +136,11 @@ fn note(unseen: usize, lattice: &Lattice, collected: &mut SceneBuilder) {
         );
         collected.findings.add(FindingCode::TooFine, 0..0, message);
     }
-    if still > 0 {
-        let message = format!(
-            "{still} {} moved no earth: off the elevation model, between its posts, or under water",
-            works(still)
-        );
-        collected.findings.add(FindingCode::NoEarthMoved, 0..0, message);
-    }
+}
+
+/// The noun of so many.
+fn works(count: usize) -> &'static str {
+    if count == 1 { "earthwork" } else { "earthworks" }
 }
 
 fn too_much(document: &Document, table: &EarthworkTable) -> Diagnostic {

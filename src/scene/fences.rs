@@ -21,6 +21,7 @@ use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::crossed_shapes::CrossedShapes;
 use crate::scene::near::{self, Clipped};
 use crate::scene::report::TrenchRow;
 use crate::scene::scene_findings::FeatureTable;
@@ -90,9 +91,11 @@ pub fn lay_out(
         let stated = fence.name.as_deref();
         let named = FeatureTable { kind: FeatureKind::Fence, name: stated, source: &fence.source };
         let found = sources.lines(&fence.source)?;
+        let mut crossed = CrossedShapes::default();
         for (attributes, line) in near::lines(found, &extent, 0.0, &named, collected) {
             let name = attributes.name(stated);
             let feature = collected.add(FeatureKind::Fence, name.clone(), attributes.origin(&fence.source));
+            crossed.add_line(line.points(), || name.clone());
             let line = fence_line(fence, &attributes, line.clip(&extent), feature, collected);
             pieces += line.pieces();
             if pieces > LINE_PIECES {
@@ -103,6 +106,7 @@ pub fn lay_out(
             }
             lines.push(line);
         }
+        crossed.report(("line", "it stands through itself"), fence.source.span(), sources.frame, collected);
     }
     if undug > 0 {
         let trenches = if undug == 1 { "trench" } else { "trenches" };

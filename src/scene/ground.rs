@@ -1,6 +1,7 @@
 //! The first pass: the elevation file, or the tiles of one, to the ground lattice.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -24,6 +25,7 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
+use crate::scene::overridden_crs::OverriddenCrs;
 use crate::scene::scene_findings::SceneFindings;
 use crate::terrain::lattice::Lattice;
 
@@ -180,6 +182,7 @@ fn straightened<'a>(
 /// The document's elevation files as one raster.
 fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) -> Result<Raster, Diagnostic> {
     let terrain = &document.terrain;
+    let overridden = RefCell::new(None);
     let companions = |name: &str| assets.read(name).ok();
     let hints = DemHints {
         height_scale: terrain.height_scale,
@@ -194,12 +197,18 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
         vertical_datum: None,
         cell: terrain.cell,
         crs: terrain.crs.clone(),
+        overridden: &|own| drop(overridden.replace(Some(own.clone()))),
         companions: &companions,
     };
     let (dem, mut tiles) = (&terrain.dem, Tiles::default());
     for name in dem.iter() {
         let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
         let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        if let (Some(stated), Some(own)) = (&terrain.crs, overridden.take()) {
+            let systems = OverriddenCrs { file: name, own: &own, stated };
+            let found = systems.finding(tile.center(), document, dem.span().unwrap_or_default());
+            found.into_iter().for_each(|finding| findings.push(finding));
+        }
         if let Some(stated) = &terrain.vertical_datum {
             find_other_datum(name, &tile, stated, document, findings);
             tile.vertical_datum = Some(stated.clone());
@@ -213,6 +222,15 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
             mosaic.without_datum, mosaic.tiles
         );
         findings.add(FindingCode::VerticalDatumsMixed, dem.span().unwrap_or_default(), message);
+    }
+    if 2 * mosaic.in_feet > mosaic.overlaps {
+        let message = format!(
+            "of {} samples that tiles share, {} have the ratio of feet to meters: some tiles are in feet, and are read as meters",
+            mosaic.overlaps, mosaic.in_feet
+        );
+        let help =
+            "convert those tiles, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
+        findings.add_with_help(FindingCode::HeightsInFeet, dem.span().unwrap_or_default(), message, help);
     }
     if dem.len() > 1 {
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());

@@ -13,6 +13,7 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
+pub mod crossed_shapes;
 pub mod earthworks;
 mod facade;
 pub mod feature_labels;
@@ -31,6 +32,7 @@ pub mod military;
 pub mod misplacement;
 pub mod models;
 pub mod near;
+pub mod overridden_crs;
 pub mod picture;
 pub mod placement;
 pub mod plinth;
@@ -89,7 +91,7 @@ use crate::scene::land_cover::CoverLines;
 use crate::scene::military::SceneSymbol;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
-use crate::scene::roads::profiles::RoadProfile;
+use crate::scene::roads::profiles::{BridgeProfile, RoadProfile};
 use crate::scene::sight_layers::SightLayers;
 use crate::scene::source_reach::SourceOverlap;
 use crate::scene::style::RampSource;
@@ -196,6 +198,8 @@ pub struct SceneModel {
     pub report: SceneReport,
     /// The longitudinal profiles of the roads that the ground follows.
     pub profiles: Vec<RoadProfile>,
+    /// The longitudinal profiles of bridges.
+    pub bridge_profiles: Vec<BridgeProfile>,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }

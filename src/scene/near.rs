@@ -15,7 +15,7 @@ use crate::scene::sources::Sourced;
 pub const MERGE_M: f64 = 0.01;
 
 /// The lines of `table` of which some part lies within `reach_m` of the ground's `extent`, with their attributes; the
-/// others, and those that are a single point, are noted.
+/// others, and those that are a single point, are found.
 pub fn lines(
     lines: Vec<Sourced<Vec<DVec2>>>,
     extent: &Rect,
@@ -23,17 +23,18 @@ pub fn lines(
     table: &FeatureTable<'_>,
     collected: &mut SceneBuilder,
 ) -> Vec<(Attributes, Polyline)> {
-    let count = lines.len();
+    let (count, mut points) = (lines.len(), 0);
     let near: Vec<_> = lines
         .into_iter()
         .filter_map(|Sourced { attributes, shape, .. }| {
             let reach = Rect::around(shape.iter().copied()).grown(reach_m);
-            let line = Polyline::new(shape, MERGE_M).filter(|_| reach.meets(extent))?;
-            Some((attributes, line))
+            let line = Polyline::new(shape, MERGE_M);
+            points += usize::from(line.is_none() && reach.meets(extent));
+            Some((attributes, line.filter(|_| reach.meets(extent))?))
         })
         .collect();
-    let why = "off the elevation model or a single point";
-    collected.findings.left_out(count - near.len(), table, why);
+    collected.findings.left_out(count - near.len() - points, table, "off the elevation model");
+    collected.findings.without_extent(points, table, "all of their points are one place");
     near
 }
 

@@ -8,6 +8,7 @@ use crate::description::features::FeatureSource;
 use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 use crate::description::source_text::SourceText;
+use crate::message::suggest::quoted;
 use crate::scene::FeatureKind;
 
 /// Findings so far, about one scene file.
@@ -60,6 +61,15 @@ impl SceneFindings {
             let what = table.name.map(|name| format!(" of '{name}'")).unwrap_or_default();
             let message = format!("{count} {}{what} left out: {why}", table.kind.noun(count));
             self.add(FindingCode::LeftOut, table.source.span(), message);
+        }
+    }
+
+    /// Adds how many features of a table have no length or area and were left out, where any were, and why.
+    pub fn without_extent(&mut self, count: usize, table: &FeatureTable<'_>, why: &str) {
+        if count > 0 {
+            let what = table.name.map(|name| format!(" of '{}'", quoted(name))).unwrap_or_default();
+            let message = format!("{count} {}{what} left out: {why}", table.kind.noun(count));
+            self.add(FindingCode::EmptyShape, table.source.span(), message);
         }
     }
 

@@ -18,6 +18,9 @@ use crate::scene::world_frame::WorldFrame;
 /// The most vertices of a source that are kept, as they are written, to find out why it lies off the ground.
 const SAMPLED: usize = 256;
 
+/// The vertices of a file that are kept to measure how much of it lies off the ground; between half of it and all.
+const MEASURED: usize = 8192;
+
 /// Where the shapes of one source lie.
 #[derive(Clone, Debug)]
 pub struct SourceReach {
@@ -29,8 +32,10 @@ pub struct SourceReach {
     crs: Crs,
     /// The first vertices, as they are written.
     written: Vec<DVec2>,
-    /// The vertices of a source that the scene file states, in world coordinates; of a file none.
+    /// The vertices of a source that the scene file states, in world coordinates; of a file every `step`-th.
     path: Vec<DVec2>,
+    step: usize,
+    vertices: usize,
     /// The world box of each shape.
     boxes: Vec<Rect>,
 }
@@ -48,14 +53,15 @@ pub struct SourceOverlap {
     pub off: usize,
     /// Those that lie partly off.
     pub partly: usize,
-    /// Of a source that the scene file states, the share of its length that is off, or of its points.
+    /// Of a line that the scene file states, the share of its length that is off; else that of the vertices.
     pub share_off: f64,
 }
 
 impl SourceReach {
     /// A source without shapes yet.
     pub fn new(span: Range<usize>, file: Option<String>, crs: Crs) -> Self {
-        Self { span, file, crs, written: Vec::new(), path: Vec::new(), boxes: Vec::new() }
+        let (written, path, boxes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { span, file, crs, written, path, step: 1, vertices: 0, boxes }
     }
 
     /// Begins the next shape.
@@ -68,8 +74,17 @@ impl SourceReach {
         if self.written.len() < SAMPLED {
             self.written.push(written);
         }
-        if self.file.is_none() {
+        if self.vertices.is_multiple_of(self.step) {
             self.path.push(world);
+        }
+        self.vertices += 1;
+        if self.file.is_some() && self.path.len() == MEASURED {
+            let mut index = 0;
+            self.path.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.step *= 2;
         }
         if let Some(last) = self.boxes.last_mut() {
             *last = last.with(world);
@@ -95,7 +110,7 @@ impl SourceReach {
     fn share_off(&self, extent: &Rect) -> f64 {
         let length = |from: DVec2, to: DVec2| from.distance(to);
         let all: f64 = self.path.windows(2).map(|ends| length(ends[0], ends[1])).sum();
-        if self.boxes.len() > 1 || all == 0.0 {
+        if self.file.is_some() || self.boxes.len() > 1 || all == 0.0 {
             let off = self.path.iter().filter(|at| !extent.contains(**at)).count();
             return off as f64 / self.path.len().max(1) as f64;
         }

@@ -36,6 +36,8 @@ pub struct Sources<'a> {
     /// The files that the document may name.
     pub assets: &'a Assets,
     layers: RefCell<BTreeMap<LayerKey, Arc<VectorLayer>>>,
+    /// The systems that files state and the scene overrides.
+    overridden: RefCell<BTreeMap<LayerKey, Crs>>,
     /// How many crossings more the scene's polygons may have with themselves.
     crossings_left: Cell<usize>,
     /// Where the sources lie, by the first byte that states them.
@@ -56,7 +58,14 @@ impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
         let crossings_left = Cell::new(RING_CROSSINGS);
-        Self { frame, assets, layers: RefCell::default(), crossings_left, reaches: RefCell::default() }
+        Self {
+            frame,
+            assets,
+            layers: RefCell::default(),
+            overridden: RefCell::default(),
+            crossings_left,
+            reaches: RefCell::default(),
+        }
     }
 
     /// The lines of a source.
@@ -235,17 +244,26 @@ impl<'a> Sources<'a> {
         stated: Option<&Crs>,
     ) -> Result<Arc<VectorLayer>, Diagnostic> {
         let name = wanted.map(|wanted| wanted.as_str());
-        let key = (file.to_string(), name.map(String::from), stated.map(|crs| crs.name().to_owned()));
+        let key = layer_key(file, wanted, stated);
         if let Some(layer) = self.layers.borrow().get(&key) {
             return Ok(Arc::clone(layer));
         }
         let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
         let companions = |name: &str| self.assets.read(name).ok();
-        let hints = VectorHints { crs: stated, layer: name, companions: &companions };
+        let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
+        let hints =
+            VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &companions };
         let layer = read::read(file, &bytes, &hints).map_err(|error| self.unread(file, wanted, error))?;
         let layer = Arc::new(layer);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
+    }
+
+    /// The system that the file of a source states and that its `crs` takes the place of; `None` of a source that was not
+    /// read.
+    pub fn overridden_crs(&self, source: &FeatureSource) -> Option<Crs> {
+        let key = layer_key(source.file.as_ref()?, source.layer.as_ref(), source.crs.as_ref());
+        self.overridden.borrow().get(&key).cloned()
     }
 
     /// The error of a file that cannot be read, at the key that caused it.
@@ -322,6 +340,10 @@ impl<'a> Sources<'a> {
     pub fn reaches(&self) -> Vec<SourceReach> {
         self.reaches.borrow().values().cloned().collect()
     }
+}
+
+fn layer_key(file: &Stated<String>, wanted: Option<&Stated<String>>, stated: Option<&Crs>) -> LayerKey {
+    (file.to_string(), wanted.map(|name| name.to_string()), stated.map(|crs| crs.name().to_owned()))
 }
 
 /// A line as an outer ring, without repeating its first vertex; `None` where fewer than three remain.

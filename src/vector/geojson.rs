@@ -56,7 +56,13 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let (features, members) = features(parse(checked(bytes)?, 1)?);
     let crs = match (hints.crs, members.as_ref().and_then(|members| members.get("crs"))) {
         (None, Some(member)) => crs_of(member)?,
-        _ => hints.crs_or_wgs84(),
+        (Some(crs), Some(member)) => {
+            if let Ok(own) = crs_of(member) {
+                (hints.overridden)(&own);
+            }
+            crs.clone()
+        }
+        (_, None) => hints.crs_or_wgs84(),
     };
     let mut layer = LayerBuilder::new(crs);
     features.into_iter().try_for_each(|feature| add(&mut layer, feature))?;

@@ -8,6 +8,8 @@ use crate::vector::error::VectorError;
 pub struct VectorHints<'a> {
     /// The coordinate system; overrides what the file states.
     pub crs: Option<&'a Crs>,
+    /// Called with the system that the file states where `crs` takes its place.
+    pub overridden: &'a dyn Fn(&Crs),
     /// The name of the requested layer; without it the file must hold one layer.
     pub layer: Option<&'a str>,
     /// Returns the bytes of a file beside this one, `None` where there is none. The argument is the file's name with
@@ -17,7 +19,7 @@ pub struct VectorHints<'a> {
 
 impl Default for VectorHints<'_> {
     fn default() -> Self {
-        Self { crs: None, layer: None, companions: &|_| None }
+        Self { crs: None, overridden: &|_| (), layer: None, companions: &|_| None }
     }
 }
 
@@ -37,12 +39,17 @@ impl VectorHints<'_> {
         code: Option<u32>,
         definition: Option<&str>,
     ) -> Result<Option<Crs>, CrsError> {
-        match (self.crs, code.map(Crs::from_epsg), definition) {
-            (Some(crs), _, _) => Ok(Some(crs.clone())),
-            (None, Some(Ok(crs)), _) => Ok(Some(crs)),
-            (None, _, Some(definition)) => Crs::parse(definition).map(Some),
-            (None, code, None) => code.transpose(),
+        let own = match (code.map(Crs::from_epsg), definition) {
+            (Some(Ok(crs)), _) => Ok(Some(crs)),
+            (_, Some(definition)) => Crs::parse(definition).map(Some),
+            (code, None) => code.transpose(),
+        };
+        let Some(crs) = self.crs else { return own };
+        // What the file states may be unreadable: another is stated for that.
+        if let Ok(Some(own)) = own {
+            (self.overridden)(&own);
         }
+        Ok(Some(crs.clone()))
     }
 
     /// Returns the index of the requested layer among `names`, or of the only one.

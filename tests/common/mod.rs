@@ -6,6 +6,7 @@
 #[cfg(feature = "gpu")]
 pub mod adapters;
 pub mod data;
+pub mod findings;
 pub mod forest;
 pub mod golden;
 pub mod places;

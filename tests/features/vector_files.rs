@@ -17,7 +17,7 @@ use crate::common::data::{data, files_below};
 fn read_layer(path: &Path, layer: Option<&str>, stated: Option<&Crs>) -> Result<VectorLayer, VectorError> {
     let bytes = std::fs::read(path).expect("the file is there");
     let companions = |name: &str| std::fs::read(name).ok();
-    let hints = VectorHints { crs: stated, layer, companions: &companions };
+    let hints = VectorHints { crs: stated, layer, companions: &companions, ..VectorHints::default() };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
@@ -268,7 +268,8 @@ fn read_all(path: &Path, bytes: &[u8]) -> Result<(), VectorError> {
     let companions = |name: &str| std::fs::read(name).ok();
     let local = Crs::local();
     let read = |layer| {
-        let hints = VectorHints { crs: Some(&local), layer, companions: &companions };
+        let hints =
+            VectorHints { crs: Some(&local), layer, companions: &companions, ..VectorHints::default() };
         read(&path.to_string_lossy(), bytes, &hints).map(drop)
     };
     match read(None) {

@@ -19,6 +19,7 @@ With `--json` it prints one object, for scenes that are read and for those that 
 |---|---|---|
 | `scene` | text | The scene file, as it was named. |
 | `errors`, `warnings`, `notes` | number | How many findings there are of each. |
+| `codes` | object of numbers | How often each code was found, with those that are counted and not listed. |
 | `findings` | list of objects | The findings, in the order of the file. |
 | `findings[].code` | text | One of the codes below; a code never changes its meaning. |
 | `findings[].severity` | text | `error`, `warning` or `note`. |
@@ -26,6 +27,7 @@ With `--json` it prints one object, for scenes that are read and for those that 
 | `findings[].line`, `findings[].column` | number or null | Where in that file, from 1; columns count characters. |
 | `findings[].message` | text | What was found, with numbers and units. |
 | `findings[].help` | text or null | What to do. |
+| `findings[].more` | number | How many more like it there are: of many in one table the worst is listed. |
 ";
 
 fn page() -> String {

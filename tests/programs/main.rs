@@ -5,6 +5,5 @@ mod common;
 
 mod cli;
 mod findings_page;
-mod lint;
 mod readme;
 mod serve;

@@ -6,6 +6,7 @@
 use crate::dem::points::PointsError;
 use crate::dem::points::las_header::{LasHeader, Record};
 use crate::dem::tiff::geokeys::GeoKeys;
+use crate::dem::vertical;
 use crate::geom::crs::Crs;
 
 /// The owner of the records of coordinate systems, and their numbers.
@@ -39,7 +40,7 @@ impl LasCrs {
         let wkt = content(WKT).map(text).filter(|text| !text.is_empty());
         let wkt = wkt.filter(|_| header.says_wkt || keys.is_none());
         let (own, unit) = match (&wkt, &keys, stated) {
-            (Some(wkt), ..) => (None, vertical_unit(wkt)),
+            (Some(wkt), ..) => (None, vertical::unit_of_wkt(wkt)),
             (None, Some(keys), None) => {
                 (keys.crs().map_err(PointsError::Crs)?, keys.meters_per_z().map_err(PointsError::Crs)?)
             }
@@ -56,7 +57,7 @@ impl LasCrs {
         if unit.is_none() && of_plane != 1.0 {
             notes.push(format!("heights were taken to be in the unit of x and y, {of_plane} m"));
         }
-        let vertical_datum = wkt.as_deref().and_then(|wkt| quoted(vertical(wkt)?));
+        let vertical_datum = wkt.as_deref().and_then(vertical::name_of_wkt);
         Ok(Self { crs, meters_per_z: unit.unwrap_or(of_plane), vertical_datum, notes })
     }
 }
@@ -71,36 +72,4 @@ fn keys(directory: &[u8], doubles: &[u8], text: &[u8]) -> GeoKeys {
     let directory: Vec<u16> = directory.as_chunks().0.iter().map(|raw| u16::from_le_bytes(*raw)).collect();
     let doubles: Vec<f64> = doubles.as_chunks().0.iter().map(|raw| f64::from_le_bytes(*raw)).collect();
     GeoKeys::new(&directory, &doubles, &String::from_utf8_lossy(text))
-}
-
-/// The vertical part of a compound system, from its keyword on.
-fn vertical(wkt: &str) -> Option<&str> {
-    let at = ["VERT_CS[", "VERTCS[", "VERTCRS["].iter().filter_map(|keyword| wkt.find(keyword)).min()?;
-    wkt.get(at..)
-}
-
-/// Meters in the unit of the vertical part.
-fn vertical_unit(wkt: &str) -> Option<f64> {
-    let part = vertical(wkt)?;
-    let unit = &part[part.find("UNIT[")?..];
-    let factor = unit.split(',').nth(1)?.split(']').next()?.trim();
-    factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0)
-}
-
-/// The first text in quotes.
-fn quoted(part: &str) -> Option<String> {
-    part.split('"').nth(1).map(str::to_owned).filter(|name| !name.is_empty())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_vertical_part_gives_its_unit_and_name() {
-        let wkt = "COMPD_CS[\"x\",PROJCS[\"y\",UNIT[\"metre\",1]],VERT_CS[\"NAVD88 height (ftUS)\",VERT_DATUM[\"n\",2005],UNIT[\"US survey foot\",0.304800609601219,AUTHORITY[\"EPSG\",\"9003\"]],AXIS[\"Up\",UP]]]";
-        assert_eq!(vertical_unit(wkt), Some(0.304_800_609_601_219));
-        assert_eq!(vertical(wkt).and_then(quoted).as_deref(), Some("NAVD88 height (ftUS)"));
-        assert_eq!(vertical_unit("PROJCS[\"y\",UNIT[\"metre\",1]]"), None);
-    }
 }

@@ -9,18 +9,17 @@ use glam::{Vec2, Vec3};
 use crate::description::document::CameraTable;
 use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
-use crate::draw::list::{DrawMesh, FeatureId};
+use crate::draw::list::FeatureId;
 use crate::geom::aabb::Aabb;
 use crate::geom::polyline::Polyline;
-use crate::mesh::sink::VertexId;
+use crate::geom::rect::Rect;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::ground_line::{ground_along, place};
 use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::lint::standing::standing_index;
 use crate::pipeline::picture::{PictureSize, framed_camera};
-use crate::scene::footprint::ModelFootprint;
-use crate::scene::placement::stand;
+use crate::pipeline::walk::pick::pixel_ray;
 use crate::scene::{SceneModel, SceneView, ViewAim};
-use crate::terrain::support_surface::SupportSurface;
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -141,54 +140,13 @@ fn standing_before(
     camera: &Camera,
     target: Vec3,
 ) -> Option<String> {
-    let scene = context.scene;
-    let reach_m = camera.eye().distance(target) * NEAR_SHARE;
+    let reach_m = f64::from(camera.eye().distance(target) * NEAR_SHARE);
+    let eye = camera.eye().truncate().as_dvec2();
+    let is_near = |_: FeatureId, around: &Rect| eye.clamp(around.min, around.max).distance(eye) < reach_m;
+    let index = standing_index(context.scene, &is_near);
     let (width, height) = camera.size();
-    let rays: Vec<SightRay> = RAYS
-        .iter()
-        .map(|[x, y]| Vec2::new(x * width as f32, y * height as f32))
-        .map(|pixel| SightRay {
-            from: camera.ray_origin(pixel),
-            along: camera.ray_through(pixel).normalize_or_zero(),
-        })
-        .collect();
-    let mut nearest: Vec<Option<(f32, FeatureId)>> = vec![None; rays.len()];
-    let mut hit = |feature: FeatureId, distance_to: &dyn Fn(&SightRay) -> Option<f32>| {
-        for (ray, nearest) in rays.iter().zip(&mut nearest) {
-            let distance_m =
-                distance_to(ray).filter(|&meters| meters < nearest.map_or(reach_m, |nearest| nearest.0));
-            *nearest = distance_m.map(|meters| (meters, feature)).or(*nearest);
-        }
-    };
-    for solid in &scene.solids {
-        let vertices = solid.mesh.vertices.iter().map(|vertex| Vec3::from(vertex.position));
-        let is_near = Aabb::around(vertices)
-            .is_some_and(|around| around.nearest_to(camera.eye()).distance(camera.eye()) < reach_m);
-        if is_near {
-            hit(solid.feature, &|ray| ray.first_hit(&solid.mesh));
-        }
-    }
-    let finest = scene.scale.ground(&scene.lattice);
-    let ground = SupportSurface { displayed: &finest, ground: &finest };
-    let footprints: Vec<ModelFootprint> = scene.models.iter().map(ModelFootprint::of).collect();
-    let radii: Vec<f32> = scene.models.iter().map(|model| model.bounds().map_or(0.0, farthest)).collect();
-    for placement in &scene.placements {
-        let radius_m = radii[placement.model] * placement.scale;
-        if placement.at.distance(camera.eye().truncate()) > reach_m + radius_m {
-            continue;
-        }
-        let model = &scene.models[placement.model];
-        let Some(pose) = stand(placement, &footprints[placement.model], ground) else { continue };
-        let model_from_world = pose.world_from_model.inverse();
-        hit(placement.feature, &|ray| {
-            let local = SightRay {
-                from: model_from_world.transform_point3(ray.from),
-                along: model_from_world.transform_vector3(ray.along),
-            };
-            model.parts.iter().filter_map(|part| local.first_hit(&part.mesh)).reduce(f32::min)
-        });
-    }
-    let hits: Vec<(f32, FeatureId)> = nearest.into_iter().flatten().collect();
+    let rays = RAYS.map(|[x, y]| pixel_ray(camera, Vec2::new(x * width as f32, y * height as f32)));
+    let hits: Vec<(f64, FeatureId)> = rays.iter().filter_map(|&ray| index.pick(ray, reach_m)).collect();
     let (distance_m, feature) = hits.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
     (hits.len() >= BLOCKED_RAYS).then(|| {
         format!(
@@ -201,55 +159,4 @@ fn standing_before(
             camera.eye().distance(target)
         )
     })
-}
-
-/// How far a box reaches from the origin.
-fn farthest(bounds: Aabb) -> f32 {
-    bounds.min.abs().max(bounds.max.abs()).length()
-}
-
-/// A ray of sight.
-struct SightRay {
-    from: Vec3,
-    /// Its direction; distances count in its length.
-    along: Vec3,
-}
-
-impl SightRay {
-    /// How far along it meets the first triangle of a mesh from either side.
-    fn first_hit(&self, mesh: &DrawMesh) -> Option<f32> {
-        let corner = |id: VertexId| Vec3::from(mesh.vertices[id.index()].position);
-        mesh.triangles.iter().filter_map(|corners| self.hit(corners.map(corner))).reduce(f32::min)
-    }
-
-    /// How far along it meets a triangle (Möller and Trumbore 1997).
-    fn hit(&self, [a, b, c]: [Vec3; 3]) -> Option<f32> {
-        let (one, other) = (b - a, c - a);
-        let across = self.along.cross(other);
-        let volume = one.dot(across);
-        if volume == 0.0 {
-            return None;
-        }
-        let from = self.from - a;
-        let u = from.dot(across) / volume;
-        let turned = from.cross(one);
-        let v = self.along.dot(turned) / volume;
-        let distance = other.dot(turned) / volume;
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ray_meets_a_triangle_before_it_and_none_behind_or_beside() {
-        let triangle = [Vec3::new(-1.0, 5.0, -1.0), Vec3::new(1.0, 5.0, -1.0), Vec3::new(0.0, 5.0, 2.0)];
-        let ray = |from: Vec3, along: Vec3| SightRay { from, along }.hit(triangle);
-        assert_eq!(ray(Vec3::ZERO, Vec3::Y), Some(5.0));
-        assert_eq!(ray(Vec3::Y * 9.0, Vec3::NEG_Y), Some(4.0), "from its back too");
-        assert_eq!(ray(Vec3::ZERO, Vec3::NEG_Y), None);
-        assert_eq!(ray(Vec3::X * 2.0, Vec3::Y), None);
-    }
 }

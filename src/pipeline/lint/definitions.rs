@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::description::finding_code::FindingCode;
+use crate::description::unused::UnusedInclude;
 use crate::message::suggest::quoted;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::scene::FeatureKind;
 
-/// Finds styles and phases that no table names, included files without a table, and names that several tables have.
+/// Finds styles and phases that no table names, included files without effect, and names that several tables have.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let unused = &context.document.unused;
     for name in &unused.styles {
@@ -23,10 +24,23 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             finding.with_help(format!("add `phases = [\"{}\"]` to a table, or remove it", quoted(name))),
         );
     }
-    for name in &unused.includes {
-        let message = format!("the included file '{}' states nothing", quoted(name));
-        let finding = context.finding(FindingCode::UnusedInclude, name.span().unwrap_or_default(), message);
-        sink.add(finding.with_help("remove it from `include`, or write the tables that are meant"));
+    for UnusedInclude { name, is_empty } in &unused.includes {
+        let file = quoted(name);
+        let (message, help) = if *is_empty {
+            (
+                format!("the included file '{file}' states nothing"),
+                "remove it from `include`, or write the tables that are meant",
+            )
+        } else {
+            (
+                format!(
+                    "nothing of the included file '{file}' has effect: all of its keys are stated again after it"
+                ),
+                "remove it from `include`, or remove the keys that are meant to come from it",
+            )
+        };
+        let span = name.span().unwrap_or_default();
+        sink.add(context.finding(FindingCode::UnusedInclude, span, message).with_help(help));
     }
     repeated_names(context, sink);
 }

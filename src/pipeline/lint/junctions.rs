@@ -41,7 +41,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         let mut around: Vec<LeavingRoad> = meeting.iter().map(|(_, road)| *road).collect();
         let angle = |road: &LeavingRoad| libm::atan2(road.along.y, road.along.x);
         around.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-        for (index, one) in around.iter().enumerate().skip(usize::from(around.len() == 2)) {
+        for (index, one) in around.iter().enumerate() {
             let other = &around[(index + 1) % around.len()];
             let Some((meet_m, trimmed_m)) = untrimmed(one, other) else { continue };
             worst.add(context.origin(one.road), meet_m, || {
@@ -57,9 +57,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         }
     }
     let help = "let one road begin farther along the other, at an angle";
-    for (span, message) in worst.into_messages() {
-        sink.add(context.finding(FindingCode::JunctionUntrimmed, span, message).with_help(help));
-    }
+    worst.report(context, FindingCode::JunctionUntrimmed, help, sink);
 }
 
 fn leaving_roads(line: &LineSymbol) -> impl Iterator<Item = (VertexKey, LeavingRoad)> + '_ {

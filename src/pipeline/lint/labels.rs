@@ -1,16 +1,17 @@
 //! Labels that the picture of the first camera does not show, or not as they are stated.
 //!
-//! Only placing them tells, so they are placed, on a picture of which only is known what the ground hides.
+//! Only placing them tells, so they are placed, on a picture of which only is known what hides their places.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::annotate::paint::compose_sheet;
 use crate::annotate::report::AnnotationReport;
 use crate::description::finding_code::FindingCode;
+use crate::draw::list::FeatureId;
 use crate::message::suggest::quoted;
 use crate::pipeline::labels::annotations;
 use crate::pipeline::lint::context::LintContext;
-use crate::pipeline::lint::label_sight::label_depths;
+use crate::pipeline::lint::label_sight::{LabelSight, label_sight};
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::picture::{PictureSize, framed_camera};
 use crate::scene::{SceneModel, SceneView};
@@ -26,25 +27,21 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let Some(view) = scene.cameras.first().filter(|_| !context.document.labels.is_empty()) else { return };
     // A camera without a picture is another finding.
-    let Some(report) = placed(scene, view) else { return };
-    let behind = behind(scene, &report);
+    let Some((report, sight)) = placed(scene, view) else { return };
+    let dropped = DroppedLabels { context, view };
+    let is_covered = |text: &&String| sight.behind.contains_key(*text);
+    let (covered, hidden): (Vec<&String>, Vec<&String>) = report.hidden.iter().partition(is_covered);
+    dropped.report(&covered, &|texts| by_standing(context, &sight, texts), sink);
     for (texts, why) in [
-        (&report.hidden, "the ground hides their places"),
-        (&report.outside, "their places are outside the picture, or too close to its border"),
-        (&behind, "their places are behind the eye"),
-        (&report.crowded_out, "no position near their places is free beside more important ones"),
+        (hidden, "the ground hides their places"),
+        (report.outside.iter().collect(), "their places are outside the picture, or too close to its border"),
+        (behind(scene, &report), "their places are behind the eye"),
+        (
+            report.crowded_out.iter().collect(),
+            "no position near their places is free beside more important ones",
+        ),
     ] {
-        for ((start, end), dropped) in by_table(scene, texts.iter().map(String::as_str)) {
-            let span = start..end;
-            let count = scene.labels.iter().filter(|label| label.stated == span).count();
-            let message = format!(
-                "camera '{}' shows {} of the {count} labels of this table not, {}: {why}",
-                view.name,
-                dropped.len(),
-                listed(&dropped)
-            );
-            sink.add(context.finding(FindingCode::LabelDropped, span, message));
-        }
+        dropped.report(&texts, &|_| why.to_owned(), sink);
     }
     let missing = report.missing_glyphs.iter().map(|missing| missing.text.as_str());
     for (texts, why, help) in [
@@ -66,20 +63,59 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     }
 }
 
-/// What becomes of the labels of a view; `None` where it has no picture.
-fn placed(scene: &SceneModel, view: &SceneView) -> Option<AnnotationReport> {
+/// Labels that a view does not show.
+struct DroppedLabels<'a> {
+    context: &'a LintContext<'a>,
+    view: &'a SceneView,
+}
+
+impl DroppedLabels<'_> {
+    /// Adds the findings about labels with these texts, one a table; `why` says why those of a table are not shown.
+    fn report(&self, texts: &[&String], why: &dyn Fn(&[&str]) -> String, sink: &mut FindingSink) {
+        let scene = self.context.scene;
+        for ((start, end), dropped) in by_table(scene, texts.iter().map(|text| text.as_str())) {
+            let span = start..end;
+            let count = scene.labels.iter().filter(|label| label.stated == span).count();
+            let message = format!(
+                "camera '{}' shows {} of the {count} labels of this table not, {}: {}",
+                self.view.name,
+                dropped.len(),
+                listed(&dropped),
+                why(&dropped)
+            );
+            sink.add(self.context.finding(FindingCode::LabelDropped, span, message));
+        }
+    }
+}
+
+/// What stands before the places of labels with these texts.
+fn by_standing(context: &LintContext<'_>, sight: &LabelSight, texts: &[&str]) -> String {
+    let standing: BTreeSet<FeatureId> =
+        texts.iter().filter_map(|text| sight.behind.get(*text)).copied().collect();
+    let hide = if standing.len() == 1 { "hides" } else { "hide" };
+    let mut names: Vec<String> =
+        standing.iter().take(MOST_QUOTED).map(|&feature| context.name(feature)).collect();
+    if let Some(more @ 1..) = standing.len().checked_sub(MOST_QUOTED) {
+        names.push(format!("{more} more"));
+    }
+    format!("{} {hide} their places", names.join(", "))
+}
+
+/// What becomes of the labels of a view, and what hides them; `None` where it has no picture.
+fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, LabelSight)> {
     let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
-    let picture = label_depths(scene, &camera);
-    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &[]);
-    Some(compose_sheet(picture.pixels, &annotations).1)
+    let sight = label_sight(scene, &camera);
+    let annotations = annotations(scene, &camera, &sight.picture, frame.as_ref(), &[]);
+    let report = compose_sheet(sight.picture.pixels.clone(), &annotations).1;
+    Some((report, sight))
 }
 
 /// The labels of which nothing becomes, since their places have no place on the picture.
-fn behind(scene: &SceneModel, report: &AnnotationReport) -> Vec<String> {
+fn behind<'a>(scene: &'a SceneModel, report: &AnnotationReport) -> Vec<&'a String> {
     let known = [&report.placed, &report.hidden, &report.outside, &report.crowded_out];
     let known: BTreeSet<&String> = known.into_iter().flatten().collect();
     let texts = scene.labels.iter().map(|label| &label.text);
-    texts.filter(|text| !known.contains(text) && !text.trim().is_empty()).cloned().collect()
+    texts.filter(|text| !known.contains(text) && !text.trim().is_empty()).collect()
 }
 
 /// Texts by the place of the table that states them, in the order of the file; spot heights are stated by none.

@@ -32,9 +32,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     }
     let help =
         "state its `level` as the elevation model has it, or draw its shore where the model has the water";
-    for (span, message) in gaps.into_messages() {
-        sink.add(context.finding(FindingCode::LakeShoreGap, span, message).with_help(help));
-    }
+    gaps.report(context, FindingCode::LakeShoreGap, help, sink);
 }
 
 /// How far the water is from where its shore would have it, and what a message says of it; `None` where it fits.

@@ -46,9 +46,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         (crossed, FindingCode::CrossesItself, "split the line there, or mend the order of its points"),
         (back, FindingCode::DoublesBack, "remove the point that the line comes back from"),
     ] {
-        for (span, message) in worst.into_messages() {
-            sink.add(context.finding(code, span, message).with_help(help));
-        }
+        worst.report(context, code, help, sink);
     }
 }
 

@@ -12,6 +12,7 @@ pub mod cause_code;
 mod context;
 mod definitions;
 mod elevation;
+mod feet;
 mod ground_line;
 mod heights;
 mod imagery;
@@ -25,6 +26,7 @@ mod rivers;
 mod road_crossings;
 mod road_profiles;
 pub mod sink;
+mod standing;
 mod systems;
 mod table_sources;
 mod terrain;
@@ -49,6 +51,7 @@ type LintCheck = fn(&LintContext<'_>, &mut FindingSink);
 const CHECKS: &[(&str, LintCheck)] = &[
     ("definitions", definitions::check),
     ("elevation", elevation::check),
+    ("feet", feet::check),
     ("heights", heights::check),
     ("imagery", imagery::check),
     ("systems", systems::check),

@@ -50,9 +50,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         });
     }
     let help = "draw its line along the valley of the elevation model, or say `water = \"falls\"`, which cuts the ground";
-    for (span, message) in worst.into_messages() {
-        sink.add(context.finding(FindingCode::RiverUphill, span, message).with_help(help));
-    }
+    worst.report(context, FindingCode::RiverUphill, help, sink);
 }
 
 /// The greatest rise from a station to a later one without a hole between them; `None` where the ground nowhere rises.

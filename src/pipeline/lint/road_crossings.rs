@@ -59,9 +59,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         }
     }
     let help = "say which lines are bridges with `bridge = \"...\"`, add a [[bridge]], or leave out water in pipes by `where`";
-    for (span, message) in worst.into_messages() {
-        sink.add(context.finding(FindingCode::RoadInWater, span, message).with_help(help));
-    }
+    worst.report(context, FindingCode::RoadInWater, help, sink);
 }
 
 /// What a road crosses.

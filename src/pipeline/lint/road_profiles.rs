@@ -1,17 +1,17 @@
-//! Roads that no vehicle climbs, and embankments and cuttings that nobody builds.
+//! Roads and bridges that no vehicle climbs, and embankments and cuttings that nobody builds.
 //!
 //! A road that lies on the ground is as steep as that; it is measured on the scene's ground, after all earthworks. A road
-//! that the ground follows keeps its grade, and pays for it in earth: its design is compared with the ground before.
+//! that the ground follows keeps its grade, and pays for it in earth: its design is compared with the ground before. A bridge
+//! runs from the ground at one end to the ground at the other, unless its level is stated.
 
 use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::Support;
 use crate::pipeline::lint::context::LintContext;
-use crate::pipeline::lint::ground_line::{ground_along, place, steepest_over};
+use crate::pipeline::lint::ground_line::{ground_along, place};
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::worst::WorstOfTables;
 use crate::ribbon::texture::RibbonSurface;
 use crate::scene::roads::profiles::RoadProfile;
-use crate::scene::symbols::LineSymbol;
 
 /// The steepest road, meters a meter: the steepest paved street of the world, Baldwin Street in Dunedin, rises by 34.8 %.
 /// Lower, and streets of San Francisco would be found; higher, and no road is as steep.
@@ -23,15 +23,23 @@ const GRADE_OVER_M: f64 = 30.0;
 /// And over so many cells: the slope of a single cell is mostly the error of its posts.
 const GRADE_OVER_CELLS: f64 = 2.0;
 
+/// The steepest deck, meters a meter: bridges for vehicles have up to 6 %, such as Eshima Ohashi in Japan, and ramps that
+/// are climbed in the wet up to about 15 %.
+const STEEPEST_DECK: f64 = 0.15;
+
+/// A rise up to this is not found, meters: as much as the ground at the two ends of a bridge may be off.
+const DECK_RISE_M: f64 = 3.0;
+
 /// The highest embankment in meters: where more fill is needed, a viaduct costs less.
 const HIGHEST_FILL_M: f64 = 15.0;
 
 /// The deepest cutting in meters: where more is dug, a tunnel costs less, and slopes need more care than a rule gives.
 const DEEPEST_CUT_M: f64 = 25.0;
 
-/// Finds roads that are too steep, and those on too much earth.
+/// Finds roads and bridges that are too steep, and roads on too much earth.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     steep(context, sink);
+    steep_decks(context, sink);
     earthworks(context, sink);
 }
 
@@ -39,13 +47,13 @@ fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let base_m = GRADE_OVER_M.max(GRADE_OVER_CELLS * scene.lattice.measured_cell().max_element());
     let mut worst = WorstOfTables::default();
-    for road in context.roads_on_ground().filter(|road| is_for_wheels(road) && road.alignment.level.is_none())
-    {
+    let driven = context.roads_on_ground().filter(|road| is_for_wheels(road.surface));
+    for road in driven.filter(|road| road.alignment.level.is_none()) {
         let line = &road.alignment.line;
         if line.length() < base_m {
             continue;
         }
-        let steepest = ground_along(scene, line).and_then(|ground| steepest_over(&ground, base_m));
+        let steepest = ground_along(scene, line).and_then(|ground| ground.steepest_over(base_m));
         let Some((grade, from_m)) = steepest.filter(|(grade, _)| *grade > STEEPEST) else { continue };
         worst.add(context.origin(road.feature), grade, || {
             format!(
@@ -59,14 +67,38 @@ fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
     }
     let help = "set `profile = \"conform\"`, so that the ground follows the road, or let it wind; where the ground itself is \
                 wrong there, it is the elevation model's trees or houses";
-    for (span, message) in worst.into_messages() {
-        sink.add(context.finding(FindingCode::RoadSteep, span, message).with_help(help));
+    worst.report(context, FindingCode::RoadSteep, help, sink);
+}
+
+fn steep_decks(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let mut worst = WorstOfTables::default();
+    for bridge in context.scene.bridge_profiles.iter().filter(|bridge| is_for_wheels(bridge.surface)) {
+        let [first, last] = bridge.level.span();
+        let base_m = GRADE_OVER_M.min(last - first);
+        let steepest = bridge.level.steepest_over(base_m);
+        let is_steep = |grade: f64| grade > STEEPEST_DECK && grade * base_m > DECK_RISE_M;
+        let Some((grade, from_m)) = steepest.filter(|(grade, _)| is_steep(*grade)) else { continue };
+        worst.add(context.origin(bridge.feature), grade, || {
+            format!(
+                "{} is {:.0} % steep over the {base_m:.0} m from station {from_m:.0} m at {}: its deck runs from {:.1} m to \
+                 {:.1} m; bridges have less than {:.0} %",
+                context.name(bridge.feature),
+                grade * 100.0,
+                place(context.scene, bridge.line.at(from_m)),
+                bridge.level.at(first),
+                bridge.level.at(last),
+                STEEPEST_DECK * 100.0
+            )
+        });
     }
+    let help =
+        "let it begin and end where the ground is as high, or state the level of a [[bridge]] with `deck`";
+    worst.report(context, FindingCode::BridgeSteep, help, sink);
 }
 
 /// Whether vehicles drive on a road. Paths and tracks climb what feet climb.
-fn is_for_wheels(road: &LineSymbol) -> bool {
-    !matches!(road.surface, RibbonSurface::Track | RibbonSurface::TrackJunction)
+fn is_for_wheels(surface: RibbonSurface) -> bool {
+    !matches!(surface, RibbonSurface::Track | RibbonSurface::TrackJunction)
 }
 
 fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
@@ -95,9 +127,7 @@ fn earthworks(context: &LintContext<'_>, sink: &mut FindingSink) {
         "let a bridge stand there: `max_fill = 15`; or allow a higher `max_grade`, or another line",
         "let a tunnel run there: `max_cut = 25`; or allow a higher `max_grade`, or another line",
     ]) {
-        for (span, message) in worst.into_messages() {
-            sink.add(context.finding(FindingCode::DeepEarthwork, span, message).with_help(help));
-        }
+        worst.report(context, FindingCode::DeepEarthwork, help, sink);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::description::finding::Finding;
 use crate::description::finding_code::FindingCode;
 
 /// The most findings of one code that are kept: more say nothing new, and a file may have a million features. The last one
-/// that is kept states how many there are.
+/// that is kept states how many there are, and counts them as more of it.
 const MOST_OF_A_CODE: usize = 20;
 
 /// Findings so far.
@@ -14,6 +14,8 @@ const MOST_OF_A_CODE: usize = 20;
 pub struct FindingSink {
     list: Vec<Finding>,
     counts: BTreeMap<FindingCode, usize>,
+    /// What the findings count for that are not kept.
+    dropped: BTreeMap<FindingCode, usize>,
 }
 
 impl FindingSink {
@@ -26,6 +28,8 @@ impl FindingSink {
         *count += 1;
         if *count <= MOST_OF_A_CODE {
             self.list.push(finding);
+        } else {
+            *self.dropped.entry(finding.code).or_default() += 1 + finding.more;
         }
     }
 
@@ -45,6 +49,7 @@ impl FindingSink {
             let last = self.list.iter_mut().rev().find(|finding| finding.code == code);
             if let (Some(last), Some(more @ 1..)) = (last, count.checked_sub(MOST_OF_A_CODE)) {
                 last.message += &format!(" (and {more} more findings of this code)");
+                last.more += self.dropped.get(&code).copied().unwrap_or_default();
             }
         }
         self.list.sort_by(Finding::order);
@@ -69,8 +74,8 @@ mod tests {
         assert!(sink.is_full(FindingCode::UnusedStyle) && !sink.is_full(FindingCode::UnknownKey));
         let found = sink.into_findings();
         assert_eq!(found.len(), MOST_OF_A_CODE);
-        assert!(
-            found.last().is_some_and(|last| last.message.ends_with("(and 3 more findings of this code)"))
-        );
+        let last = found.last().expect("twenty");
+        assert!(last.message.ends_with("(and 3 more findings of this code)"));
+        assert_eq!(found.iter().map(|finding| 1 + finding.more).sum::<usize>(), MOST_OF_A_CODE + 3);
     }
 }

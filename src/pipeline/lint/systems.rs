@@ -8,13 +8,16 @@ use crate::geom::datum_shift::DatumShift;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::lint::table_sources::table_sources;
+use crate::scene::overridden_crs::OverriddenCrs;
 
 /// Degrees from the central meridian of a UTM zone at which lengths are off by 0.1 %, as in no zone; zones are 3° wide on
 /// either side, and neighbors overlap by some tenths.
 const ZONE_REACH_DEG: f64 = 4.5;
 
-/// Finds scenes without a system, or far out of their zone, and data that are moved from datum to datum by parameters.
+/// Finds files whose system is overridden, scenes without a system, or far out of their zone, and data that are moved from
+/// datum to datum by parameters.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
+    overridden(context, sink);
     let (scene, document) = (context.scene, context.document);
     let dem = document.terrain.dem.span().unwrap_or_default();
     let Ok(place) = scene.crs.transform(&Crs::wgs84(), scene.lattice.map_extent().center()) else {
@@ -62,6 +65,20 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
         );
         let help = "where meters count, transform the data with a shift grid first, for example with ogr2ogr or gdalwarp";
         sink.add(context.finding(FindingCode::DatumShifted, span, message).with_help(help));
+    }
+}
+
+/// Finds vector files whose own system the scene overrides.
+fn overridden(context: &LintContext<'_>, sink: &mut FindingSink) {
+    for table in table_sources(context.document) {
+        let source = &*table.source;
+        let (Some(file), Some(stated)) = (&source.file, &source.crs) else { continue };
+        // What cannot be read was an error of building the scene.
+        let Ok((_, shapes)) = context.sources.geometries(source) else { continue };
+        let at = shapes.iter().find_map(|shape| shape.vertices().next().copied());
+        let (Some(own), Some(at)) = (context.sources.overridden_crs(source), at) else { continue };
+        let systems = OverriddenCrs { file, own: &own, stated };
+        sink.add_all(systems.finding(at, context.document, source.span()));
     }
 }
 

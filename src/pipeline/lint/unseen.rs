@@ -11,6 +11,7 @@ use crate::description::finding_code::FindingCode;
 use crate::geom::aabb::Aabb;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
+use crate::pipeline::lint::standing::reach;
 use crate::pipeline::picture::{PictureSize, framed_camera};
 use crate::scene::SceneModel;
 use crate::view::frustum::Frustum;
@@ -69,11 +70,7 @@ fn boxes(scene: &SceneModel) -> Vec<Option<Aabb>> {
         let vertices = solid.mesh.vertices.iter().map(|vertex| Vec3::from(vertex.position));
         Aabb::around(vertices).into_iter().for_each(|around| add(feature, around));
     }
-    let reaches = scene.models.iter().map(|model| {
-        let bounds = model.bounds().unwrap_or_default();
-        bounds.min.abs().max(bounds.max.abs()).length()
-    });
-    let reaches: Vec<f32> = reaches.collect();
+    let reaches: Vec<f32> = scene.models.iter().map(reach).collect();
     for placement in &scene.placements {
         let Some(feature) = placement.feature.index() else { continue };
         let reach = reaches[placement.model] * placement.scale;

@@ -3,6 +3,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::description::finding_code::FindingCode;
+use crate::pipeline::lint::context::LintContext;
+use crate::pipeline::lint::sink::FindingSink;
+
 /// Findings of one kind, of which each table's worst is told and the others are counted.
 #[derive(Debug, Default)]
 pub struct WorstOfTables {
@@ -36,12 +40,20 @@ impl WorstOfTables {
         }
     }
 
-    /// The span and the message of each table, in the order of the file; a message ends with how many others there are.
-    pub fn into_messages(self) -> impl Iterator<Item = (Range<usize>, String)> {
+    /// Adds the finding of each table, in the order of the file, with the remedy `help`; a message ends with how many others
+    /// there are.
+    pub fn report(self, context: &LintContext<'_>, code: FindingCode, help: &str, sink: &mut FindingSink) {
+        for (span, message, others) in self.into_messages() {
+            sink.add(context.finding(code, span, message).with_help(help).and_more(others));
+        }
+    }
+
+    /// The span and the message of each table, in the order of the file, and how many others it has.
+    fn into_messages(self) -> impl Iterator<Item = (Range<usize>, String, usize)> {
         self.tables.into_iter().map(|((start, end), WorstOfTable { message, count, .. })| {
             let others =
                 if count > 1 { format!("; {} more in this table", count - 1) } else { String::new() };
-            (start..end, message + &others)
+            (start..end, message + &others, count - 1)
         })
     }
 }
@@ -57,6 +69,6 @@ mod tests {
             worst.add(start..start + 2, badness, || format!("{badness} m"));
         }
         let told: Vec<_> = worst.into_messages().collect();
-        assert_eq!(told, [(7..9, "3 m".to_owned()), (40..42, "5 m; 2 more in this table".to_owned())]);
+        assert_eq!(told, [(7..9, "3 m".to_owned(), 0), (40..42, "5 m; 2 more in this table".to_owned(), 2)]);
     }
 }

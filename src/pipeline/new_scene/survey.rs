@@ -111,7 +111,7 @@ pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
     let name = files::file_name(file);
     let companions = files::beside(file);
     let read = |layer: Option<&str>| {
-        read::read(&name, &bytes, &VectorHints { crs: None, layer, companions: &companions })
+        read::read(&name, &bytes, &VectorHints { layer, companions: &companions, ..VectorHints::default() })
     };
     let vector = FileError::<VectorError>::at(file);
     match read(None) {

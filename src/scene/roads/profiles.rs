@@ -1,4 +1,4 @@
-//! The longitudinal profile of a road that the ground follows: ground and design along it.
+//! The longitudinal profiles of roads that the ground follows, with ground and design along them, and of bridges.
 
 use std::fmt::Write;
 
@@ -6,6 +6,7 @@ use crate::draw::list::FeatureId;
 use crate::earthworks::alignment::Support;
 use crate::geom::polyline::Polyline;
 use crate::geom::profile::Profile;
+use crate::ribbon::texture::RibbonSurface;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,19 @@ pub struct RoadProfile {
     pub design: Profile,
     /// What carries the road at each station; where that changes, what carries it from there.
     pub supports: Vec<Support>,
+}
+
+/// The longitudinal profile of a bridge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BridgeProfile {
+    /// The bridge.
+    pub feature: FeatureId,
+    /// Its centerline in world coordinates.
+    pub line: Polyline,
+    /// The level of its deck on the centerline in meters.
+    pub level: Profile,
+    /// What it carries.
+    pub surface: RibbonSurface,
 }
 
 impl RoadProfile {

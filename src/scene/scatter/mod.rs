@@ -26,6 +26,7 @@ use crate::mesh::sink::VertexId;
 use crate::model::built_in;
 use crate::scene::attributes::Attributes;
 use crate::scene::builder::{SceneBuilder, described};
+use crate::scene::crossed_shapes::CrossedShapes;
 use crate::scene::feature_origin::FeatureOrigin;
 use crate::scene::models::library::Library;
 use crate::scene::models::{PlacedModels, within};
@@ -47,6 +48,11 @@ use crate::vector::feature::Polygon;
 const SPACING_PART: f64 = 0.5;
 /// The clearance of a model from other features, in parts of its reach: boughs may hang over a road.
 const CLEAR_PART: f64 = 0.5;
+/// The share of places on obstacles, or off the ground, from which on the areas are most likely wrong: a wood of narrow
+/// strips between roads loses half of them.
+const MOST_BLOCKED: f64 = 0.75;
+/// Of fewer places, the share says little.
+const LEAST_PLACES: usize = 20;
 /// Rows of squares filled in parallel before the models are counted.
 const ROWS_AT_ONCE: usize = 256;
 
@@ -77,7 +83,9 @@ pub fn strew(
         let ground =
             ScatterGround { table, frame, lattice, taken: &taken, library, species: &species, feature };
         let (mut stood, mut counts, mut areas) = (Vec::new(), ScatterCounts::default(), 0);
-        for Sourced { attributes, shape, .. } in sources.polygons(&table.source)? {
+        let mut crossed = CrossedShapes::default();
+        for Sourced { attributes, shape, crossings } in sources.polygons(&table.source)? {
+            crossed.add_polygon(&shape, crossings, || table.name.clone().unwrap_or_default());
             let pattern = pattern(table, &attributes, species.seed, collected);
             if pattern.is_crowded() {
                 counts.crowded += 1;
@@ -93,6 +101,8 @@ pub fn strew(
             }
             areas += 1;
         }
+        let outcome = "models stand in what an odd number of its turns runs around";
+        crossed.report(("scatter", outcome), table.source.span(), frame, collected);
         // Areas that overlap give the same points.
         stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
         stood.dedup_by(|a, b| a.at == b.at);
@@ -143,6 +153,43 @@ impl ScatterCounts {
         self.elevation += other.elevation;
         self.taken += other.taken;
         self.off += other.off;
+    }
+}
+
+impl ScatterCounts {
+    /// The code, the message and the remedy where no model stands, or obstacles take most of the places.
+    fn finding(&self, models: usize) -> Option<(FindingCode, String, &'static str)> {
+        let Self { slope, elevation, taken, off, .. } = *self;
+        let places = models + slope + elevation + taken + off;
+        if models == 0 && places == 0 {
+            let message =
+                "places no model: its areas are too small for one at this `density`, or lie off the model";
+            let help = "raise `density`, which counts models a hectare, or name larger areas";
+            return Some((FindingCode::ScatterEmpty, message.to_owned(), help));
+        }
+        if models == 0 {
+            let message = format!(
+                "places no model: of {places} places {taken} lie on roads, water, buildings or models, {slope} on ground beyond \
+                 `slope`, {elevation} beyond `elevation` and {off} off the ground"
+            );
+            let help = "widen `slope` or `elevation`, or name areas with free ground";
+            return Some((FindingCode::ScatterEmpty, message, help));
+        }
+        let (blocked, off_share) = (taken as f64 / places as f64, off as f64 / places as f64);
+        if places < LEAST_PLACES || blocked.max(off_share) < MOST_BLOCKED {
+            return None;
+        }
+        let (share, place) = if blocked >= off_share {
+            (blocked, "on roads, water, buildings or models")
+        } else {
+            (off_share, "off the ground")
+        };
+        let message = format!("leaves {:.0} % of its {places} places free, which lie {place}", share * 100.0);
+        Some((
+            FindingCode::ScatterBlocked,
+            message,
+            "check that its areas, and what lies in them, are where they should be",
+        ))
     }
 }
 
@@ -294,6 +341,9 @@ fn tell(
     let areas_s = if areas == 1 { "1 area".into() } else { format!("{areas} areas") };
     let span = table.source.span();
     collected.findings.add(FindingCode::Scattered, span.clone(), format!("{called}: {models} in {areas_s}"));
+    if let Some((code, message, help)) = counts.finding(count) {
+        collected.findings.add_with_help(code, span.clone(), format!("{called} {message}"), help);
+    }
     if counts.crowded > 0 {
         let message = "fewer than `density` says, since `spacing` leaves no room for more";
         collected.findings.add(FindingCode::Crowded, span, format!("{called}: {message}"));

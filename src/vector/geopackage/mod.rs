@@ -64,10 +64,8 @@ pub(super) fn read(bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, Vec
     let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
     let chosen = hints.choose_layer(&names)?;
     let table = tables.swap_remove(chosen);
-    let crs = match hints.crs {
-        Some(crs) => crs.clone(),
-        None => crs_of(&connection, table.srs_id, hints)?,
-    };
+    let own = crs_of(&connection, table.srs_id, hints);
+    let crs = hints.crs.cloned().map_or(own, Ok)?;
     let mut layer = LayerBuilder::new(crs);
     read_features(&connection, &table, &mut layer)?;
     Ok(layer.finish())

@@ -63,7 +63,11 @@ fn the_findings_are_json_for_sound_scenes_and_for_broken_ones() {
     let finding = &warned["findings"][0];
     assert_eq!((&finding["code"], &finding["severity"]), (&"unused-style".into(), &"warning".into()));
     assert_eq!((&finding["line"], &finding["column"]), (&4.into(), &9.into()));
-    assert_eq!(finding["file"], "scenes/a.toml");
+    assert_eq!((&finding["file"], &finding["more"]), (&"scenes/a.toml".into(), &0.into()));
+    assert_eq!(
+        (&warned["codes"]["unused-style"], &warned["codes"]["unused-phase"]),
+        (&1.into(), &Value::Null)
+    );
     assert!(finding["help"].as_str().expect("a remedy").contains("or remove it"));
     let unread = json(&scene("[[road]]\nwdith = 3\n[style]\nwireframe = 2\n"), 1);
     let codes = unread["findings"].as_array().expect("a list").iter().map(|finding| finding["code"].clone());

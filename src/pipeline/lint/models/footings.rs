@@ -51,14 +51,10 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         }
     }
     let help = "say `anchor = \"lowest\"`, or give it a `footing`: \"plinth\" fills the gap, \"pad\" levels the ground";
-    for (span, message) in floating.into_messages() {
-        sink.add(context.finding(FindingCode::ModelFloats, span, message).with_help(help));
-    }
+    floating.report(context, FindingCode::ModelFloats, help, sink);
     let help = "say `anchor = \"highest\"` with `footing = \"plinth\"`, or `footing = \"pad\"`, or place it where the ground is \
                 more level";
-    for (span, message) in buried.into_messages() {
-        sink.add(context.finding(FindingCode::ModelBuried, span, message).with_help(help));
-    }
+    buried.report(context, FindingCode::ModelBuried, help, sink);
 }
 
 /// Whether nothing is stated that would lift it off the ground.

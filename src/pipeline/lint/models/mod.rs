@@ -1,8 +1,9 @@
-//! Models that have a wrong size or lie on their sides, float, are buried, or stand in one another.
+//! Models that have a wrong size or lie on their sides, float, are buried, stand in one another, or have stretched textures.
 
 mod footings;
 mod overlaps;
 mod sizes;
+mod textures;
 
 use glam::{DVec2, Vec3};
 
@@ -53,6 +54,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     sizes::check(context, &standing, sink);
     footings::check(context, &standing, sink);
     overlaps::check(context, &standing, sink);
+    textures::check(context, &standing, sink);
 }
 
 impl ModelShape {

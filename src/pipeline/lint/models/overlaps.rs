@@ -74,9 +74,7 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         }
     }
     let help = "move one of them, or leave one out";
-    for (span, message) in worst.into_messages() {
-        sink.add(context.finding(FindingCode::ModelsOverlap, span, message).with_help(help));
-    }
+    worst.report(context, FindingCode::ModelsOverlap, help, sink);
 }
 
 /// The share of the smaller outline that both have in common.

@@ -64,13 +64,9 @@ pub fn check(context: &LintContext<'_>, standing: &[StandingModel<'_>], sink: &m
         }
     }
     let help = "state in `scale` how many meters a unit of the file has";
-    for (span, message) in sizes.into_messages() {
-        sink.add(context.finding(FindingCode::ModelSize, span, message).with_help(help));
-    }
+    sizes.report(context, FindingCode::ModelSize, help, sink);
     let help = "write the file anew with the upright axis of its format: Y in OBJ and glTF, Z in 3DS";
-    for (span, message) in sides.into_messages() {
-        sink.add(context.finding(FindingCode::ModelOnSide, span, message).with_help(help));
-    }
+    sides.report(context, FindingCode::ModelOnSide, help, sink);
 }
 
 fn sides(size: Vec3) -> String {

@@ -1,20 +1,17 @@
-//! Mistakes seeded in small scenes: each is found, on its line, and nothing else is.
-
-use std::path::Path;
+//! Checks of scene files and their data: mistakes seeded in small scenes are found, each on its line, and nothing else is.
 
 use glam::{DAffine2, DVec2};
 use sandtable::dem::formats::DemFormat;
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::write::write;
-use sandtable::description::finding::{Finding, Severity};
+use sandtable::description::finding::Finding;
 use sandtable::description::finding_code::FindingCode;
 use sandtable::description::source_place::SourcePlace;
 use sandtable::draw::color::Srgba;
 use sandtable::draw::pixels::Pixels;
 use sandtable::export::encode_png;
-use sandtable::pipeline::scene_file::{OpenSceneError, open_linted};
 
-use crate::common::places::{PLACES, text_of};
+use crate::common::findings::{findings, grave};
 use crate::common::scratch::Scratch;
 
 /// Posts a side of the hill, and meters between them.
@@ -85,16 +82,7 @@ impl Seed {
             scratch.write(&format!("p/s/{name}"), bytes);
         }
         let head = if self.text.contains("[terrain]") { "" } else { HEAD };
-        found(&scratch.write("p/s/scene.toml", format!("{head}{}", self.text)), &[])
-    }
-}
-
-fn found(scene: &Path, allowed: &[std::path::PathBuf]) -> Vec<Finding> {
-    match open_linted(scene, allowed, &|_| ()) {
-        Ok((_, findings)) => findings,
-        Err(OpenSceneError::Parse(errors)) => errors.as_slice().iter().map(Finding::from).collect(),
-        Err(OpenSceneError::Build(error)) => vec![Finding::from(&error)],
-        Err(other) => panic!("{}: {other}", scene.display()),
+        findings(&scratch.write("p/s/scene.toml", format!("{head}{}", self.text)), &[])
     }
 }
 
@@ -126,6 +114,8 @@ fn of_text() -> Vec<Seed> {
         seed("unused-style", NEXT, "[styles.lane]\nwidth = 3\n"),
         seed("unused-phase", NEXT + 1, "[[phase]]\nname = \"one\"\n"),
         seed("unused-include", 1, format!("include = \"more.toml\"\n{HEAD}")).with("more.toml", "# to do\n"),
+        seed("unused-include", 1, format!("include = \"more.toml\"\n{HEAD}"))
+            .with("more.toml", "[terrain]\ndem = \"other.asc\"\n"),
         seed(
             "repeated-name",
             NEXT + 4,
@@ -171,12 +161,40 @@ fn of_systems() -> Vec<Seed> {
         seed("off-terrain", NEXT + 1, file).with("road.geojson", line_file(&[[10.0, 50.0], [10.1, 50.0]])),
         seed("off-terrain", NEXT + 2, "[[label]]\ntext = \"a\"\nat = [850100, 4018100]\n"),
         seed("partly-off-terrain", NEXT + 1, road("[[750100, 4018100], [750700, 4018100]]")),
+        seed("crs-overridden", 2, HEAD).with("hill.prj", "EPSG:26716"),
+        seed("crs-overridden", NEXT + 1, format!("{file}crs = \"EPSG:32616\"\n")).with("road.geojson", in_nad27()),
+        seed("no-place-on-earth", 2, "[terrain]\ndem = \"hill.asc\"\n[furniture]\ngrid = \"utm\"\n"),
+        seed("lengths-not-true", 2, "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:3857\"\n")
+            .on(grid([-9_370_000.0, 4_330_000.0], CELL_M, |_, _, height| height)),
+        seed("partly-off-terrain", NEXT + 1, file).with("road.geojson", half_off()),
         seed("far-from-zone", 2, HEAD).on(grid([1_200_000.0, 4_018_000.0], CELL_M, |_, _, height| height)),
         seed("datum-shifted", 5, "crs = \"EPSG:32632\"\n[terrain]\ndem = \"hill.asc\"\n[[road]]\nfile = \"road.geojson\"\ncrs = \"EPSG:31467\"\n")
             .on(grid([500_000.0, 5_400_000.0], CELL_M, |_, _, height| height))
             .with("road.geojson", line_file(&[[3_500_150.0, 5_402_000.0], [3_500_250.0, 5_402_050.0]])),
     ]
 }
+
+/// A GeoJSON file that states a system of another datum than the hill's.
+fn in_nad27() -> &'static str {
+    r#"{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:26716"}}, "features": [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": [[750100, 4018100], [750300, 4018200]]}}]}"#
+}
+
+/// A GeoJSON file of a road on the hill and one beside it.
+fn half_off() -> String {
+    let (from, to) = (sandtable::Crs::from_epsg(32616).expect("a zone"), sandtable::Crs::wgs84());
+    let line = |east: f64| {
+        let points = [[east, 4_018_100.0], [east + 100.0, 4_018_150.0]];
+        line_file(&points.map(|at| from.transform(&to, at.into()).expect("on Earth").into()))
+    };
+    let feature =
+        |shape: String| format!("{{\"type\": \"Feature\", \"properties\": {{}}, \"geometry\": {shape}}}");
+    let features = [750_100.0, 750_900.0].map(|east| feature(line(east))).join(", ");
+    format!("{{\"type\": \"FeatureCollection\", \"features\": [{features}]}}")
+}
+
+/// The hill's system with heights in feet above it.
+const IN_FEET: &str = r#"COMPD_CS["WGS 84 / UTM zone 16N + NAVD88 height (ftUS)",PROJCS["WGS 84 / UTM zone 16N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",-87],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]],VERT_CS["NAVD88 height (ftUS)",VERT_DATUM["North American Vertical Datum 1988",2005],UNIT["US survey foot",0.304800609601219]]]"#;
 
 /// Samples that no ground has.
 fn of_elevation() -> Vec<Seed> {
@@ -195,19 +213,30 @@ fn of_elevation() -> Vec<Seed> {
         seed("over-void", NEXT + 1, road("[[750100, 4018100], [750390, 4018150]]")).on(void.clone()),
         seed("nodata-under", NEXT + 2, "[[label]]\ntext = \"a\"\nat = [750380, 4018100]\n").on(void),
         seed("geoid-offset", NEXT + 1, "[[fence]]\nfile = \"track.geojson\"\n")
-            .with("track.geojson", track(33.0)),
+            .with("track.geojson", track(|ground| ground + 33.0)),
+        seed("heights-in-feet", NEXT + 1, "[[fence]]\nfile = \"track.geojson\"\n")
+            .with("track.geojson", track(|ground| ground / 0.3048)),
+        seed("heights-in-feet", 2, HEAD).with("hill.prj", IN_FEET),
+        seed("heights-in-feet", 2, "[terrain]\ndem = \"hill_feet.asc\"\ncrs = \"EPSG:32616\"\n")
+            .with("hill_feet.asc", grid(ORIGIN, CELL_M, |_, _, height| height)),
     ]
 }
 
 /// A GeoTIFF of level ground that counts its heights from `datum`, from some meters east of the hill's origin on.
 fn dated(datum: Option<&str>, east_m: f64) -> Vec<u8> {
+    tile(datum, east_m, |_, _| 300.0)
+}
+
+/// The same of heights by column and row.
+fn tile(datum: Option<&str>, east_m: f64, height: impl Fn(f64, f64) -> f64) -> Vec<u8> {
+    let height = |index: u32| height(f64::from(index % 20), f64::from(index / 20)) as f32;
     let corner = DVec2::new(ORIGIN[0] + east_m, ORIGIN[1] + 400.0);
     let raster = Raster {
         crs: Some(sandtable::Crs::from_epsg(32616).expect("a zone")),
         map_from_grid: DAffine2::from_cols(DVec2::new(CELL_M, 0.0), DVec2::new(0.0, -CELL_M), corner),
         georeferenced: true,
         vertical_datum: datum.map(str::to_owned),
-        ..Raster::new(20, Samples::F32(vec![300.0; 400]))
+        ..Raster::new(20, Samples::F32((0..400).map(height).collect()))
     };
     write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a").expect("written").bytes
 }
@@ -221,6 +250,12 @@ fn heights_from_different_zeros_are_found() {
         seed("vertical-datums-mixed", 2, tiles)
             .with("a.tif", dated(Some("EGM96 geoid"), 0.0))
             .with("b.tif", dated(None, 200.0)),
+        seed("heights-in-feet", 2, tiles)
+            .with("a.tif", tile(None, 0.0, |column, row| hill(column * CELL_M, row * CELL_M)))
+            .with(
+                "b.tif",
+                tile(None, 190.0, |column, row| hill(190.0 + column * CELL_M, row * CELL_M) / 0.3048),
+            ),
         seed("tiles-differ", 2, tiles)
             .with("a.tif", dated(Some("EGM96 geoid"), 0.0))
             .with("b.tif", dated(Some("NAVD88"), 200.0)),
@@ -240,57 +275,16 @@ fn a_picture_of_few_pixels_is_found_where_it_is_stretched() {
     ]);
 }
 
-/// A GeoJSON line over the hill, some meters above it.
-fn track(above_m: f64) -> String {
+/// A GeoJSON line over the hill, with heights that follow from the ground's.
+fn track(height: fn(f64) -> f64) -> String {
     let [x, y] = ORIGIN;
     let (from, to) = (sandtable::Crs::from_epsg(32616).expect("a zone"), sandtable::Crs::wgs84());
     let points = (0..30).map(|at| {
         let (east, north) = (60.0 + 9.0 * f64::from(at), 80.0 + 5.0 * f64::from(at));
         let place = from.transform(&to, [x + east, y + north].into()).expect("on Earth");
-        format!("[{}, {}, {:.2}]", place.x, place.y, hill(east, north) + above_m)
+        format!("[{}, {}, {:.2}]", place.x, place.y, height(hill(east, north)))
     });
     format!("{{\"type\": \"LineString\", \"coordinates\": [{}]}}", points.collect::<Vec<_>>().join(", "))
-}
-
-/// What lets a check fail or warns.
-fn grave(findings: &[Finding]) -> Vec<&Finding> {
-    findings.iter().filter(|finding| finding.severity() != Severity::Note).collect()
-}
-
-/// Errors and warnings about the scene file and its data; those about what is built have their own test.
-fn of_data(findings: &[Finding]) -> Vec<&Finding> {
-    /// Codes of findings about the scene file, its files, systems, elevations and definitions.
-    const CODES: &[&str] = &[
-        "axes-swapped",
-        "crs-mismatch",
-        "datum-shifted",
-        "empty-shape",
-        "far-from-zone",
-        "flat-margin",
-        "geoid-offset",
-        "lengths-not-true",
-        "no-earth-moved",
-        "no-place-on-earth",
-        "nodata-under",
-        "off-terrain",
-        "over-void",
-        "partly-off-terrain",
-        "pit",
-        "repeated-name",
-        "spike",
-        "texture-missing",
-        "texture-stretched",
-        "undeclared-nodata",
-        "unmarked-void",
-        "unused-include",
-        "unused-phase",
-        "unused-style",
-        "unused-variant",
-        "vertical-datums-mixed",
-        "wrong-zone",
-    ];
-    assert!(CODES.iter().all(|code| FindingCode::from_word(code).is_some()));
-    grave(findings).into_iter().filter(|finding| CODES.contains(&finding.code.word())).collect()
 }
 
 /// Checks that each seed gives its own finding, on its line, and no other.
@@ -322,17 +316,24 @@ fn a_length_with_a_unit_is_told_in_meters() {
 }
 
 #[test]
-fn variants_that_no_point_names_are_found() {
+fn variants_and_points_that_do_not_name_each_other_are_found() {
     let [x, y] = ORIGIN;
-    let points = format!(
-        "{{\"type\": \"Feature\", \"properties\": {{\"kind\": \"oak\"}}, \"geometry\": \
-         {{\"type\": \"Point\", \"coordinates\": [{}, {}]}}}}",
-        x + 110.0,
-        y + 283.0
-    );
+    let point = |kind: &str, east: f64| {
+        format!(
+            "{{\"type\": \"Feature\", \"properties\": {{\"kind\": \"{kind}\"}}, \"geometry\": \
+             {{\"type\": \"Point\", \"coordinates\": [{}, {}]}}}}",
+            x + east,
+            y + 283.0
+        )
+    };
+    let (oak, elm) = (point("oak", 110.0), point("elm", 140.0));
     let text = "[[model]]\nfile = \"conifer\"\nvariant = \"kind\"\nvariants = { oak = \"broadleaf\", elm = \"poplar\" }\n\
                 [model.instances]\nfile = \"trees.geojson\"\ncrs = \"EPSG:32616\"\n";
-    each_is_found(vec![seed("unused-variant", NEXT + 3, text).with("trees.geojson", points)]);
+    let of_oaks = text.replace(", elm = \"poplar\"", "");
+    each_is_found(vec![
+        seed("unused-variant", NEXT + 3, text).with("trees.geojson", oak.clone()),
+        seed("unknown-variant", NEXT + 5, of_oaks).with("trees.geojson", format!("{oak}\n{elm}\n")),
+    ]);
 }
 
 #[test]
@@ -366,7 +367,8 @@ fn odd_elevations_and_heights_are_found() {
 fn sound_data_give_no_warning() {
     let sound = [
         seed("", 0, road(ON_HILL)),
-        seed("", 0, "[[fence]]\nfile = \"track.geojson\"\n").with("track.geojson", track(0.4)),
+        seed("", 0, "[[fence]]\nfile = \"track.geojson\"\n")
+            .with("track.geojson", track(|ground| ground + 0.4)),
         seed(
             "",
             0,
@@ -374,49 +376,19 @@ fn sound_data_give_no_warning() {
         ),
         seed("", 0, format!("include = \"more.toml\"\n{HEAD}"))
             .with("more.toml", "[styles.lane]\nwidth = 3\n"),
+        // One of two keys is stated again.
+        seed("", 0, format!("include = \"more.toml\"\n{HEAD}"))
+            .with("more.toml", "title = \"Hill\"\n[terrain]\ndem = \"other.asc\"\n"),
+        // The system that the file states, and one of the same datum.
+        seed("", 0, HEAD).with("hill.prj", "EPSG:32616"),
+        seed("", 0, HEAD).with("hill.prj", "EPSG:26916"),
+        // A vertical part in meters.
+        seed("", 0, HEAD).with("hill.prj", IN_FEET.replace("0.304800609601219", "1").replace("(ftUS)", "")),
     ];
     for seed in sound {
         let findings = seed.findings();
         assert!(grave(&findings).is_empty(), "{}:\n{findings:#?}", seed.text);
     }
-}
-
-#[test]
-fn the_scenes_of_the_project_are_clean() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut scenes: Vec<_> =
-        std::fs::read_dir(folder).expect("scenes").map(|entry| entry.expect("readable").path()).collect();
-    scenes.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    scenes.sort();
-    let assets = [Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")];
-    let mut wrong = Vec::new();
-    for scene in &scenes {
-        let findings = found(scene, &assets);
-        wrong.extend(of_data(&findings).iter().map(|finding| finding.to_string()));
-    }
-    assert!(scenes.len() > 20 && wrong.is_empty(), "{}", wrong.join("\n\n"));
-}
-
-/// What is so in the real places.
-const TRUE_OF_PLACES: &[(&str, &str)] = &[
-    // A margin of zeros, where the model ends.
-    ("swellendam", "flat-margin"),
-    // One outline that runs back over itself.
-    ("monaco", "empty-shape"),
-];
-
-#[test]
-fn real_places_give_only_warnings_that_are_true_of_them() {
-    let mut wrong = Vec::new();
-    for place in PLACES {
-        let Some((text, allowed)) = text_of(place) else { return };
-        let scratch = Scratch::new();
-        let findings = found(&scratch.write("place/scene.toml", text), &allowed);
-        let untrue =
-            of_data(&findings).into_iter().filter(|it| !TRUE_OF_PLACES.contains(&(place, it.code.word())));
-        wrong.extend(untrue.map(|finding| format!("{place}: {finding}")));
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 #[test]

@@ -1,0 +1,42 @@
+//! Coordinate systems that the scene states in place of those that files state.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::description::document::Document;
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
+use crate::geom::crs::Crs;
+use crate::geom::geodesic::Geodesic;
+use crate::message::suggest::quoted;
+
+/// Two realizations of one datum are nearer to each other than this, meters.
+const LEAST_M: f64 = 1.0;
+
+/// A system that a file states, and the one that the scene states in its place.
+pub struct OverriddenCrs<'a> {
+    /// The name of the file.
+    pub file: &'a str,
+    /// Its own system.
+    pub own: &'a Crs,
+    /// That of the scene, which is believed.
+    pub stated: &'a Crs,
+}
+
+impl OverriddenCrs<'_> {
+    /// The finding at the bytes `span` of the scene file, where the systems put the coordinates `at` of the file a meter or
+    /// more from each other; `None` where they do not, or one of them puts these nowhere on Earth.
+    pub fn finding(&self, at: DVec2, document: &Document, span: Range<usize>) -> Option<Finding> {
+        let apart_m = Geodesic::between_systems(self.own, self.stated, at)?.length_m();
+        let message = format!(
+            "'{}' states {}, and the scene says {} in its place, which puts it {apart_m:.0} m elsewhere",
+            quoted(self.file),
+            self.own.name(),
+            self.stated.name()
+        );
+        let finding = Finding::new(FindingCode::CrsOverridden, message).at(&document.source, span);
+        let help = "leave `crs` out, unless the file is known to state the wrong system";
+        (apart_m >= LEAST_M).then(|| finding.with_help(help))
+    }
+}

@@ -1,0 +1,22 @@
+//! What a check finds in a scene.
+
+use std::path::{Path, PathBuf};
+
+use sandtable::description::finding::{Finding, Severity};
+use sandtable::pipeline::scene_file::{OpenSceneError, open_linted};
+
+/// The findings of a check of the scene file `path`, which may read files below the folders `allowed`; where it is not built,
+/// the errors that keep it from that.
+pub fn findings(path: &Path, allowed: &[PathBuf]) -> Vec<Finding> {
+    match open_linted(path, allowed, &|_| ()) {
+        Ok((_, findings)) => findings,
+        Err(OpenSceneError::Parse(errors)) => errors.as_slice().iter().map(Finding::from).collect(),
+        Err(OpenSceneError::Build(error)) => vec![Finding::from(&error)],
+        Err(other) => panic!("{}: {other}", path.display()),
+    }
+}
+
+/// Errors and warnings.
+pub fn grave(findings: &[Finding]) -> Vec<&Finding> {
+    findings.iter().filter(|finding| finding.severity() != Severity::Note).collect()
+}
