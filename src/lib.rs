@@ -137,6 +137,7 @@ pub use glam::{DVec2, DVec3};
 
 pub use crate::dem::answer::{Answer, Status};
 pub use crate::geom::crs::Crs;
+pub use crate::limits::{set_limit::set_limit, work_limit::LimitError};
 pub use crate::mesh::trimesh::TriMesh;
 pub use crate::pipeline::api::dem::Dem;
 pub use crate::pipeline::api::error::Error;
@@ -144,7 +145,6 @@ pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::pipeline::api::terrain::Terrain;
 pub use crate::terrain::query::service::{HeightService, Snapshot};
 pub use crate::terrain::query::{Interpolation, Surface};
-pub use crate::terrain::sight::Curvature;
-pub use crate::terrain::sight::line::SightEnd;
 pub use crate::terrain::sight::viewshed::{Sector, ViewshedOptions};
+pub use crate::terrain::sight::{Curvature, line::SightEnd};
 pub use crate::view::camera::Camera;

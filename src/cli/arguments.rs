@@ -10,6 +10,7 @@ use crate::cli::export::ExportArguments;
 use crate::cli::fly::FlyArguments;
 use crate::cli::grid::GridArguments;
 use crate::cli::height::HeightQueryArguments;
+use crate::cli::limit::{StatedLimit, stated_limit};
 use crate::cli::lod::LodArguments;
 use crate::cli::los::LosArguments;
 use crate::cli::mesh::MeshArguments;
@@ -28,6 +29,9 @@ use crate::cli::viewshed::ViewshedArguments;
 #[command(name = "sandtable", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 the input is wrong, 2 wrong usage.")]
 pub struct Arguments {
+    /// Set a limit on input or work, as in raster-samples=1G; src/LIMITS.md lists them
+    #[arg(long, global = true, value_name = "NAME=VALUE", value_parser = stated_limit)]
+    pub limit: Vec<StatedLimit>,
     #[command(subcommand)]
     pub command: Command,
 }

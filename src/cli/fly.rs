@@ -53,9 +53,9 @@ pub fn run(arguments: &FlyArguments) -> Result<(), CliError> {
     steps.finish();
     let seconds = arguments.seconds.unwrap_or(flight.seconds);
     let frames = (seconds * f64::from(arguments.fps)).round().max(1.0);
-    if frames > FLIGHT_FRAMES {
+    if frames > FLIGHT_FRAMES.get() as f64 {
         return Err(CliError::Usage(format!(
-            "{frames:.0} frames are more than the {FLIGHT_FRAMES} that are drawn; state fewer --seconds or a smaller --fps"
+            "{frames:.0} frames are more than the {FLIGHT_FRAMES} that are drawn; state fewer --seconds or a smaller --fps, or {FLIGHT_FRAMES:#}"
         )));
     }
     let options = FlyOptions {

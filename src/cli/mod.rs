@@ -12,6 +12,7 @@ mod fly;
 mod grid;
 mod height;
 mod licenses;
+mod limit;
 mod lod;
 mod lod_selection;
 mod los;
@@ -31,6 +32,7 @@ mod schema;
 mod serve;
 #[cfg(unix)]
 mod signals;
+mod threads;
 mod values;
 mod view;
 mod viewshed;
@@ -71,6 +73,12 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 }
 
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
+    // Before anything is read: what reads a limit holds it.
+    limit::set(&arguments.limit)?;
+    // A picture has threads of its own.
+    if !matches!(arguments.command, Command::Render(_)) {
+        threads::start()?;
+    }
     // The service ends by itself, when its last answers are read, and writes no files.
     #[cfg(unix)]
     if !matches!(arguments.command, Command::Serve(_)) {

@@ -12,6 +12,7 @@ use crate::cli::options::AccessArguments;
 use crate::cli::output::{print, print_lines, row, warn};
 use crate::cli::progress::StepTimer;
 use crate::cli::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
+use crate::cli::threads;
 use crate::cli::values::{choice, picture_size};
 use crate::description::finding::{Finding, Severity};
 use crate::message::suggest::{nearest, quoted};
@@ -77,12 +78,7 @@ impl RenderArguments {
 }
 
 pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from));
-    let pool = threads.build().map_err(|error| {
-        CliError::input(format!(
-            "the threads to draw with cannot be started: {error}; use fewer with --threads"
-        ))
-    })?;
+    let pool = threads::pool(arguments.threads.map_or(0, usize::from))?;
     let outputs = outputs(arguments)?;
     let is_batch = outputs.len() > 1;
     let (mut failures, mut values) = (Vec::new(), Vec::new());

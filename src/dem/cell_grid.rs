@@ -27,7 +27,7 @@ pub enum CellGridError {
     #[error("the extent from {}, {} to {}, {} holds nothing: give west, south, east, north", .0.min.x, .0.min.y, .0.max.x, .0.max.y)]
     Empty(Rect),
     #[error(
-        "{columns} x {rows} cells are more than the {RASTER_SAMPLES} of a raster; a cell size of {enough:.3} is enough"
+        "{columns} x {rows} cells are more than the {RASTER_SAMPLES} of a raster; make cells of {enough:.3}, or {RASTER_SAMPLES:#}"
     )]
     TooMany { columns: f64, rows: f64, enough: f64 },
 }
@@ -58,12 +58,12 @@ impl CellGrid {
 
     fn new(corner: DVec2, cell: f64, size: DVec2, extent: Rect) -> Result<Self, CellGridError> {
         let cells = size.x * size.y;
-        if cells.is_finite() && cells <= RASTER_SAMPLES as f64 {
+        if cells.is_finite() && cells <= RASTER_SAMPLES.get() as f64 {
             return Ok(Self { corner, cell, width: size.x as u32, height: size.y as u32 });
         }
         let sides = extent.max - extent.min;
-        let by_area = (sides.x * sides.y / RASTER_SAMPLES as f64).sqrt();
-        let enough = by_area.max(sides.max_element() / RASTER_SAMPLES as f64) * 1.01;
+        let by_area = (sides.x * sides.y / RASTER_SAMPLES.get() as f64).sqrt();
+        let enough = by_area.max(sides.max_element() / RASTER_SAMPLES.get() as f64) * 1.01;
         Err(CellGridError::TooMany { columns: size.x, rows: size.y, enough })
     }
 

@@ -5,6 +5,9 @@ use glam::U64Vec2;
 use crate::archive::ArchiveError;
 use crate::dem::formats;
 use crate::geom::crs::CrsError;
+use crate::limits::UNPACKED_RASTER_BYTES;
+use crate::limits::memory::MemoryRefused;
+use crate::limits::work_limit::WorkLimit;
 
 /// Why an elevation file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -38,17 +41,23 @@ pub enum DemErrorKind {
     Broken { format: &'static str, reason: String },
     #[error(transparent)]
     Archive(#[from] ArchiveError),
+    /// It unpacks to more than is unpacked of any file.
+    #[error("{0}, or {UNPACKED_RASTER_BYTES:#}")]
+    Unpacked(ArchiveError),
     #[error("the {format} is broken: {source}; fetch or export the file again")]
     Undecodable { format: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
     #[error(
-        "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%",
+        "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%, or {most:#}",
         .size.x, .size.y
     )]
     TooLarge {
         /// Samples per row and rows, as stated.
         size: U64Vec2,
-        most: u64,
+        most: &'static WorkLimit,
     },
+    /// There is not the memory for its samples.
+    #[error(transparent)]
+    Memory(#[from] MemoryRefused),
     #[error("{} x {} samples are none; the header is broken or the file is empty", .0.x, .0.y)]
     NoSamples(U64Vec2),
     #[error(

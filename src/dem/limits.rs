@@ -3,8 +3,12 @@
 use glam::{U64Vec2, UVec2};
 
 use crate::dem::error::DemErrorKind;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::SPARSE_BYTES;
+use crate::limits::memory::check_memory;
+use crate::limits::work_limit::WorkLimit;
+use crate::limits::{RASTER_SAMPLES, SPARSE_BYTES};
+
+/// A sample while a raster is read: a 32-bit float, and what it is decoded from.
+const BYTES_PER_SAMPLE: u64 = 8;
 
 /// The size that a header claims, to be held against the bytes of its file.
 #[derive(Clone, Copy, Debug)]
@@ -17,31 +21,35 @@ pub(crate) struct SizeClaim {
     pub expansion: u64,
     /// Samples that take no bytes of the file, of those that width and height claim.
     pub absent: u64,
-    pub most_samples: u64,
+    pub most_samples: &'static WorkLimit,
 }
 
 impl SizeClaim {
     /// A claim on plain, unpacked samples of a raster in memory.
     pub fn new(width: u64, height: u64, bytes_per_sample: u64) -> Self {
-        Self { width, height, bytes_per_sample, expansion: 1, absent: 0, most_samples: RASTER_SAMPLES }
+        Self { width, height, bytes_per_sample, expansion: 1, absent: 0, most_samples: &RASTER_SAMPLES }
     }
 
     /// Returns width and height, both at least 1.
     ///
     /// # Errors
-    /// The size is 0, above the cap, or more than `file_bytes` bytes can hold.
+    /// The size is 0, above the cap, or more than `file_bytes` bytes or this process's memory can hold.
     pub fn check(&self, file_bytes: usize) -> Result<UVec2, DemErrorKind> {
         let Self { width, height, most_samples, .. } = *self;
         let size = U64Vec2::new(width, height);
-        let samples = width.checked_mul(height).filter(|&samples| samples <= most_samples);
+        let samples = width.checked_mul(height).filter(|&samples| samples <= most_samples.get());
         let samples = samples.ok_or(DemErrorKind::TooLarge { size, most: most_samples })?;
         let (Ok(columns @ 1..), Ok(rows @ 1..)) = (u32::try_from(width), u32::try_from(height)) else {
             return Err(DemErrorKind::NoSamples(size));
         };
-        let sparse = if self.expansion > 1 { SPARSE_BYTES } else { 0 };
+        let sparse = if self.expansion > 1 { SPARSE_BYTES.get() } else { 0 };
         let possible = (file_bytes as u64).saturating_mul(self.expansion).saturating_add(sparse);
         if samples.saturating_sub(self.absent).saturating_mul(self.bytes_per_sample) > possible {
             return Err(DemErrorKind::Truncated { size, file_bytes });
+        }
+        // Others are read in windows.
+        if std::ptr::eq(most_samples, &RASTER_SAMPLES) {
+            check_memory(samples * BYTES_PER_SAMPLE, "the raster", "cut or coarsen it")?;
         }
         Ok(UVec2::new(columns, rows))
     }

@@ -87,10 +87,12 @@ pub enum MosaicError {
         off: DVec2,
     },
     /// The tiles hold more samples together than are joined; those up to the tile that is too many.
-    #[error("the tiles hold {0} samples, more than the {TILE_SAMPLES} that are joined; join fewer")]
+    #[error(
+        "the tiles hold {0} samples, more than the {TILE_SAMPLES} that are joined; join fewer, or {TILE_SAMPLES:#}"
+    )]
     TooMany(u64),
     #[error(
-        "the tiles span {} x {} samples, more than the {RASTER_SAMPLES} of a raster; join fewer", .0.x, .0.y
+        "the tiles span {} x {} samples, more than the {RASTER_SAMPLES} of a raster; join fewer, or {RASTER_SAMPLES:#}", .0.x, .0.y
     )]
     TooLarge(U64Vec2),
 }
@@ -112,7 +114,7 @@ impl Tiles {
         self.samples += tile.samples.len() as u64;
         self.names.push(name.into());
         self.rasters.push(tile);
-        if self.samples > TILE_SAMPLES { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
+        if self.samples > TILE_SAMPLES.get() { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
     }
 
     /// Joins the tiles.
@@ -201,7 +203,7 @@ impl Tiles {
             let (first, other) = (self.names[0].clone(), self.names[index].clone());
             return Err(MosaicError::Misaligned { first, other, off });
         }
-        if at.abs().max_element() > RASTER_SAMPLES as f64 {
+        if at.abs().max_element() > RASTER_SAMPLES.get() as f64 {
             return Err(MosaicError::TooLarge((at.abs() + 1.0).as_u64vec2()));
         }
         Ok(at.round().as_i64vec2())
@@ -253,7 +255,7 @@ impl MosaicFrame {
         let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
         let size = (max - min).as_u64vec2();
         match size.x.checked_mul(size.y) {
-            Some(samples) if samples <= RASTER_SAMPLES => {
+            Some(samples) if samples <= RASTER_SAMPLES.get() => {
                 Ok(Self { min, width: size.x as usize, height: size.y as usize })
             }
             _ => Err(MosaicError::TooLarge(size)),

@@ -1,6 +1,6 @@
 //! Reads rasters from bytes. The format follows from the content, else from the extension.
 
-use crate::archive::{self, ZipReader};
+use crate::archive::{self, ArchiveError, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
@@ -190,7 +190,7 @@ fn read_packed(file: &DemFile) -> Result<Raster, DemErrorKind> {
         let name = unpacked_name(file.name);
         let head = archive::gunzip_head(file.bytes, HEAD_BYTES)?;
         let limit = most_bytes(&DemFile { name: &name, bytes: &head, hints: file.hints })?;
-        let content = archive::gunzip(file.bytes, limit)?;
+        let content = archive::gunzip(file.bytes, limit).map_err(of_unpacking)?;
         return read_unpacked(&DemFile { name: &name, bytes: &content, hints: file.hints });
     }
     if archive::is_zip(file.bytes) {
@@ -206,12 +206,22 @@ fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
         .names()
         .find(|name| is_tile_name(name))
         .ok_or_else(|| unknown("it is a zip archive without an .hgt tile or another elevation file in it"))?;
-    let companions = |wanted: &str| zip.read(wanted, COMPANION_BYTES).ok();
+    let companions = |wanted: &str| zip.read(wanted, COMPANION_BYTES.get()).ok();
     let hints = DemHints { companions: &companions, ..file.hints.clone() };
     let head = zip.read_head(name, HEAD_BYTES)?;
     let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
-    let content = zip.read(name, limit)?;
+    let content = zip.read(name, limit).map_err(of_unpacking)?;
     read_unpacked(&DemFile { name, bytes: &content, hints: &hints })
+}
+
+/// The error of unpacking a file, with what raises the limit where that is the one for all files.
+fn of_unpacking(error: ArchiveError) -> DemErrorKind {
+    match error {
+        ArchiveError::TooLarge { limit, .. } if limit == UNPACKED_RASTER_BYTES.get() => {
+            DemErrorKind::Unpacked(error)
+        }
+        _ => DemErrorKind::Archive(error),
+    }
 }
 
 fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
@@ -220,7 +230,7 @@ fn read_unpacked(file: &DemFile) -> Result<Raster, DemErrorKind> {
 
 /// The most bytes that a packed file unpacks to; the bytes of `head` are its first.
 fn most_bytes(head: &DemFile) -> Result<u64, DemErrorKind> {
-    Ok((format_of(head)?.most_bytes)(head.bytes).min(UNPACKED_RASTER_BYTES))
+    Ok((format_of(head)?.most_bytes)(head.bytes).min(UNPACKED_RASTER_BYTES.get()))
 }
 
 /// The format of an unpacked file, of whose content the first bytes are enough.

@@ -25,6 +25,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::source_text::SourceText;
 use crate::limits::INCLUDE_DEPTH;
 use crate::limits::INCLUDED_FILES;
+use crate::limits::SCENE_BYTES;
 use crate::message::suggest::quoted;
 
 /// Reads a file that is named relative to the scene file.
@@ -36,7 +37,7 @@ pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send
 pub enum IncludeError {
     #[error("'{0}' includes itself")]
     Cycle(String),
-    #[error("a scene may include {INCLUDED_FILES} files, nested {INCLUDE_DEPTH} deep")]
+    #[error("a scene may include {INCLUDED_FILES} files, nested {INCLUDE_DEPTH} deep, which is fixed")]
     TooMany,
     #[error("'{0}' cannot be included")]
     Unreadable(String, #[source] Box<dyn Error + Send + Sync>),
@@ -58,11 +59,14 @@ impl IncludeError {
     }
 
     /// The remedy.
-    pub fn help(&self) -> &'static str {
+    pub fn help(&self) -> String {
         match self {
-            Self::Cycle(_) => "move the tables that both files need to a third one",
-            Self::TooMany => "write the tables in the scene file itself",
-            _ => "name an existing file, relative to the file that includes it",
+            Self::Cycle(_) => "move the tables that both files need to a third one".to_owned(),
+            Self::TooMany => {
+                format!("write the tables in the scene file itself; for more files {INCLUDED_FILES:#}")
+            }
+            Self::TooLarge(..) => format!("put long lists of points in vector files, or {SCENE_BYTES:#}"),
+            _ => "name an existing file, relative to the file that includes it".to_owned(),
         }
     }
 }
@@ -136,7 +140,7 @@ impl Gathering<'_> {
         if path == own_name || self.open.contains(&path) {
             return Err(IncludeError::Cycle(quoted(&path)));
         }
-        if self.open.len() >= INCLUDE_DEPTH || self.seen.len() >= INCLUDED_FILES {
+        if self.open.len() >= INCLUDE_DEPTH.count() || self.seen.len() >= INCLUDED_FILES.count() {
             return Err(IncludeError::TooMany);
         }
         if !self.seen.insert(path.clone()) {

@@ -53,10 +53,12 @@ pub fn parse_in_phase(
     load: LoadFile<'_>,
     phase: Option<&str>,
 ) -> Result<Document, Diagnostics> {
-    if bytes.len() > SCENE_BYTES {
+    if bytes.len() > SCENE_BYTES.count() {
         let message =
             format!("the scene file has {} bytes, more than the {SCENE_BYTES} allowed", bytes.len());
-        let help = "put long lists of points in GeoJSON files and name them with `file`";
+        let help = format!(
+            "put long lists of points in GeoJSON files and name them with `file`, or {SCENE_BYTES:#}"
+        );
         return Err(Diagnostic::new(&SourceText::new(file_name, ""), 0..0, message).with_help(help).into());
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -65,7 +67,7 @@ pub fn parse_in_phase(
         let wrong = Diagnostic::new(&source, at..at + '\u{fffd}'.len_utf8(), "this is not UTF-8 text");
         wrong.with_help("save the file as UTF-8").with_code(FindingCode::Syntax)
     })?;
-    let gathered = gather(file_name, text, load, SCENE_BYTES);
+    let gathered = gather(file_name, text, load, SCENE_BYTES.count());
     let source = Arc::new(gathered.source);
     let mut report = DiagnosticSink::new(Arc::clone(&source));
     for (span, error) in gathered.errors {

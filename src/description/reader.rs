@@ -341,10 +341,11 @@ impl KeyValue<'_, '_> {
         let name = self.table.inner(self.key, true);
         let (key, title) = (self.key, name.title());
         match self.value.get_ref() {
-            DeValue::Array(rows) if rows.len() > SCENE_TABLES => {
+            DeValue::Array(rows) if rows.len() > SCENE_TABLES.count() => {
                 let message =
                     format!("{} {title} tables are more than the {SCENE_TABLES} allowed", rows.len());
-                let help = "put them in a GeoJSON file and name it once with `file`";
+                let help =
+                    format!("put them in a GeoJSON file and name it once with `file`, or {SCENE_TABLES:#}");
                 self.context.report.error(self.key_span, message, help);
                 None
             }

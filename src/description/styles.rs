@@ -79,7 +79,7 @@ impl<'t> Styles<'t> {
                 _ => report.error(name.span(), WRONG_STYLES, help),
             }
         }
-        Self { styles, bytes_left: STYLE_BYTES }
+        Self { styles, bytes_left: STYLE_BYTES.count() }
     }
 
     /// The names of the styles that no table has named yet.
@@ -107,7 +107,9 @@ impl<'t> DecodeContext<'t> {
         match self.styles.bytes_left.checked_sub(bytes) {
             Some(left) => self.styles.bytes_left = left,
             None => {
-                let help = "put long lists of points in a vector file, and name it once with `file`";
+                let help = format!(
+                    "put long lists of points in a vector file, and name it once with `file`, or {STYLE_BYTES:#}"
+                );
                 self.report.error(span, format!("styles add more than {STYLE_BYTES} bytes in all"), help);
                 return None;
             }

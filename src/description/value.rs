@@ -202,7 +202,7 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn numbers(mut self, range: Bounds) -> Option<Vec<f64>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if list.len() <= INLINE_POINTS => {
+            DeValue::Array(list) if list.len() <= INLINE_POINTS.count() => {
                 self.each(list, |number| number.number(range))
             }
             _ => self.wrong_type(&format!("a list of up to {INLINE_POINTS} numbers"), "write [8, 8.5, ...]"),
@@ -273,9 +273,10 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn text(mut self) -> Option<String> {
         match self.value.get_ref() {
-            DeValue::String(text) if text.chars().nth(SCENE_TEXT).is_none() => Some(text.to_string()),
+            DeValue::String(text) if text.chars().nth(SCENE_TEXT.count()).is_none() => Some(text.to_string()),
             DeValue::String(_) => {
-                self.wrong(format!("`{}` is longer than {SCENE_TEXT} characters", self.key), "shorten it")
+                let message = format!("`{}` is longer than {SCENE_TEXT} characters", self.key);
+                self.wrong(message, format!("shorten it, or {SCENE_TEXT:#}"))
             }
             _ => self.wrong_type("text", "write it in double quotes"),
         }
@@ -301,10 +302,10 @@ impl<'t> KeyValue<'_, 't> {
         read: impl Fn(KeyValue<'_, 't>) -> Option<T>,
     ) -> Option<Vec<T>> {
         match self.value.get_ref() {
-            DeValue::Array(list) if (1..=SCENE_LIST).contains(&list.len()) => self.each(list, read),
+            DeValue::Array(list) if (1..=SCENE_LIST.count()).contains(&list.len()) => self.each(list, read),
             DeValue::Array(list) => {
                 let message = format!("`{}` lists {} {plural}", quoted(self.key), list.len());
-                self.wrong(message, format!("list from 1 to {SCENE_LIST}"))
+                self.wrong(message, format!("list from 1 to {SCENE_LIST}, or {SCENE_LIST:#}"))
             }
             _ => read(self.element(self.value)).map(|value| vec![value]),
         }
@@ -324,7 +325,7 @@ impl<'t> KeyValue<'_, 't> {
 
     pub fn named_files(mut self) -> Option<BTreeMap<String, String>> {
         match self.value.get_ref() {
-            DeValue::Table(table) if (1..=SCENE_LIST).contains(&table.len()) => {
+            DeValue::Table(table) if (1..=SCENE_LIST.count()).contains(&table.len()) => {
                 self.each_entry(table, |name| name.file())
             }
             _ => {
@@ -383,7 +384,7 @@ impl<'t> KeyValue<'_, 't> {
 
     fn stops(&mut self, list: &DeArray<'_>) -> Option<Vec<(f64, Color)>> {
         let help = "write [[height, \"#rrggbb\"], ...] with heights in meters that grow";
-        if !(2..=SCENE_LIST).contains(&list.len()) {
+        if !(2..=SCENE_LIST.count()).contains(&list.len()) {
             let message = format!("a ramp has from 2 to {SCENE_LIST} stops, but this has {}", list.len());
             return self.wrong(message, help);
         }
@@ -427,9 +428,12 @@ impl<'t> KeyValue<'_, 't> {
         let DeValue::Array(list) = self.value.get_ref() else {
             return self.wrong_type("a list of points", help);
         };
-        if list.len() > INLINE_POINTS {
+        if list.len() > INLINE_POINTS.count() {
             let message = format!("{} points are more than the {INLINE_POINTS} allowed here", list.len());
-            return self.wrong(message, "put them in a GeoJSON file and name it with `file`");
+            return self.wrong(
+                message,
+                format!("put them in a GeoJSON file and name it with `file`, or {INLINE_POINTS:#}"),
+            );
         }
         let points = self.each(list, |point| point.point())?;
         let closed = least > 2 && points.len() > 1 && points.first() == points.last();

@@ -48,12 +48,29 @@ fn separates(one: &[DVec2], other: &[DVec2]) -> bool {
 
 /// The intersection of two convex polygons, counter-clockwise; `None` where its area is no more than `least`.
 pub fn intersection(one: &[DVec2], other: &[DVec2], least: f64) -> Option<Vec<DVec2>> {
-    if !overlap(one, other) {
-        return None;
+    let mut clip = ConvexClip::default();
+    clip.intersection(one, other, least).is_some().then_some(clip.piece)
+}
+
+/// Memory for intersections, to be used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct ConvexClip {
+    piece: Vec<DVec2>,
+    scratch: Vec<DVec2>,
+}
+
+impl ConvexClip {
+    /// As [`intersection`].
+    pub fn intersection(&mut self, one: &[DVec2], other: &[DVec2], least: f64) -> Option<&[DVec2]> {
+        if !overlap(one, other) {
+            return None;
+        }
+        self.piece.clear();
+        self.piece.extend_from_slice(one);
+        polygon::clip_convex(&mut self.piece, &mut self.scratch, other);
+        let is_more = self.piece.len() > 2 && polygon::doubled_area(&self.piece) > 2.0 * least;
+        is_more.then_some(&self.piece)
     }
-    let (mut piece, mut scratch) = (one.to_vec(), Vec::new());
-    polygon::clip_convex(&mut piece, &mut scratch, other);
-    (piece.len() > 2 && polygon::doubled_area(&piece) > 2.0 * least).then_some(piece)
 }
 
 /// The parts, 0..=1, between which the line `from`..`to` lies in a convex polygon or no farther beside it than `beside`

@@ -1,15 +1,19 @@
 //! Finds the rectangles that meet another one, among many: an R-tree of `rstar`, bulk-loaded.
 
+use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
+use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
+use crate::geom::polygon;
 use crate::geom::rect::Rect;
+
+/// A rectangle with its position in the list that a tree was made of.
+type NumberedRect = GeomWithData<Rectangle<[f64; 2]>, usize>;
 
 /// Rectangles in a tree.
 #[derive(Clone, Debug)]
 pub struct RectTree {
-    /// Each rectangle with its position in the list that the tree was made of.
-    tree: RTree<GeomWithData<Rectangle<[f64; 2]>, usize>>,
+    tree: RTree<NumberedRect>,
 }
 
 impl RectTree {
@@ -29,6 +33,13 @@ impl RectTree {
         self.tree.locate_in_envelope_intersecting(&envelope).map(|entry| entry.data)
     }
 
+    /// The rectangles that meet a convex counter-clockwise polygon, each once, in an order of no meaning: of a slanted one far
+    /// fewer than meet the rectangle around it.
+    pub fn meeting_convex<'a>(&'a self, polygon: &'a [DVec2]) -> impl Iterator<Item = usize> + 'a {
+        let near = NearConvex { polygon, bounds: polygon::bounds(polygon) };
+        self.tree.locate_with_selection_function(near).map(|entry| entry.data)
+    }
+
     /// The rectangles that meet `window`, in ascending order.
     pub fn meeting_in_order(&self, window: &Rect) -> Vec<usize> {
         let mut found: Vec<usize> = self.meeting(window).collect();
@@ -37,10 +48,34 @@ impl RectTree {
     }
 }
 
+/// Selects the rectangles that meet a convex polygon.
+struct NearConvex<'a> {
+    polygon: &'a [DVec2],
+    bounds: Rect,
+}
+
+impl SelectionFunction<NumberedRect> for NearConvex<'_> {
+    fn should_unpack_parent(&self, envelope: &AABB<[f64; 2]>) -> bool {
+        let [min, max] = [envelope.lower(), envelope.upper()].map(DVec2::from);
+        let rect = Rect { min, max };
+        // Outside a side lies all of a rectangle whose corner farthest inward does.
+        let is_outside = |(from, to): (DVec2, DVec2)| {
+            let inward = (to - from).perp();
+            let innermost = DVec2::select(inward.cmpgt(DVec2::ZERO), max, min);
+            inward.dot(innermost - from) < 0.0
+        };
+        rect.meets(&self.bounds) && !polygon::edges(self.polygon).any(is_outside)
+    }
+
+    fn should_unpack_leaf(&self, leaf: &NumberedRect) -> bool {
+        self.should_unpack_parent(&leaf.envelope())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec2;
+    use crate::geom::convex;
     use proptest::prelude::*;
 
     #[test]
@@ -50,6 +85,32 @@ mod tests {
         assert_eq!(RectTree::new(&[Rect::EMPTY; 20]).meeting(&everything).count(), 0);
         let unknown = Rect { min: DVec2::NAN, max: DVec2::ONE };
         assert_eq!(RectTree::new(&[unknown; 20]).meeting(&everything).count(), 0);
+    }
+
+    #[test]
+    fn a_slanted_strip_meets_the_squares_along_it_alone() {
+        let square = |x: u32, y: u32| {
+            let min = DVec2::new(f64::from(x), f64::from(y));
+            Rect { min, max: min + 0.9 }
+        };
+        let squares: Vec<Rect> = (0..100).flat_map(|y| (0..100).map(move |x| square(x, y))).collect();
+        let tree = RectTree::new(&squares);
+        for quarter in 0..4 {
+            let turned = |at: DVec2| (0..quarter).fold(at - 50.0, |at, _| at.perp()) + 50.0;
+            let strip =
+                [(0.5, 0.4), (99.5, 99.4), (99.5, 99.5), (0.5, 0.5)].map(|at| turned(DVec2::from(at)));
+            let mut found: Vec<usize> = tree.meeting_convex(&strip).collect();
+            found.sort_unstable();
+            let corners = |rect: &Rect| {
+                let [min, max] = [rect.min, rect.max];
+                [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+            };
+            let meet =
+                |index: &usize| convex::intersection(&strip, &corners(&squares[*index]), 0.0).is_some();
+            let expected: Vec<usize> = (0..squares.len()).filter(meet).collect();
+            assert!(expected.iter().all(|index| found.contains(index)), "{quarter}");
+            assert!(found.len() <= expected.len() + 4, "{} of {}", found.len(), expected.len());
+        }
     }
 
     proptest! {

@@ -3,6 +3,8 @@
 use std::error::Error;
 use std::sync::Arc;
 
+use crate::limits::work_limit::WorkLimit;
+
 /// Why a companion file cannot be loaded; its type depends on the [`Companions`](crate::model::Companions).
 pub type CompanionError = Box<dyn Error + Send + Sync>;
 
@@ -43,11 +45,11 @@ pub enum ModelError {
         #[source]
         source: Arc<GltfDataError>,
     },
-    #[error("the model has more than {limit} {what}; simplify it before you use it in a scene")]
+    #[error("the model has more than {limit} {what}; simplify it before you use it in a scene, or {limit:#}")]
     TooLarge {
         what: &'static str,
         /// The limit.
-        limit: usize,
+        limit: &'static WorkLimit,
     },
 }
 

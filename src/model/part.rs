@@ -22,8 +22,8 @@ pub(super) struct TriangleBudget {
 impl TriangleBudget {
     pub(super) fn take(&mut self, triangles: usize) -> Result<(), ModelError> {
         self.used = self.used.saturating_add(triangles);
-        if self.used > MODEL_TRIANGLES {
-            return Err(ModelError::TooLarge { what: "triangles", limit: MODEL_TRIANGLES });
+        if self.used > MODEL_TRIANGLES.count() {
+            return Err(ModelError::TooLarge { what: "triangles", limit: &MODEL_TRIANGLES });
         }
         Ok(())
     }
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn more_triangles_than_the_budget_are_refused() {
         let mut budget = TriangleBudget::default();
-        assert!(budget.take(MODEL_TRIANGLES).is_ok());
+        assert!(budget.take(MODEL_TRIANGLES.count()).is_ok());
         assert!(budget.take(1).is_err());
     }
 }

@@ -32,9 +32,13 @@ enum TextureError {
     UnknownFormat,
     #[error("it cannot be decoded")]
     Decode(#[from] image::ImageError),
-    #[error("it has {width} × {height} pixels; 1 to {TEXTURE_SIDE} a side are supported")]
+    #[error(
+        "it has {width} × {height} pixels; 1 to {TEXTURE_SIDE} a side are supported; shrink it: {TEXTURE_SIDE:#}"
+    )]
     Size { width: u32, height: u32 },
-    #[error("the model's textures would have more than {TEXTURE_PIXELS} pixels")]
+    #[error(
+        "the model's textures would have more than {TEXTURE_PIXELS} pixels; shrink them, or {TEXTURE_PIXELS:#}"
+    )]
     TooManyPixels,
 }
 
@@ -46,7 +50,7 @@ impl<'a> Textures<'a> {
             by_name,
             masked,
             pixels: Vec::new(),
-            pixels_left: TEXTURE_PIXELS,
+            pixels_left: TEXTURE_PIXELS.get(),
             notes: Vec::new(),
         }
     }
@@ -170,16 +174,17 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureE
         Err(_) if is_tga() => ImageFormat::Tga,
         Err(_) => return Err(TextureError::UnknownFormat),
     };
+    let side = TEXTURE_SIDE.get() as u32;
     let reader = || {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut limits = Limits::default();
-        limits.max_image_width = Some(TEXTURE_SIDE);
-        limits.max_image_height = Some(TEXTURE_SIDE);
+        limits.max_image_width = Some(side);
+        limits.max_image_height = Some(side);
         reader.limits(limits);
         reader
     };
     let (width, height) = reader().into_dimensions()?;
-    if !(1..=TEXTURE_SIDE).contains(&width) || !(1..=TEXTURE_SIDE).contains(&height) {
+    if !(1..=side).contains(&width) || !(1..=side).contains(&height) {
         return Err(TextureError::Size { width, height });
     }
     if u64::from(width) * u64::from(height) > pixels_left {
@@ -258,6 +263,6 @@ mod tests {
     fn a_texture_with_a_forged_size_is_not_allocated() {
         let mut bytes = png(1, 1);
         bytes[16..24].copy_from_slice(&[0, 0, 0x75, 0x30, 0, 0, 0x75, 0x30]);
-        assert!(decode("big.png", &bytes, TEXTURE_PIXELS).is_err());
+        assert!(decode("big.png", &bytes, TEXTURE_PIXELS.get()).is_err());
     }
 }

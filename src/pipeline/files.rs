@@ -23,7 +23,7 @@ pub type ReadFileError = FileError<ReadFileCause>;
 pub enum ReadFileCause {
     #[error("this is not a file")]
     NotAFile,
-    #[error("{0} bytes are more than the {INPUT_BYTES} that are read")]
+    #[error("{0} bytes are more than the {INPUT_BYTES} that are read; cut the file, or {INPUT_BYTES:#}")]
     TooLarge(u64),
     #[error("byte {0} is not UTF-8 text")]
     NotText(usize),
@@ -105,7 +105,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
     if !metadata.is_file() {
         return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
     }
-    if metadata.len() > INPUT_BYTES {
+    if metadata.len() > INPUT_BYTES.get() {
         return Err(ReadFileError::new(path, ReadFileCause::TooLarge(metadata.len())));
     }
     fs::read(path).map_err(system(path))
@@ -132,7 +132,7 @@ pub fn read_head(path: &Path, most: u64) -> Result<Vec<u8>, ReadFileError> {
 pub fn read_text(path: &Path) -> Result<String, ReadFileError> {
     let bytes = if path == Path::new(STDIN) {
         let mut bytes = Vec::new();
-        let read = io::stdin().lock().take(INPUT_BYTES).read_to_end(&mut bytes);
+        let read = io::stdin().lock().take(INPUT_BYTES.get()).read_to_end(&mut bytes);
         read.map_err(system(path))?;
         bytes
     } else {

@@ -23,8 +23,8 @@ pub enum HeightsAboveError {
     Unknown(String),
     #[error("the geoid needs longitude and latitude")]
     NoPlace(#[source] CrsError),
-    #[error(transparent)]
-    Work(#[from] GeoidWorkError),
+    #[error("{0}, or {GEOID_NODES:#}")]
+    Work(GeoidWorkError),
 }
 
 /// Brings heights at positions in coordinates of `crs` from the datum called `from` to `to`.
@@ -47,7 +47,7 @@ pub fn bring_heights(
     let found: Vec<usize> = (0..at.len()).filter(|&index| answers[index].height_m().is_some()).collect();
     let places = found.iter().map(|&index| crs.transform(&wgs84, at[index]));
     let places = places.collect::<Result<Vec<DVec2>, _>>().map_err(HeightsAboveError::NoPlace)?;
-    let undulations = geoid.undulations(&places, GEOID_NODES)?;
+    let undulations = geoid.undulations(&places, GEOID_NODES.count()).map_err(HeightsAboveError::Work)?;
     for (index, undulation_m) in found.into_iter().zip(undulations) {
         if let Answer::Height(height_m) = &mut answers[index] {
             *height_m += factor * undulation_m;

@@ -30,7 +30,7 @@ pub enum ProfileError {
     #[error("a step of {step_m} m: give meters above 0")]
     Step { step_m: f64 },
     #[error(
-        "a step of {step_m} m: the line is {length_m:.0} m long, and at most {PROFILE_STEPS} steps are made; take longer ones"
+        "a step of {step_m} m: the line is {length_m:.0} m long, and at most {PROFILE_STEPS} steps are made; take longer ones, or {PROFILE_STEPS:#}"
     )]
     ShortStep { step_m: f64, length_m: f64 },
 }
@@ -114,7 +114,7 @@ impl GroundProfile {
 fn check_step(step_m: Option<f64>, length_m: f64) -> Result<(), ProfileError> {
     match step_m {
         Some(step_m) if !(step_m > 0.0 && step_m.is_finite()) => Err(ProfileError::Step { step_m }),
-        Some(step_m) if length_m / step_m > PROFILE_STEPS => {
+        Some(step_m) if length_m / step_m > PROFILE_STEPS.get() as f64 => {
             Err(ProfileError::ShortStep { step_m, length_m })
         }
         _ => Ok(()),

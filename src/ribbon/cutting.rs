@@ -1,18 +1,21 @@
 //! Cuts many triangles out of a convex polygon.
 //!
-//! Each cut leaves more pieces, and each piece must be held against the cuts to come: with the square of their number, which
-//! a road that a thousand others cross would feel. So a piece is first compared by rectangles, and a polygon with many cuts
-//! is parted across its length, each part with the cuts that lie in it:
+//! Each cut leaves more pieces, and the cuts to come meet few of them: a road that a thousand others cross is a thousand
+//! pieces, and the next road meets one. So the pieces are kept by where they lie along the polygon, in a tree of stretches
+//! (a segment tree, Bentley 1977), and a cut is held against those of its own stretches alone:
 //!
 //! ```text
-//!  ┌──┬─┬──┬───┬─┬───┐          ┌──┬─┬──┐ ┌───┬─┬───┐
-//!  │  │▓│  │ ▓ │▓│   │    ──►   │  │▓│  │ │ ▓ │▓│   │      from here each half by itself
-//!  └──┴─┴──┴───┴─┴───┘          └──┴─┴──┘ └───┴─┴───┘
+//!  ├───────────────┬───────────────┤     a piece is held by the longest stretches that together are its own:
+//!  ├───────┬───────┼───────┬───────┤     no more than two in each row
+//!  ├───┬───┼───┬───┼───┬───┼───┬───┤
+//!      └── piece ──┘
 //! ```
+//!
+//! What is left, and its order, is the same as if each piece were held against each cut.
 
 use glam::DVec2;
 
-use crate::geom::convex;
+use crate::geom::convex::{self, ConvexClip};
 use crate::geom::polygon;
 use crate::geom::rect::Rect;
 
@@ -22,121 +25,186 @@ pub(in crate::ribbon) const SLIVER_M2: f64 = 1e-3;
 /// Pieces smaller than this are dropped while a polygon is being cut: many of them may still lie side by side.
 const NOTHING_M2: f64 = 1e-9;
 
-/// A polygon with more cuts than this is parted. Fewer would part the triangles of common scenes, whose pieces then have
-/// corners more than they need; more make the comparison of every piece with every cut felt.
-const MOST_TOGETHER: usize = 4096;
+/// Cuts for each stretch along the polygon: with fewer, keeping the stretches costs more than they save.
+const CUTS_PER_STRETCH: usize = 8;
 
-/// A polygon whose parts still hold more than this share of its cuts is not parted: they lie all over each other.
-const MOST_SHARED: f64 = 0.75;
-
-/// A triangle that is taken away from a polygon.
-struct CutWindow {
-    window: [DVec2; 3],
-    /// What of the polygon it covers lies in this rectangle.
-    region: Rect,
-}
-
-/// A piece of the polygon.
-struct CutPiece {
-    outline: Vec<DVec2>,
-    bounds: Rect,
-}
-
-impl CutWindow {
-    /// The cut of a convex polygon by `window`; `None` where they share no more than a sliver.
-    fn new(polygon: &[DVec2], window: [DVec2; 3]) -> Option<Self> {
-        let shared = convex::intersection(polygon, &window, SLIVER_M2)?;
-        Some(Self { window, region: polygon::bounds(&shared) })
-    }
-}
-
-impl CutPiece {
-    fn new(outline: Vec<DVec2>) -> Self {
-        Self { bounds: polygon::bounds(&outline), outline }
-    }
-}
+/// The most stretches: a megabyte of them.
+const MOST_STRETCHES: usize = 1 << 15;
 
 /// What `windows`, counter-clockwise and taken away in their order, leave of a convex counter-clockwise polygon: convex
 /// pieces, counter-clockwise, without slivers. `None` where they leave all of it.
-pub(in crate::ribbon) fn rest(
-    polygon: &[DVec2],
-    windows: impl IntoIterator<Item = [DVec2; 3]>,
-) -> Option<Vec<Vec<DVec2>>> {
-    let mut cuts = windows.into_iter().filter_map(|window| CutWindow::new(polygon, window));
-    let mut pieces = outside(vec![CutPiece::new(polygon.to_vec())], &cuts.next()?);
-    for cut in cuts.by_ref().take(MOST_TOGETHER) {
-        pieces = outside(pieces, &cut);
-        if pieces.is_empty() {
+pub(in crate::ribbon) fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
+    let mut clip = ConvexClip::default();
+    let cuts: Vec<CutWindow<'_>> =
+        windows.iter().filter_map(|window| CutWindow::new(polygon, window, &mut clip)).collect();
+    if cuts.is_empty() {
+        return None;
+    }
+    let mut pieces = CutPieces::new(polygon, cuts.len(), clip);
+    for cut in &cuts {
+        pieces.cut(cut);
+        if pieces.left == 0 {
             return Some(Vec::new());
         }
     }
-    let more: Vec<CutWindow> = cuts.collect();
-    let more: Vec<&CutWindow> = more.iter().collect();
-    let mut left = Vec::new();
-    pieces.into_iter().for_each(|piece| part(piece, &more, &mut left));
+    let mut left = pieces.into_outlines();
     left.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
     Some(left)
 }
 
-/// Parts a piece until it has few cuts, and adds what these leave to `left`.
-fn part(piece: CutPiece, cuts: &[&CutWindow], left: &mut Vec<Vec<DVec2>>) {
-    let meeting = |piece: &CutPiece| -> Vec<&CutWindow> {
-        cuts.iter().copied().filter(|cut| cut.region.meets(&piece.bounds)).collect()
-    };
-    let own = meeting(&piece);
-    if own.len() > MOST_TOGETHER {
-        let halves = halves(&piece, &own);
-        let most = (own.len() as f64 * MOST_SHARED) as usize;
-        if halves.iter().all(|half| half.outline.len() > 2 && meeting(half).len() <= most) {
-            halves.into_iter().for_each(|half| part(half, &own, left));
-            return;
-        }
-    }
-    let mut pieces = vec![piece];
-    for cut in own {
-        if pieces.is_empty() {
-            return;
-        }
-        pieces = outside(pieces, cut);
-    }
-    left.extend(pieces.into_iter().map(|piece| piece.outline));
+/// Whether `window`, counter-clockwise, leaves nothing of a convex counter-clockwise polygon.
+pub(in crate::ribbon) fn covers(window: &[DVec2; 3], polygon: &[DVec2]) -> bool {
+    polygon.iter().all(|&at| convex::contains(window, at))
+        && convex::intersection(polygon, window, SLIVER_M2).is_some()
 }
 
-/// The two parts of a piece on either side of the line across it, midway along its cuts.
-fn halves(piece: &CutPiece, cuts: &[&CutWindow]) -> [CutPiece; 2] {
-    let size = piece.bounds.size();
-    let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
-    let mut places: Vec<f64> = cuts.iter().map(|cut| cut.region.center().dot(along)).collect();
-    let middle = places.len() / 2;
-    let at = along * *places.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let ends = (at, at + along.perp());
-    [ends, (ends.1, ends.0)].map(|line| {
-        let mut half = piece.outline.clone();
-        polygon::clip_half_plane(&mut half, &mut Vec::new(), line);
-        CutPiece::new(half)
-    })
+/// A triangle that is taken away from a polygon.
+struct CutWindow<'a> {
+    window: &'a [DVec2; 3],
+    /// What of the polygon it covers lies in this rectangle.
+    region: Rect,
 }
 
-/// The parts of pieces that lie outside a cut.
-fn outside(pieces: Vec<CutPiece>, cut: &CutWindow) -> Vec<CutPiece> {
-    let mut outside = Vec::with_capacity(pieces.len() + 2);
-    let mut parts = Vec::new();
-    for piece in pieces {
-        let meets = piece.bounds.meets(&cut.region);
-        if meets && convex::intersection(&piece.outline, &cut.window, SLIVER_M2).is_some() {
-            polygon::cut_away(piece.outline, &cut.window, &mut parts);
-            let kept = parts.drain(..).filter(|part| polygon::doubled_area(part) > 2.0 * NOTHING_M2);
-            outside.extend(kept.map(CutPiece::new));
-        } else {
-            outside.push(piece);
+impl<'a> CutWindow<'a> {
+    /// The cut of a convex polygon by `window`; `None` where they share no more than a sliver.
+    fn new(polygon: &[DVec2], window: &'a [DVec2; 3], clip: &mut ConvexClip) -> Option<Self> {
+        let shared = clip.intersection(polygon, window, SLIVER_M2)?;
+        Some(Self { window, region: polygon::bounds(shared) })
+    }
+}
+
+/// A piece of the polygon.
+struct CutPiece {
+    /// Empty where the piece was cut.
+    outline: Vec<DVec2>,
+    bounds: Rect,
+    /// The first of the pieces that it was cut into and the one after their last; `None` where it was not cut.
+    parts: Option<[usize; 2]>,
+}
+
+/// All pieces that there were.
+struct CutPieces {
+    /// The whole polygon first; each piece comes after the one that it was cut from.
+    pieces: Vec<CutPiece>,
+    /// How many are not cut.
+    left: usize,
+    stretches: Stretches,
+    clip: ConvexClip,
+}
+
+impl CutPieces {
+    /// The whole polygon, for so many cuts.
+    fn new(polygon: &[DVec2], cuts: usize, clip: ConvexClip) -> Self {
+        let count = (cuts / CUTS_PER_STRETCH).next_power_of_two().min(MOST_STRETCHES);
+        let stretches = Stretches::new(&polygon::bounds(polygon), count);
+        let mut all = Self { pieces: Vec::new(), left: 0, stretches, clip };
+        all.add(polygon.to_vec());
+        all
+    }
+
+    fn add(&mut self, outline: Vec<DVec2>) {
+        let bounds = polygon::bounds(&outline);
+        self.stretches.hold(self.pieces.len(), &bounds);
+        self.pieces.push(CutPiece { outline, bounds, parts: None });
+        self.left += 1;
+    }
+
+    /// Takes away from all pieces what lies in a cut.
+    fn cut(&mut self, cut: &CutWindow<'_>) {
+        let mut parts = Vec::new();
+        let is_left = |piece: usize| self.pieces[piece].parts.is_none();
+        for index in self.stretches.near(&cut.region, is_left) {
+            let piece = &mut self.pieces[index];
+            let meets = piece.bounds.meets(&cut.region);
+            if !meets || self.clip.intersection(&piece.outline, cut.window, SLIVER_M2).is_none() {
+                continue;
+            }
+            polygon::cut_away(std::mem::take(&mut piece.outline), cut.window, &mut parts);
+            self.left -= 1;
+            let first = self.pieces.len();
+            let is_something = |part: &Vec<DVec2>| polygon::doubled_area(part) > 2.0 * NOTHING_M2;
+            parts.drain(..).filter(is_something).for_each(|part| self.add(part));
+            self.pieces[index].parts = Some([first, self.pieces.len()]);
         }
     }
-    outside
+
+    /// The outlines of the pieces that are left: the parts of each in its place.
+    fn into_outlines(mut self) -> Vec<Vec<DVec2>> {
+        let (mut outlines, mut next) = (Vec::with_capacity(self.left), vec![0]);
+        while let Some(index) = next.pop() {
+            match self.pieces[index].parts {
+                Some([first, end]) => next.extend((first..end).rev()),
+                None => outlines.push(std::mem::take(&mut self.pieces[index].outline)),
+            }
+        }
+        outlines
+    }
+}
+
+/// The stretches along a polygon, in rows of 1, 2, 4, … of equal length, each with the pieces that it holds.
+struct Stretches {
+    /// East or north, whichever way the polygon is longer.
+    along: DVec2,
+    start_m: f64,
+    per_meter: f64,
+    /// In the last row, a power of two.
+    count: usize,
+    /// The pieces of the first stretch of row `r` at 2ʳ, of the others after it.
+    held: Vec<Vec<u32>>,
+}
+
+impl Stretches {
+    fn new(bounds: &Rect, count: usize) -> Self {
+        let size = bounds.size();
+        let along = if size.x >= size.y { DVec2::X } else { DVec2::Y };
+        let (start_m, per_meter) = (bounds.min.dot(along), count as f64 / size.dot(along));
+        Self { along, start_m, per_meter, count, held: vec![Vec::new(); 2 * count] }
+    }
+
+    /// The numbers in `held` of the first and the last stretch of the last row that a rectangle meets.
+    fn ends(&self, rect: &Rect) -> [usize; 2] {
+        // What is no number is 0.
+        let stretch = |at: DVec2| ((at.dot(self.along) - self.start_m) * self.per_meter) as usize;
+        [rect.min, rect.max].map(|at| self.count + stretch(at).min(self.count - 1))
+    }
+
+    fn hold(&mut self, piece: usize, bounds: &Rect) {
+        let [mut first, mut last] = self.ends(bounds);
+        while first <= last {
+            if first % 2 == 1 {
+                self.held[first].push(piece as u32);
+                first += 1;
+            }
+            if last % 2 == 0 {
+                self.held[last].push(piece as u32);
+                last -= 1;
+            }
+            (first, last) = (first / 2, last / 2);
+        }
+    }
+
+    /// The pieces that share a stretch with a rectangle and for which `is_left` holds, in ascending order; others are
+    /// forgotten.
+    fn near(&mut self, rect: &Rect, is_left: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut near = Vec::new();
+        let [mut first, mut last] = self.ends(rect);
+        while first > 0 {
+            for held in &mut self.held[first..=last] {
+                held.retain(|&piece| is_left(piece as usize));
+                near.extend(held.iter().map(|&piece| piece as usize));
+            }
+            (first, last) = (first / 2, last / 2);
+        }
+        near.sort_unstable();
+        near.dedup();
+        near
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn area_m2(pieces: &[Vec<DVec2>]) -> f64 {
         pieces.iter().map(|piece| polygon::doubled_area(piece) / 2.0).sum()
@@ -159,11 +227,53 @@ mod tests {
             let strip = [(0.0, 0.0), (length, 0.0), (length, 6.0), (0.0, 6.0)].map(DVec2::from);
             for turned in 0..4 {
                 let turn = |at: DVec2| (0..turned).fold(at, |at, _| at.perp());
-                let left = rest(&strip.map(turn), bands(count).map(|band| band.map(turn))).expect("cut");
+                let windows: Vec<_> = bands(count).map(|band| band.map(turn)).collect();
+                let left = rest(&strip.map(turn), &windows).expect("cut");
                 assert!((area_m2(&left) - 36.0 * count as f64).abs() < 1e-6 * length, "{}", area_m2(&left));
                 assert!(left.iter().all(|piece| convex::is_convex(piece)));
                 assert!(left.len() < 4 * count, "{} pieces of {count}", left.len());
             }
+        }
+    }
+
+    /// What cuts leave where each piece is held against each cut.
+    fn rest_by_all_pairs(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
+        let mut clip = ConvexClip::default();
+        let cuts: Vec<_> =
+            windows.iter().filter_map(|window| CutWindow::new(polygon, window, &mut clip)).collect();
+        let mut pieces = vec![polygon.to_vec()];
+        for cut in &cuts {
+            let mut outside = Vec::new();
+            for piece in pieces {
+                let meets = polygon::bounds(&piece).meets(&cut.region);
+                if meets && convex::intersection(&piece, cut.window, SLIVER_M2).is_some() {
+                    polygon::cut_away(piece, cut.window, &mut outside);
+                } else {
+                    outside.push(piece);
+                }
+            }
+            pieces = outside;
+            pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * NOTHING_M2);
+        }
+        pieces.retain(|piece| polygon::doubled_area(piece) > 2.0 * SLIVER_M2);
+        (!cuts.is_empty()).then_some(pieces)
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_left_is_what_comparing_all_pairs_leaves(
+            corners in prop::collection::vec(prop::array::uniform3((0.0..100.0, 0.0..60.0)), 0..120),
+            size in 1.0..80.0,
+        ) {
+            let counter_clockwise = |corners: [(f64, f64); 3]| {
+                let [a, b, c] = corners.map(DVec2::from);
+                // Small ones, so that something is left.
+                let [b, c] = [b, c].map(|at| a + (at - a) / size);
+                if (b - a).perp_dot(c - a) > 0.0 { [a, b, c] } else { [a, c, b] }
+            };
+            let windows: Vec<[DVec2; 3]> = corners.into_iter().map(counter_clockwise).collect();
+            let polygon = [(0.0, 0.0), (100.0, 20.0), (90.0, 60.0), (5.0, 30.0)].map(DVec2::from);
+            prop_assert_eq!(rest(&polygon, &windows), rest_by_all_pairs(&polygon, &windows));
         }
     }
 
@@ -172,10 +282,10 @@ mod tests {
         let square = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0)].map(DVec2::from);
         let corner = [(-20.0, -20.0), (30.0, -20.0), (-20.0, 30.0)].map(DVec2::from);
         let all = [(-20.0, -20.0), (40.0, -20.0), (-20.0, 40.0)].map(DVec2::from);
-        assert_eq!(rest(&square, [corner, all, corner]), Some(Vec::new()));
-        let nearly = std::iter::repeat_n(corner, 1000);
-        assert!(rest(&square, nearly.clone()).is_some_and(|left| area_m2(&left) < 100.0));
-        assert_eq!(rest(&square, nearly.chain([all])), Some(Vec::new()));
-        assert_eq!(rest(&square, [all.map(|at| at + DVec2::splat(100.0))]), None);
+        assert_eq!(rest(&square, &[corner, all, corner]), Some(Vec::new()));
+        let nearly = vec![corner; 1000];
+        assert!(rest(&square, &nearly).is_some_and(|left| area_m2(&left) < 100.0));
+        assert_eq!(rest(&square, &[nearly, vec![all]].concat()), Some(Vec::new()));
+        assert_eq!(rest(&square, &[all.map(|at| at + DVec2::splat(100.0))]), None);
     }
 }

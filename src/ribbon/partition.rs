@@ -48,7 +48,7 @@ pub fn within(plan: &PlanMesh, ground: &PlanMesh) -> PlanMesh {
     let mut inside = PlanMesh::default();
     for triangle in plan.corners() {
         let (corners, texture) = (triangle.map(|corner| corner.at), TextureMap::of(triangle));
-        for under in covering.tree.meeting_in_order(&Rect::around(corners)) {
+        for under in covering.near(&corners) {
             let piece = convex::intersection(&corners, &covering.triangles[under], SLIVER_M2);
             inside.write(piece.iter().flat_map(|piece| fan(piece)), &texture);
         }
@@ -105,21 +105,30 @@ impl Covering {
         (0..self.triangles.len()).into_par_iter().with_min_len(CHUNK).map(found).collect()
     }
 
+    /// The triangles whose rectangles meet a triangle, in ascending order.
+    fn near(&self, corners: &[DVec2; 3]) -> Vec<usize> {
+        let mut near: Vec<usize> = self.tree.meeting_convex(corners).collect();
+        near.sort_unstable();
+        near
+    }
+
     fn overlap_m2(&self, triangle: usize) -> f64 {
         let corners = &self.triangles[triangle];
-        let over = self.tree.meeting_in_order(&Rect::around(*corners));
-        let before = over.into_iter().take_while(|&other| other < triangle);
+        let before = self.near(corners).into_iter().take_while(|&other| other < triangle);
         before.map(|other| shared_m2(corners, &self.triangles[other])).sum()
     }
 
     /// What no triangle before this one covers.
     fn rest(&self, triangle: usize) -> Rest {
         let corners = &self.triangles[triangle];
-        let meeting = self.tree.meeting(&Rect::around(*corners));
-        let mut before: Vec<usize> = meeting.filter(|&other| other < triangle).collect();
+        let mut before: Vec<usize> =
+            self.tree.meeting_convex(corners).filter(|&other| other < triangle).collect();
+        if before.iter().any(|&other| cutting::covers(&self.triangles[other], corners)) {
+            return Rest::Pieces(Vec::new());
+        }
         before.sort_unstable_by_key(|&other| self.ranks[other]);
-        let windows = before.into_iter().map(|other| self.triangles[other]);
-        cutting::rest(corners, windows).map_or(Rest::Whole, Rest::Pieces)
+        let windows: Vec<[DVec2; 3]> = before.into_iter().map(|other| self.triangles[other]).collect();
+        cutting::rest(corners, &windows).map_or(Rest::Whole, Rest::Pieces)
     }
 }
 

@@ -72,7 +72,7 @@ pub enum AssetError {
         kind: &'static str,
     },
     /// More bytes than [`ASSET_BYTES`], or than there is memory for.
-    #[error("{} has {bytes} bytes, more than can be read", resolved.display())]
+    #[error("{} has {bytes} bytes, more than the {ASSET_BYTES} that are read of a file; cut it, or {ASSET_BYTES:#}", resolved.display())]
     TooLarge {
         /// Where it is.
         resolved: PathBuf,
@@ -328,13 +328,13 @@ fn read_file(resolved: &Path) -> Result<Vec<u8>, AssetError> {
         return Err(AssetError::NotAFile { resolved: resolved.into(), kind });
     }
     let too_large = |bytes| AssetError::TooLarge { resolved: resolved.into(), bytes };
-    let size = about.len();
+    let (size, most) = (about.len(), ASSET_BYTES.get());
     let mut bytes = Vec::new();
-    let room = usize::try_from(size).ok().filter(|_| size <= ASSET_BYTES).ok_or_else(|| too_large(size))?;
+    let room = usize::try_from(size).ok().filter(|_| size <= most).ok_or_else(|| too_large(size))?;
     bytes.try_reserve_exact(room).map_err(|_| too_large(size))?;
     let file = File::open(resolved).map_err(unreadable)?;
-    let count = file.take(ASSET_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if count as u64 > ASSET_BYTES { Err(too_large(count as u64)) } else { Ok(bytes) }
+    let count = file.take(most + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if count as u64 > most { Err(too_large(count as u64)) } else { Ok(bytes) }
 }
 
 #[cfg(test)]

@@ -119,10 +119,10 @@ fn check_piers(document: &Document, spans: &[RoadSpan]) -> Result<(), Diagnostic
     let count: f64 = bridges.clone().map(|span| wanted(&span)).sum();
     let most = bridges.max_by(|a, b| wanted(a).total_cmp(&wanted(b)));
     match most {
-        Some(span) if count > BRIDGE_PIERS => {
+        Some(span) if count > BRIDGE_PIERS.get() as f64 => {
             let message =
                 format!("the scene's bridges ask for {count:.0} piers, at most {BRIDGE_PIERS} are built");
-            let help = "give a wider pier_spacing, or fewer or shorter bridges";
+            let help = format!("give a wider pier_spacing, fewer or shorter bridges, or {BRIDGE_PIERS:#}");
             Err(document.error_at(span.place.span.clone(), message).with_help(help))
         }
         _ => Ok(()),
@@ -257,7 +257,8 @@ impl<'a> BuiltChain<'a> {
         let clear = self.chain.length_m - from - abutments[1].unwrap_or(0.0);
         let [first, last] = abutments.map(|abutment| if abutment.is_some() { 1.0 } else { 0.5 });
         // Between n piers are n − 1 spans, and `first` and `last` of one beyond them.
-        let count = (clear / self.run.spacing_m - first - last + 1.0).ceil().clamp(0.0, BRIDGE_PIERS);
+        let count =
+            (clear / self.run.spacing_m - first - last + 1.0).ceil().clamp(0.0, BRIDGE_PIERS.get() as f64);
         let spacing = clear / (first + last + count - 1.0).max(1e-9);
         let even = (0..count as usize).map(|pier| from + spacing * (first + pier as f64));
         even.map(|station| self.beside(station, spacing)).collect()

@@ -72,7 +72,7 @@ pub fn build(
         let (mut count, mut still) = (0, 0);
         for NamedEarthwork { name, work } in of_table(table, sources, &mut collected.default_counts)? {
             cost += work.cost(lattice);
-            if cost > EARTHWORK_STEPS {
+            if cost > EARTHWORK_STEPS.get() as f64 {
                 return Err(too_much(document, table));
             }
             let changes = work.apply(lattice, held);
@@ -144,11 +144,10 @@ fn works(count: usize) -> &'static str {
 }
 
 fn too_much(document: &Document, table: &EarthworkTable) -> Diagnostic {
-    let message =
-        format!("up to this earthwork, moving the earth takes more than {EARTHWORK_STEPS:.0e} steps");
-    document
-        .error_at(table.source.span(), message)
-        .with_help("make it smaller, choose fewer features by `where`, or simplify their lines")
+    let message = format!("up to this earthwork, moving the earth takes more than {EARTHWORK_STEPS} steps");
+    document.error_at(table.source.span(), message).with_help(format!(
+        "make it smaller, choose fewer features by `where`, simplify their lines, or {EARTHWORK_STEPS:#}"
+    ))
 }
 
 /// The earthworks of a table, in the order of its source.

@@ -98,7 +98,7 @@ pub fn lay_out(
             crossed.add_line(line.points(), || name.clone());
             let line = fence_line(fence, &attributes, line.clip(&extent), feature, collected);
             pieces += line.pieces();
-            if pieces > LINE_PIECES {
+            if pieces > LINE_PIECES.get() as f64 {
                 return Err(too_many(document, fence, line.kind));
             }
             if line.kind == FenceKind::Trench {
@@ -128,7 +128,8 @@ fn too_many(document: &Document, fence: &FenceTable, kind: FenceKind) -> Diagnos
     };
     let message = format!("with the {what} along this, more than {LINE_PIECES} pieces stand along lines");
     let place = fence.spacing.as_ref().and_then(Stated::span).unwrap_or_else(|| fence.source.span());
-    document.error_at(place, message).with_help("give it a wider `spacing`, or choose fewer lines by `where`")
+    let help = format!("give it a wider `spacing`, choose fewer lines by `where`, or {LINE_PIECES:#}");
+    document.error_at(place, message).with_help(help)
 }
 
 fn fence_line(

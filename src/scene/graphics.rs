@@ -64,9 +64,9 @@ pub fn lay(
                 off += 1;
                 continue;
             }
-            if collected.graphics.len() == SCENE_GRAPHICS {
+            if collected.graphics.len() == SCENE_GRAPHICS.count() {
                 let message = format!("the scene has more than {SCENE_GRAPHICS} graphics");
-                let help = "select fewer of them with `where`";
+                let help = format!("select fewer of them with `where`, or {SCENE_GRAPHICS:#}");
                 return Err(document.error_at(table.source.span(), message).with_help(help));
             }
             let name = attributes.name(table.name.as_deref());

@@ -64,11 +64,12 @@ pub fn symbols(
             None => read_features(table, sources, lattice, &mut symbols, findings)?,
         }
     }
-    if symbols.len() > SCENE_SYMBOLS {
-        let more = symbols.len() - SCENE_SYMBOLS;
-        let message = format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out");
+    if symbols.len() > SCENE_SYMBOLS.count() {
+        let more = symbols.len() - SCENE_SYMBOLS.count();
+        let message =
+            format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out; {SCENE_SYMBOLS:#}");
         findings.add(FindingCode::TooMany, 0..0, message);
-        symbols.truncate(SCENE_SYMBOLS);
+        symbols.truncate(SCENE_SYMBOLS.count());
     }
     Ok(symbols)
 }
@@ -128,7 +129,7 @@ fn read_features(
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
         let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
         symbols.push(found.finished(table, &attributes, findings));
-        if symbols.len() > SCENE_SYMBOLS {
+        if symbols.len() > SCENE_SYMBOLS.count() {
             break;
         }
     }

@@ -57,7 +57,7 @@ pub struct Sourced<T> {
 impl<'a> Sources<'a> {
     /// Sources that read through `assets` and place through `frame`.
     pub fn new(frame: &'a WorldFrame<'a>, assets: &'a Assets) -> Self {
-        let crossings_left = Cell::new(RING_CROSSINGS);
+        let crossings_left = Cell::new(RING_CROSSINGS.count());
         Self {
             frame,
             assets,
@@ -125,7 +125,9 @@ impl<'a> Sources<'a> {
                     "{name} of {} vertices crosses itself too often: the polygons of a scene are resolved where they cross themselves up to {RING_CROSSINGS} times in all",
                     exterior.len()
                 );
-                let help = "mend it, for example with: ogr2ogr -makevalid out.geojson IN";
+                let help = format!(
+                    "mend it, for example with: ogr2ogr -makevalid out.geojson IN; or {RING_CROSSINGS:#}"
+                );
                 Err(self.frame.document.error_at(source.span(), message).with_help(help))
             }
         }

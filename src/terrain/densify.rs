@@ -56,7 +56,7 @@ pub fn affordable_doublings(lattice: &Lattice, wanted: u32) -> u32 {
     let side = |posts: u32, times: u32| ((u64::from(posts) - 1) << times) + 1;
     let is_affordable = |&times: &u32| {
         let (columns, rows) = (side(lattice.columns(), times), side(lattice.rows(), times));
-        columns.max(rows) <= GROUND_ROW_POSTS && columns * rows <= GROUND_POSTS
+        columns.max(rows) <= GROUND_ROW_POSTS.get() && columns * rows <= GROUND_POSTS.get()
     };
     (1..=wanted).rev().find(is_affordable).unwrap_or(0)
 }
@@ -64,10 +64,11 @@ pub fn affordable_doublings(lattice: &Lattice, wanted: u32) -> u32 {
 /// The same ground with its posts doubled `times` times; a post between pinned ones is pinned.
 ///
 /// # Errors
-/// Those of [`Lattice::new`]; none for a lattice that was made by it.
+/// Those of [`Lattice::new`], of which a lattice that was made by it has none, and a lack of memory.
 pub fn densify(lattice: &Lattice, times: u32) -> Result<Lattice, LatticeError> {
     let side = |posts: u32| ((posts - 1) << times) + 1;
     let (columns, rows) = (side(lattice.columns()), side(lattice.rows()));
+    Lattice::check_memory(columns, rows)?;
     let posts = || (0..rows).flat_map(move |row| (0..columns).map(move |column| Post { column, row }));
     let heights = posts().map(|post| height(lattice, post, times)).collect();
     let cell = lattice.cell() / f64::from(1u32 << times);

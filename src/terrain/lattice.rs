@@ -22,6 +22,7 @@ use glam::{DVec2, Vec2, Vec3};
 
 use crate::dem::raster::{Raster, Samples};
 use crate::geom::rect::Rect;
+use crate::limits::memory::{MemoryRefused, check_memory};
 
 /// Posts of a regular grid with their heights.
 ///
@@ -44,6 +45,9 @@ pub struct Lattice {
 /// distinguishes one meter from the next.
 pub const HIGHEST_M: f32 = 1e7;
 
+/// A post with its height, twice while the ground changes, its pin and its error for the level of detail.
+const BYTES_PER_POST: u64 = 16;
+
 /// Ground may be drawn this many meters off a pinned post: rounding of f32 heights, invisible in a picture.
 const PIN_SLACK_M: f32 = 1e-3;
 
@@ -64,6 +68,9 @@ pub enum LatticeError {
     /// The raster's rows do not run east with north up.
     #[error("the elevation model's grid is rotated or upside down; it must be warped north-up first")]
     NotNorthUp,
+    /// There is not the memory for its posts.
+    #[error(transparent)]
+    Memory(#[from] MemoryRefused),
     /// All samples are no-data.
     #[error("the elevation model holds no data at all")]
     Empty,
@@ -113,6 +120,7 @@ impl Lattice {
     /// See [`LatticeError`].
     pub fn from_raster(raster: &Raster) -> Result<Self, LatticeError> {
         let (origin, cell) = Self::frame(raster)?;
+        Self::check_memory(raster.width, raster.height)?;
         let columns = raster.width;
         let heights = match &raster.samples {
             Samples::F32(values) => values.chunks(columns as usize).rev().collect::<Vec<_>>().concat(),
@@ -121,6 +129,12 @@ impl Lattice {
             }
         };
         Self::new(origin, cell, columns, heights)
+    }
+
+    /// Checks that there is memory for so many posts, with what is computed for each.
+    pub(in crate::terrain) fn check_memory(columns: u32, rows: u32) -> Result<(), LatticeError> {
+        let posts = u64::from(columns) * u64::from(rows);
+        Ok(check_memory(posts * BYTES_PER_POST, "the ground", "name a smaller `extent`")?)
     }
 
     /// The origin and the cell of the lattice of a north-up raster in meters; samples are not read.

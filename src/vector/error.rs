@@ -6,6 +6,7 @@ use std::fmt::Display;
 
 use crate::archive::ArchiveError;
 use crate::geom::crs::CrsError;
+use crate::limits::{GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
 use crate::message::suggest::nearest;
 
 /// Most names that a message lists.
@@ -18,11 +19,14 @@ pub(crate) const MAX_NAME_CHARS: usize = 60;
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum VectorError {
     #[error(
-        "{bytes} bytes exceed the limit of {limit}; cut the file down with 'ogr2ogr -clipsrc' or '-where'"
+        "{bytes} bytes exceed the limit of {GEOJSON_BYTES}; cut the file down with 'ogr2ogr -clipsrc' or '-where', or {GEOJSON_BYTES:#}"
     )]
-    TooLarge { bytes: usize, limit: usize },
+    TooLarge { bytes: usize },
     #[error(transparent)]
     Archive(#[from] ArchiveError),
+    /// It unpacks to more than is unpacked of any file.
+    #[error("{0}, or {UNPACKED_VECTOR_BYTES:#}")]
+    Unpacked(ArchiveError),
     #[error("its \"type\" is \"{found}\", not a feature, a collection of features or a geometry; {remedy}")]
     NotGeoJson { found: String, remedy: &'static str },
     /// The file contradicts itself, ends too early, or is refused by the library that reads its format.

@@ -91,8 +91,8 @@ pub(super) fn read_sequence(bytes: &[u8], hints: &VectorHints) -> Result<VectorL
 }
 
 fn checked(bytes: &[u8]) -> Result<&[u8], VectorError> {
-    if bytes.len() > GEOJSON_BYTES {
-        return Err(VectorError::TooLarge { bytes: bytes.len(), limit: GEOJSON_BYTES });
+    if bytes.len() > GEOJSON_BYTES.count() {
+        return Err(VectorError::TooLarge { bytes: bytes.len() });
     }
     Ok(bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes))
 }

@@ -14,7 +14,7 @@
 
 use std::borrow::Cow;
 
-use crate::archive::{self, ZipReader};
+use crate::archive::{self, ArchiveError, ZipReader};
 use crate::limits::UNPACKED_VECTOR_BYTES;
 use crate::vector::error::VectorError;
 use crate::vector::feature::VectorLayer;
@@ -42,14 +42,28 @@ const SMALL_BYTES: u64 = 16 << 20;
 pub fn read(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
     if archive::is_gzip(bytes) {
         let inner = name.strip_suffix(".gz").unwrap_or(name);
-        return read_unpacked(inner, &archive::gunzip(bytes, most_unpacked(bytes))?, hints);
+        return read_unpacked(
+            inner,
+            &archive::gunzip(bytes, most_unpacked(bytes)).map_err(of_unpacking)?,
+            hints,
+        );
     }
     if archive::is_zip(bytes) { read_zip(name, bytes, hints) } else { read_unpacked(name, bytes, hints) }
 }
 
 /// The most bytes that a packed file or one of its members unpacks to.
 fn most_unpacked(packed: &[u8]) -> u64 {
-    (SMALL_BYTES + MOST_EXPANSION * packed.len() as u64).min(UNPACKED_VECTOR_BYTES)
+    (SMALL_BYTES + MOST_EXPANSION * packed.len() as u64).min(UNPACKED_VECTOR_BYTES.get())
+}
+
+/// The error of unpacking a file, with what raises the limit where that is the one for all files.
+fn of_unpacking(error: ArchiveError) -> VectorError {
+    match error {
+        ArchiveError::TooLarge { limit, .. } if limit == UNPACKED_VECTOR_BYTES.get() => {
+            VectorError::Unpacked(error)
+        }
+        _ => VectorError::Archive(error),
+    }
 }
 
 fn read_unpacked(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer, VectorError> {
@@ -118,7 +132,7 @@ fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer
     };
     // A KMZ's document is the first .kml in it (OGC 07-147r2, section 8.1).
     if let Some(document) = members(&[".kml"]).first() {
-        return read_unpacked(document, &zip.read(document, limit)?, hints);
+        return read_unpacked(document, &zip.read(document, limit).map_err(of_unpacking)?, hints);
     }
     let shapefiles = members(&[".shp"]);
     if !shapefiles.is_empty() {
@@ -126,10 +140,10 @@ fn read_zip(name: &str, bytes: &[u8], hints: &VectorHints) -> Result<VectorLayer
         let member = shapefiles[hints.choose_layer(&names)?];
         let companions = |name: &str| zip.read(name, limit).ok();
         let hints = VectorHints { layer: None, companions: &companions, ..*hints };
-        return read_unpacked(member, &zip.read(member, limit)?, &hints);
+        return read_unpacked(member, &zip.read(member, limit).map_err(of_unpacking)?, &hints);
     }
     match members(&OTHERS)[..] {
-        [only] => read_unpacked(only, &zip.read(only, limit)?, hints),
+        [only] => read_unpacked(only, &zip.read(only, limit).map_err(of_unpacking)?, hints),
         _ => Err(VectorError::OtherFormat {
             format: "a zip archive without a .kml, a .shp or one other vector file",
             command: format!("unzip \"{name}\""),

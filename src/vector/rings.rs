@@ -23,7 +23,7 @@ pub(crate) enum HoleRule {
 
 /// The file has too many rings inside one another.
 #[derive(Debug, thiserror::Error)]
-#[error("too many rings lie inside one another")]
+#[error("too many rings lie inside one another; {RING_STEPS:#}")]
 pub(crate) struct RingLimitExceeded;
 
 pub(crate) struct RingSorter {
@@ -43,7 +43,7 @@ struct SortedRing {
 
 impl RingSorter {
     pub fn new(rule: HoleRule) -> Self {
-        Self { rule, steps_left: RING_STEPS }
+        Self { rule, steps_left: RING_STEPS.get() }
     }
 
     /// Returns the rings of each polygon, the outer one first: polygons in the order of their outer rings, holes in

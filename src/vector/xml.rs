@@ -196,8 +196,8 @@ impl<'a> XmlReader<'a> {
 
     fn open(&mut self, start: BytesStart<'a>) -> Result<XmlContent<'a>, VectorError> {
         self.depth += 1;
-        if self.depth > XML_DEPTH {
-            return Err(self.broken(format!("elements lie more than {XML_DEPTH} deep")));
+        if self.depth > XML_DEPTH.count() {
+            return Err(self.broken(format!("elements lie more than {XML_DEPTH} deep; {XML_DEPTH:#}")));
         }
         Ok(XmlContent::Element(XmlElement { start, offset: self.offset(), content: Vec::new() }))
     }

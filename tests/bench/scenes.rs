@@ -2,7 +2,8 @@
 //!
 //! Sections, chosen by name: `growth` builds whole towns of 1, 4 and 16 times as many streets and houses; `roads` lays
 //! streets alone, with what a real city of them takes; `recut` says what one dirty patch costs; `cities` builds real
-//! places where their data is at hand.
+//! places where their data is at hand; `tangles` builds thousands of roads that all cross, stars, and rings of a hundred
+//! thousand vertices.
 
 #[path = "scenes/cities.rs"]
 mod cities;
@@ -18,6 +19,8 @@ mod rounds;
 #[path = "demo/steps.rs"]
 #[allow(dead_code, reason = "each benchmark uses its own part")]
 mod steps;
+#[path = "scenes/tangles.rs"]
+mod tangles;
 #[path = "../common/mod.rs"]
 mod tests_common;
 
@@ -27,6 +30,7 @@ fn main() {
         ("roads", roads::print),
         ("recut", recut::print),
         ("cities", cities::print),
+        ("tangles", tangles::print),
     ]);
 }
 

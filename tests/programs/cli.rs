@@ -13,6 +13,7 @@ mod info;
 #[cfg(unix)]
 mod interrupts;
 mod licenses;
+mod limits;
 mod lod;
 mod los;
 mod manners;

@@ -555,7 +555,7 @@ fn bytes_that_are_not_text_are_told_with_their_place() {
 
 #[test]
 fn too_much_is_refused() {
-    assert!(messages(&" ".repeat(SCENE_BYTES + 1)).contains("more than the 4194304 allowed"));
+    assert!(messages(&" ".repeat(SCENE_BYTES.count() + 1)).contains("more than the 4194304 allowed"));
     let points = "[1,2],".repeat(100_001);
     let shown = messages(&format!("{LEAST}[[road]]\npoints = [{points}]\n"));
     assert!(

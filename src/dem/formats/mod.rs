@@ -89,7 +89,7 @@ pub(crate) enum Recognition {
 
 /// The limit for files whose first bytes do not tell their size.
 pub(crate) fn any_size(_: &[u8]) -> u64 {
-    UNPACKED_RASTER_BYTES
+    UNPACKED_RASTER_BYTES.get()
 }
 
 impl DemFormat {

@@ -112,7 +112,7 @@ impl XyzLattice {
         }
         let sides = ((max - min) / step).round();
         let nodes = (sides.x + 1.0) * (sides.y + 1.0);
-        let most = (RASTER_SAMPLES as f64).min(count.saturating_mul(SPARSEST) as f64);
+        let most = (RASTER_SAMPLES.get() as f64).min(count.saturating_mul(SPARSEST) as f64);
         // Far apart, their distance may be infinite and the number of nodes no number.
         if nodes.is_nan() || nodes > most {
             let [columns, rows] = [sides.x + 1.0, sides.y + 1.0];

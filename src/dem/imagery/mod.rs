@@ -42,7 +42,7 @@ pub enum ImageryErrorKind {
     )]
     UnknownFormat,
     #[error(
-        "{width} x {height} pixels are more than the {IMAGERY_PIXELS} that are read of a PNG or JPEG; convert it, for example with: gdal_translate -co TILED=YES -co COMPRESS=DEFLATE FILE out.tif"
+        "{width} x {height} pixels are more than the {IMAGERY_PIXELS} that are read of a PNG or JPEG; convert it, for example with: gdal_translate -co TILED=YES -co COMPRESS=DEFLATE FILE out.tif, or {IMAGERY_PIXELS:#}"
     )]
     TooLarge { width: u32, height: u32 },
     #[error("it states no place on the ground; put its world file beside it, with the extension {0}")]
@@ -136,7 +136,7 @@ impl<'a> Imagery<'a> {
         };
         let reader = ImageReader::with_format(Cursor::new(bytes), format);
         let (width, height) = reader.into_dimensions().map_err(ImageryErrorKind::Undecodable)?;
-        if u64::from(width) * u64::from(height) > IMAGERY_PIXELS {
+        if u64::from(width) * u64::from(height) > IMAGERY_PIXELS.get() {
             return Err(ImageryErrorKind::TooLarge { width, height });
         }
         let text = world_files.iter().find_map(|extension| file.companion(extension));
@@ -172,7 +172,7 @@ impl<'a> Imagery<'a> {
         let mut reader = ImageReader::with_format(Cursor::new(self.bytes), format);
         let mut limits = image::Limits::default();
         // 16-bit colors with alpha take 8 bytes a pixel.
-        limits.max_alloc = Some(IMAGERY_PIXELS * 8 + (64 << 20));
+        limits.max_alloc = Some(IMAGERY_PIXELS.get() * 8 + (64 << 20));
         reader.limits(limits);
         reader.decode().map(DynamicImage::into_rgba8).map_err(ImageryErrorKind::Undecodable)
     }

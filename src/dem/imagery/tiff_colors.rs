@@ -71,12 +71,12 @@ impl TiffColors {
         let bytes = file.bytes;
         let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
         let mut decoder = decoder.with_limits(limits(bytes.len()));
-        let full = Storage::read(&mut decoder, bytes.len(), WINDOWED_SAMPLES)?;
+        let full = Storage::read(&mut decoder, bytes.len(), &WINDOWED_SAMPLES)?;
         let layout = ColorLayout::read(&mut decoder, &full)?;
         let raster = GeoTiffHeader::read(&mut decoder, &full, file)?.raster;
         let nodata = raster.nodata.filter(|value| value.fract() == 0.0 && (0.0..=255.0).contains(value));
         let mut overviews = Vec::new();
-        for image in 1..TIFF_IMAGES {
+        for image in 1..TIFF_IMAGES.count() {
             if decoder.seek_to_image(image).is_err() {
                 break;
             }
@@ -84,7 +84,7 @@ impl TiffColors {
             if kind & IS_REDUCED == 0 || kind & IS_MASK != 0 {
                 continue;
             }
-            let reduced = Storage::read(&mut decoder, bytes.len(), WINDOWED_SAMPLES);
+            let reduced = Storage::read(&mut decoder, bytes.len(), &WINDOWED_SAMPLES);
             let is_alike = |storage: &Storage| {
                 (storage.bits, storage.bands_per_block) == (full.bits, full.bands_per_block)
             };

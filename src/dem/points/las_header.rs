@@ -85,7 +85,7 @@ impl LasHeader {
                 "its header of {size} bytes (its version has {least_size}) is followed by points at byte {points_at}, in a file of {file_bytes}"
             )));
         }
-        if count > GRID_POINTS {
+        if count > GRID_POINTS.get() {
             return Err(PointsError::TooMany(count));
         }
         let most = ((file_bytes - points_at) / self.point_bytes) as u64;

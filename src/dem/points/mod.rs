@@ -82,7 +82,9 @@ pub enum PointsError {
         /// The classes of the file, with their counts.
         found: String,
     },
-    #[error("{0} points are more than the {GRID_POINTS} that are read; thin or cut the file")]
+    #[error(
+        "{0} points are more than the {GRID_POINTS} that are read; thin or cut the file, or {GRID_POINTS:#}"
+    )]
     TooMany(u64),
     /// The LAS or LAZ file is broken, or of a kind that is not read.
     #[error(transparent)]

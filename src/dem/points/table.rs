@@ -29,7 +29,7 @@ pub fn read(bytes: &[u8], hints: &PointHints) -> Result<PointCloud, PointsError>
             Some(point) if point.z.is_finite() => points.push(point),
             _ => return Err(PointsError::Line { line: line.number, found: line.quote() }),
         }
-        if points.len() as u64 > GRID_POINTS {
+        if points.len() as u64 > GRID_POINTS.get() {
             return Err(PointsError::TooMany(points.len() as u64));
         }
     }

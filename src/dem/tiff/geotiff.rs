@@ -37,9 +37,6 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     writer: Some(write),
 };
 
-/// The most values of one tag.
-const MOST_TAG_VALUES: usize = TIFF_TAG_BYTES / 8;
-
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.
 const LARGEST_TEXT: u64 = 1 << 20;
 
@@ -53,7 +50,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = file.bytes;
     let decoder = Decoder::new(Cursor::new(bytes)).map_err(decode_error)?;
     let mut decoder = decoder.with_limits(limits(bytes.len()));
-    let storage = Storage::read(&mut decoder, bytes.len(), RASTER_SAMPLES)?;
+    let storage = Storage::read(&mut decoder, bytes.len(), &RASTER_SAMPLES)?;
     let GeoTiffHeader { raster, scale, offset } = GeoTiffHeader::read(&mut decoder, &storage, file)?;
     if raster.nodata.is_some() && storage.is_all_absent() {
         return Err(FORMAT.broken("none of its blocks was ever written, so that all of it is no data"));
@@ -71,9 +68,10 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
 /// The most that the decoder may allocate for a file of `file_bytes` bytes. It reads tags; blocks are unpacked elsewhere.
 pub(crate) fn limits(file_bytes: usize) -> Limits {
     let mut limits = Limits::default();
-    limits.ifd_value_size = file_bytes.clamp(1024, TIFF_TAG_BYTES);
+    let most_bytes = TIFF_TAG_BYTES.count().max(1024);
+    limits.ifd_value_size = file_bytes.clamp(1024, most_bytes);
     // The decoder keeps a value of a tag in 32 bytes, and allocates what a tag claims before it looks whether the file holds it.
-    limits.decoding_buffer_size = 32 * file_bytes.clamp(1024, MOST_TAG_VALUES);
+    limits.decoding_buffer_size = 32 * file_bytes.clamp(1024, (most_bytes / 8).max(1024));
     limits
 }
 

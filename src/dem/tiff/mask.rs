@@ -47,7 +47,7 @@ pub(crate) fn apply_within(
     size: (u32, u32),
     samples: &mut Samples,
 ) -> Result<bool, DemErrorKind> {
-    for _ in 0..TIFF_IMAGES {
+    for _ in 0..TIFF_IMAGES.count() {
         // A broken overview or page is no reason to refuse the image before it.
         if !decoder.more_images() || decoder.next_image().is_err() {
             return Ok(false);
@@ -64,7 +64,7 @@ fn hide<R: Read + Seek>(
     mut bytes: &[u8],
     samples: &mut Samples,
 ) -> Result<(), DemErrorKind> {
-    let storage = Storage::read(decoder, bytes.len(), RASTER_SAMPLES)?;
+    let storage = Storage::read(decoder, bytes.len(), &RASTER_SAMPLES)?;
     check(&storage)?;
     let (width, height) = (storage.width, storage.height);
     let window = RasterWindow { column: 0, row: 0, width, height };

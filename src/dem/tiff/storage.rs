@@ -22,6 +22,7 @@ use crate::dem::limits::SizeClaim;
 use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::windows::RasterWindow;
+use crate::limits::work_limit::WorkLimit;
 
 /// The remedy for an unsupported compression.
 pub(crate) const TO_DEFLATE: &str =
@@ -93,7 +94,7 @@ impl Storage {
     pub fn read<R: Read + Seek>(
         decoder: &mut Decoder<R>,
         file_bytes: usize,
-        most: u64,
+        most: &'static WorkLimit,
     ) -> Result<Self, DemErrorKind> {
         let (width, height) = decoder.dimensions().map_err(decode_error)?;
         let mut shorts = |tag: Tag, default: u16| {
@@ -145,7 +146,7 @@ impl Storage {
         Ok(storage)
     }
 
-    fn check(&self, file_bytes: usize, most_samples: u64) -> Result<(), DemErrorKind> {
+    fn check(&self, file_bytes: usize, most_samples: &'static WorkLimit) -> Result<(), DemErrorKind> {
         if self.bands_per_block == 0 {
             return Err(FORMAT.broken("it has no band"));
         }

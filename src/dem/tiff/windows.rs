@@ -224,11 +224,11 @@ impl<R: Read + Seek> SharedFile<R> {
         for _ in 0..image {
             decoder.next_image().map_err(decode_error)?;
         }
-        let storage = Storage::read(&mut decoder, self.length, WINDOWED_SAMPLES)?;
+        let storage = Storage::read(&mut decoder, self.length, &WINDOWED_SAMPLES)?;
         let across = storage.block_width.clamp(1, storage.width);
         let down = storage.block_height.clamp(1, storage.height);
         let samples = u64::from(across) * u64::from(down);
-        if samples > BLOCK_SAMPLES || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
+        if samples > BLOCK_SAMPLES.get() || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
             return Err(FORMAT.unsupported(
                 format!("blocks of {across} x {down} samples"),
                 "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
@@ -246,7 +246,7 @@ impl<R: Read + Seek> SharedFile<R> {
         let mut file = self.lock();
         let Ok(mut decoder) = self.decoder(&mut file) else { return images };
         let size = decoder.dimensions().unwrap_or_default();
-        for image in 1..=TIFF_IMAGES {
+        for image in 1..=TIFF_IMAGES.count() {
             // A broken overview or page is no reason to refuse the images before it.
             if !decoder.more_images() || decoder.next_image().is_err() {
                 break;

@@ -18,6 +18,7 @@ use crate::dem::warp::metric_crs::metric_crs;
 use crate::dem::warp::resample::Resampler;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
+use crate::limits::RASTER_SAMPLES;
 
 /// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,7 +52,7 @@ pub enum WarpError {
         north: f64,
     },
     #[error(
-        "in {system} the elevation file would need {} x {} samples; choose a system that suits its place, or larger cells",
+        "in {system} the elevation file would need {} x {} samples; choose a system that suits its place, or larger cells; where that is more than {RASTER_SAMPLES}, {RASTER_SAMPLES:#}",
         .size.x, .size.y
     )]
     TooLarge {

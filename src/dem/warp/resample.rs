@@ -48,13 +48,14 @@ impl<'a> Resampler<'a> {
             None => CellSize::new(valid.center(), &at)?.side,
         };
         let extent = Rect::around(outline(valid).map(at).collect::<Result<Vec<_>, _>>()?);
-        let most = if cell.is_some() { RASTER_SAMPLES } else { source.samples.len() as u64 * GROWTH + 1024 };
+        let most =
+            if cell.is_some() { RASTER_SAMPLES.get() } else { source.samples.len() as u64 * GROWTH + 1024 };
         Self::new(source, transform, CellGrid::around(extent, side), most)
     }
 
     /// To cells over a raster with north up, from its own corner.
     pub fn over(source: &'a Raster, transform: &'a CrsTransform<'a>, cell: f64) -> Result<Self, WarpError> {
-        Self::new(source, transform, CellGrid::within(source.extent(), cell), RASTER_SAMPLES)
+        Self::new(source, transform, CellGrid::within(source.extent(), cell), RASTER_SAMPLES.get())
     }
 
     fn new(

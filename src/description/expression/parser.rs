@@ -208,11 +208,13 @@ impl ExpressionParser<'_> {
     }
 
     fn deepened(&self, deep: usize) -> Result<usize, ExpressionError> {
-        if deep < EXPRESSION_DEPTH { Ok(deep + 1) } else { Err(self.too_deep()) }
+        if deep < EXPRESSION_DEPTH.count() { Ok(deep + 1) } else { Err(self.too_deep()) }
     }
 
     fn too_deep(&self) -> ExpressionError {
-        let help = "split it over several tables, or write a long `or` as x in (a, b, ...)";
+        let help = format!(
+            "split it over several tables, or write a long `or` as x in (a, b, ...); {EXPRESSION_DEPTH:#}"
+        );
         self.wrong(self.place(), "this expression is nested too deeply", help)
     }
 

@@ -49,10 +49,12 @@ pub(super) fn wrong(
 /// # Errors
 /// The text is too long, a quotation is not closed, or a character begins no token.
 pub(super) fn tokens(text: &str) -> Result<Vec<SpannedToken>, ExpressionError> {
-    if text.len() > EXPRESSION_BYTES {
+    if text.len() > EXPRESSION_BYTES.count() {
         let message =
             format!("this expression has {} bytes, more than the {EXPRESSION_BYTES} allowed", text.len());
-        return Err(wrong(text, 0..0, message, "make several tables of it, each with a `where` of its own"));
+        let help =
+            format!("make several tables of it, each with a `where` of its own, or {EXPRESSION_BYTES:#}");
+        return Err(wrong(text, 0..0, message, help));
     }
     let mut tokens = Vec::new();
     let mut at = 0;

@@ -135,12 +135,12 @@ fn shared_definitions() -> [(String, Value); 5] {
     let definitions = [
         (
             "expression",
-            json!({ "type": "string", "minLength": 1, "maxLength": EXPRESSION_BYTES,
+            json!({ "type": "string", "minLength": 1, "maxLength": EXPRESSION_BYTES.count(),
                     "description": "An expression over the feature's properties, such as \"lanes * 3.25 ?? 6\"." }),
         ),
         (
             "computed",
-            json!({ "type": "string", "pattern": "[^\\w-]", "maxLength": EXPRESSION_BYTES,
+            json!({ "type": "string", "pattern": "[^\\w-]", "maxLength": EXPRESSION_BYTES.count(),
                     "description": "An expression that gives one of the words, such as \"property('surface')\"." }),
         ),
         (
@@ -160,27 +160,28 @@ fn shape(key: &KeyDeclaration) -> Value {
         KeyKind::Integer(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
         KeyKind::FeatureNumber(range) => json!({ "anyOf": [number(range), reference("expression")] }),
         KeyKind::Switch => json!({ "type": "boolean" }),
-        KeyKind::Text => json!({ "type": "string", "maxLength": SCENE_TEXT }),
+        KeyKind::Text => json!({ "type": "string", "maxLength": SCENE_TEXT.count() }),
         KeyKind::FilledText => text(),
-        KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, SCENE_LIST)] }),
+        KeyKind::TextList => json!({ "anyOf": [text(), list(text(), 1, SCENE_LIST.count())] }),
         KeyKind::TextTable => {
-            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": SCENE_LIST })
+            json!({ "type": "object", "additionalProperties": text(), "minProperties": 1, "maxProperties": SCENE_LIST.count() })
         }
         KeyKind::Expression => json!({ "allOf": [reference("expression")] }),
         KeyKind::Word(words) => one_of(&words()),
         KeyKind::FeatureWord(words) => json!({ "anyOf": [one_of(&words()), reference("computed")] }),
         KeyKind::Color => json!({ "allOf": [reference("color")] }),
         KeyKind::Point => json!({ "allOf": [reference("point")] }),
-        KeyKind::Points(least) => list(reference("point"), least, INLINE_POINTS),
+        KeyKind::Points(least) => list(reference("point"), least, INLINE_POINTS.count()),
         KeyKind::NumberRange(range) => list(number(range), 2, 2),
-        KeyKind::Numbers(range) => list(number(range), 0, INLINE_POINTS),
+        KeyKind::Numbers(range) => list(number(range), 0, INLINE_POINTS.count()),
         KeyKind::Ramp => {
             let stop = json!({ "type": "array", "prefixItems": [{ "type": "number" }, reference("color")],
                                "minItems": 2, "maxItems": 2 });
-            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, SCENE_LIST)] })
+            json!({ "anyOf": [one_of(&declarations::<RampName>()), list(stop, 2, SCENE_LIST.count())] })
         }
         KeyKind::Selection => {
-            let values = json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, SCENE_LIST)] });
+            let values =
+                json!({ "anyOf": [reference("scalar"), list(reference("scalar"), 1, SCENE_LIST.count())] });
             let table = json!({ "type": "object", "additionalProperties": values, "minProperties": 1 });
             json!({ "anyOf": [table, reference("expression")] })
         }
@@ -198,7 +199,7 @@ fn one_of(words: &[WordDeclaration]) -> Value {
 }
 
 fn text() -> Value {
-    json!({ "type": "string", "minLength": 1, "maxLength": SCENE_TEXT })
+    json!({ "type": "string", "minLength": 1, "maxLength": SCENE_TEXT.count() })
 }
 
 fn list(items: Value, least: usize, most: usize) -> Value {

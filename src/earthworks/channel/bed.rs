@@ -140,7 +140,7 @@ fn wishes(lattice: &Lattice, courses: &[ChannelCourse<'_>]) -> Result<Vec<Wish>,
         };
         courses.iter().zip(0..).flat_map(of_course)
     };
-    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > RIVER_POSTS {
+    if stretches().map(|(around, _)| around.posts()).fold(0, usize::saturating_add) > RIVER_POSTS.count() {
         return Err(ChannelError::TooWide);
     }
     let (mut wishes, mut kept) = (Vec::new(), 0);

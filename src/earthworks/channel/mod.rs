@@ -82,7 +82,7 @@ pub struct Cuts {
 pub enum ChannelError {
     /// Beds of hundreds of millions of posts.
     #[error(
-        "the beds of these rivers would cover more than {RIVER_POSTS} posts, each counted once a cell along the river"
+        "the beds of these rivers would cover more than {RIVER_POSTS} posts, each counted once a cell along the river; narrow them, or {RIVER_POSTS:#}"
     )]
     TooWide,
 }

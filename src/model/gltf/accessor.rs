@@ -76,8 +76,11 @@ impl<'a> AccessorReader<'a> {
     pub(super) fn charge(&self, elements: usize) -> Result<(), ModelError> {
         let total = self.elements_read.get().saturating_add(elements);
         self.elements_read.set(total);
-        if total > MODEL_ELEMENTS {
-            return Err(ModelError::TooLarge { what: "vertices, indices and joints", limit: MODEL_ELEMENTS });
+        if total > MODEL_ELEMENTS.count() {
+            return Err(ModelError::TooLarge {
+                what: "vertices, indices and joints",
+                limit: &MODEL_ELEMENTS,
+            });
         }
         Ok(())
     }

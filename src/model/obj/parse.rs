@@ -65,8 +65,8 @@ pub(super) fn parse(text: &str) -> Result<ObjFile, ModelError> {
     for (line, statement) in logical_lines(text) {
         parser.line = line;
         parser.statement(&statement)?;
-        if parser.file.corners.len() > MODEL_TRIANGLES {
-            return Err(ModelError::TooLarge { what: "corners of faces", limit: MODEL_TRIANGLES });
+        if parser.file.corners.len() > MODEL_TRIANGLES.count() {
+            return Err(ModelError::TooLarge { what: "corners of faces", limit: &MODEL_TRIANGLES });
         }
     }
     parser.file.check_indices()?;

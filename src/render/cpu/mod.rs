@@ -52,6 +52,7 @@ use rayon::prelude::*;
 use crate::draw::color::Srgba;
 use crate::draw::list::{DrawList, DrawListError, FeatureId};
 use crate::draw::pixels::Pixels;
+use crate::limits::memory::{MemoryRefused, check_memory};
 use crate::render::cpu::band::{BandRows, draw_band};
 use crate::render::cpu::geometry::ScreenGeometry;
 use crate::render::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
@@ -90,6 +91,9 @@ pub enum CpuRenderError {
     /// [`DrawList::check`] failed.
     #[error("the draw list is unsound: {0}")]
     List(#[from] DrawListError),
+    /// There is not the memory for the picture.
+    #[error(transparent)]
+    Memory(#[from] MemoryRefused),
     /// There are too many triangles.
     #[error("the draw list draws {0} triangles, the most is 4294965000; draw fewer or coarser meshes")]
     TooManyTriangles(usize),
@@ -113,6 +117,7 @@ pub fn render(
     quality: &RenderQuality,
 ) -> Result<Rendering, CpuRenderError> {
     list.check()?;
+    check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
     let screen = Screen::new(camera);
     let geometry = geometry(list, &screen)?;
     let shadows = Shadows::new(list, camera);
@@ -122,6 +127,14 @@ pub fn render(
         SampleCount::Four => draw(&screen, &geometry, &shader, &FOUR, true),
         SampleCount::Eight => draw(&screen, &geometry, &shader, &EIGHT, true),
     })
+}
+
+/// About how much memory the picture of a list takes: see the module.
+fn bytes_of(list: &DrawList, camera: &Camera) -> u64 {
+    const PER_PIXEL: u64 = 12;
+    const PER_TRIANGLE: u64 = 150;
+    let (width, height) = camera.size();
+    u64::from(width) * u64::from(height) * PER_PIXEL + list.triangle_count() as u64 * PER_TRIANGLE
 }
 
 /// The depths and features of [`render`], to the bit, without light, shadows and colors: the pixels are white.

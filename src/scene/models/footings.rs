@@ -46,11 +46,11 @@ pub fn level_pads(
             }
             let reach = polygon::bounds(&outline(placement, &footprint.grown(PAD_REACH)));
             cells += FullResolution { lattice }.cell_count(&reach);
-            if cells > LEVELED_CELLS {
+            if cells > LEVELED_CELLS.get() {
                 return Err(too_large(frame.document, group.table));
             }
             if placement.standing.footing == Footing::Pad {
-                if volumes.len() == LEVELED_PADS {
+                if volumes.len() == LEVELED_PADS.count() {
                     return Err(too_many(frame.document, group.table));
                 }
                 if let Some(moved) = level(placement, footprint, frame.scale, lattice) {
@@ -84,7 +84,9 @@ fn level(
 fn too_many(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let place = table.footing.span().or(table.file.span()).unwrap_or_default();
     let message = format!("more than {LEVELED_PADS} models have the ground leveled for them");
-    document.error_at(place, message).with_help("use footing = \"plinth\", which moves no earth")
+    document
+        .error_at(place, message)
+        .with_help(format!("use footing = \"plinth\", which moves no earth, or {LEVELED_PADS:#}"))
 }
 
 fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
@@ -92,5 +94,7 @@ fn too_large(document: &Document, table: &ModelPlacement) -> Diagnostic {
     let message = format!("up to this model, the footprints cover more than {LEVELED_CELLS} cells of ground");
     document
         .error_at(place, message)
-        .with_help("check `scale`, the meters per unit of the model file: 0.001 for one in millimeters")
+        .with_help(format!(
+            "check `scale`, the meters per unit of the model file: 0.001 for one in millimeters; or {LEVELED_CELLS:#}"
+        ))
 }

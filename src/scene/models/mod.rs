@@ -185,13 +185,13 @@ impl<'a> PlacedModels<'a> {
 /// # Errors
 /// There are more; the error points at `source`.
 pub fn within(document: &Document, source: &FeatureSource, count: usize) -> Result<(), Diagnostic> {
-    if count <= SCENE_MODELS {
+    if count <= SCENE_MODELS.count() {
         return Ok(());
     }
     let message = format!("with these, more than {SCENE_MODELS} models stand in the scene");
-    Err(document
-        .error_at(source.span(), message)
-        .with_help("take fewer points or a lower density, or choose among them with `where`"))
+    Err(document.error_at(source.span(), message).with_help(format!(
+        "take fewer points or a lower density, choose among them with `where`, or {SCENE_MODELS:#}"
+    )))
 }
 
 struct ModelChoice<'a> {

@@ -29,7 +29,7 @@ pub fn crossings(
         let same = others.filter(|other| roads[one.line].street.level == roads[other.line].street.level);
         found.extend(same.filter_map(|other| crossing(one, other)));
         pairs += after.len();
-        if pairs > ROAD_PAIRS || found.len() > ROAD_CROSSINGS {
+        if pairs > ROAD_PAIRS.count() || found.len() > ROAD_CROSSINGS.count() {
             return None;
         }
     }

@@ -15,6 +15,7 @@ use crate::earthworks::alignment::network::NodeId;
 use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
 use crate::earthworks::grading::grade;
 use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
+use crate::limits::{GROUND_POSTS, ROAD_CROSSINGS, ROAD_PAIRS};
 use crate::scene::builder::SceneBuilder;
 use crate::scene::report::ConformedRoadRow;
 use crate::scene::roads::centerline::Centerline;
@@ -61,7 +62,10 @@ pub fn conform(
     let is_on_ground = |road: &Centerline| road.street.alignment.is_on_ground();
     let meetings = meetings(roads, |road| is_on_ground(road) && conforms(&document.roads[road.table]));
     if meetings.is_tangled {
-        let note = "conforming roads cross each other too often to find every place: they meet at their vertices only";
+        let note = format!(
+            "conforming roads cross each other too often to find every place: they meet at their vertices only; for more \
+             crossings {ROAD_CROSSINGS:#}, for more comparisons {ROAD_PAIRS:#}"
+        );
         collected.findings.add(FindingCode::Tangled, 0..0, note);
     }
     let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
@@ -198,11 +202,14 @@ fn make_denser(lattice: &mut Lattice, strips: &[GradingStrip], collected: &mut S
         ),
     };
     if spacing_m > narrowest_m {
-        let reason = "; a model of a smaller area could have more posts";
+        let mut reason = "; a model of a smaller area could have more posts".to_owned();
+        if densify::doublings_for(lattice, narrowest_m / POSTS_ACROSS) > 0 {
+            reason.push_str(&format!(", or {GROUND_POSTS:#}"));
+        }
         let wide = format!(
             "a conforming road of {narrowest_m} m lies on posts {spacing_m:.3} m apart and is graded wider"
         );
-        note = if note.is_empty() { wide + reason } else { format!("{note}; {wide}{reason}") };
+        note = if note.is_empty() { wide + &reason } else { format!("{note}; {wide}{reason}") };
     }
     if !note.is_empty() {
         let code = if spacing_m > narrowest_m { FindingCode::TooFine } else { FindingCode::PostsAdded };

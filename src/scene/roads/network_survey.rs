@@ -95,7 +95,7 @@ impl NetworkSurvey {
         for (index, (road, rules)) in roads.iter().zip(rules).enumerate() {
             let Some(rules) = rules else { continue };
             stations += stations_of(lattice, road);
-            if stations > ROAD_STATIONS {
+            if stations > ROAD_STATIONS.get() as f64 {
                 return Err(too_many(document, road));
             }
             survey.add(lattice, index, road, rules, &meetings.stops[index]);
@@ -177,7 +177,9 @@ fn stations_of(lattice: &Lattice, road: &Centerline) -> f64 {
 }
 
 fn too_many(document: &Document, road: &Centerline) -> Diagnostic {
-    let message = format!("these roads have more than {ROAD_STATIONS:e} stations on the elevation model");
-    let help = "let fewer of them conform, by a `where` or in a scene of a smaller area";
+    let message = format!("these roads have more than {ROAD_STATIONS} stations on the elevation model");
+    let help = format!(
+        "let fewer of them conform, by a `where` or in a scene of a smaller area, or {ROAD_STATIONS:#}"
+    );
     document.error_at(document.roads[road.table].source.span(), message).with_help(help)
 }

@@ -215,21 +215,22 @@ fn bands(
     let rings: Vec<Vec<DVec2>> = area.rings().map(to_map).collect();
     let extent = lattice.extent();
     let extent = Rect { min: extent.min + lattice.origin(), max: extent.max + lattice.origin() };
-    let bands = Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, SCATTER_SQUARES);
+    let bands =
+        Bands::new(rings.iter().map(Vec::as_slice), pattern.side_m(), &extent, SCATTER_SQUARES.count());
     let bands = bands.filter(|bands| {
         let wide = bands.rows().map(|row| {
             let columns = bands.columns(row);
             usize::try_from(columns.end() - columns.start() + 1).unwrap_or(0)
         });
         *squares += wide.sum::<usize>();
-        *squares <= SCATTER_SQUARES
+        *squares <= SCATTER_SQUARES.count()
     });
     bands.ok_or_else(|| {
         let place = table.density.span().unwrap_or(table.source.span());
         let message = format!("so dense a pattern has more than {SCATTER_SQUARES} places in these areas");
-        document
-            .error_at(place, message)
-            .with_help("`density` is how many stand on a hectare, 100 m by 100 m")
+        document.error_at(place, message).with_help(format!(
+            "`density` is how many stand on a hectare, 100 m by 100 m; lower it, or {SCATTER_SQUARES:#}"
+        ))
     })
 }
 

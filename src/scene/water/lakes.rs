@@ -10,6 +10,7 @@ use crate::description::words::LevelRule;
 use crate::draw::list::FeatureId;
 use crate::earthworks::shore::{self, Flooded, LakeBasin};
 use crate::geom::polygon;
+use crate::limits::GROUND_POSTS;
 use crate::message::choice::Choice;
 use crate::ribbon::area;
 use crate::ribbon::plan::PlanMesh;
@@ -153,13 +154,16 @@ impl Lake {
         }
         // A part of a meter is less than the note tells.
         if shore::bed_reach_m(lattice).round() > self.reach_m().round() {
-            let message = format!(
+            let mut message = format!(
                 "{} lies on posts {:.3} m apart, and the ground is level up to {:.0} m from its shore; a model of a \
                  smaller area could have more posts",
                 described("lake", &self.name),
                 lattice.cell().max_element(),
                 shore::bed_reach_m(lattice)
             );
+            if densify::doublings_for(lattice, shore::spacing_m(self.reach_m())) > 0 {
+                message.push_str(&format!(", or {GROUND_POSTS:#}"));
+            }
             collected.findings.add(FindingCode::TooFine, span, message);
         }
         collected.report.lakes.push(LakeRow {

@@ -190,7 +190,7 @@ fn read_features(
         if let ValueRef::Blob(blob) = row.get_ref(geometry).map_err(refused)? {
             read_shape(blob, &mut parts).map_err(|error| match error {
                 WkbError::Unsupported(kind) => VectorError::curves(FORMAT, kind),
-                WkbError::Broken => {
+                WkbError::Broken | WkbError::TooDeep => {
                     let place = format!("{place}, feature {}", layer.feature_count() + 1);
                     VectorError::broken(FORMAT, place, error)
                 }

@@ -26,6 +26,9 @@ pub(crate) enum WkbError {
     /// It ends too early or contradicts itself.
     #[error("a shape is cut short or forged")]
     Broken,
+    /// It is a collection of collections.
+    #[error("a shape holds collections more than {GEOMETRY_DEPTH} deep; {GEOMETRY_DEPTH:#}")]
+    TooDeep,
     /// Its type, named here, is not read.
     #[error("a shape is of the type {0}")]
     Unsupported(&'static str),
@@ -49,8 +52,8 @@ fn read_shape(cursor: &mut ByteCursor<'_>, parts: &mut FeatureParts, depth: usiz
     /// Least bytes of a ring, its count, and of a shape, its byte order and type.
     const MIN_RING_BYTES: usize = 4;
     const MIN_SHAPE_BYTES: usize = 5;
-    if depth > GEOMETRY_DEPTH {
-        return Err(WkbError::Broken);
+    if depth > GEOMETRY_DEPTH.count() {
+        return Err(WkbError::TooDeep);
     }
     let (kind, layout) = read_header(cursor)?;
     match kind {

@@ -26,7 +26,7 @@ impl<'a> AreaAssembler<'a> {
             data,
             is_replaced: vec![false; data.ways.len()],
             sorter: RingSorter::new(HoleRule::Nesting),
-            vertices_left: OSM_AREA_VERTICES,
+            vertices_left: OSM_AREA_VERTICES.count(),
         }
     }
 

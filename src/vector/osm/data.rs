@@ -13,7 +13,9 @@ pub(super) const UNITS_PER_DEGREE: f64 = 1e7;
 
 /// The extract takes more memory than it may.
 #[derive(Debug, thiserror::Error)]
-#[error("it takes more than {} GiB of memory; cut it down with 'osmium extract'", OSM_BYTES >> 30)]
+#[error(
+    "it takes more than {OSM_BYTES} bytes of memory; cut it down with 'osmium extract', or {OSM_BYTES:#}"
+)]
 pub(super) struct OsmMemoryExceeded;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +118,7 @@ impl OsmData {
 
     fn charge(&mut self, bytes: usize) -> Result<(), OsmMemoryExceeded> {
         self.bytes += bytes;
-        if self.bytes > OSM_BYTES { Err(OsmMemoryExceeded) } else { Ok(()) }
+        if self.bytes > OSM_BYTES.count() { Err(OsmMemoryExceeded) } else { Ok(()) }
     }
 }
 

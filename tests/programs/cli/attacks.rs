@@ -54,6 +54,62 @@ fn a_packed_file_is_unpacked_no_further_than_its_head_promises() {
     }
 }
 
+/// A TIFF of so many 32-bit floats a side in tiles of 512, none of which was ever written.
+fn sparse_tiff(side: u32) -> Vec<u8> {
+    let tiles = side.div_ceil(512).pow(2);
+    let after = 8 + 11 * 12 + 6;
+    let entries: [(u16, u16, u32, u32); 11] = [
+        (256, 4, 1, side),
+        (257, 4, 1, side),
+        (258, 3, 1, 32),
+        (259, 3, 1, 1),
+        (262, 3, 1, 1),
+        (277, 3, 1, 1),
+        (322, 3, 1, 512),
+        (323, 3, 1, 512),
+        (324, 4, tiles, after),
+        (325, 4, tiles, after),
+        (339, 3, 1, 3),
+    ];
+    let mut file = b"II*\0\x08\0\0\0".to_vec();
+    file.extend((entries.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        file.extend(tag.to_le_bytes());
+        file.extend(kind.to_le_bytes());
+        file.extend(count.to_le_bytes());
+        file.extend(value.to_le_bytes());
+    }
+    file.resize(after as usize + 4 * tiles as usize, 0);
+    file
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_memory_does_not_hold_is_refused_with_its_size() {
+    let scratch = Scratch::new();
+    scratch.write("large.tif", sparse_tiff(16_000));
+    let (code, text) = run_within(1000, &scratch, &["height", "large.tif", "--at", "1,2"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("the raster needs about 2048 MB") && text.contains("cut or coarsen it"), "{text}");
+    let scene = crate::cli::project("scenes/road.toml");
+    let large = ["render", scene.as_str(), "--size", "16384x16384", "-o", "large.png"];
+    let (code, text) = run_within(1000, &scratch, &large);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("the picture needs about 32") && text.contains("draw a smaller one"), "{text}");
+    assert_eq!(scratch.names(), ["large.tif"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn small_questions_are_answered_in_little_memory() {
+    let scratch = Scratch::new();
+    let dem = crate::cli::project("assets/jacksboro/dem.tif");
+    for arguments in [&["dem", "info", &dem][..], &["height", &dem, "--at", "750000,4018000"]] {
+        let (code, text) = run_within(100, &scratch, arguments);
+        assert_eq!((code, text.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
 /// A TIFF of two by two bytes whose GeoKey directory claims `count` numbers.
 fn tiff(count: u32) -> Vec<u8> {
     let entries: [(u16, u16, u32, u32); 9] = [

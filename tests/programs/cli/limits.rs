@@ -1,0 +1,137 @@
+//! `--limit`: each limit of the page may be set for a run, up and down, and refusals name it.
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use std::io::Write;
+
+use crate::cli::{Ran, project, run, run_in};
+use crate::common::scratch::Scratch;
+
+const HILL: &str = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3\n4 5 6\n7 8 9\n";
+
+/// A scene on a hill with more tables.
+fn scene(tables: &str) -> Scratch {
+    let scratch = Scratch::new();
+    scratch.write("hill.asc", HILL);
+    scratch.write("s.toml", format!("[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\n{tables}"));
+    scratch
+}
+
+fn with_limit(scratch: &Scratch, command: &[&str], limit: &str) -> Ran {
+    run_in(scratch.folder(), &[command, &["--limit", limit]].concat())
+}
+
+/// The names of the page with their values; `None` for fixed ones.
+fn page() -> Vec<(String, Option<String>)> {
+    let text = std::fs::read_to_string(project("src/LIMITS.md")).expect("the page is there");
+    let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
+    rows.map(|row| {
+        let (name, rest) = row.split_once("` | ").expect("a name in quotes");
+        let most = rest.split(" |").next().expect("a value");
+        let value = most.split(' ').next().expect("a number").replace(',', "");
+        (name.to_owned(), (!most.ends_with(", fixed")).then_some(value))
+    })
+    .collect()
+}
+
+#[test]
+fn every_name_on_the_page_is_a_limit_and_fixed_ones_stay() {
+    let page = page();
+    assert!(page.len() > 40, "the page's rows are not found");
+    let mut all = vec!["schema".to_owned()];
+    for (name, value) in &page {
+        match value {
+            Some(value) => all.extend(["--limit".to_owned(), format!("{name}={value}")]),
+            None => {
+                let said = run(&["schema", "--limit", &format!("{name}=1000")]).failed(2);
+                assert!(said.contains(&format!("the limit `{name}` is fixed")), "{said}");
+            }
+        }
+    }
+    assert!(all.len() > 80, "most can be set");
+    assert_eq!(run(&all).ok(), run(&["schema"]).ok());
+}
+
+#[test]
+fn a_wrong_name_or_value_is_wrong_usage_and_the_nearest_name_is_told() {
+    for (limit, said) in [
+        ("raster-sample=10", "did you mean `raster-samples`?"),
+        ("elephants=10", "there are raster-samples, tile-samples,"),
+        ("raster-samples", "raster-samples=1G"),
+        ("raster-samples=many", "k, M or G"),
+        ("raster-samples=0", "it may be 1 to 1073741824"),
+        ("raster-samples=9G", "it may be 1 to 1073741824"),
+    ] {
+        let found = run(&["schema", "--limit", limit]).failed(2);
+        assert!(found.contains(said), "{limit}: {found}");
+    }
+    let twice = run(&["--limit", "scene-list=300", "schema", "--limit", "scene-list=400"]);
+    assert_eq!(twice.code, 2, "{twice:?}");
+}
+
+#[test]
+fn a_lower_limit_refuses_by_name() {
+    let square = "points = [[500, 500], [900, 500], [900, 900], [500, 900]]\n";
+    let pentagram = "points = [[1500, 2400], [2000, 800], [700, 1800], [2300, 1800], [1000, 800]]\n";
+    let road = "[[road]]\nwidth = 7\npoints = [[100, 1500], [2900, 1500]]\n";
+    let check: &[&str] = &["check", "s.toml"];
+    let hill: &[&str] = &["dem", "info", "hill.asc"];
+    for (limit, command, tables) in [
+        ("raster-samples=8", hill, String::new()),
+        ("input-bytes=20", hill, String::new()),
+        ("asset-bytes=20", check, road.to_owned()),
+        ("scene-bytes=20", check, road.to_owned()),
+        ("scene-tables=1", check, road.repeat(2)),
+        ("scene-text=3", check, format!("{road}name = \"Main Street\"\n")),
+        ("inline-points=1", check, road.to_owned()),
+        ("expression-bytes=9", check, road.replace("7", "\"lanes * 3.25 ?? 6\"")),
+        ("road-stations=1", check, format!("{road}profile = \"conform\"\n")),
+        ("ring-crossings=2", check, format!("[[area]]\ncover = \"forest\"\n{pentagram}")),
+        ("line-pieces=1", check, road.replace("[[road]]\nwidth = 7", "[[fence]]")),
+        ("earthwork-steps=1", check, format!("[[earthwork]]\nkind = \"level\"\nlevel = 9\n{square}")),
+        ("scene-list=1", check, format!("{road}[style]\nramp = [[0, \"#ffffff\"], [9, \"#000000\"]]\n")),
+        (
+            "profile-steps=3",
+            &["profile", "hill.asc", "--line", "500,500", "2500,500", "--step", "1"],
+            String::new(),
+        ),
+    ] {
+        let scratch = scene(&tables);
+        let name = limit.split('=').next().expect("a name");
+        let refused = with_limit(&scratch, command, limit);
+        let said = format!("{}{}", refused.out, refused.err);
+        assert_eq!(refused.code, 1, "{limit}: {said}");
+        assert!(said.contains(&format!("raise it with `--limit {name}=…`")), "{limit}: {said}");
+        let passed = run_in(scratch.folder(), command);
+        assert!(!passed.err.contains("--limit"), "{limit}: {passed:?}");
+    }
+}
+
+#[test]
+fn a_packed_file_is_unpacked_as_far_as_its_limit_says() {
+    let scratch = Scratch::new();
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(HILL.as_bytes()).expect("memory");
+    scratch.write("hill.asc.gz", packed.finish().expect("memory"));
+    let info: &[&str] = &["dem", "info", "hill.asc.gz"];
+    let said = with_limit(&scratch, info, "unpacked-raster-bytes=50").failed(1);
+    assert!(
+        said.contains("more than 50 bytes") && said.contains("--limit unpacked-raster-bytes=…"),
+        "{said}"
+    );
+    assert_eq!(with_limit(&scratch, info, "unpacked-raster-bytes=1k").code, 0);
+}
+
+#[test]
+fn a_higher_limit_lets_pass_what_was_refused() {
+    let long = format!(
+        "[[road]]\nwidth = 7\nname = \"{}\"\npoints = [[100, 1500], [2900, 1500]]\n",
+        "x".repeat(5000)
+    );
+    let scratch = scene(&long);
+    let said = run_in(scratch.folder(), &["check", "s.toml"]).failed(1);
+    assert!(said.contains("longer than 4096 characters") && said.contains("--limit scene-text=…"), "{said}");
+    assert_eq!(with_limit(&scratch, &["check", "s.toml"], "scene-text=6k").code, 0);
+    let schema = run(&["schema", "--limit", "scene-text=6k"]).ok();
+    assert!(schema.contains("6000") && !schema.contains("4096"), "editors accept what the program does");
+}
