@@ -10,7 +10,7 @@
 //! The name reads from left to right wherever it is, upward on an upright line. Where the line turns faster than letters
 //! can follow, the next place along it is tried; of the places near a wished one the straightest is taken first.
 
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 use tiny_skia::{PathBuilder, Transform};
 
 use crate::annotate::annotation::{LineLabel, LinePlacement};
@@ -18,6 +18,7 @@ use crate::annotate::composer::Composer;
 use crate::annotate::drawing::Drawing;
 use crate::annotate::halo::Halo;
 use crate::annotate::label_style::LineStyle;
+use crate::annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, SetLetter};
 use crate::annotate::paragraph::written_lines;
 use crate::annotate::pixel_box::PixelBox;
 use crate::annotate::place::{LabelCandidate, LabelRequest, TextAlignment};
@@ -41,12 +42,6 @@ const MOST_GIVEN: usize = 100_000;
 /// Places tried for one occurrence of a name, and their distance in ems.
 const MOST_TRIES: usize = 25;
 const TRY_EMS: f32 = 0.9;
-/// The greatest turn from a letter to the next, radians: 26°, at which letters of normal type begin to collide.
-const MOST_TURN: f32 = 0.45;
-/// The greatest turn of the whole name, radians: more no longer reads as one word.
-const MOST_BEND: f32 = 1.8;
-/// Letters lean back over the upright by no more than this, as the cosine of their turn.
-const MOST_LEAN: f32 = -0.15;
 /// The gap between the line's edge and the letters, in ems.
 const GAP_EMS: f32 = 0.22;
 /// The share of its line over which a spread name reaches, and the most space between its letters in ems.
@@ -74,13 +69,6 @@ struct LineCandidate {
 pub struct LetterTop {
     pub at: Vec2,
     pub up: Vec2,
-}
-
-/// A letter's place: the middle of its advance on the baseline, and the direction of the baseline there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct SetLetter {
-    at: Vec2,
-    along: Vec2,
 }
 
 impl<'a> PreparedLine<'a> {
@@ -308,25 +296,14 @@ impl LineSetter<'_> {
         if is_reversed && self.label.placement == LinePlacement::Uphill {
             return None;
         }
-        let side = if is_reversed { -1.0 } else { 1.0 };
-        let mut letters: Vec<SetLetter> = Vec::with_capacity(self.letters.letters.len());
-        let mut bend = 0.0;
-        for letter in &self.letters.letters {
-            let middle = station + side * (letter.middle - half);
-            let reach = 0.5 * letter.advance.max(self.style.text.size_px * 0.6);
-            let ahead: DVec2 = at(middle + side * reach) - at(middle - side * reach);
-            let along = ahead.as_vec2().try_normalize().filter(|along| along.x > MOST_LEAN)?;
-            if let Some(before) = letters.last() {
-                let turn = libm::atan2f(before.along.perp_dot(along), before.along.dot(along)).abs();
-                bend += turn;
-                if turn > MOST_TURN || bend > MOST_BEND {
-                    return None;
-                }
-            }
-            let up = Vec2::new(along.y, -along.x);
-            letters.push(SetLetter { at: at(middle).as_vec2() + up * baseline, along });
-        }
-        Some((letters, bend))
+        let least = self.style.text.size_px * 0.6;
+        let letters = self.letters.letters.iter();
+        let letters = letters.map(|letter| CourseLetter {
+            middle: letter.middle - half,
+            reach: 0.5 * letter.advance.max(least),
+        });
+        let course = LetterCourse { station, is_reversed, baseline, limits: LIMITS };
+        course.set(at, letters)
     }
 
     fn candidate(&self, letters: Vec<SetLetter>) -> LineCandidate {
@@ -394,7 +371,7 @@ mod tests {
                 assert_eq!(line.count(), 1, "{turn}");
                 for one in &line.occurrences[0] {
                     let (first, last) = (one.letters[0], one.letters[one.letters.len() - 1]);
-                    assert!(one.letters.iter().all(|letter| letter.along.x > MOST_LEAN), "{turn}");
+                    assert!(one.letters.iter().all(|letter| letter.along.x > LIMITS.most_lean), "{turn}");
                     let chord = last.at - first.at;
                     assert!(
                         chord.x > 0.0 || chord.x.abs() < 0.11 * chord.y.abs() && chord.y < 0.0,

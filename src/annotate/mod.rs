@@ -34,6 +34,7 @@ mod halo;
 mod label_style;
 mod labels;
 pub mod legend;
+pub mod letter_course;
 mod line_label;
 pub mod locator;
 pub mod map;

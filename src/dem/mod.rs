@@ -20,6 +20,7 @@ mod point_text;
 pub mod points;
 pub mod raster;
 pub mod read;
+pub mod reduced;
 pub mod sample;
 mod sample_type;
 pub mod stats;

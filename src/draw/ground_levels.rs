@@ -76,17 +76,19 @@ pub fn level(size: PostCount, number: u32, row: impl Fn(usize) -> Vec<GroundPost
     GroundLevel { size, posts }
 }
 
-/// The post `[column, row]` of the level after one of `size` with `posts`, as [`coarser_levels`] makes it.
-pub fn coarser_post(size: PostCount, posts: &[GroundPost], [column, row]: [u32; 2]) -> GroundPost {
+/// The post `[column, row]` of the level after one of `size` whose posts are those of `post`, as [`coarser_levels`] makes it.
+pub fn coarser_post(
+    size: PostCount,
+    post: impl Fn([u32; 2]) -> GroundPost,
+    [column, row]: [u32; 2],
+) -> GroundPost {
     // Past the border the border's posts are repeated.
     let around = |at: u32, count: u32| {
         [(2 * at).saturating_sub(1), 2 * at, 2 * at + 1].map(|index| index.min(count - 1))
     };
     let columns = around(column, size.columns);
-    let rows = around(row, size.rows).map(|row| {
-        let [west, own, east] = columns.map(|column| &posts[(row * size.columns + column) as usize]);
-        smoothed([west, own, east])
-    });
+    let rows =
+        around(row, size.rows).map(|row| smoothed(columns.map(|column| post([column, row])).each_ref()));
     smoothed(rows.each_ref())
 }
 
@@ -176,7 +178,8 @@ mod tests {
             let level = level(from, 1, row);
             for (index, post) in (0..).zip(&level.posts) {
                 let at = [index % level.size.columns, index / level.size.columns];
-                assert_eq!(coarser_post(from, &fine, at), *post, "{at:?} of {:?}", level.size);
+                let fine = |[column, row]: [u32; 2]| fine[(row * columns + column) as usize];
+                assert_eq!(coarser_post(from, fine, at), *post, "{at:?} of {:?}", level.size);
             }
         }
     }

@@ -55,6 +55,12 @@ limits! {
         WINDOWED_SAMPLES = 1 << 36 => To(1 << 40), "samples",
             "of a GeoTIFF that is read in windows, 262,144 a side",
             "cut it";
+        VIEWED_SAMPLES = 1 << 25 => POSTS, "samples",
+            "of an elevation file that the window holds in memory, 5,793 a side: two gigabytes with what is measured of them",
+            "a larger GeoTIFF in meters is shown in pages that are read as they are needed";
+        QUERIED_SAMPLES = 1 << 24 => POSTS, "samples",
+            "that are read of such a file for one question, 4,096 a side",
+            "measure a shorter line or a smaller outline";
         BLOCK_SAMPLES = 1 << 22 => POSTS, "samples",
             "of one tile or strip of such a GeoTIFF, 2048 a side",
             "rewrite it in tiles: gdal_translate -co TILED=YES";

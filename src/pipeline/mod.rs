@@ -42,6 +42,7 @@ pub mod new_scene;
 pub mod output_files;
 pub mod page;
 mod page_symbols;
+pub mod paged_elevation;
 pub mod part_file;
 pub mod picture;
 pub mod picture_buffers;

@@ -69,15 +69,35 @@ pub struct DynamicTerrain {
     options: DynamicOptions,
     lattice: Arc<Lattice>,
     layout: PatchLayout,
-    errors: ErrorMap,
+    errors: Arc<ErrorMap>,
     /// The exact errors of the vertices alone; empty for midpoint errors.
     own: Vec<f32>,
-    roughness: Option<Roughness>,
+    roughness: Option<Arc<Roughness>>,
     spheres: SphereMap,
     heights: PatchHeights,
     edits: u64,
     /// One a patch, false between edits.
     dirty: Vec<bool>,
+}
+
+/// Spheres for another reach, to be made on another thread. While it is kept, the next edit copies heights and errors.
+#[derive(Clone, Debug)]
+pub struct SphereTask {
+    options: DynamicOptions,
+    lattice: Arc<Lattice>,
+    layout: PatchLayout,
+    errors: Arc<ErrorMap>,
+    roughness: Option<Arc<Roughness>>,
+    /// How often the terrain had been edited.
+    edits: u64,
+}
+
+impl SphereTask {
+    /// The spheres.
+    pub fn spheres(&self) -> SphereMap {
+        let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout };
+        SphereMap::new(ground, &own_radius(&self.options, &self.errors, self.roughness.as_deref()))
+    }
 }
 
 /// The effects of an edit.
@@ -126,11 +146,11 @@ impl DynamicTerrain {
             }
         };
         let roughness = match options.radius {
-            Radius::Constrained(half_window) => Some(Roughness::new(&lattice, half_window)),
+            Radius::Constrained(half_window) => Some(Arc::new(Roughness::new(&lattice, half_window))),
             _ => None,
         };
-        let spheres = SphereMap::new(ground, &own_radius(&options, &errors, roughness.as_ref()));
-        let heights = PatchHeights::new(ground);
+        let spheres = SphereMap::new(ground, &own_radius(&options, &errors, roughness.as_deref()));
+        let (heights, errors) = (PatchHeights::new(ground), Arc::new(errors));
         let dirty = vec![false; layout.patch_count()];
         Some(Self { options, lattice, layout, errors, own, roughness, spheres, heights, edits: 0, dirty })
     }
@@ -171,9 +191,31 @@ impl DynamicTerrain {
 
     /// Makes the spheres anew for another reach; a mesh of the terrain must begin anew.
     pub fn set_reach(&mut self, reach: f32) {
-        self.options.reach = reach;
-        let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
-        self.spheres = SphereMap::new(self.ground(), &own);
+        let task = self.sphere_task(reach);
+        let spheres = task.spheres();
+        self.take_spheres(&task, spheres);
+    }
+
+    /// The task of making the spheres anew for another reach.
+    pub fn sphere_task(&self, reach: f32) -> SphereTask {
+        SphereTask {
+            options: DynamicOptions { reach, ..self.options },
+            lattice: Arc::clone(&self.lattice),
+            layout: self.layout,
+            errors: Arc::clone(&self.errors),
+            roughness: self.roughness.clone(),
+            edits: self.edits,
+        }
+    }
+
+    /// Takes over the spheres that a task has made, unless the terrain was edited since; returns whether it did. A mesh of
+    /// the terrain must begin anew then.
+    pub fn take_spheres(&mut self, task: &SphereTask, spheres: SphereMap) -> bool {
+        let is_current = task.edits == self.edits;
+        if is_current {
+            (self.options.reach, self.spheres) = (task.options.reach, spheres);
+        }
+        is_current
     }
 
     /// The number of edits that changed something.
@@ -204,14 +246,16 @@ impl DynamicTerrain {
     fn mend(&mut self, change: &Change, vertices: &mut Vec<Vertex>) {
         let (lattice, layout) = (&*self.lattice, &self.layout);
         let errors = match self.options.measure {
-            ErrorMeasure::Midpoint => mend_midpoint(&mut self.errors, lattice, layout, change),
-            ErrorMeasure::Exact => mend_exact(&mut self.own, &mut self.errors, lattice, layout, change),
+            ErrorMeasure::Midpoint => mend_midpoint(Arc::make_mut(&mut self.errors), lattice, layout, change),
+            ErrorMeasure::Exact => {
+                mend_exact(&mut self.own, Arc::make_mut(&mut self.errors), lattice, layout, change)
+            }
         };
         if let Some(roughness) = &mut self.roughness {
-            roughness.renew(lattice, &change.posts);
+            Arc::make_mut(roughness).renew(lattice, &change.posts);
         }
         let ground = PatchedGround { lattice, layout };
-        let own = own_radius(&self.options, &self.errors, self.roughness.as_ref());
+        let own = own_radius(&self.options, &self.errors, self.roughness.as_deref());
         let spheres = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
         vertices.extend_from_slice(&errors.vertices);
         vertices.extend_from_slice(&spheres.vertices);

@@ -13,6 +13,7 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::dem::raster::Raster;
 use crate::limits::ASSET_BYTES;
 use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
@@ -103,6 +104,8 @@ pub struct Assets {
     allowed_as_written: Vec<PathBuf>,
     /// Every file read so far.
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// The elevation that takes the place of every elevation file's.
+    elevation: Option<Arc<Raster>>,
 }
 
 impl Assets {
@@ -126,7 +129,24 @@ impl Assets {
         };
         let allowed_as_written = allowed.iter().map(written).collect();
         let allowed = allowed.iter().map(|path| canonical(path)).collect::<Result<_, _>>()?;
-        Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default() })
+        Ok(Self { folder, root, allowed, allowed_as_written, read: Arc::default(), elevation: None })
+    }
+
+    /// The same files, but for the elevation: that is `elevation`, whatever the scene names. For files that are larger than
+    /// the memory, of which this is an overview.
+    pub fn with_elevation(self, elevation: Arc<Raster>) -> Self {
+        Self { elevation: Some(elevation), ..self }
+    }
+
+    /// The elevation that takes the place of the file that the scene calls `name`; `None` where that is to be read.
+    ///
+    /// # Errors
+    /// [`AssetError`] where the file is not there or may not be read.
+    pub fn elevation(&self, name: &str) -> Result<Option<&Raster>, AssetError> {
+        let Some(elevation) = &self.elevation else { return Ok(None) };
+        let path = self.resolve(name)?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+        Ok(Some(elevation))
     }
 
     /// The bytes of the file that the scene calls `name`, relative to the scene file, or absolute under an

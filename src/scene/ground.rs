@@ -202,8 +202,13 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
     };
     let (dem, mut tiles) = (&terrain.dem, Tiles::default());
     for name in dem.iter() {
-        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-        let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+        let mut tile = match assets.elevation(name).map_err(|error| document.error(dem, error))? {
+            Some(elevation) => elevation.clone(),
+            None => {
+                let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+                read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?
+            }
+        };
         if let (Some(stated), Some(own)) = (&terrain.crs, overridden.take()) {
             let systems = OverriddenCrs { file: name, own: &own, stated };
             let found = systems.finding(tile.center(), document, dem.span().unwrap_or_default());

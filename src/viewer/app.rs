@@ -15,6 +15,7 @@ use crate::pipeline::viewing::ViewerOptions;
 use crate::view::navigation::pose::{ViewPose, wrapped};
 use crate::view::navigation::{NavigationMode, TRANSITION_S};
 use crate::viewer::commands::{ViewCommand, pressed};
+use crate::viewer::disk_answers::DiskAnswers;
 use crate::viewer::drawing_job::DrawingJob;
 use crate::viewer::following::FollowedFiles;
 use crate::viewer::frame_times::FrameTimes;
@@ -114,6 +115,7 @@ pub struct ViewerApp {
     pub(super) preview: Option<ToolPreview>,
     pub(super) viewshed: Option<ViewshedOverlay>,
     pub(super) question: Option<SavingQuestion>,
+    pub(super) answers: DiskAnswers,
     pub(super) files: FollowedFiles,
     title: String,
     pub(super) requests: Vec<WindowRequest>,
@@ -147,7 +149,7 @@ impl ViewerApp {
             view: ViewArea::new(),
             tree: TreePanel::default(),
             light: LightPanel::default(),
-            detail: DetailSettings { tolerance_px: 1.0, wireframe: false, frozen: false },
+            detail: DetailSettings { tolerance_px: 1.0, wireframe: false, frozen: false, is_fixed: false },
             picked: None,
             drawing: None,
             snapshot_camera: None,
@@ -157,6 +159,7 @@ impl ViewerApp {
             preview: None,
             viewshed: None,
             question: None,
+            answers: DiskAnswers::default(),
             files: FollowedFiles::default(),
             title: String::new(),
             requests: Vec::new(),
@@ -213,11 +216,17 @@ impl ViewerApp {
         }
     }
 
-    /// Whether a file is being opened, a picture drawn, or what stands set anew.
+    /// Whether a file is being opened or read, a picture drawn, or what stands set anew.
     pub fn is_busy(&self) -> bool {
         let is_relisting = self.opened.as_ref().is_some_and(|opened| opened.is_relisting());
         let is_looking = self.viewshed.as_ref().is_some_and(ViewshedOverlay::is_busy);
-        self.loading.is_some() || self.drawing.is_some() || is_relisting || is_looking
+        let is_paging = self.opened.as_ref().is_some_and(|opened| opened.is_paging() || opened.is_reaching());
+        self.loading.is_some()
+            || self.drawing.is_some()
+            || is_relisting
+            || is_looking
+            || is_paging
+            || self.answers.is_busy()
     }
 
     /// What is said in the window, the oldest first.
@@ -278,6 +287,8 @@ impl ViewerApp {
         self.follow_drawing(ui);
         self.follow_viewshed();
         self.follow_relisting();
+        self.follow_paging();
+        self.follow_answers();
         self.follow_files(ui);
         if !ui.ctx().text_edit_focused() {
             let commands = ui.input_mut(pressed);
@@ -332,7 +343,10 @@ impl ViewerApp {
             self.picked = Some(PickedText { feature, place: None, part: self.part_of_label(label) });
             return;
         }
-        self.picked = Some(match opened.pick(&camera, pixel) {
+        let pick = opened.pick(&camera, pixel);
+        self.answers.pick =
+            pick.as_ref().and_then(|pick| opened.exact_pick((&camera, pixel), pick, &self.context));
+        self.picked = Some(match pick {
             Some(pick) => PickedText {
                 feature: feature_text(opened, pick.place.feature),
                 place: Some(PlaceText::of(&opened.scene, &pick)),

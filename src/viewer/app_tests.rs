@@ -10,12 +10,13 @@ use egui_kittest::kittest::Queryable;
 
 use crate::pipeline::viewing::ViewerOptions;
 use crate::viewer::app::{ViewerApp, ViewerStage, WindowRequest};
+use crate::viewer::ghost::DragTarget;
 use crate::viewer::recent::RecentFiles;
 
 /// A place in the view, right of the panels.
-const IN_VIEW: Pos2 = pos2(800.0, 520.0);
+pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);
 
-type AppHarness = Harness<'static, Option<ViewerApp>>;
+pub(super) type AppHarness = Harness<'static, Option<ViewerApp>>;
 
 /// A scene of its own in a folder of its own.
 struct TestScene {
@@ -41,7 +42,7 @@ impl Drop for TestScene {
     }
 }
 
-fn window(file: Option<&Path>) -> AppHarness {
+pub(super) fn window(file: Option<&Path>) -> AppHarness {
     let options = ViewerOptions { file: file.map(Path::to_owned), ..ViewerOptions::default() };
     let draw = move |ui: &mut Ui, app: &mut Option<ViewerApp>| {
         let app =
@@ -57,11 +58,11 @@ fn window(file: Option<&Path>) -> AppHarness {
     harness
 }
 
-fn app(harness: &AppHarness) -> &ViewerApp {
+pub(super) fn app(harness: &AppHarness) -> &ViewerApp {
     harness.state().as_ref().expect("shown")
 }
 
-fn until(harness: &mut AppHarness, is_done: impl Fn(&ViewerApp) -> bool) {
+pub(super) fn until(harness: &mut AppHarness, is_done: impl Fn(&ViewerApp) -> bool) {
     let end = Instant::now() + Duration::from_secs(60);
     loop {
         harness.step();
@@ -73,7 +74,7 @@ fn until(harness: &mut AppHarness, is_done: impl Fn(&ViewerApp) -> bool) {
     }
 }
 
-fn click(harness: &mut AppHarness, at: Pos2) {
+pub(super) fn click(harness: &mut AppHarness, at: Pos2) {
     harness.hover_at(at);
     harness.step();
     for pressed in [true, false] {
@@ -265,13 +266,25 @@ fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
     let text = |harness: &AppHarness| app(harness).session.as_ref().expect("open").editor.text().to_owned();
     take(&mut harness, "");
     let to = glam::DVec2::new(749_350.0, 4_017_820.0);
+    let ghost = |harness: &AppHarness, turns: bool| -> Vec<[glam::Vec3; 2]> {
+        let app = app(harness);
+        let part = app.picked.as_ref().and_then(|picked| picked.part.as_ref()).expect("a table");
+        let target = if turns { to + glam::DVec2::X * 10.0 } else { to };
+        app.opened.as_ref().expect("open").ghost_edges(part, DragTarget { to: target, turns })
+    };
+    let moved = ghost(&harness, false);
+    assert_eq!(moved.len(), 12);
     harness.state_mut().as_mut().expect("shown").move_part(to, false);
+    assert_eq!(ghost(&harness, false), moved, "it stands where its ghost was");
+    let turned = ghost(&harness, true);
+    assert_ne!(turned, moved);
     harness.state_mut().as_mut().expect("shown").move_part(to + glam::DVec2::X * 10.0, true);
+    assert_eq!(ghost(&harness, true), turned);
     assert!(text(&harness).contains("at = [749350, 4017820]"), "{}", text(&harness));
     assert!(text(&harness).contains("heading = 90"), "{}", text(&harness));
     assert!(app(&harness).loading.is_none(), "the scene is not built anew");
     let opened = app(&harness).opened.as_ref().expect("open");
-    let at = opened.walk.model_at(0).as_dvec2() + opened.scene.lattice.origin();
+    let at = opened.walk.model_pose(0).at.as_dvec2() + opened.scene.lattice.origin();
     assert!(at.distance(to) < 0.1, "{at}");
     key(&mut harness, Modifiers::COMMAND, Key::Z);
     key(&mut harness, Modifiers::COMMAND, Key::Z);

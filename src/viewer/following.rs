@@ -1,7 +1,7 @@
 //! What happens beside the user: scenes that are opened, files that change on disk.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use egui::Ui;
 
@@ -11,11 +11,15 @@ use crate::pipeline::fingerprint::fingerprint;
 use crate::viewer::app::{OpeningFailure, ViewerApp};
 use crate::viewer::lettering;
 use crate::viewer::loading::{LoadedFile, opening_error};
+use crate::viewer::paging::PagingStage;
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::tree::TreePanel;
 use crate::viewer::session::EditingSession;
 use crate::viewer::watch::{FileWatch, WatchState};
 use crate::viewer::worker::{WorkerJob, drop_apart};
+
+/// How often the share of a terrain that is measured is shown anew.
+const PROGRESS_EVERY: Duration = Duration::from_millis(500);
 
 /// The files of the scene that is shown.
 #[derive(Default)]
@@ -52,6 +56,22 @@ impl ViewerApp {
         ];
         for error in followed.into_iter().filter_map(Result::err) {
             self.notices.warn(opening_error(&error));
+        }
+        if let Err(failure) = opened.follow_reach(&self.context) {
+            self.notices.warn(format!("measuring the ground for this picture failed: {failure}"));
+        }
+    }
+
+    /// Takes over what was read of terrain on disk.
+    pub(super) fn follow_paging(&mut self) {
+        let Some(paged) = self.opened.as_mut().and_then(|opened| opened.paged.as_mut()) else { return };
+        let before = paged.stage();
+        paged.follow();
+        match paged.stage() {
+            stage @ PagingStage::Failed(_) if stage == before => {}
+            PagingStage::Failed(text) => self.notices.warn(format!("the terrain cannot be read: {text}")),
+            PagingStage::Measuring(_) => self.context.request_repaint_after(PROGRESS_EVERY),
+            PagingStage::Shown => {}
         }
     }
 
@@ -107,10 +127,13 @@ impl ViewerApp {
             lettering::set_fonts(&self.context, opened.scene.font.as_ref());
         }
         self.detail.tolerance_px = opened.walk.tolerance_px();
-        self.detail.frozen = false;
+        (self.detail.frozen, self.detail.is_fixed) = (false, opened.paged.is_some());
         self.light = LightPanel::new(opened.walk.to_sun(), f64::from(opened.scene.scale.0));
         let watched: Vec<PathBuf> = opened.scene.files.iter().cloned().chain([source.path.clone()]).collect();
         self.watch_files(&watched);
+        if opened.paged.is_some() {
+            (self.session, self.files.fingerprint, self.files.check) = (None, None, None);
+        }
         let before = match (editor, &mut self.session) {
             (Some(editor), _) => {
                 (self.files.fingerprint, self.files.check) = (fingerprint, None);

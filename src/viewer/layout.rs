@@ -12,6 +12,7 @@ use crate::viewer::panels::detail::detail_panel;
 use crate::viewer::panels::help::help_panel;
 use crate::viewer::panels::light::{LightEvent, light_panel};
 use crate::viewer::panels::open::open_panel;
+use crate::viewer::panels::paging::paging_panel;
 use crate::viewer::panels::timing::timing_panel;
 use crate::viewer::panels::tree::{TreeEvent, tree_panel};
 use crate::viewer::place::PlaceText;
@@ -167,6 +168,11 @@ impl ViewerApp {
                 None => {}
             }
         });
+        if let Some(paged) = &opened.paged {
+            header("Terrain on disk").default_open(true).show(ui, |ui| {
+                paging_panel(ui, paged.size, &paged.stage(), &paged.kept);
+            });
+        }
         let mut detail = self.detail;
         header("Level of detail").show(ui, |ui| detail_panel(ui, &mut detail));
         if detail.tolerance_px != self.detail.tolerance_px {

@@ -1,16 +1,20 @@
 //! Opening a file on a thread, so that the window goes on answering.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::Instant;
 
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
+use crate::limits::VIEWED_SAMPLES;
 use crate::message::chain::error_text;
 use crate::pipeline::editing::editor::{SceneEditor, SceneSource};
 use crate::pipeline::fingerprint::fingerprint;
-use crate::pipeline::viewing::open_to_view;
+use crate::pipeline::paged_elevation::PagedElevation;
+use crate::pipeline::viewing::{is_scene_file, open_to_view};
 use crate::viewer::opened::{OpenedScene, OpeningView};
+use crate::viewer::paging::PagedTerrain;
 use crate::viewer::scene_load::LoaderSlot;
 use crate::viewer::worker::run_apart;
 
@@ -37,7 +41,7 @@ pub enum LoadingTask {
 pub struct LoadedFile {
     /// The scene.
     pub opened: Box<OpenedScene>,
-    /// What edits its file; `None` where it was edited already.
+    /// What edits its file; `None` where it was edited already, and of terrain on disk.
     pub editor: Option<SceneEditor>,
     /// What it was built of.
     pub source: SceneSource,
@@ -60,6 +64,7 @@ impl SceneLoading {
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Self {
         let (sender, news) = channel();
+        let wake = Arc::new(wake);
         let (LoadingTask::File(path, _) | LoadingTask::Edited(path, _)) = &task;
         let path = path.clone();
         thread::spawn(move || {
@@ -68,7 +73,10 @@ impl SceneLoading {
                 let _ = sender.send(news);
                 wake();
             };
-            let loaded = run_apart(|| load(task, &view, &slot, &|step| tell(LoadingNews::Step(step))));
+            let waker = Arc::clone(&wake);
+            let loaded = run_apart(|| {
+                load(task, (&view, &slot), move || waker(), &|step| tell(LoadingNews::Step(step)))
+            });
             tell(LoadingNews::Done(Box::new(loaded)));
         });
         Self { path, step: "starting", since: Instant::now(), news }
@@ -91,11 +99,16 @@ impl SceneLoading {
 
 fn load(
     task: LoadingTask,
-    view: &OpeningView,
-    slot: &LoaderSlot,
+    shown: (&OpeningView, &LoaderSlot),
+    wake: impl Fn() + Send + 'static,
     progress: &dyn Fn(&'static str),
 ) -> Result<LoadedFile, String> {
     progress("reading the scene file");
+    if let LoadingTask::File(path, allowed) = &task
+        && let Some(elevation) = large_elevation(path, progress)?
+    {
+        return load_paged((path, allowed), elevation, shown, wake, progress);
+    }
     let (path, source, editor) = match task {
         LoadingTask::File(path, allowed) => {
             let editor = open_to_view(&path, &allowed).map_err(|error| opening_error(&error))?;
@@ -106,8 +119,35 @@ fn load(
     let scene = source.build(progress).map_err(|error| opening_error(&error))?;
     let fingerprint = fingerprint(&source.path, &scene.files).ok();
     let opened =
-        OpenedScene::new(path, scene, view, slot, progress).map_err(|error| opening_error(&error))?;
+        OpenedScene::new(path, scene, None, shown, progress).map_err(|error| opening_error(&error))?;
     Ok(LoadedFile { opened: Box::new(opened), editor, source, fingerprint })
+}
+
+/// An elevation file that is too large for a scene in memory; `None` of others.
+fn large_elevation(path: &Path, progress: &dyn Fn(&'static str)) -> Result<Option<PagedElevation>, String> {
+    if is_scene_file(path) {
+        return Ok(None);
+    }
+    progress("reading elevation");
+    PagedElevation::open(path, VIEWED_SAMPLES).map_err(|error| opening_error(&error))
+}
+
+/// A large elevation file: its overview is the scene, and the terrain is shown in pages as soon as it is measured.
+pub(super) fn load_paged(
+    (path, allowed): (&Path, &[PathBuf]),
+    elevation: PagedElevation,
+    shown: (&OpeningView, &LoaderSlot),
+    wake: impl Fn() + Send + 'static,
+    progress: &dyn Fn(&'static str),
+) -> Result<LoadedFile, String> {
+    let editor = open_to_view(path, allowed).map_err(|error| opening_error(&error))?;
+    let source = editor.source().clone();
+    let scene = source.build_on(Arc::clone(&elevation.overview), progress);
+    let scene = scene.map_err(|error| opening_error(&error))?;
+    let paged = PagedTerrain::start(elevation, wake).map_err(|error| opening_error(&error))?;
+    let opened = OpenedScene::new(path.to_owned(), scene, Some(paged), shown, progress)
+        .map_err(|error| opening_error(&error))?;
+    Ok(LoadedFile { opened: Box::new(opened), editor: None, source, fingerprint: None })
 }
 
 /// The text of an error, beginning with the place in the scene file where there is one.

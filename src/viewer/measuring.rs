@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::pipeline::viewshed::ViewshedSummary;
-use crate::pipeline::walk::Walk;
+use crate::pipeline::walk::measure::MeasurableGround;
 use crate::terrain::profile::ProfileStation;
 use crate::terrain::sight::line::{Sight, SightEnd};
 use crate::terrain::sight::viewshed::ViewshedOptions;
@@ -66,15 +66,14 @@ impl Measuring {
         Self { kind, points: Vec::new(), facts: Vec::new(), profile: Vec::new(), is_done: false }
     }
 
-    /// Adds a place; begins anew after a measurement that was finished.
-    pub fn click(&mut self, at: DVec2, walk: &Walk) {
+    /// Adds a place; begins anew after a measurement that was finished. What it comes to is still to be measured.
+    pub fn click(&mut self, at: DVec2) {
         if self.is_done || self.points.len() >= self.kind.most_points() {
             *self = Self::new(self.kind);
         }
         if self.points.last() != Some(&at) {
             self.points.push(at);
         }
-        self.measure(walk);
         self.is_done = self.points.len() >= self.kind.most_points();
     }
 
@@ -83,23 +82,28 @@ impl Measuring {
         self.is_done = true;
     }
 
-    /// Measures again: after the ground changed.
-    pub fn measure(&mut self, walk: &Walk) {
+    /// Whether there are places enough to measure.
+    pub fn has_enough(&self) -> bool {
+        self.points.len() >= self.kind.least_points()
+    }
+
+    /// Measures: after a click, and after the ground changed.
+    pub fn measure(&mut self, ground: &impl MeasurableGround) {
         self.facts.clear();
         self.profile.clear();
-        if self.points.len() < self.kind.least_points() {
+        if !self.has_enough() {
             return;
         }
         self.facts = match self.kind {
-            MeasureKind::Line => self.line(walk),
-            MeasureKind::Area => area(&self.points, walk),
-            MeasureKind::Sight => sight(self.points[0], self.points[1], walk),
+            MeasureKind::Line => self.line(ground),
+            MeasureKind::Area => area(&self.points, ground),
+            MeasureKind::Sight => sight(self.points[0], self.points[1], ground),
             MeasureKind::Viewshed => vec!["looking around …".to_owned()],
         };
     }
 
-    fn line(&mut self, walk: &Walk) -> Vec<String> {
-        let measured = walk.measure_line(&self.points);
+    fn line(&mut self, ground: &impl MeasurableGround) -> Vec<String> {
+        let measured = ground.measure_line(&self.points);
         let summary = measured.summary;
         self.profile = measured.stations;
         let mut facts = vec![
@@ -117,8 +121,8 @@ impl Measuring {
     }
 }
 
-fn area(ring: &[DVec2], walk: &Walk) -> Vec<String> {
-    match walk.measure_area(ring) {
+fn area(ring: &[DVec2], ground: &impl MeasurableGround) -> Vec<String> {
+    match ground.measure_area(ring) {
         Ok(measured) => {
             let mut facts =
                 vec![area_text(measured.plan_m2), format!("{} round it", length_text(measured.perimeter_m))];
@@ -132,10 +136,10 @@ fn area(ring: &[DVec2], walk: &Walk) -> Vec<String> {
     }
 }
 
-fn sight(from: DVec2, to: DVec2, walk: &Walk) -> Vec<String> {
+fn sight(from: DVec2, to: DVec2, ground: &impl MeasurableGround) -> Vec<String> {
     let end = |at| SightEnd { at, above_m: EYE_M };
     let distance = length_text(from.distance(to));
-    match walk.line_of_sight(end(from), end(to)) {
+    match ground.line_of_sight(end(from), end(to)) {
         Sight::Clear => vec![format!("in sight, {distance} away"), heights_note()],
         Sight::Blocked(blocker) => vec![
             format!("not in sight, {distance} away"),
@@ -196,6 +200,7 @@ pub fn volume_text(volume_m3: f64) -> String {
 mod tests {
     use super::*;
     use crate::pipeline::viewing::open_to_view;
+    use crate::pipeline::walk::Walk;
     use crate::pipeline::walk::frame::WalkOptions;
     use std::path::Path;
     use std::sync::Arc;
@@ -209,17 +214,21 @@ mod tests {
     fn a_line_and_an_area_are_measured_as_soon_as_they_have_places_enough() {
         let (walk, corner) = (walk(), DVec2::new(749_000.0, 4_017_500.0));
         let mut line = Measuring::new(MeasureKind::Line);
-        line.click(corner, &walk);
+        line.click(corner);
+        line.measure(&walk);
         assert!(line.facts.is_empty());
-        line.click(corner + DVec2::X * 300.0, &walk);
+        line.click(corner + DVec2::X * 300.0);
+        line.measure(&walk);
         assert_eq!(line.facts[0], "300.0 m in plan");
         assert!(line.profile.len() > 5, "{:?}", line.profile);
         line.finish();
-        line.click(corner, &walk);
+        line.click(corner);
+        line.measure(&walk);
         assert_eq!(line.points.len(), 1, "a new line");
         let mut area = Measuring::new(MeasureKind::Area);
         for offset in [DVec2::ZERO, DVec2::X * 200.0, DVec2::new(200.0, 100.0), DVec2::Y * 100.0] {
-            area.click(corner + offset, &walk);
+            area.click(corner + offset);
+            area.measure(&walk);
         }
         assert_eq!(area.facts[..2], ["2.00 ha", "600.0 m round it"]);
     }
@@ -228,13 +237,17 @@ mod tests {
     fn sight_takes_two_places_and_a_viewshed_one() {
         let (walk, at) = (walk(), DVec2::new(749_000.0, 4_017_500.0));
         let mut sight = Measuring::new(MeasureKind::Sight);
-        sight.click(at, &walk);
-        sight.click(at + 20.0, &walk);
+        sight.click(at);
+        sight.measure(&walk);
+        sight.click(at + 20.0);
+        sight.measure(&walk);
         assert!(sight.facts[0].contains("in sight, 28.3 m away"), "{:?}", sight.facts);
-        sight.click(at, &walk);
+        sight.click(at);
+        sight.measure(&walk);
         assert_eq!(sight.points.len(), 1);
         let mut viewshed = Measuring::new(MeasureKind::Viewshed);
-        viewshed.click(at, &walk);
+        viewshed.click(at);
+        viewshed.measure(&walk);
         assert_eq!(viewshed.facts, ["looking around …"]);
         let seen = walk.viewshed_task(viewshed_from(viewshed.points[0])).seen().expect("ground");
         viewshed.facts = seen_facts(Some(&seen.summary));

@@ -5,7 +5,8 @@
 //!   │                         │
 //!   │                         ├─ loading ─► scene              on a thread, with progress; and on others:
 //!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; shadowing; drawing:
-//!   │                         │                                   pictures; all of them: worker
+//!   │                         │                                   pictures; reaching: nested spheres; paging: terrain on
+//!   │                         │                                   disk; disk_answers: its heights; all of them: worker
 //!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
 //! ```
 //!
@@ -16,22 +17,31 @@ mod app;
 #[cfg(all(test, feature = "viewer-tests"))]
 mod app_tests;
 mod commands;
+mod disk_answers;
 mod drawing_job;
 pub mod error;
 mod following;
 mod frame_times;
+mod ghost;
 mod graphics;
 mod labels;
 mod layout;
+mod letter_run;
 mod lettering;
 mod line_names;
+mod line_piece;
 mod loading;
 mod measuring;
 mod moving;
+mod name_lines;
 mod notices;
 mod opened;
+mod paging;
+#[cfg(all(test, feature = "viewer-tests"))]
+mod paging_tests;
 mod panels;
 mod place;
+mod reaching;
 mod recent;
 mod relisting;
 mod saving;

@@ -1,7 +1,7 @@
 //! What was picked as a part of the scene file: moved and turned with the mouse, resized, removed.
 //!
 //! A click picks. Dragging from what is picked moves a model or a label over the ground, with Ctrl it turns a model; until the
-//! button is released, a line leads to where it will stand.
+//! button is released, a ghost shows how it will stand, and a line leads there.
 
 use egui::{DragValue, Ui};
 use glam::DVec2;
@@ -44,7 +44,7 @@ impl ViewerApp {
         let placement = scene.placements.iter().position(|placement| placement.feature == feature);
         let of_model = placement.and_then(|number| {
             let place = session.editor.place_of_model(number, scene)?;
-            let at = opened.walk.model_at(number).as_dvec2() + scene.lattice.origin();
+            let at = opened.walk.model_pose(number).at.as_dvec2() + scene.lattice.origin();
             Some(PickedPart { place, grab: Some(GrabTarget::Model(feature)), at, width_m: None, file: None })
         });
         of_model.or_else(|| {
@@ -115,9 +115,7 @@ impl ViewerApp {
         let Some(part) = self.picked.as_ref().and_then(|picked| picked.part.clone()) else { return };
         let edit = match turns {
             true => {
-                let ahead = to - part.at;
-                let heading_deg = libm::atan2(ahead.x, ahead.y).to_degrees().rem_euclid(360.0).round();
-                SceneEdit::set(part.place.clone(), "heading", EditValue::Number(heading_deg))
+                SceneEdit::set(part.place.clone(), "heading", EditValue::Number(heading_deg(part.at, to)))
             }
             false => SceneEdit::set(part.place.clone(), "at", EditValue::Point(to.to_array())),
         };
@@ -128,4 +126,10 @@ impl ViewerApp {
             picked.part = Some(PickedPart { at: to, ..part });
         }
     }
+}
+
+/// The heading from a place toward another, whole degrees clockwise from north.
+pub fn heading_deg(from: DVec2, to: DVec2) -> f64 {
+    let ahead = to - from;
+    libm::atan2(ahead.x, ahead.y).to_degrees().rem_euclid(360.0).round()
 }

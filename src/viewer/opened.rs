@@ -9,11 +9,11 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawList, FeatureId};
-use crate::draw::patches::GroundChanges;
+use crate::draw::patches::{GroundChanges, PatchId};
 use crate::geom::aabb::Aabb;
 use crate::pipeline::walk::Walk;
-use crate::pipeline::walk::frame::{WalkError, WalkOptions, WalkStatistics};
-use crate::pipeline::walk::pick::{StandingIndex, WalkPick, pixel_ray};
+use crate::pipeline::walk::frame::{ReachRenewal, WalkError, WalkOptions, WalkStatistics};
+use crate::pipeline::walk::pick::{PickedWorld, StandingIndex, WalkPick, described, pixel_ray};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::live::KeptPatches;
 use crate::render::gpu::live::prepared::PreparedShadows;
@@ -23,6 +23,8 @@ use crate::terrain::sight::ray::Ray;
 use crate::view::camera::{Camera, CameraError, far_m};
 use crate::view::navigation::pose::{ViewPicture, ViewPose};
 use crate::view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
+use crate::viewer::paging::PagedTerrain;
+use crate::viewer::reaching::Reaching;
 use crate::viewer::relisting::Relisting;
 use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
 use crate::viewer::shadowing::{ShadowState, ShadowedView};
@@ -49,8 +51,12 @@ pub struct OpenedScene {
     pub path: PathBuf,
     /// The scene.
     pub scene: Arc<SceneModel>,
-    /// The ground from frame to frame.
+    /// The ground from frame to frame; of terrain on disk, its overview.
     pub walk: Walk,
+    /// The terrain on disk of which the scene is an overview; `None` where the scene is in memory.
+    pub paged: Option<PagedTerrain>,
+    /// Whether the renderer has the ground of the walk.
+    shows_walk: bool,
     /// The camera's way.
     pub navigator: Navigator,
     /// The vertical field of view, radians.
@@ -69,6 +75,8 @@ pub struct OpenedScene {
     pub(super) load: Option<SceneLoad>,
     /// The next list, while it is made.
     pub(super) relisting: Option<Relisting>,
+    /// The next spheres, while they are made.
+    pub(super) reaching: Option<Reaching>,
     /// Whether the list is of old, or will be when the next one is there.
     pub(super) wants_list: bool,
     pub(super) shadows: ShadowState,
@@ -148,15 +156,16 @@ impl OpenedScene {
     pub fn new(
         path: PathBuf,
         scene: SceneModel,
-        view: &OpeningView,
-        slot: &LoaderSlot,
+        paged: Option<PagedTerrain>,
+        (view, slot): (&OpeningView, &LoaderSlot),
         progress: &dyn Fn(&'static str),
     ) -> Result<Self, SceneFrameError> {
         let scene = Arc::new(scene);
         progress("measuring the ground");
         let camera = picture::camera(&scene, &scene.cameras[0], FIRST_SIZE)?;
         let to_sun = Some(scene.sunlight.to_sun(Some(&camera)));
-        let walk = Walk::new(Arc::clone(&scene), WalkOptions { to_sun, ..WalkOptions::default() });
+        let options = WalkOptions { to_sun, renewal: ReachRenewal::ByTask, ..WalkOptions::default() };
+        let walk = Walk::new(Arc::clone(&scene), options);
         let mut list = walk.static_list(&camera, progress);
         list.items.retain(|item| !view.hidden.contains(&item.feature));
         let list = Arc::new(list);
@@ -173,17 +182,23 @@ impl OpenedScene {
             hidden: view.hidden.clone(),
             load: Some(SceneLoad::unprepared(&list)),
             relisting: None,
+            reaching: None,
             wants_list: false,
             shadows: ShadowState::default(),
             size: FIRST_SIZE,
             list,
             scene,
             walk,
+            paged,
+            shows_walk: true,
         };
         progress("showing the ground");
         // Rays of the pointer need it.
         opened.walk.sight();
         let seen = opened.opening_camera(view)?;
+        if let Some(task) = opened.walk.reach_task(&seen) {
+            opened.walk.take_reach(&task, task.spheres());
+        }
         let first = opened.walk.update(&seen)?.changes;
         let first = opened.without_hidden(first);
         progress("sending the scene to the adapter");
@@ -266,29 +281,29 @@ impl OpenedScene {
 
     /// Lets `seconds` pass with steps; returns whether the camera moved.
     pub fn advance(&mut self, seconds: f64, steps: NavigationSteps) -> bool {
-        let walk = &self.walk;
-        self.navigator.advance(seconds, steps, &|at| walk.ground_z(at))
+        let ground = (&self.walk, self.paged.as_ref());
+        self.navigator.advance(seconds, steps, &|at| ground_z(ground, at))
     }
 
     /// Turns the eye about `pivot`, radians to the right and up over it; or the view alone, where there is no pivot.
     pub fn turn(&mut self, pivot: Option<DVec3>, turn: DVec2) {
-        let walk = &self.walk;
+        let ground = (&self.walk, self.paged.as_ref());
         match pivot {
-            Some(pivot) => self.navigator.orbit(pivot, turn, &|at| walk.ground_z(at)),
+            Some(pivot) => self.navigator.orbit(pivot, turn, &|at| ground_z(ground, at)),
             None => self.navigator.look(turn),
         }
     }
 
     /// Moves the ground along, so that `grabbed` lies under a pixel of `camera`'s picture.
     pub fn drag(&mut self, grabbed: DVec3, camera: &Camera, pixel: Vec2) {
-        let walk = &self.walk;
-        self.navigator.drag(grabbed, camera.ray_through(pixel).as_dvec3(), &|at| walk.ground_z(at));
+        let ground = (&self.walk, self.paged.as_ref());
+        self.navigator.drag(grabbed, camera.ray_through(pixel).as_dvec3(), &|at| ground_z(ground, at));
     }
 
     /// Comes nearer to `place`, until it is `factor` times as far away.
     pub fn zoom(&mut self, place: DVec3, factor: f64) {
-        let walk = &self.walk;
-        self.navigator.zoom(place, factor, &|at| walk.ground_z(at));
+        let ground = (&self.walk, self.paged.as_ref());
+        self.navigator.zoom(place, factor, &|at| ground_z(ground, at));
     }
 
     /// What the renderer has to take over for a picture of `size` pixels.
@@ -307,15 +322,16 @@ impl OpenedScene {
         let load = self.load.take();
         if load.as_ref().is_some_and(|load| load.prepared.is_none()) {
             self.walk.forget_handed();
+            self.paged.iter_mut().for_each(PagedTerrain::forget_handed);
+            self.shows_walk = true;
         }
         let started = Instant::now();
         let refined_for = match self.frozen {
             Some(pose) => self.camera_from(&pose, size)?,
             None => camera,
         };
-        let frame = self.walk.update(&refined_for)?;
+        let (changes, statistics) = self.updated(&refined_for)?;
         let update_ms = started.elapsed().as_secs_f32() * 1e3;
-        let (changes, statistics) = (self.without_hidden(frame.changes), frame.statistics);
         let shadows = self.shadows.take_ready();
         Ok(SceneFrame {
             load,
@@ -326,6 +342,23 @@ impl OpenedScene {
             statistics,
             update_ms,
         })
+    }
+
+    /// What changed on the ground: on that of the walk until the terrain on disk, where there is one, has come.
+    fn updated(&mut self, camera: &Camera) -> Result<(GroundChanges, WalkStatistics), SceneFrameError> {
+        if let Some(paged) = self.paged.as_mut().filter(|paged| paged.is_shown()) {
+            let (mut changes, statistics) = paged.update(camera);
+            if self.shows_walk && !changes.vertices.is_empty() {
+                self.shows_walk = false;
+                let patches = self.scene.ground().layout().patch_count() as u32;
+                changes.dropped.extend((0..patches).map(PatchId));
+            }
+            if !self.shows_walk {
+                return Ok((changes, statistics));
+            }
+        }
+        let frame = self.walk.update(camera)?;
+        Ok((self.without_hidden(frame.changes), frame.statistics))
     }
 
     /// Hands everything over again: to a renderer that starts anew.
@@ -349,19 +382,57 @@ impl OpenedScene {
 
     /// What the picture of `camera` shows at a pixel; `None` for the sky.
     pub fn pick(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
-        self.walk.pick(pixel_ray(camera, pixel), Some(&self.standing))
+        let ray = pixel_ray(camera, pixel);
+        match &self.paged {
+            Some(paged) => self.pick_page(paged, ray, Some(&self.standing)),
+            None => self.walk.pick(ray, Some(&self.standing)),
+        }
     }
 
     /// What lies on the ground, or the ground, at a pixel; `None` for the sky.
     pub fn pick_ground(&self, camera: &Camera, pixel: Vec2) -> Option<WalkPick> {
-        self.walk.pick(pixel_ray(camera, pixel), None)
+        let ray = pixel_ray(camera, pixel);
+        match &self.paged {
+            Some(paged) => self.pick_page(paged, ray, None),
+            None => self.walk.pick(ray, None),
+        }
+    }
+
+    /// The same of terrain on disk: heights are those of its pages in memory, and none where no page is.
+    fn pick_page(
+        &self,
+        paged: &PagedTerrain,
+        ray: Ray,
+        standing: Option<&StandingIndex>,
+    ) -> Option<WalkPick> {
+        let ground = self.meets_ground(ray);
+        let ground_m = ground.map_or(f64::MAX, |at| at.distance(ray.origin));
+        let solid = standing.and_then(|index| index.pick(ray, ground_m));
+        let (distance_m, feature) = solid.or_else(|| ground.map(|_| (ground_m, FeatureId::GROUND)))?;
+        let direction = ray.direction.normalize_or_zero();
+        let world = ground.filter(|_| solid.is_none()).unwrap_or(ray.origin + direction * distance_m);
+        let page = paged.pages().and_then(|pages| pages.page_at(world.truncate()));
+        let at = self.scene.lattice.origin() + world.truncate();
+        let picked = PickedWorld { world, at, distance_m, feature };
+        Some(described(&self.scene, page.map(Arc::as_ref), picked))
+    }
+
+    /// Where a ray meets the ground that is shown.
+    fn meets_ground(&self, ray: Ray) -> Option<DVec3> {
+        let hit = self.walk.pick_ground(ray);
+        self.paged.as_ref().map_or(hit, |paged| paged.pick(ray, hit))
+    }
+
+    /// World Z of the ground at a world position; `None` without data.
+    pub fn ground_z(&self, at: DVec2) -> Option<f64> {
+        ground_z((&self.walk, self.paged.as_ref()), at)
     }
 
     /// The place in the middle of the picture; without ground there, one ahead at the distance of the scene's middle.
     pub fn focus(&self, camera: &Camera) -> DVec3 {
         let (width, height) = camera.size();
         let middle = Vec2::new(width as f32, height as f32) * 0.5;
-        self.walk.pick_ground(pixel_ray(camera, middle)).unwrap_or_else(|| {
+        self.meets_ground(pixel_ray(camera, middle)).unwrap_or_else(|| {
             let ahead_m = (self.bounds().center() - camera.eye()).dot(camera.forward()).max(100.0);
             (camera.eye() + camera.forward() * ahead_m).as_dvec3()
         })
@@ -376,7 +447,7 @@ impl OpenedScene {
             return true;
         }
         let slack_m = (distance_m * LABEL_SLACK).max(self.walk.lattice().cell().max_element());
-        let hit = self.walk.pick_ground(Ray { origin, direction });
+        let hit = self.meets_ground(Ray { origin, direction });
         hit.is_none_or(|hit| hit.distance(origin) > distance_m - slack_m)
     }
 
@@ -401,9 +472,17 @@ impl OpenedScene {
     pub fn go_to_feature(&mut self, feature: FeatureId) -> bool {
         let Some((min, max)) = self.feature_box(feature) else { return false };
         let middle = ((min + max) * 0.5).as_dvec2();
-        let z = self.walk.ground_z(middle).unwrap_or(f64::from(self.bounds().center().z));
+        let z = self.ground_z(middle).unwrap_or(f64::from(self.bounds().center().z));
         self.go_toward(middle.extend(z), (f64::from(min.distance(max)) * 1.2).max(60.0));
         true
+    }
+}
+
+/// World Z of the ground at a world position, by the page in memory there, or else by the walk; `None` without data.
+fn ground_z((walk, paged): (&Walk, Option<&PagedTerrain>), at: DVec2) -> Option<f64> {
+    match paged.and_then(|paged| paged.height(at)) {
+        Some(height) => height.height_m().map(|height_m| walk.scene().scale.world_z(height_m)),
+        None => walk.ground_z(at),
     }
 }
 

@@ -1,5 +1,6 @@
 //! A place in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
 
+use crate::draw::list::FeatureId;
 use crate::pipeline::positions::format_position;
 use crate::pipeline::walk::pick::WalkPick;
 use crate::scene::SceneModel;
@@ -30,8 +31,10 @@ impl PlaceText {
     /// What was picked in `scene`.
     pub fn of(scene: &SceneModel, pick: &WalkPick) -> Self {
         let ground = pick.ground_m.map(|ground_m| format!("{ground_m:.1} m (ground)"));
-        let is_above =
-            pick.ground_m.is_none_or(|ground_m| (pick.place.elevation_m - ground_m).abs() > LYING_M);
+        // Ground of which no height is known is not in memory.
+        let is_above = pick.ground_m.map_or(pick.place.feature != FeatureId::GROUND, |ground_m| {
+            (pick.place.elevation_m - ground_m).abs() > LYING_M
+        });
         let top = is_above.then(|| format!("{:.1} m", pick.place.elevation_m));
         let slope = pick.slope_deg.map(|degrees| {
             let toward = pick.aspect_deg.map(|aspect| format!(" toward {}", compass(aspect)));

@@ -50,6 +50,9 @@ impl ViewerApp {
 
     /// Saves the edits into the scene file.
     pub(super) fn save(&mut self, on_conflict: OnConflict) {
+        if self.session.is_none() {
+            return self.refuse();
+        }
         let Some(session) = &mut self.session else { return };
         let path = session.editor.source().path.clone();
         let name = files::file_name(&path);

@@ -120,7 +120,7 @@ impl OpenedScene {
     fn is_stale(&self, camera: &Camera) -> bool {
         let Some(before) = &self.shadows.made_for else { return true };
         let eye = camera.eye();
-        let below = self.walk.ground_z(eye.truncate().as_dvec2());
+        let below = self.ground_z(eye.truncate().as_dvec2());
         let height_m = below.map_or(eye.z - self.bounds().min.z, |z| eye.z - z as f32).max(LEAST_HEIGHT_M);
         let is_turned = |of: fn(&Camera) -> Vec3| of(before).dot(of(camera)) < STALE_COSINE;
         before.eye().distance(eye) > STALE_SHARE * height_m

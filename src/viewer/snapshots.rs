@@ -34,7 +34,7 @@ impl ViewerApp {
     /// Adds the view to the scene as a camera: an edit.
     pub(super) fn keep_camera(&mut self) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
-        let Some(session) = &self.session else { return };
+        let Some(session) = &self.session else { return self.refuse() };
         let known: Vec<&str> =
             session.editor.document().cameras.iter().map(|camera| camera.name.as_str()).collect();
         let mut names = (1..=u32::MAX).map(|number| format!("view-{number}"));
@@ -53,7 +53,7 @@ impl ViewerApp {
     /// Draws a picture of the view on a thread.
     pub(super) fn take_snapshot(&mut self) {
         let Some((opened, camera)) = self.opened.as_ref().zip(self.view.camera) else { return };
-        let Some(session) = &self.session else { return };
+        let Some(session) = &self.session else { return self.refuse() };
         if self.drawing.is_some() {
             let now = self.context.input(|input| input.time);
             self.notices.tell(now, "the picture before is still being drawn");

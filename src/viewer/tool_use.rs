@@ -7,11 +7,13 @@ use glam::{DVec2, Vec2};
 
 use crate::pipeline::editing::edit::SceneEdit;
 use crate::pipeline::editing::effect::EditPreview;
-use crate::pipeline::editing::tool::{DrawingTool, ToolKind, ToolShape};
+use crate::pipeline::editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
 use crate::view::camera::Camera;
 use crate::viewer::app::ViewerApp;
+use crate::viewer::ghost::show_ghost;
 use crate::viewer::measuring::{MeasureKind, Measuring, volume_text};
 use crate::viewer::opened::OpenedScene;
+use crate::viewer::paging::PagedTerrain;
 use crate::viewer::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
 use crate::viewer::session::EditOutcome;
 use crate::viewer::view_area::ViewEvent;
@@ -84,17 +86,18 @@ impl ViewerApp {
     }
 
     fn use_tool_at(&mut self, at: DVec2) {
-        let Some((opened, session)) = self.opened.as_ref().zip(self.session.as_ref()) else { return };
-        let edit = match &mut self.tool {
-            Some(ActiveTool::Measure(measuring)) => {
-                measuring.click(at, &opened.walk);
-                if measuring.kind == MeasureKind::Viewshed {
-                    return self.look_around(at);
+        let edit = match (&mut self.tool, &self.session) {
+            (Some(ActiveTool::Measure(measuring)), _) => {
+                measuring.click(at);
+                let looks_around = measuring.kind == MeasureKind::Viewshed;
+                self.measure_again();
+                if looks_around {
+                    self.look_around(at);
                 }
-                None
+                return;
             }
-            Some(ActiveTool::Draw(tool)) => tool.click(at.to_array(), &session.settings),
-            None => None,
+            (Some(ActiveTool::Draw(tool)), Some(session)) => tool.click(at.to_array(), &session.settings),
+            _ => None,
         };
         if let Some(edit) = edit {
             self.edit(&edit);
@@ -102,14 +105,13 @@ impl ViewerApp {
     }
 
     fn finish_tool(&mut self) {
-        let Some(session) = &self.session else { return };
-        let edit = match &mut self.tool {
-            Some(ActiveTool::Measure(measuring)) => {
+        let edit = match (&mut self.tool, &self.session) {
+            (Some(ActiveTool::Measure(measuring)), _) => {
                 measuring.finish();
                 None
             }
-            Some(ActiveTool::Draw(tool)) => tool.finish(&session.settings),
-            None => None,
+            (Some(ActiveTool::Draw(tool)), Some(session)) => tool.finish(&session.settings),
+            _ => None,
         };
         if let Some(edit) = edit {
             self.edit(&edit);
@@ -118,6 +120,7 @@ impl ViewerApp {
 
     /// Makes an edit; says why where it cannot be made. Returns whether it was made.
     pub(super) fn edit(&mut self, edit: &SceneEdit) -> bool {
+        self.refuse();
         let Some((opened, session)) = self.opened.as_mut().zip(self.session.as_mut()) else { return false };
         let outcome = session.apply(edit, opened);
         let is_made = outcome.is_ok();
@@ -128,6 +131,17 @@ impl ViewerApp {
         is_made
     }
 
+    /// Why nothing is edited in what is open; `None` where it is.
+    pub(super) fn refusal(&self) -> Option<String> {
+        self.opened.as_ref()?.paged.as_ref().map(PagedTerrain::refusal)
+    }
+
+    /// Says why something is not done to what is open.
+    pub(super) fn refuse(&mut self) {
+        let refusal = self.refusal();
+        refusal.into_iter().for_each(|refusal| self.notices.warn(refusal));
+    }
+
     /// Lets the window follow an edit.
     pub(super) fn note_outcome(&mut self, outcome: EditOutcome) {
         self.preview = None;
@@ -135,9 +149,7 @@ impl ViewerApp {
         if outcome == EditOutcome::Rebuild {
             self.rebuild();
         }
-        if let (Some(ActiveTool::Measure(measuring)), Some(opened)) = (&mut self.tool, &self.opened) {
-            measuring.measure(&opened.walk);
-        }
+        self.measure_again();
         self.context.request_repaint();
     }
 
@@ -177,11 +189,14 @@ impl ViewerApp {
 
     pub(super) fn show_tools(&mut self, ui: &mut Ui) {
         let hint = self.tool_hint();
-        let Some(session) = &mut self.session else { return };
-        let moved = session
-            .moved
+        let refusal = self.refusal();
+        let moved = self.session.as_ref().and_then(|session| session.moved);
+        let moved = moved
             .map(|moved| format!("cut {}, filled {}", volume_text(moved.cut_m3), volume_text(moved.fill_m3)));
-        let history = [session.editor.can_undo(), session.editor.can_redo(), session.editor.is_changed()];
+        let history = self.session.as_ref().map_or([false; 3], |session| {
+            [session.editor.can_undo(), session.editor.can_redo(), session.editor.is_changed()]
+        });
+        let mut unused = ToolSettings::for_cell(1.0);
         let mut panel = ToolsPanel {
             drawing: match &self.tool {
                 Some(ActiveTool::Draw(tool)) => Some(tool.kind),
@@ -191,7 +206,8 @@ impl ViewerApp {
                 Some(ActiveTool::Measure(measuring)) => Some(measuring),
                 _ => None,
             },
-            settings: &mut session.settings,
+            settings: self.session.as_mut().map_or(&mut unused, |session| &mut session.settings),
+            refusal: refusal.as_deref(),
             hint,
             preview: self.preview.map(|preview| preview.preview),
             moved,
@@ -217,9 +233,11 @@ impl ViewerApp {
         let hovered = self.view.hovered.as_ref().map(|place| place.place.at);
         let (points, shape, radius_m) = match &mut self.tool {
             None => {
-                let from = self.picked.as_ref().and_then(|picked| picked.part.as_ref()).map(|part| part.at);
-                let Some((from, to)) = from.zip(self.view.dragged_to()) else { return };
-                (vec![from, to], ToolLine::Line, None)
+                let part = self.picked.as_ref().and_then(|picked| picked.part.as_ref());
+                let Some((part, target)) = part.zip(self.view.dragged_to()) else { return };
+                let painter = ui.painter_at(rect);
+                show_ghost(&painter, rect, (opened, &camera), &self.view, (part, target));
+                (vec![part.at, target.to], ToolLine::Line, None)
             }
             Some(ActiveTool::Draw(tool)) => {
                 tool.hover(hovered.map(|at| at.to_array()));
@@ -272,7 +290,7 @@ fn draw_line(
 ) {
     let origin = opened.scene.lattice.origin();
     let on_screen = |at: DVec2| -> Option<Pos2> {
-        let z = opened.walk.ground_z(at - origin)?;
+        let z = opened.ground_z(at - origin)?;
         let projected = camera.project((at - origin).extend(z).as_vec3())?;
         let (width, height) = camera.size();
         let share = vec2(projected.pixel.x / width as f32, projected.pixel.y / height as f32);

@@ -12,9 +12,11 @@ use crate::scene::SceneLabel;
 use crate::view::camera::Camera;
 use crate::view::navigation::{NavigationMode, NavigationSteps};
 use crate::viewer::commands::{HeldMotion, held};
+use crate::viewer::ghost::DragTarget;
 use crate::viewer::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
 use crate::viewer::lettering::font;
-use crate::viewer::line_names::{LineNames, LinePicture};
+use crate::viewer::line_names::LineNames;
+use crate::viewer::line_piece::LinePicture;
 use crate::viewer::opened::OpenedScene;
 use crate::viewer::symbol_layer::SymbolLayer;
 
@@ -226,9 +228,15 @@ impl ViewArea {
         }
     }
 
-    /// Where what is being dragged would stand, map coordinates.
-    pub fn dragged_to(&self) -> Option<DVec2> {
-        self.moving.and_then(|moving| moving.to)
+    /// Where what is being dragged would stand, or what it would turn to.
+    pub fn dragged_to(&self) -> Option<DragTarget> {
+        let PartMotion { turns, to } = self.moving?;
+        Some(DragTarget { to: to?, turns })
+    }
+
+    /// A label as it is shown; `None` of one that is not at its place.
+    pub fn placed_label(&self, label: usize) -> Option<&PlacedLabel> {
+        self.placed.iter().find(|placed| placed.index == label)
     }
 
     /// The label whose letters are at a pixel, by its number.

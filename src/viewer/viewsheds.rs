@@ -36,7 +36,8 @@ impl ViewshedOverlay {
 impl ViewerApp {
     /// Tints what is seen from a place, instead of what is tinted now.
     pub(super) fn look_around(&mut self, at: DVec2) {
-        let Some(opened) = &mut self.opened else { return };
+        let in_memory = self.opened.as_mut().filter(|opened| opened.paged.is_none());
+        let Some(opened) = in_memory else { return };
         opened.walk.clear_tint();
         let task = opened.walk.viewshed_task(viewshed_from(at));
         let work = move || {

@@ -2,9 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::dem::raster::Raster;
 use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::description::document::Document;
 use crate::description::parse::parse_in_phase;
@@ -107,7 +109,26 @@ impl SceneSource {
     /// # Errors
     /// See [`OpenSceneError`].
     pub fn build(&self, progress: &dyn Fn(&'static str)) -> Result<SceneModel, OpenSceneError> {
-        let assets = Assets::new(&self.path, &self.allowed)?;
+        self.build_of(Assets::new(&self.path, &self.allowed)?, progress)
+    }
+
+    /// [`SceneSource::build`] on `elevation` in place of the elevation file.
+    ///
+    /// # Errors
+    /// See [`OpenSceneError`].
+    pub fn build_on(
+        &self,
+        elevation: Arc<Raster>,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<SceneModel, OpenSceneError> {
+        self.build_of(Assets::new(&self.path, &self.allowed)?.with_elevation(elevation), progress)
+    }
+
+    fn build_of(
+        &self,
+        assets: Assets,
+        progress: &dyn Fn(&'static str),
+    ) -> Result<SceneModel, OpenSceneError> {
         Ok(build(&self.decode(&self.text, &assets)?, &assets, progress)?)
     }
 

@@ -15,11 +15,23 @@ pub struct WalkOptions {
     /// How many patches are kept by the renderer after they have gone out of view, those in view included: 50 KB each in
     /// patches of 64. More than are in view are kept while they are few. Default 2048.
     pub kept_patches: usize,
+    /// When spheres are made anew for another picture or tolerance. Default [`ReachRenewal::InUpdate`].
+    pub renewal: ReachRenewal,
+}
+
+/// When the spheres of a walk are made anew for another picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ReachRenewal {
+    /// In the update that needs them, which is so exact, and late on large ground.
+    #[default]
+    InUpdate,
+    /// By [`Walk::reach_task`](crate::pipeline::walk::Walk::reach_task); updates show what the spheres before allow.
+    ByTask,
 }
 
 impl Default for WalkOptions {
     fn default() -> Self {
-        Self { tolerance_px: None, to_sun: None, kept_patches: 2048 }
+        Self { tolerance_px: None, to_sun: None, kept_patches: 2048, renewal: ReachRenewal::InUpdate }
     }
 }
 

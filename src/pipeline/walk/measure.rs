@@ -16,6 +16,7 @@ use crate::terrain::profile::{ProfileStation, ProfileSummary, profile};
 use crate::terrain::query::pieces::{GridRegion, RegionError};
 use crate::terrain::query::zone::{Zone, zone};
 use crate::terrain::sight::Curvature;
+use crate::terrain::sight::ground::SightGround;
 use crate::terrain::sight::line::{Sight, SightEnd};
 use crate::terrain::sight::viewshed::{Viewshed, ViewshedOptions, viewshed};
 
@@ -70,9 +71,16 @@ impl ViewshedTask {
     }
 }
 
-impl Walk {
+/// Ground that is measured.
+pub trait MeasurableGround {
+    /// The elevations, true to scale.
+    fn elevations(&self) -> &Arc<Lattice>;
+
+    /// The same for rays and lines of sight.
+    fn sight(&self) -> &SightGround;
+
     /// The ground along a line of at least one vertex.
-    pub fn measure_line(&self, line: &[DVec2]) -> LineMeasure {
+    fn measure_line(&self, line: &[DVec2]) -> LineMeasure {
         let stations = profile(self.elevations(), line);
         LineMeasure { summary: ProfileSummary::from_stations(&stations), stations }
     }
@@ -81,7 +89,7 @@ impl Walk {
     ///
     /// # Errors
     /// The ring has fewer than three vertices, or one that is not finite.
-    pub fn measure_area(&self, ring: &[DVec2]) -> Result<AreaMeasure, RegionError> {
+    fn measure_area(&self, ring: &[DVec2]) -> Result<AreaMeasure, RegionError> {
         let elevations = self.elevations();
         let region = GridRegion::new(elevations, &[ring.to_vec()])?;
         Ok(AreaMeasure {
@@ -92,10 +100,32 @@ impl Walk {
     }
 
     /// Whether the target is seen from the observer, on the curved Earth with the usual refraction.
-    pub fn line_of_sight(&self, observer: SightEnd, target: SightEnd) -> Sight {
+    fn line_of_sight(&self, observer: SightEnd, target: SightEnd) -> Sight {
         self.sight().line_of_sight(observer, target, Curvature::default())
     }
+}
 
+impl MeasurableGround for Walk {
+    fn elevations(&self) -> &Arc<Lattice> {
+        Walk::elevations(self)
+    }
+
+    fn sight(&self) -> &SightGround {
+        Walk::sight(self)
+    }
+}
+
+impl MeasurableGround for SightGround {
+    fn elevations(&self) -> &Arc<Lattice> {
+        self.lattice()
+    }
+
+    fn sight(&self) -> &SightGround {
+        self
+    }
+}
+
+impl Walk {
     /// All that is seen from a place.
     ///
     /// # Errors

@@ -11,12 +11,16 @@
 //! ([`Walk::static_list`]).
 
 mod check;
+pub mod disk_ground;
 pub mod edit;
+mod far_block;
 pub mod frame;
 mod laid;
 pub mod measure;
+pub mod page_heights;
 pub mod paged;
 pub mod pick;
+mod reach;
 mod relief_map;
 mod shown;
 pub mod shown_ground;
@@ -24,12 +28,12 @@ pub mod standing_task;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::draw::lighting::Lighting;
 use crate::draw::list::DrawList;
 use crate::geom::aabb::Aabb;
-use crate::pipeline::walk::frame::{WalkError, WalkFrame, WalkOptions, WalkStatistics};
+use crate::pipeline::walk::frame::{ReachRenewal, WalkError, WalkFrame, WalkOptions, WalkStatistics};
 use crate::pipeline::walk::laid::LaidGround;
 use crate::pipeline::walk::relief_map::ReliefMap;
 use crate::pipeline::walk::shown::{ShownPatches, positions};
@@ -37,11 +41,11 @@ use crate::roam::culling::{Culling, InView};
 use crate::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
 use crate::roam::refine::deferred::Deferred;
 use crate::roam::spheres;
-use crate::scene::SceneModel;
-use crate::scene::picture::models::{PlacementMove, PlacementMoves};
+use crate::scene::picture::models::{PlacementMove, PlacementMoves, moved_box};
 use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::recut::SeenTint;
 use crate::scene::picture::standing;
+use crate::scene::{Placement, SceneModel};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::ground::SightGround;
 use crate::view::camera::Camera;
@@ -49,13 +53,6 @@ use crate::view::camera::Camera;
 /// The picture that the first spheres are made for, before there is a camera: pixels from top to bottom, over the tangent of
 /// half the field of view. Spheres are made anew for another picture.
 const FIRST_PICTURE: f32 = 1080.0 / 0.5;
-
-/// Spheres that reach farther than a picture needs, by up to this factor, are kept: they show more triangles, and making
-/// them anew for every size that a window has while it is resized would take longer.
-const MOST_REACH: f32 = 1.25;
-
-/// Spheres that are made anew because a picture needs larger ones reach by this factor farther than it needs.
-const SPARE_REACH: f32 = 1.1;
 
 /// Meshes of patches that are kept out of view before they are made anew: 140 KB each in patches of 64.
 const MOST_MESHES: usize = 1024;
@@ -165,9 +162,18 @@ impl Walk {
         self.moves.insert(placement, to);
     }
 
-    /// World X and Y of a model, by its number among the scene's placements, where it stands now.
-    pub fn model_at(&self, placement: usize) -> Vec2 {
-        self.moves.get(&placement).map_or(self.scene.placements[placement].at, |moved| moved.at)
+    /// How a model stands now, by its number among the scene's placements.
+    pub fn model_pose(&self, placement: usize) -> PlacementMove {
+        self.moves.get(&placement).copied().unwrap_or_else(|| {
+            let Placement { at, heading_rad, .. } = self.scene.placements[placement];
+            PlacementMove { at, heading_rad }
+        })
+    }
+
+    /// The corners of a model's box in world space if it stood so; `None` where it has no ground under it. Each differs in one
+    /// axis of the model from those whose numbers differ in one bit.
+    pub fn model_box(&self, placement: usize, pose: PlacementMove) -> Option<[Vec3; 8]> {
+        moved_box(&self.scene, self.lattice(), placement, pose)
     }
 
     /// Whether lists of [`Walk::static_list`] differ with the eye: whether the models are too many to be drawn in full from
@@ -187,7 +193,10 @@ impl Walk {
     /// A patch cannot be read; the update can be repeated.
     pub fn update(&mut self, camera: &Camera) -> Result<WalkFrame, WalkError> {
         let vantage = self.vantage(camera);
-        self.renew_reach(vantage.reach);
+        if let (ReachRenewal::InUpdate, Some(task)) = (self.options.renewal, self.reach_task(camera)) {
+            let spheres = task.spheres();
+            self.take_reach(&task, spheres);
+        }
         let terrain = self.mesh.source();
         let visible = self.view.update(terrain.ground(), terrain.heights(), Culling::frustum(camera));
         let refined = self.mesh.update(vantage.eye, visible)?;
@@ -241,19 +250,6 @@ impl Walk {
         let distance_m = PARALLEL_DISTANCE * ground.size().length().max(1.0);
         let reach = distance_m * camera.pixels_per_meter(1.0) / self.tolerance_px();
         Vantage { eye: ground.center() + Vec3::Z * distance_m, reach }
-    }
-
-    /// Makes the spheres anew where they are too small, or much larger than they need to be.
-    fn renew_reach(&mut self, needed: f32) {
-        let held = self.mesh.source().reach();
-        if (needed..=needed * MOST_REACH).contains(&held) {
-            return;
-        }
-        let reach = if needed > held { needed * SPARE_REACH } else { needed };
-        self.mesh.source_mut().set_reach(reach);
-        self.mesh.restart();
-        self.shown.relist_all();
-        self.laid.forget_cuts(|_| true);
     }
 
     /// Forgets the meshes of patches that have been out of view for the longest time where there are too many.

@@ -12,8 +12,10 @@ use crate::geom::crs::Crs;
 use crate::geom::mgrs;
 use crate::pipeline::picture_buffers::PickedPlace;
 use crate::pipeline::walk::Walk;
-use crate::scene::SceneFeature;
+use crate::scene::{SceneFeature, SceneModel};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::query::gradient::{GradientSurface, ground_gradient};
+use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::ground::SightGround;
 use crate::terrain::sight::ray::Ray;
 use crate::view::camera::Camera;
@@ -164,11 +166,8 @@ impl Walk {
 
     /// World Z of the ground at a world position; `None` without data.
     pub fn ground_z(&self, at: DVec2) -> Option<f64> {
-        let height = crate::terrain::query::ground_height(
-            self.elevations(),
-            crate::terrain::query::Interpolation::Planar,
-            at + self.elevations().origin(),
-        );
+        let elevations = self.elevations();
+        let height = ground_height(elevations, Interpolation::Planar, at + elevations.origin());
         height.height_m().map(|height_m| self.scene.scale.world_z(height_m))
     }
 
@@ -189,21 +188,40 @@ impl Walk {
 
     /// All that is known of a place in world space.
     fn described(&self, world: DVec3, distance_m: f64, feature: FeatureId) -> WalkPick {
-        let elevations = self.elevations();
-        let at = elevations.origin() + world.truncate();
-        let crs = &self.scene.crs;
-        let lonlat = (*crs != Crs::local()).then(|| crs.transform(&Crs::wgs84(), at).ok()).flatten();
-        let gradient = ground_gradient(elevations, GradientSurface::Planar, at).ok();
-        let scale = self.scene.scale;
-        WalkPick {
-            world,
-            place: PickedPlace { at, elevation_m: scale.elevation_m(world.z), distance_m, feature },
-            mgrs: lonlat.and_then(|place| mgrs::reference(place, MGRS_DIGITS)),
-            lonlat,
-            ground_m: self.ground_z(world.truncate()).map(|z| scale.elevation_m(z)),
-            slope_deg: gradient.map(|gradient| gradient.slope_deg()),
-            aspect_deg: gradient.and_then(|gradient| gradient.aspect_deg()),
-        }
+        let at = self.elevations().origin() + world.truncate();
+        described(&self.scene, Some(self.elevations()), PickedWorld { world, at, distance_m, feature })
+    }
+}
+
+/// A place that was picked.
+#[derive(Clone, Copy, Debug)]
+pub struct PickedWorld {
+    /// In world space.
+    pub world: DVec3,
+    /// Map coordinates.
+    pub at: DVec2,
+    /// How far away, meters.
+    pub distance_m: f64,
+    /// What is there.
+    pub feature: FeatureId,
+}
+
+/// All that is known of a place by the elevations around it, true to scale; without them, nothing of the ground.
+pub fn described(scene: &SceneModel, elevations: Option<&Lattice>, picked: PickedWorld) -> WalkPick {
+    let PickedWorld { world, at, distance_m, feature } = picked;
+    let crs = &scene.crs;
+    let lonlat = (*crs != Crs::local()).then(|| crs.transform(&Crs::wgs84(), at).ok()).flatten();
+    let gradient =
+        elevations.and_then(|elevations| ground_gradient(elevations, GradientSurface::Planar, at).ok());
+    let ground = elevations.map(|elevations| ground_height(elevations, Interpolation::Planar, at));
+    WalkPick {
+        world,
+        place: PickedPlace { at, elevation_m: scene.scale.elevation_m(world.z), distance_m, feature },
+        mgrs: lonlat.and_then(|place| mgrs::reference(place, MGRS_DIGITS)),
+        lonlat,
+        ground_m: ground.and_then(|ground| ground.height_m()),
+        slope_deg: gradient.map(|gradient| gradient.slope_deg()),
+        aspect_deg: gradient.and_then(|gradient| gradient.aspect_deg()),
     }
 }
 

@@ -194,6 +194,16 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         self.counts
     }
 
+    /// The terrain without its heights.
+    pub fn frame(&self) -> &PagedFrame {
+        &self.frame
+    }
+
+    /// Whether the patch with south-west corner `corner` is kept now, so that it need not be read.
+    pub fn is_kept(&self, corner: Vertex) -> bool {
+        self.cache.contains(self.frame.layout.patch_index(corner))
+    }
+
     /// The number of patches that are kept now.
     pub fn kept(&self) -> usize {
         self.cache.weight()

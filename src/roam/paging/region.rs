@@ -8,6 +8,7 @@ use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 
 /// The whole terrain, without its heights.
 #[derive(Clone, Copy, Debug)]
@@ -76,13 +77,8 @@ impl PagedRegion {
         let first = Vertex::new(first.0 * side, first.1 * side);
         let end = frame.layout.post(Vertex::new((last.0 + 1) * side, (last.1 + 1) * side));
         let (columns, rows) = (end.column - first.x as u32 + 1, end.row - first.y as u32 + 1);
-        // Rasters are counted from the north.
-        let top = windows.size().1 - 1 - end.row;
-        windows
-            .read(RasterWindow { column: first.x as u32, row: top, width: columns, height: rows }, buffer)?;
-        let heights = buffer.chunks_exact(columns as usize).rev().flatten().copied().collect();
-        let post = Post { column: first.x as u32, row: first.y as u32 };
-        let lattice = Lattice::part((frame.origin, frame.cell), post, columns, heights)?;
+        let rect = PostRect { first: Post { column: first.x as u32, row: first.y as u32 }, last: end };
+        let lattice = read_part(windows, (frame.origin, frame.cell), rect, buffer)?;
         let layout = PatchLayout::new(columns, rows, side as u32);
         Ok(Self { lattice, layout: layout.ok_or(BlockFault::TooMany { columns, rows })?, first })
     }
@@ -96,6 +92,24 @@ impl PagedRegion {
     pub fn own(&self, vertex: Vertex) -> Vertex {
         vertex.moved(-self.first.x, -self.first.y)
     }
+}
+
+/// Reads the posts of a rectangle as a part of the lattice with this origin and cell. `buffer` is scratch.
+///
+/// # Errors
+/// See [`BlockFault`].
+pub fn read_part(
+    windows: &mut impl Windows,
+    frame: (DVec2, DVec2),
+    PostRect { first, last }: PostRect,
+    buffer: &mut Vec<f32>,
+) -> Result<Lattice, BlockFault> {
+    let (width, height) = (last.column - first.column + 1, last.row - first.row + 1);
+    // Rasters are counted from the north.
+    let row = windows.size().1 - 1 - last.row;
+    windows.read(RasterWindow { column: first.column, row, width, height }, buffer)?;
+    let heights = buffer.chunks_exact(width as usize).rev().flatten().copied().collect();
+    Ok(Lattice::part(frame, first, width, heights)?)
 }
 
 #[cfg(test)]

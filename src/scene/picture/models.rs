@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
@@ -13,6 +13,8 @@ use crate::scene::picture::detail::{self, ListedForm, PlacedModel, Viewer};
 use crate::scene::placement::stand;
 use crate::scene::scatter::chance::Chance;
 use crate::scene::{Placement, SceneModel};
+use crate::terrain::full_resolution::FullResolution;
+use crate::terrain::lattice::Lattice;
 use crate::terrain::support_surface::SupportSurface;
 use crate::terrain::triangle_surface::TriangleSurface;
 
@@ -61,6 +63,22 @@ pub(super) fn add_forms(
 ) -> Vec<ListedForm> {
     let placed = place(list, scene, displayed, &PlacementMoves::new());
     detail::add_forms(list, scene, &placed)
+}
+
+/// The corners of a model's box in world space where it would stand, by its number among the scene's placements; each
+/// differs in one axis of the model from those whose numbers differ in one bit. `None` where it has no ground under it.
+pub fn moved_box(
+    scene: &SceneModel,
+    lattice: &Lattice,
+    number: usize,
+    PlacementMove { at, heading_rad }: PlacementMove,
+) -> Option<[Vec3; 8]> {
+    let placement = Placement { at, heading_rad, ..*scene.placements.get(number)? };
+    let (model, finest) = (&scene.models[placement.model], scene.scale.ground(&scene.lattice));
+    let ground = SupportSurface { displayed: &FullResolution { lattice }, ground: &finest };
+    let stand = stand(&placement, &ModelFootprint::of(model), ground)?;
+    let mut corners = model.bounds()?.corners();
+    Some([0; 8].map(|_| stand.world_from_model.transform_point3(corners.next().unwrap_or_default())))
 }
 
 /// Adds the plinths of all placements that have ground under them, and returns these.

@@ -4,6 +4,7 @@ pub mod detail;
 pub mod help;
 pub mod light;
 pub mod open;
+pub mod paging;
 pub mod timing;
 pub mod tools;
 pub mod tree;

@@ -31,6 +31,8 @@ pub struct ToolsPanel<'a> {
     pub history: [bool; 3],
     /// Whether what is seen from a place is tinted.
     pub has_viewshed: bool,
+    /// Why nothing is drawn here; `None` where it is.
+    pub refusal: Option<&'a str>,
 }
 
 /// What was chosen.
@@ -66,14 +68,19 @@ pub fn tools_panel(ui: &mut Ui, panel: &mut ToolsPanel<'_>) -> Option<ToolEvent>
         }
     });
     ui.weak("Dig and draw");
-    ui.horizontal_wrapped(|ui| {
-        for choice in ToolKind::CHOICES {
-            let is_chosen = panel.drawing == Some(choice.value);
-            if ui.selectable_label(is_chosen, choice.word).on_hover_text(choice.meaning).clicked() {
-                event = Some(if is_chosen { ToolEvent::Away } else { ToolEvent::Draw(choice.value) });
+    ui.add_enabled_ui(panel.refusal.is_none(), |ui| {
+        ui.horizontal_wrapped(|ui| {
+            for choice in ToolKind::CHOICES {
+                let is_chosen = panel.drawing == Some(choice.value);
+                if ui.selectable_label(is_chosen, choice.word).on_hover_text(choice.meaning).clicked() {
+                    event = Some(if is_chosen { ToolEvent::Away } else { ToolEvent::Draw(choice.value) });
+                }
             }
-        }
+        });
     });
+    if let Some(refusal) = panel.refusal {
+        ui.label(refusal);
+    }
     if let Some(kind) = panel.drawing {
         sizes(ui, kind, panel.settings);
         ui.label(panel.hint);
@@ -95,9 +102,12 @@ pub fn tools_panel(ui: &mut Ui, panel: &mut ToolsPanel<'_>) -> Option<ToolEvent>
     ui.horizontal_wrapped(|ui| {
         for (name, kind) in MeasureKind::ALL {
             let is_chosen = panel.measuring.is_some_and(|measuring| measuring.kind == kind);
-            if ui.selectable_label(is_chosen, name).clicked() {
-                event = Some(if is_chosen { ToolEvent::Away } else { ToolEvent::Measure(kind) });
-            }
+            let is_possible = panel.refusal.is_none() || kind != MeasureKind::Viewshed;
+            ui.add_enabled_ui(is_possible, |ui| {
+                if ui.selectable_label(is_chosen, name).clicked() {
+                    event = Some(if is_chosen { ToolEvent::Away } else { ToolEvent::Measure(kind) });
+                }
+            });
         }
     });
     if panel.has_viewshed && ui.button("Clear viewshed").clicked() {
@@ -205,6 +215,7 @@ mod tests {
                 moved: None,
                 history: [true, false, true],
                 has_viewshed: false,
+                refusal: None,
             };
             match tools_panel(ui, &mut panel) {
                 Some(ToolEvent::Draw(kind)) => state.drawing = Some(kind),
