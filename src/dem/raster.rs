@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
+use std::ops::Range;
 
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -106,6 +107,36 @@ impl Samples {
     /// All values that are data, in order.
     pub fn valid(&self) -> impl Iterator<Item = f64> + '_ {
         self.iter().filter(|value| !value.is_nan())
+    }
+
+    /// Samples without data, of 64 bits where `is_wide`.
+    pub(crate) fn absent(count: usize, is_wide: bool) -> Self {
+        if is_wide { Self::F64(vec![f64::NAN; count]) } else { Self::F32(vec![f32::NAN; count]) }
+    }
+
+    /// Whether they take 64 bits.
+    pub(crate) fn is_wide(&self) -> bool {
+        matches!(self, Self::F64(_))
+    }
+
+    /// Copies the samples `range` of others, which have this precision or a lower one, to `to`. Panics out of range.
+    pub(crate) fn copy_from(&mut self, to: Range<usize>, from: &Self, range: Range<usize>) {
+        match (self, from) {
+            (Self::F32(values), Self::F32(from)) => values[to].copy_from_slice(&from[range]),
+            (Self::F64(values), Self::F64(from)) => values[to].copy_from_slice(&from[range]),
+            (Self::F64(values), Self::F32(from)) => {
+                values[to].iter_mut().zip(&from[range]).for_each(|(to, &from)| *to = from.into());
+            }
+            (Self::F32(_), Self::F64(_)) => panic!("samples of 64 bits are copied to 32"),
+        }
+    }
+
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::F32(values) => size_of_val(values.as_slice()),
+            Self::F64(values) => size_of_val(values.as_slice()),
+        }
     }
 
     /// Sets the value at `index`, NaN for no data. Panics out of range.

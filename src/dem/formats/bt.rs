@@ -45,6 +45,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "'binterr1.' and a digit",
     },
     reader: read,
+    windows: None,
     most_bytes,
     writer: Some(write),
 };

@@ -23,6 +23,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["bip", "bsq"],
     recognition: Recognition::HeaderFile { matches: is_header },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

@@ -23,6 +23,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::HeaderFile { matches: |header| header.starts_with(b"ENVI") },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

@@ -21,6 +21,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Extension,
     reader: read,
+    windows: None,
     most_bytes,
     writer: Some(write),
 };

@@ -20,6 +20,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["raw", "r16"],
     recognition: Recognition::Statement,
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };
