@@ -50,7 +50,7 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
     let surface = arguments.surface.unwrap_or_else(|| dataset.default_surface());
     let crs = arguments.dataset.crs(&dataset);
     if surface != Surface::Source {
-        arguments.dataset.ground(&dataset)?;
+        arguments.dataset.note_ground(&dataset)?;
     }
     let answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
     stream(|out| match arguments.dataset.json {
