@@ -27,6 +27,7 @@ pub mod tiff;
 pub mod undeclared;
 mod units;
 mod vertical;
+pub mod void_counts;
 pub mod voids;
 pub mod warp;
 pub mod windows;

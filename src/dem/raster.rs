@@ -208,12 +208,18 @@ impl Raster {
             "{count} samples, {width} a row"
         );
         let height = (count / width as usize) as u32;
+        let data_type = if samples.is_wide() { "Float64" } else { "Float32" };
+        Self { data_type, samples, ..Self::without_place(width, height) }
+    }
+
+    /// A raster in memory without its samples and without a georeference.
+    pub(crate) fn without_place(width: u32, height: u32) -> Self {
         Self {
             driver: "MEM",
-            data_type: if matches!(samples, Samples::F32(_)) { "Float32" } else { "Float64" },
+            data_type: "Float32",
             width,
             height,
-            samples,
+            samples: Samples::F32(Vec::new()),
             meters_per_z: 1.0,
             map_from_grid: north_up_nodes(DVec2::new(0.0, f64::from(height - 1)), DVec2::ONE),
             georeferenced: false,

@@ -72,6 +72,15 @@ impl RasterWindow {
         }
     }
 
+    /// The window in bands of whole rows, of about `samples` each and at least a row.
+    pub(crate) fn bands(self, samples: u32) -> impl Iterator<Item = Self> {
+        let rows = (samples / self.width).max(1);
+        (0..self.height).step_by(rows as usize).map(move |first| {
+            let height = rows.min(self.height - first);
+            Self { row: self.row + first, height, ..self }
+        })
+    }
+
     /// # Panics
     /// Where the window reaches beyond a raster of this size.
     pub(crate) fn assert_within(&self, (width, height): (u32, u32)) {

@@ -11,6 +11,7 @@ mod envi;
 mod header;
 pub mod height_encoding;
 mod hgt;
+mod plain_raster;
 mod png;
 pub mod raw;
 mod sample_layout;

@@ -25,7 +25,7 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 
 /// Cells that are computed at a time: their positions take some megabytes.
-const CELLS_AT_ONCE: usize = 1 << 19;
+const CELLS_AT_ONCE: u32 = 1 << 19;
 
 /// Samples on each side of a position that bilinear heights need.
 const HALO: u32 = 2;
@@ -34,7 +34,7 @@ const HALO: u32 = 2;
 const PROBE: u32 = 256;
 
 /// Samples that are read at a time where all are.
-const SAMPLES_AT_ONCE: u64 = 1 << 20;
+const SAMPLES_AT_ONCE: u32 = 1 << 22;
 
 /// A raster on disk that cannot be brought to meters.
 #[derive(Debug, thiserror::Error)]
@@ -155,13 +155,11 @@ impl<W: Windows + ?Sized> Windows for MetricWindows<'_, W> {
         let samples = match self.plan.making {
             MetricMaking::Kept { mirrors_x, mirrors_y } => self.kept(window, (mirrors_x, mirrors_y))?,
             MetricMaking::Resampled { .. } => {
-                let rows_at_once = (CELLS_AT_ONCE as u32 / window.width).max(1);
                 let mut all: Option<Samples> = None;
-                for first in (0..window.height).step_by(rows_at_once as usize) {
-                    let height = rows_at_once.min(window.height - first);
-                    let rows = self.resampled(RasterWindow { row: window.row + first, height, ..window })?;
+                for band in window.bands(CELLS_AT_ONCE) {
+                    let rows = self.resampled(band)?;
                     let all = all.get_or_insert_with(|| Samples::absent(window.samples(), rows.is_wide()));
-                    let start = first as usize * window.width as usize;
+                    let start = (band.row - window.row) as usize * window.width as usize;
                     all.copy_from(start..start + rows.len(), &rows, 0..rows.len());
                 }
                 all.unwrap_or_else(|| Samples::absent(0, false))
@@ -256,15 +254,13 @@ fn data_extent(source: &mut (impl Windows + ?Sized)) -> Result<Option<Rect>, Dem
         return Ok(Some(Rect { min: DVec2::ZERO, max: DVec2::new(width.into(), height.into()) }));
     }
     let mut around = Rect::EMPTY;
-    let rows_at_once = (SAMPLES_AT_ONCE / u64::from(width)).max(1).min(height.into()) as u32;
-    for first in (0..height).step_by(rows_at_once as usize) {
-        let rows = rows_at_once.min(height - first);
-        let samples = source.samples(RasterWindow { height: rows, ..row(first) })?;
+    for band in RasterWindow::all((width, height)).bands(SAMPLES_AT_ONCE) {
+        let samples = source.samples(band)?;
         let width = width as usize;
-        for row in 0..rows as usize {
+        for row in 0..band.height as usize {
             let valid = |column: &usize| !samples.get(row * width + column).is_nan();
             if let (Some(left), Some(right)) = ((0..width).find(valid), (0..width).rev().find(valid)) {
-                let down = f64::from(first) + row as f64;
+                let down = f64::from(band.row) + row as f64;
                 around = around.with(DVec2::new(left as f64, down));
                 around = around.with(DVec2::new(right as f64 + 1.0, down + 1.0));
             }
