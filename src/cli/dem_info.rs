@@ -8,10 +8,12 @@ use serde_json::{Value, json};
 use crate::cli::error::CliError;
 use crate::cli::options::HeightArguments;
 use crate::cli::output::{print, print_lines, row};
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::stats::Stats;
-use crate::dem::voids;
-use crate::pipeline::dem;
+use crate::dem::void_counts::VoidCounts;
+use crate::pipeline::dem::{self, OpenedDem};
+use crate::pipeline::error::FileError;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -29,31 +31,43 @@ pub struct DemInfoArguments {
 }
 
 pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
-    let mosaic = dem::open(&arguments.file, &arguments.heights.dem_options())?;
-    let joined = arguments.file.is_dir().then(|| mosaic.note());
-    let raster = mosaic.raster;
-    let info = DemInfo {
-        stats: Stats::new(&raster),
-        enclosed_voids: voids::count(&raster),
-        notes: joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect(),
-        raster,
+    let opened = dem::open_either(&arguments.file, &arguments.heights.dem_options(), MOST_KEPT)?;
+    let info = match opened {
+        OpenedDem::Kept(mosaic) => {
+            let joined = arguments.file.is_dir().then(|| mosaic.note());
+            let (stats, voids) = (Stats::new(&mosaic.raster), VoidCounts::of(&mosaic.raster));
+            DemInfo::new(mosaic.raster, stats, voids, joined)
+        }
+        OpenedDem::Windows(mut windows) => {
+            let measured = Stats::of_windows(&mut *windows);
+            let (stats, voids) = measured.map_err(FileError::<DemErrorKind>::at(&arguments.file))?;
+            DemInfo::new(windows.metadata().without_samples(), stats, voids, None)
+        }
     };
     if arguments.json { print(&format!("{}\n", info.json())) } else { print_lines(&info.table()) }
 }
+
+/// The most samples of a file that is read whole: a larger one is read twice, for less memory.
+const MOST_KEPT: u64 = 1 << 24;
 
 /// A raster and its statistics.
 struct DemInfo {
     raster: Raster,
     stats: Stats,
-    /// Voids that other samples enclose, and samples in them.
-    enclosed_voids: (u64, u64),
+    /// Voids that other samples enclose.
+    enclosed_voids: VoidCounts,
     notes: Vec<String>,
 }
 
 impl DemInfo {
+    fn new(raster: Raster, stats: Stats, enclosed_voids: VoidCounts, joined: Option<String>) -> Self {
+        let notes = joined.into_iter().chain(format_note(&raster).map(str::to_owned)).collect();
+        Self { raster, stats, enclosed_voids, notes }
+    }
+
     /// One JSON object; a missing number is null.
     fn json(&self) -> Value {
-        let Self { raster, stats, enclosed_voids: (voids, samples), notes } = self;
+        let Self { raster, stats, enclosed_voids: VoidCounts { voids, samples }, notes } = self;
         json!({
             "driver": raster.driver,
             "width": raster.width,
@@ -77,11 +91,11 @@ impl DemInfo {
     }
 
     fn table(&self) -> Vec<String> {
-        let Self { raster, stats, enclosed_voids: (voids, samples), notes } = self;
+        let Self { raster, stats, enclosed_voids: VoidCounts { voids, samples }, notes } = self;
         let affine = raster.map_from_grid;
         let (east, south) = (affine.matrix2.x_axis, affine.matrix2.y_axis);
         let corner = affine.translation;
-        let all = raster.samples.len();
+        let all = raster.width as usize * raster.height as usize;
         let heights = match stats.valid {
             0 => "none".to_owned(),
             _ => format!("{} to {}, mean {}, deviation {}", stats.min, stats.max, stats.mean, stats.std),

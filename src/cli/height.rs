@@ -57,7 +57,7 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
     let surface = arguments.surface.unwrap_or_else(|| dataset.default_surface());
     let crs = arguments.dataset.crs(&dataset);
     if surface != Surface::Source {
-        arguments.dataset.ground(&dataset)?;
+        arguments.dataset.note_ground(&dataset)?;
     }
     let mut answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
     let mut datum = dataset.source().vertical_datum.clone();

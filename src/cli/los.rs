@@ -13,6 +13,7 @@ use crate::cli::values::{RaisedPosition, number, raised_position};
 use crate::pipeline::files;
 use crate::pipeline::positions::format_position;
 use crate::pipeline::sight::{GroundedEnd, SightQuery, SightReport};
+use crate::pipeline::windowed_elevation::GroundReach;
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, SightEnd};
 use crate::terrain::sight::rise::Rise;
@@ -50,20 +51,23 @@ pub struct LosArguments {
 pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
     arguments.chart.check(&arguments.dataset.file)?;
     let dataset = arguments.dataset.open()?;
-    let snapshot = arguments.dataset.ground(&dataset)?;
+    let crs = arguments.dataset.crs(&dataset);
+    let at = [arguments.from.at, arguments.to.at];
+    let reach = GroundReach { crs: &crs, at: &at, around_m: 0.0 };
+    let ground = arguments.dataset.ground(&dataset, &reach)?;
     let end = |position: RaisedPosition, default_m: f64| SightEnd {
         at: position.at,
         above_m: position.above_m.unwrap_or(default_m),
     };
     let query = SightQuery {
         ends: [end(arguments.from, arguments.observer_height), end(arguments.to, arguments.target_height)],
-        crs: arguments.dataset.crs(&dataset),
+        crs,
         curvature: curvature(arguments.flat, arguments.refraction),
     };
-    let report = SightReport::new(&snapshot, query)?;
+    let report = SightReport::new(&ground, query)?;
     if let Some(path) = &arguments.chart.output {
         let size = arguments.chart.size;
-        let chart = report.chart(&snapshot, arguments.dataset.chart_title("Line of sight"))?;
+        let chart = report.chart(&ground, arguments.dataset.chart_title("Line of sight"))?;
         files::write_picture(path, &paint((size.width, size.height), &chart))?;
     }
     if arguments.dataset.json { print(&format!("{}\n", json(&report))) } else { print_lines(&text(&report)) }

@@ -1,7 +1,6 @@
 //! Options that commands share.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
 
@@ -16,8 +15,9 @@ use crate::geom::datum_shift::DatumShift;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
 use crate::pipeline::dem::DemOptions;
 use crate::pipeline::files;
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::picture::PictureSize;
-use crate::terrain::query::service::Snapshot;
+use crate::pipeline::windowed_elevation::GroundReach;
 
 /// The scene file of a command, and the files it may read.
 #[derive(Debug, Args)]
@@ -109,17 +109,24 @@ fn full_datum_name(stated: &str) -> String {
 impl DatasetArguments {
     /// Opens the dataset; prints its warning.
     pub fn open(&self) -> Result<Dataset, CliError> {
-        let options = DatasetOptions { dem: self.heights.dem_options(), allowed: self.access.allow.clone() };
+        let (dem, allowed) = (self.heights.dem_options(), self.access.allow.clone());
+        let options = DatasetOptions { dem, allowed, ..DatasetOptions::default() };
         let dataset = Dataset::open(&self.file, &options)?;
         dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
         Ok(dataset)
     }
 
-    /// The ground in meters of the dataset; prints its note.
-    pub fn ground(&self, dataset: &Dataset) -> Result<Arc<Snapshot>, CliError> {
-        let snapshot = dataset.service()?.snapshot();
+    /// The ground in meters of the dataset as far as a query reaches; prints its note.
+    pub fn ground(&self, dataset: &Dataset, reach: &GroundReach) -> Result<QueriedGround, CliError> {
+        self.note_ground(dataset)?;
+        Ok(dataset.ground(reach)?)
+    }
+
+    /// Prints the note of the ground in meters, which a query needs.
+    pub fn note_ground(&self, dataset: &Dataset) -> Result<(), CliError> {
+        dataset.prepare_ground()?;
         dataset.ground_note().iter().for_each(|note| warn(&format!("note: {note}")));
-        Ok(snapshot)
+        Ok(())
     }
 
     /// The coordinate system of positions; says how good its datum shift is where that is not exact.

@@ -17,6 +17,7 @@ use crate::pipeline::dataset::{Dataset, QueryError, transform};
 use crate::pipeline::files;
 use crate::pipeline::positions::{InputLine, read_line};
 use crate::pipeline::profile::{GroundProfile, ProfileError};
+use crate::pipeline::windowed_elevation::GroundReach;
 use crate::terrain::profile::{Extreme, ProfileStation, Sampling};
 use crate::terrain::query::Interpolation;
 
@@ -51,9 +52,10 @@ pub fn run(arguments: &ProfileArguments) -> Result<(), CliError> {
     arguments.chart.check(&arguments.dataset.file)?;
     let dataset = arguments.dataset.open()?;
     let line = line(arguments, &dataset)?;
-    let snapshot = arguments.dataset.ground(&dataset)?;
+    let reach = GroundReach { crs: &line.crs, at: &line.vertices, around_m: 0.0 };
+    let ground = arguments.dataset.ground(&dataset, &reach)?;
     let sampling = Sampling { interpolation: arguments.interpolation, step_m: arguments.step };
-    let profile = GroundProfile::new(&snapshot, line, sampling).map_err(|error| match error {
+    let profile = GroundProfile::new(&ground, line, sampling).map_err(|error| match error {
         ProfileError::Query(error) => error.into(),
         step => CliError::usage(format!("--step: {step}")),
     })?;

@@ -8,6 +8,7 @@ use crate::cli::ServeProgram;
 use crate::cli::error::CliError;
 use crate::cli::options::{AccessArguments, HeightArguments};
 use crate::cli::output::warn;
+use crate::limits::RASTER_SAMPLES;
 use crate::pipeline::dataset::DatasetOptions;
 use crate::pipeline::service::{NamedFile, RequestLog, ServiceLimits, ServiceOptions};
 
@@ -65,6 +66,7 @@ pub fn run(arguments: &ServeArguments, serve: Option<ServeProgram>) -> Result<()
         dataset: DatasetOptions {
             dem: arguments.heights.dem_options(),
             allowed: arguments.access.allow.clone(),
+            most_kept: RASTER_SAMPLES,
         },
         listen: arguments.listen,
         hosts: arguments.host.clone(),

@@ -17,11 +17,12 @@ use crate::cli::progress::StepTimer;
 use crate::cli::values::{number, number_pair};
 use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
-use crate::pipeline::dataset::{Dataset, QueryError, transform};
+use crate::pipeline::dataset::{QueryError, transform};
+use crate::pipeline::ground::{GroundError, QueriedGround};
 use crate::pipeline::viewshed::{ViewshedSummary, raster};
 use crate::pipeline::viewshed_map::{SheetText, viewshed_map};
+use crate::pipeline::windowed_elevation::GroundReach;
 use crate::pipeline::{files, raster_file};
-use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::line::SightEnd;
 use crate::terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, ViewshedOptions, viewshed};
 
@@ -72,18 +73,21 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     let steps = StepTimer::default();
     steps.begin("reading the ground");
     let dataset = arguments.dataset.open()?;
-    let snapshot = arguments.dataset.ground(&dataset)?;
-    let options = options(arguments, &dataset, snapshot.crs())?;
+    let crs = arguments.dataset.crs(&dataset);
+    let around_m = arguments.range.unwrap_or(f64::INFINITY);
+    let reach = GroundReach { crs: &crs, at: &[arguments.at.into()], around_m };
+    let ground = arguments.dataset.ground(&dataset, &reach)?;
+    let options = options(arguments, &crs, &ground.crs)?;
     steps.begin("looking around");
-    let viewshed = viewshed(snapshot.lattice(), &options).map_err(|answer| QueryError::NoGround {
+    let viewshed = viewshed(&ground.lattice, &options).map_err(|answer| QueryError::NoGround {
         what: "the observer at".into(),
         at: arguments.at.into(),
         answer,
     })?;
-    let summary = ViewshedSummary::new(snapshot.lattice(), &viewshed);
+    let summary = ViewshedSummary::new(&ground.lattice, &viewshed);
     if let Some(output) = output {
         steps.begin("writing");
-        write(arguments, &output, &snapshot, &options, &viewshed)?;
+        write(arguments, &output, &ground, &options, &viewshed)?;
     }
     steps.finish();
     if arguments.dataset.json {
@@ -101,12 +105,8 @@ fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, Cli
     Ok(ViewshedOutput::Raster(path, raster_format(path, slice::from_ref(input))?))
 }
 
-fn options(
-    arguments: &ViewshedArguments,
-    dataset: &Dataset,
-    ground: &Crs,
-) -> Result<ViewshedOptions, QueryError> {
-    let at = transform("the observer at", &arguments.dataset.crs(dataset), ground, arguments.at.into())?;
+fn options(arguments: &ViewshedArguments, crs: &Crs, ground: &Crs) -> Result<ViewshedOptions, QueryError> {
+    let at = transform("the observer at", crs, ground, arguments.at.into())?;
     Ok(ViewshedOptions {
         observer: SightEnd { at, above_m: arguments.observer_height },
         target_above_m: arguments.target_height,
@@ -119,21 +119,24 @@ fn options(
 fn write(
     arguments: &ViewshedArguments,
     output: &ViewshedOutput<'_>,
-    snapshot: &Snapshot,
+    ground: &QueriedGround,
     options: &ViewshedOptions,
     viewshed: &Viewshed,
 ) -> Result<(), CliError> {
-    let lattice = snapshot.lattice();
+    // What is held is the square around the range, where that is not all.
+    let cut = (!ground.lattice.holds_all()).then(|| ground.lattice.cut_to_held()).transpose();
+    let cut = cut.map_err(GroundError::from)?;
+    let lattice = cut.as_ref().unwrap_or(&ground.lattice);
     match output {
         ViewshedOutput::Raster(path, format) => {
-            let raster = raster(lattice, viewshed, snapshot.crs());
+            let raster = raster(lattice, viewshed, &ground.crs);
             raster_file::write(&raster, format, path, slice::from_ref(&arguments.dataset.file))?;
         }
         ViewshedOutput::Map(path) => {
             let text = SheetText {
                 title: format!("Viewshed · {}", files::file_stem(&arguments.dataset.file)),
-                subtitle: subtitle(arguments, &ViewshedSummary::new(lattice, viewshed)),
-                vertical_datum: snapshot.source().vertical_datum.clone(),
+                subtitle: subtitle(arguments, &ViewshedSummary::new(&ground.lattice, viewshed)),
+                vertical_datum: ground.vertical_datum.clone(),
             };
             files::write_picture(path, &viewshed_map(lattice, viewshed, options, text))?;
         }

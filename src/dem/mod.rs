@@ -29,6 +29,7 @@ pub mod tiff;
 pub mod undeclared;
 mod units;
 pub mod vertical;
+pub mod void_counts;
 pub mod voids;
 pub mod warp;
 pub mod windows;

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
+use std::ops::Range;
 
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -108,6 +109,36 @@ impl Samples {
         self.iter().filter(|value| !value.is_nan())
     }
 
+    /// Samples without data, of 64 bits where `is_wide`.
+    pub(crate) fn absent(count: usize, is_wide: bool) -> Self {
+        if is_wide { Self::F64(vec![f64::NAN; count]) } else { Self::F32(vec![f32::NAN; count]) }
+    }
+
+    /// Whether they take 64 bits.
+    pub(crate) fn is_wide(&self) -> bool {
+        matches!(self, Self::F64(_))
+    }
+
+    /// Copies the samples `range` of others, which have this precision or a lower one, to `to`. Panics out of range.
+    pub(crate) fn copy_from(&mut self, to: Range<usize>, from: &Self, range: Range<usize>) {
+        match (self, from) {
+            (Self::F32(values), Self::F32(from)) => values[to].copy_from_slice(&from[range]),
+            (Self::F64(values), Self::F64(from)) => values[to].copy_from_slice(&from[range]),
+            (Self::F64(values), Self::F32(from)) => {
+                values[to].iter_mut().zip(&from[range]).for_each(|(to, &from)| *to = from.into());
+            }
+            (Self::F32(_), Self::F64(_)) => panic!("samples of 64 bits are copied to 32"),
+        }
+    }
+
+    /// Bytes that they take.
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::F32(values) => size_of_val(values.as_slice()),
+            Self::F64(values) => size_of_val(values.as_slice()),
+        }
+    }
+
     /// Sets the value at `index`, NaN for no data. Panics out of range.
     pub(crate) fn set(&mut self, index: usize, value: f64) {
         match self {
@@ -177,12 +208,18 @@ impl Raster {
             "{count} samples, {width} a row"
         );
         let height = (count / width as usize) as u32;
+        let data_type = if samples.is_wide() { "Float64" } else { "Float32" };
+        Self { data_type, samples, ..Self::without_place(width, height) }
+    }
+
+    /// A raster in memory without its samples and without a georeference.
+    pub(crate) fn without_place(width: u32, height: u32) -> Self {
         Self {
             driver: "MEM",
-            data_type: if matches!(samples, Samples::F32(_)) { "Float32" } else { "Float64" },
+            data_type: "Float32",
             width,
             height,
-            samples,
+            samples: Samples::F32(Vec::new()),
             meters_per_z: 1.0,
             map_from_grid: north_up_nodes(DVec2::new(0.0, f64::from(height - 1)), DVec2::ONE),
             georeferenced: false,

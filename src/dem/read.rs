@@ -4,8 +4,9 @@ use crate::archive::{self, ArchiveError, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::{DemFormat, FORMATS, Recognition, raw};
+use crate::dem::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
 use crate::dem::raster::Raster;
+use crate::dem::windows::Windows;
 use crate::geom::crs::Crs;
 use crate::limits::COMPANION_BYTES;
 use crate::limits::UNPACKED_RASTER_BYTES;
@@ -172,6 +173,25 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
         raster.samples.clear(nodata);
     }
     Ok(raster)
+}
+
+/// Opens an elevation file to be read in windows, which hold what [`read`] returns. `head` are the first bytes of `content`, of
+/// which [`HEAD_BYTES`] are enough; up to `cache_bytes` of decoded samples are kept. `None` where such a file is read whole:
+/// a format without windows, an archive, or none of elevation.
+///
+/// # Errors
+/// [`DemError`]. A file that has no windows may still be read whole.
+pub fn open_windows(
+    name: &str,
+    head: &[u8],
+    content: Box<dyn FileContent>,
+    hints: &DemHints,
+    cache_bytes: usize,
+) -> Result<Option<Box<dyn Windows + Send>>, DemError> {
+    let file = DemFile { name, bytes: head, hints };
+    let Some(open) = format_of(&file).ok().and_then(|format| format.windows) else { return Ok(None) };
+    let opened = open(&file, content, cache_bytes);
+    opened.map(Some).map_err(|kind| DemError { name: name.to_owned(), kind })
 }
 
 /// The name of the format that a file seems to have by its name and its first bytes, of which [`HEAD_BYTES`] are enough;

@@ -16,24 +16,50 @@ const BORDER: f64 = 1e-6;
 /// not mix a neighbor, or a hole, into an exact value.
 pub(crate) const ON_CENTER: f64 = 1e-7;
 
+/// The samples of a raster, or those of them that are held: code that asks for samples near a position works on either,
+/// and gives the same bits.
+pub trait SampleGrid {
+    /// The raster's size, place and units; its `samples` mean nothing and may be empty.
+    fn whole(&self) -> &Raster;
+
+    /// The value at `column`, `row` of the whole raster, NaN where there is no data.
+    ///
+    /// # Panics
+    /// Where it is not held.
+    fn value(&self, column: u32, row: u32) -> f64;
+}
+
+impl SampleGrid for Raster {
+    fn whole(&self) -> &Raster {
+        self
+    }
+
+    #[inline]
+    fn value(&self, column: u32, row: u32) -> f64 {
+        self.at(column, row)
+    }
+}
+
 /// The value of the sample that contains a point in the raster's own coordinates.
-pub fn nearest(raster: &Raster, at_map: DVec2) -> Answer {
+pub fn nearest(grid: &impl SampleGrid, at_map: DVec2) -> Answer {
+    let raster = grid.whole();
     let at = raster.grid_from_map(at_map);
     if !contains(raster, at) {
         return Answer::Outside;
     }
     let column = (at.x.max(0.0) as u32).min(raster.width - 1);
     let row = (at.y.max(0.0) as u32).min(raster.height - 1);
-    Answer::from_sample(raster.at(column, row))
+    Answer::from_sample(grid.value(column, row))
 }
 
 /// The bilinear value at a point in the raster's own coordinates.
-pub fn bilinear(raster: &Raster, at_map: DVec2) -> Answer {
-    bilinear_at_grid(raster, raster.grid_from_map(at_map))
+pub fn bilinear(grid: &impl SampleGrid, at_map: DVec2) -> Answer {
+    bilinear_at_grid(grid, grid.whole().grid_from_map(at_map))
 }
 
 /// The bilinear value at a grid position (column, row), where (0.5, 0.5) is the first sample's center.
-pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Answer {
+pub fn bilinear_at_grid(grid: &impl SampleGrid, at: DVec2) -> Answer {
+    let raster = grid.whole();
     if !contains(raster, at) {
         return Answer::Outside;
     }
@@ -47,7 +73,7 @@ pub fn bilinear_at_grid(raster: &Raster, at: DVec2) -> Answer {
     ];
     let (mut sum, mut weights) = (0.0, 0.0);
     for (column, row, weight) in corners {
-        let value = raster.at(column, row);
+        let value = grid.value(column, row);
         if weight > 0.0 && !value.is_nan() {
             sum += weight * value;
             weights += weight;

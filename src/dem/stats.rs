@@ -1,6 +1,9 @@
 //! Statistics of a raster's valid samples.
 
-use crate::dem::raster::Raster;
+use crate::dem::error::DemErrorKind;
+use crate::dem::raster::{Raster, Samples};
+use crate::dem::void_counts::{VoidCounts, VoidSearch};
+use crate::dem::windows::{RasterWindow, Windows};
 
 /// Statistics of the valid samples of a raster, in its vertical unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,18 +25,72 @@ impl Stats {
     ///
     /// Two passes, since the one-pass formula loses the deviation of high plateaus.
     pub fn new(raster: &Raster) -> Self {
-        let (mut count, mut sum) = (0usize, 0.0);
-        let (mut min, mut max) = (f64::NAN, f64::NAN);
-        for value in raster.samples.valid() {
-            count += 1;
-            sum += value;
-            min = f64::min(min, value);
-            max = f64::max(max, value);
+        let mut sums = StatsSums::default();
+        sums.add(&raster.samples);
+        let mean = sums.mean();
+        sums.finish(squares(0.0, &raster.samples, mean))
+    }
+
+    /// The statistics of a raster that is read in windows, and its [voids](VoidCounts): the same bits. It is read twice, some
+    /// rows at a time.
+    ///
+    /// # Errors
+    /// Samples cannot be read.
+    pub fn of_windows(windows: &mut (impl Windows + ?Sized)) -> Result<(Self, VoidCounts), DemErrorKind> {
+        let size = windows.size();
+        let (mut sums, mut voids) = (StatsSums::default(), VoidSearch::new(size));
+        for rows in RasterWindow::all(size).bands(ROWS_SAMPLES) {
+            let samples = windows.samples(rows)?;
+            sums.add(&samples);
+            voids.add_rows(&samples);
         }
-        let mean = sum / count as f64;
-        let squares: f64 =
-            raster.samples.valid().fold(0.0, |sum, value| sum + (value - mean) * (value - mean));
-        Self { valid: count, min, max, mean, std: (squares / count as f64).sqrt() }
+        let (mean, mut sum) = (sums.mean(), 0.0);
+        for rows in RasterWindow::all(size).bands(ROWS_SAMPLES) {
+            sum = squares(sum, &windows.samples(rows)?, mean);
+        }
+        Ok((sums.finish(sum), voids.finish()))
+    }
+}
+
+/// Samples of the rows that are read at a time.
+const ROWS_SAMPLES: u32 = 1 << 22;
+
+/// Adds the squared deviations of samples from a mean to a sum, in order.
+fn squares(sum: f64, samples: &Samples, mean: f64) -> f64 {
+    samples.valid().fold(sum, |sum, value| sum + (value - mean) * (value - mean))
+}
+
+/// Sums over samples in their order.
+struct StatsSums {
+    count: usize,
+    sum: f64,
+    min: f64,
+    max: f64,
+}
+
+impl Default for StatsSums {
+    fn default() -> Self {
+        Self { count: 0, sum: 0.0, min: f64::NAN, max: f64::NAN }
+    }
+}
+
+impl StatsSums {
+    fn add(&mut self, samples: &Samples) {
+        for value in samples.valid() {
+            self.count += 1;
+            self.sum += value;
+            self.min = f64::min(self.min, value);
+            self.max = f64::max(self.max, value);
+        }
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count as f64
+    }
+
+    fn finish(self, squares: f64) -> Stats {
+        let (count, mean) = (self.count, self.mean());
+        Stats { valid: count, min: self.min, max: self.max, mean, std: (squares / count as f64).sqrt() }
     }
 }
 
@@ -46,6 +103,17 @@ mod tests {
     fn holes_do_not_count() {
         let stats = Stats::new(&small(2, 2, vec![1.0, f32::NAN, 3.0, f32::NAN]));
         assert_eq!(stats, Stats { valid: 2, min: 1.0, max: 3.0, mean: 2.0, std: 1.0 });
+    }
+
+    #[test]
+    fn statistics_of_windows_are_those_of_the_raster() {
+        let value = |at: u32| if at % 7 == 3 { f32::NAN } else { (at * 7919 % 1013) as f32 / 3.0 };
+        let mut raster = small(23, 19, (0..23 * 19).map(value).collect());
+        let (stats, voids) = Stats::of_windows(&mut raster.clone()).expect("in memory");
+        assert_eq!(stats, Stats::new(&raster));
+        assert_eq!(voids, VoidCounts::of(&raster));
+        raster.samples.clear(raster.samples.get(0));
+        assert_ne!(Stats::new(&raster), stats);
     }
 
     #[test]

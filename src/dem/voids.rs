@@ -12,6 +12,7 @@
 use glam::DVec2;
 
 use crate::dem::raster::Raster;
+use crate::dem::void_counts::VoidCounts;
 use crate::geom::crs::Crs;
 
 /// Voids of more samples than this are not filled: across three hundred posts a membrane is unrelated to the ground.
@@ -76,12 +77,8 @@ pub fn fill(raster: &mut Raster) -> Filled {
 
 /// The number of voids, and of the samples in all of them.
 pub fn count(raster: &Raster) -> (u64, u64) {
-    let (mut voids, mut cells) = (0, 0);
-    each(raster, |void| {
-        voids += 1;
-        cells += void.count;
-    });
-    (voids, cells)
+    let VoidCounts { voids, samples } = VoidCounts::of(raster);
+    (voids, samples)
 }
 
 struct Void {

@@ -2,11 +2,23 @@
 //!
 //! A raster larger than the memory is read window by window. A raster in memory is read alike, so that code that works
 //! on windows can be tested against it.
+//!
+//! ```text
+//! whole raster        a position keeps its coordinates in the whole raster's grid, and so every bit of its height:
+//! ┌──────────────┐    a part is no smaller raster with another corner, but the same raster of which
+//! │   ┌─────┐    │    only some samples are held
+//! │   │ held│    │
+//! │   └─────┘    │
+//! └──────────────┘
+//! ```
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, scaled};
+use crate::dem::raster::{Raster, Samples, scaled};
+use crate::dem::sample::SampleGrid;
 
 /// A rectangle of a raster's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +52,35 @@ impl RasterWindow {
         rows.map(move |row| (range(self, row), range(other, row)))
     }
 
+    /// All of a raster of this size.
+    pub fn all((width, height): (u32, u32)) -> Self {
+        Self { column: 0, row: 0, width, height }
+    }
+
+    /// The samples around the grid positions from `low` to `high`, and `halo` more on each side as far as there are any;
+    /// in a raster of this size. Positions beyond it count as on its border.
+    pub(crate) fn around((width, height): (u32, u32), low: DVec2, high: DVec2, halo: u32) -> Self {
+        let halo = f64::from(halo);
+        let last = DVec2::new(f64::from(width - 1), f64::from(height - 1));
+        let first = (low.floor() - halo).clamp(DVec2::ZERO, last).as_uvec2();
+        let end = (high.floor() + halo).clamp(DVec2::ZERO, last).as_uvec2();
+        Self {
+            column: first.x,
+            row: first.y,
+            width: end.x.max(first.x) - first.x + 1,
+            height: end.y.max(first.y) - first.y + 1,
+        }
+    }
+
+    /// The window in bands of whole rows, of about `samples` each and at least a row.
+    pub(crate) fn bands(self, samples: u32) -> impl Iterator<Item = Self> {
+        let rows = (samples / self.width).max(1);
+        (0..self.height).step_by(rows as usize).map(move |first| {
+            let height = rows.min(self.height - first);
+            Self { row: self.row + first, height, ..self }
+        })
+    }
+
     /// # Panics
     /// Where the window reaches beyond a raster of this size.
     pub(crate) fn assert_within(&self, (width, height): (u32, u32)) {
@@ -56,15 +97,39 @@ pub trait Windows {
     /// The raster's size, place and coordinate system. Its `samples` mean nothing and may be empty.
     fn metadata(&self) -> &Raster;
 
-    /// Fills `out` with the heights of `window` in meters, row by row from its first; NaN without data. Reading the
-    /// whole raster and converting it to meters gives the same bits.
+    /// The samples of `window` in the raster's vertical unit, row by row from its first; NaN without data. They have the
+    /// precision and the bits that they have in the raster read whole.
     ///
     /// # Errors
     /// The samples cannot be read; another window still may.
     ///
     /// # Panics
     /// Where the window reaches beyond the raster.
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind>;
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind>;
+
+    /// Fills `out` with the heights of `window` in meters, row by row from its first; NaN without data. Reading the
+    /// whole raster and converting it to meters gives the same bits.
+    ///
+    /// # Errors
+    /// As [`Windows::samples`].
+    ///
+    /// # Panics
+    /// Where the window reaches beyond the raster.
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+        let meters_per_z = self.metadata().meters_per_z;
+        match self.samples(window)? {
+            Samples::F32(samples) if meters_per_z == 1.0 => *out = samples,
+            samples => {
+                out.clear();
+                out.extend(samples.iter().map(|value| scaled(value, meters_per_z, 0.0) as f32));
+            }
+        }
+        Ok(())
+    }
+
+    /// Announces windows that are read next, so that they can be read together: on all threads, what they share once.
+    /// Has no effect on what they hold; errors wait for the reading.
+    fn announce(&mut self, _windows: &[RasterWindow]) {}
 
     /// Samples per row, and rows.
     fn size(&self) -> (u32, u32) {
@@ -77,14 +142,55 @@ impl Windows for Raster {
         self
     }
 
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
-        out.clear();
-        for row in window.row..window.row + window.height {
-            let columns = window.column..window.column + window.width;
-            out.extend(columns.map(|column| scaled(self.at(column, row), self.meters_per_z, 0.0) as f32));
+        let all = RasterWindow::all(self.size());
+        let mut samples = Samples::absent(window.samples(), self.samples.is_wide());
+        for (from, to) in all.shared_rows(window) {
+            samples.copy_from(to, &self.samples, from);
         }
-        Ok(())
+        Ok(samples)
+    }
+}
+
+impl<W: Windows + ?Sized> Windows for Box<W> {
+    fn metadata(&self) -> &Raster {
+        (**self).metadata()
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        (**self).samples(window)
+    }
+
+    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+        (**self).read(window, out)
+    }
+
+    fn announce(&mut self, windows: &[RasterWindow]) {
+        (**self).announce(windows);
+    }
+}
+
+/// A raster of which the samples of one window are held.
+pub(crate) struct RasterPart<'a> {
+    /// The whole raster; its `samples` are not used.
+    pub whole: &'a Raster,
+    /// What is held of it.
+    pub window: RasterWindow,
+    /// The samples of the window.
+    pub samples: Samples,
+}
+
+impl SampleGrid for RasterPart<'_> {
+    fn whole(&self) -> &Raster {
+        self.whole
+    }
+
+    fn value(&self, column: u32, row: u32) -> f64 {
+        let RasterWindow { column: first, row: top, width, height } = self.window;
+        let (across, down) = (column.wrapping_sub(first), row.wrapping_sub(top));
+        assert!(across < width && down < height, "sample ({column}, {row}) is outside {:?}", self.window);
+        self.samples.get(down as usize * width as usize + across as usize)
     }
 }
 

@@ -1,7 +1,9 @@
 //! The subject of a height query: an elevation file, or the ground of a scene.
 //!
-//! Every command and the HTTP service query through [`Dataset`], so that they give the same answers.
+//! Every command and the HTTP service query through [`Dataset`], so that they give the same answers: whether the elevation is
+//! kept in memory, as a small file is, or read where a query needs it.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -9,24 +11,35 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::dem::answer::Answer;
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::warp::metric_crs::off_scale;
 use crate::geom::crs::{Crs, CrsError};
-use crate::pipeline::dem::{self, DemOptions, OpenDemError};
-use crate::pipeline::ground::{self, GroundError};
+use crate::pipeline::dem::{self, DemOptions, OpenDemError, OpenedDem};
+use crate::pipeline::ground::{self, GroundError, QueriedGround};
 use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
+use crate::pipeline::windowed_elevation::{GroundReach, WindowedElevation};
 use crate::scene::SceneGround;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights;
 use crate::terrain::query::{Interpolation, Surface};
 
 /// Options for opening a dataset.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct DatasetOptions {
     /// Options for an elevation file.
     pub dem: DemOptions,
     /// Folders that a scene may read besides the parent of its own.
     pub allowed: Vec<PathBuf>,
+    /// The most samples of an elevation file that is read whole and kept. A larger one is read where queries need it, if its
+    /// format allows that. Default 2²⁰, which are read in some milliseconds.
+    pub most_kept: u64,
+}
+
+impl Default for DatasetOptions {
+    fn default() -> Self {
+        Self { dem: DemOptions::default(), allowed: Vec::new(), most_kept: 1 << 20 }
+    }
 }
 
 /// An elevation file, or a scene.
@@ -42,6 +55,8 @@ enum DatasetContent {
         ground: OnceLock<Result<HeightService, Arc<GroundError>>>,
         warning: Option<String>,
     },
+    /// Too large to be kept.
+    Windows(WindowedElevation),
     Scene(SceneGround),
 }
 
@@ -62,6 +77,8 @@ pub enum OpenError {
 pub enum QueryError {
     #[error("{dataset}")]
     Ground { dataset: String, source: Arc<GroundError> },
+    #[error("{dataset}")]
+    Read { dataset: String, source: Arc<DemErrorKind> },
     #[error("{dataset}")]
     Datum { dataset: String, source: CrsError },
     #[error("{what} {},{}", at.x, at.y)]
@@ -98,17 +115,22 @@ impl Dataset {
             let ground = open_scene_ground(path, &options.allowed)?;
             return Ok(Self { name, content: DatasetContent::Scene(ground) });
         }
-        let mosaic = dem::open(path, &options.dem)?;
-        let warning = dem::warning(path, &mosaic);
-        let raster = Arc::new(mosaic.raster);
-        Ok(Self { name, content: DatasetContent::Raster { raster, ground: OnceLock::new(), warning } })
+        let content = match dem::open_either(path, &options.dem, options.most_kept)? {
+            OpenedDem::Kept(mosaic) => {
+                let warning = dem::warning(path, &mosaic);
+                let raster = Arc::new(mosaic.raster);
+                DatasetContent::Raster { raster, ground: OnceLock::new(), warning }
+            }
+            OpenedDem::Windows(windows) => DatasetContent::Windows(WindowedElevation::new(windows)),
+        };
+        Ok(Self { name, content })
     }
 
     /// A warning for the user about the files, where there is one.
     pub fn warning(&self) -> Option<&str> {
         match &self.content {
             DatasetContent::Raster { warning, .. } => warning.as_deref(),
-            DatasetContent::Scene(_) => None,
+            DatasetContent::Windows(_) | DatasetContent::Scene(_) => None,
         }
     }
 
@@ -118,6 +140,9 @@ impl Dataset {
         let note = match &self.content {
             // A raster without ground says so when its ground is made.
             DatasetContent::Raster { raster, .. } => off_scale(raster, None).ok()?.map(|off| off.to_string()),
+            DatasetContent::Windows(elevation) => {
+                elevation.plan().ok()?.off_scale().map(|off| off.to_string())
+            }
             DatasetContent::Scene(ground) => ground.scale_note.clone(),
         };
         note.map(|note| format!("{}: {note}", self.name))
@@ -127,6 +152,7 @@ impl Dataset {
     pub fn crs(&self) -> Crs {
         match &self.content {
             DatasetContent::Raster { raster, .. } => raster.crs.clone().unwrap_or_else(Crs::local),
+            DatasetContent::Windows(elevation) => elevation.header().crs.clone().unwrap_or_else(Crs::local),
             DatasetContent::Scene(ground) => ground.stated_crs.clone(),
         }
     }
@@ -134,40 +160,71 @@ impl Dataset {
     /// The surface that is queried unless the caller states another: the source of a file, the ground of a scene.
     pub fn default_surface(&self) -> Surface {
         match &self.content {
-            DatasetContent::Raster { .. } => Surface::Source,
+            DatasetContent::Raster { .. } | DatasetContent::Windows(_) => Surface::Source,
             DatasetContent::Scene(_) => Surface::Ground,
         }
     }
 
-    /// The raster as read.
-    pub fn source(&self) -> Arc<Raster> {
+    /// The raster as read; its samples may be left out.
+    pub fn header(&self) -> Arc<Raster> {
         match &self.content {
             DatasetContent::Raster { raster, .. } => Arc::clone(raster),
+            DatasetContent::Windows(elevation) => Arc::clone(elevation.header()),
             DatasetContent::Scene(ground) => Arc::clone(ground.heights.snapshot().source()),
         }
     }
 
-    /// The height service on the ground in meters.
+    /// Whether queries read from disk.
+    pub fn reads_windows(&self) -> bool {
+        matches!(self.content, DatasetContent::Windows(_))
+    }
+
+    /// The ground in meters as far as a query reaches: all of it where it is kept in memory.
     ///
     /// # Errors
     /// [`QueryError::Ground`].
-    pub fn service(&self) -> Result<&HeightService, QueryError> {
+    pub fn ground(&self, reach: &GroundReach) -> Result<QueriedGround, QueryError> {
         match &self.content {
-            DatasetContent::Scene(ground) => Ok(&ground.heights),
-            DatasetContent::Raster { raster, ground, .. } => {
-                ground.get_or_init(|| ground::height_service(raster).map_err(Arc::new)).as_ref().map_err(
-                    |error| QueryError::Ground { dataset: self.name.clone(), source: Arc::clone(error) },
-                )
-            }
+            DatasetContent::Windows(elevation) => elevation.ground(reach).map_err(self.no_ground()),
+            _ => Ok(QueriedGround::from(&*self.service()?.snapshot())),
         }
     }
 
-    /// [`Dataset::service`] where the ground is made or has failed; `None` where it is not made yet.
-    pub fn service_if_made(&self) -> Option<Result<&HeightService, QueryError>> {
+    /// Makes what queries for the ground in meters need beforehand.
+    ///
+    /// # Errors
+    /// [`QueryError::Ground`].
+    pub fn prepare_ground(&self) -> Result<(), QueryError> {
         match &self.content {
-            DatasetContent::Raster { ground, .. } if ground.get().is_none() => None,
-            _ => Some(self.service()),
+            DatasetContent::Windows(elevation) => elevation.plan().map(drop).map_err(self.no_ground()),
+            _ => self.service().map(drop),
         }
+    }
+
+    /// [`Dataset::prepare_ground`] where that is done or has failed; `None` where it is not done yet.
+    pub fn prepared_ground(&self) -> Option<Result<(), QueryError>> {
+        let is_prepared = match &self.content {
+            DatasetContent::Raster { ground, .. } => ground.get().is_some(),
+            DatasetContent::Windows(elevation) => elevation.is_planned(),
+            DatasetContent::Scene(_) => true,
+        };
+        is_prepared.then(|| self.prepare_ground())
+    }
+
+    /// The height service on the ground in meters, of a dataset that is kept in memory.
+    fn service(&self) -> Result<&HeightService, QueryError> {
+        match &self.content {
+            DatasetContent::Scene(ground) => Ok(&ground.heights),
+            DatasetContent::Raster { raster, ground, .. } => {
+                let made = ground.get_or_init(|| ground::height_service(raster).map_err(Arc::new));
+                made.as_ref().map_err(|error| self.no_ground()(Arc::clone(error)))
+            }
+            DatasetContent::Windows(_) => unreachable!("no service is made of what is not kept"),
+        }
+    }
+
+    fn no_ground(&self) -> impl Fn(Arc<GroundError>) -> QueryError + '_ {
+        |source| QueryError::Ground { dataset: self.name.clone(), source }
     }
 
     /// The heights at positions in coordinates of `from`, in order.
@@ -176,7 +233,7 @@ impl Dataset {
     /// the surface's system is [`Answer::Outside`].
     ///
     /// # Errors
-    /// [`QueryError::Datum`]; for another surface than the source, [`QueryError::Ground`].
+    /// [`QueryError::Datum`], [`QueryError::Read`]; for another surface than the source, [`QueryError::Ground`].
     pub fn heights(
         &self,
         surface: Surface,
@@ -184,23 +241,37 @@ impl Dataset {
         from: &Crs,
         at: &[DVec2],
     ) -> Result<Vec<Answer>, QueryError> {
-        let mut answers = vec![Answer::Outside; at.len()];
         if surface == Surface::Source {
-            let source = self.source();
+            let source = self.header();
             self.check_datums(from, source.crs.as_ref().unwrap_or(from))?;
+            if let DatasetContent::Windows(elevation) = &self.content {
+                let fault = |fault| QueryError::Read { dataset: self.name.clone(), source: Arc::new(fault) };
+                return elevation.source_heights(from, interpolation, at).map_err(fault);
+            }
+            let mut answers = vec![Answer::Outside; at.len()];
             source_heights(&source, from, interpolation, at, &mut answers);
             return Ok(answers);
         }
-        let snapshot = self.service()?.snapshot();
-        if from == snapshot.crs() {
-            snapshot.heights(surface, interpolation, at, &mut answers);
-            return Ok(answers);
+        if let DatasetContent::Windows(elevation) = &self.content {
+            let crs = elevation.ground_crs().map_err(self.no_ground())?;
+            let at = self.on_ground(from, &crs, at)?;
+            return elevation.ground_heights(surface, interpolation, &at).map_err(self.no_ground());
         }
-        self.check_datums(from, snapshot.crs())?;
-        let transformed = |&at: &DVec2| from.transform(snapshot.crs(), at).unwrap_or(DVec2::NAN);
-        let transformed: Vec<DVec2> = at.par_iter().map(transformed).collect();
-        snapshot.heights(surface, interpolation, &transformed, &mut answers);
+        let snapshot = self.service()?.snapshot();
+        let at = self.on_ground(from, snapshot.crs(), at)?;
+        let mut answers = vec![Answer::Outside; at.len()];
+        snapshot.heights(surface, interpolation, &at, &mut answers);
         Ok(answers)
+    }
+
+    /// Positions in the ground's system; NaN where they have no place in it.
+    fn on_ground<'a>(&self, from: &Crs, to: &Crs, at: &'a [DVec2]) -> Result<Cow<'a, [DVec2]>, QueryError> {
+        if from == to {
+            return Ok(Cow::Borrowed(at));
+        }
+        self.check_datums(from, to)?;
+        let transformed = |&at: &DVec2| from.transform(to, at).unwrap_or(DVec2::NAN);
+        Ok(Cow::Owned(at.par_iter().map(transformed).collect()))
     }
 
     fn check_datums(&self, from: &Crs, to: &Crs) -> Result<(), QueryError> {

@@ -6,8 +6,13 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
+use crate::dem::windows::Windows;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
+
+/// Bytes of decoded samples that are kept of a file that is read in windows: two rows of tiles of a raster of the largest
+/// size.
+const CACHE_BYTES: usize = 64 << 20;
 
 /// Options for opening elevation. Companions are the files beside the opened one.
 pub type DemOptions = DemHints<'static>;
@@ -40,6 +45,45 @@ pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
         return Err(OpenDemError::NoTiles(path.to_owned()));
     }
     open_tiles(&tiles, options)
+}
+
+/// Opened elevation: in memory, or to be read where it is needed.
+pub enum OpenedDem {
+    /// All of it.
+    Kept(Mosaic),
+    /// Any window of it.
+    Windows(Box<dyn Windows + Send>),
+}
+
+/// Opens elevation as [`open`] does, but does not read it where it holds more than `most_kept` samples and can be read in
+/// windows.
+///
+/// # Errors
+/// See [`OpenDemError`].
+pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
+    let windows = if path.is_dir() { Ok(None) } else { open_windows(path, options) };
+    let fault = match windows {
+        Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
+        windows => windows.err(),
+    };
+    open(path, options).map(OpenedDem::Kept).map_err(|whole| match (whole, fault) {
+        // The reason why there are no windows has a remedy that keeps all samples.
+        (OpenDemError::Format(FileError { cause: DemErrorKind::TooLarge { .. }, .. }), Some(fault)) => fault,
+        (whole, _) => whole,
+    })
+}
+
+fn samples(windows: &dyn Windows) -> u64 {
+    let (width, height) = windows.size();
+    u64::from(width) * u64::from(height)
+}
+
+/// The windows of an elevation file; `None` where its format is read whole.
+fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
+    let (head, content) = (files::read_head(path, read::HEAD_BYTES)?, files::open(path)?);
+    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
+    let windows = read::open_windows(&files::file_name(path), &head, Box::new(content), &hints, CACHE_BYTES);
+    Ok(windows.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
 /// Joins the elevation files at `paths`, tiles of one raster; of samples that tiles share the first tile's is kept.

@@ -111,17 +111,25 @@ pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
     fs::read(path).map_err(system(path))
 }
 
+/// A regular file of any size, to be read in parts.
+///
+/// # Errors
+/// See [`ReadFileCause`].
+pub fn open(path: &Path) -> Result<fs::File, ReadFileError> {
+    // What is no file is not opened: a pipe would wait for its writer.
+    if !fs::metadata(path).map_err(system(path))?.is_file() {
+        return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
+    }
+    fs::File::open(path).map_err(system(path))
+}
+
 /// The first `most` bytes of a regular file.
 ///
 /// # Errors
 /// See [`ReadFileCause`].
 pub fn read_head(path: &Path, most: u64) -> Result<Vec<u8>, ReadFileError> {
-    let file = fs::File::open(path).map_err(system(path))?;
-    if !file.metadata().map_err(system(path))?.is_file() {
-        return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
-    }
     let mut head = Vec::new();
-    file.take(most).read_to_end(&mut head).map_err(system(path))?;
+    open(path)?.take(most).read_to_end(&mut head).map_err(system(path))?;
     Ok(head)
 }
 

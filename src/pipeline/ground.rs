@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
+use crate::dem::warp::metric_windows::MetricWindowsError;
 use crate::dem::warp::{self, WarpError};
 use crate::geom::crs::Crs;
+use crate::limits::RASTER_SAMPLES;
 use crate::terrain::lattice::{Lattice, LatticeError};
-use crate::terrain::query::service::HeightService;
+use crate::terrain::query::service::{HeightService, Snapshot};
+use crate::terrain::query::windowed::LatticePartError;
 
 /// Ground in meters.
 pub struct MetricGround {
@@ -14,6 +18,27 @@ pub struct MetricGround {
     pub lattice: Lattice,
     /// Their coordinate system.
     pub crs: Crs,
+}
+
+/// The ground that a query is about: all of it, or as far as the query reaches ([`Lattice::held_part`]).
+#[derive(Clone)]
+pub struct QueriedGround {
+    /// The posts.
+    pub lattice: Arc<Lattice>,
+    /// Their coordinate system.
+    pub crs: Crs,
+    /// The vertical datum of the elevation, in the file's words.
+    pub vertical_datum: Option<String>,
+}
+
+impl From<&Snapshot> for QueriedGround {
+    fn from(snapshot: &Snapshot) -> Self {
+        Self {
+            lattice: Arc::clone(snapshot.lattice()),
+            crs: snapshot.crs().clone(),
+            vertical_datum: snapshot.source().vertical_datum.clone(),
+        }
+    }
 }
 
 /// Elevation that has no ground in meters.
@@ -25,6 +50,37 @@ pub enum GroundError {
     /// The raster has no surface.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
+    /// Its samples cannot be read.
+    #[error(transparent)]
+    Read(#[from] DemErrorKind),
+    /// A query reaches too far over elevation that is not kept in memory.
+    #[error(
+        "the ground that is asked about has {columns} x {rows} posts, more than the {RASTER_SAMPLES} that are read at once; ask about less of it, with a range or a shorter line"
+    )]
+    Reach {
+        /// Posts per row.
+        columns: usize,
+        /// Rows.
+        rows: usize,
+    },
+}
+
+impl From<MetricWindowsError> for GroundError {
+    fn from(error: MetricWindowsError) -> Self {
+        match error {
+            MetricWindowsError::Warp(error) => Self::Warp(error),
+            MetricWindowsError::Read(error) => Self::Read(error),
+        }
+    }
+}
+
+impl From<LatticePartError> for GroundError {
+    fn from(error: LatticePartError) -> Self {
+        match error {
+            LatticePartError::Lattice(error) => Self::Lattice(error),
+            LatticePartError::Read(error) => Self::Read(error),
+        }
+    }
 }
 
 /// The reason, with a remedy that needs no scene file.

@@ -63,3 +63,4 @@ pub mod viewing;
 pub mod viewshed;
 pub mod viewshed_map;
 pub mod walk;
+pub mod windowed_elevation;

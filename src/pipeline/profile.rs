@@ -14,9 +14,9 @@ use crate::dem::answer::Answer;
 use crate::geom::crs::Crs;
 use crate::limits::PROFILE_STEPS;
 use crate::pipeline::dataset::{QueryError, transform};
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::positions::{InputLine, format_position};
 use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
-use crate::terrain::query::service::Snapshot;
 
 /// Stretches without ground that are shorter than this, in meters, are not mentioned.
 const LEAST_GAP_M: f64 = 0.5;
@@ -53,12 +53,12 @@ pub struct GroundProfile {
 }
 
 impl GroundProfile {
-    /// The profile of the ground of `snapshot` along `line`.
+    /// The profile of `ground` along `line`, which it reaches.
     ///
     /// # Errors
     /// See [`ProfileError`].
-    pub fn new(snapshot: &Snapshot, line: InputLine, sampling: Sampling) -> Result<Self, ProfileError> {
-        let to_ground = |&at: &DVec2| transform("the position", &line.crs, snapshot.crs(), at);
+    pub fn new(ground: &QueriedGround, line: InputLine, sampling: Sampling) -> Result<Self, ProfileError> {
+        let to_ground = |&at: &DVec2| transform("the position", &line.crs, &ground.crs, at);
         let vertices: Vec<DVec2> = line.vertices.iter().map(to_ground).collect::<Result<_, _>>()?;
         let lengths_m = vertices.windows(2).map(|pair| pair[0].distance(pair[1]));
         let mut bends_m: Vec<f64> = lengths_m
@@ -68,16 +68,16 @@ impl GroundProfile {
             })
             .collect();
         check_step(sampling.step_m, bends_m.pop().unwrap_or_default())?;
-        let stations = sampled_profile(snapshot.lattice(), &vertices, sampling);
+        let stations = sampled_profile(&ground.lattice, &vertices, sampling);
         let from_ground =
-            |station: &ProfileStation| transform("the station at", snapshot.crs(), &line.crs, station.at);
+            |station: &ProfileStation| transform("the station at", &ground.crs, &line.crs, station.at);
         Ok(Self {
             positions: stations.iter().map(from_ground).collect::<Result<_, _>>()?,
             summary: ProfileSummary::from_stations(&stations),
             stations,
-            ground_crs: snapshot.crs().clone(),
+            ground_crs: ground.crs.clone(),
             line,
-            vertical_datum: snapshot.source().vertical_datum.clone(),
+            vertical_datum: ground.vertical_datum.clone(),
             bends_m,
         })
     }

@@ -8,10 +8,10 @@ use crate::annotate::nice;
 use crate::dem::answer::Answer;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{QueryError, transform};
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::positions::format_position;
 use crate::pipeline::profile::chart_points;
 use crate::terrain::profile::profile;
-use crate::terrain::query::service::Snapshot;
 use crate::terrain::query::{Interpolation, ground_height};
 use crate::terrain::sight::Curvature;
 use crate::terrain::sight::line::{Blocker, Sight, SightEnd, line_of_sight};
@@ -69,13 +69,13 @@ impl GroundedEnd {
 }
 
 impl SightReport {
-    /// Examines a line of sight over the ground of `snapshot`.
+    /// Examines a line of sight over `ground`, which reaches both ends.
     ///
     /// # Errors
     /// An end has no ground under it, or has no position in the ground's system.
-    pub fn new(snapshot: &Snapshot, query: SightQuery) -> Result<Self, QueryError> {
-        let lattice = snapshot.lattice();
-        let [observer, target] = query.on_ground(snapshot)?;
+    pub fn new(ground: &QueriedGround, query: SightQuery) -> Result<Self, QueryError> {
+        let lattice = &ground.lattice;
+        let [observer, target] = query.on_ground(ground)?;
         let no_ground = |index: usize, answer| QueryError::NoGround {
             what: END_NAMES[index].into(),
             at: query.ends[index].at,
@@ -88,7 +88,7 @@ impl SightReport {
             };
         let feet_m = [ground_m(0, observer)?, ground_m(1, target)?];
         let in_query = |place: Blocker| {
-            let at = transform("the place at", snapshot.crs(), &query.crs, place.at)?;
+            let at = transform("the place at", &ground.crs, &query.crs, place.at)?;
             Ok(Blocker { at, ..place })
         };
         let blocker = match line_of_sight(lattice, observer, target, query.curvature) {
@@ -102,7 +102,7 @@ impl SightReport {
             rise.map(|rise| Ok(Rise { grazing: in_query(rise.grazing)?, ..rise })).transpose()
         };
         let grounded = |index: usize, end: SightEnd| {
-            let at = transform("the place at", snapshot.crs(), &query.crs, end.at)?;
+            let at = transform("the place at", &ground.crs, &query.crs, end.at)?;
             Ok(GroundedEnd { at, ground_m: feet_m[index], above_m: end.above_m })
         };
         Ok(Self {
@@ -120,14 +120,13 @@ impl SightReport {
     ///
     /// # Errors
     /// As [`SightReport::new`].
-    pub fn chart(&self, snapshot: &Snapshot, title: String) -> Result<SightChart, QueryError> {
+    pub fn chart(&self, ground: &QueriedGround, title: String) -> Result<SightChart, QueryError> {
         let curvature = self.query.curvature;
-        let [observer, target] = self.query.on_ground(snapshot)?;
+        let [observer, target] = self.query.on_ground(ground)?;
         let drop_m = |along_m: f64| curvature.drop_per_square_m() * along_m * along_m;
-        let stations = profile(snapshot.lattice(), &[observer.at, target.at]);
+        let stations = profile(&ground.lattice, &[observer.at, target.at]);
         let [eye_m, target_m] = self.ends.map(|end| end.height_m());
-        let datum =
-            snapshot.source().vertical_datum.as_ref().map_or(String::new(), |datum| format!(", {datum}"));
+        let datum = ground.vertical_datum.as_ref().map_or(String::new(), |datum| format!(", {datum}"));
         let sunk = if curvature == Curvature::FLAT { "" } else { ", less the Earth’s curvature" };
         let [start, end] = self.query.ends.map(|end| format_position(&self.query.crs, end.at));
         Ok(SightChart {
@@ -179,10 +178,10 @@ impl SightReport {
 
 impl SightQuery {
     /// Both ends in the ground's coordinate system.
-    fn on_ground(&self, snapshot: &Snapshot) -> Result<[SightEnd; 2], QueryError> {
+    fn on_ground(&self, ground: &QueriedGround) -> Result<[SightEnd; 2], QueryError> {
         let end = |index: usize| {
             let end = self.ends[index];
-            let at = transform(END_NAMES[index], &self.crs, snapshot.crs(), end.at)?;
+            let at = transform(END_NAMES[index], &self.crs, &ground.crs, end.at)?;
             Ok(SightEnd { at, ..end })
         };
         Ok([end(0)?, end(1)?])

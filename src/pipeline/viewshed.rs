@@ -20,9 +20,10 @@ pub struct ViewshedSummary {
 }
 
 impl ViewshedSummary {
-    /// The figures of a viewshed over `lattice`.
+    /// The figures of a viewshed over `lattice`; posts that it does not hold are beyond.
     pub fn new(lattice: &Lattice, viewshed: &Viewshed) -> Self {
-        let counts = viewshed.counts();
+        let mut counts = viewshed.counts();
+        counts.beyond += lattice.columns() as usize * lattice.rows() as usize - viewshed.posts.len();
         let visible = counts.visible as f64;
         let looked_at = counts.visible + counts.hidden;
         Self {

@@ -1,20 +1,20 @@
 //! The datasets that are served, by name.
 //!
-//! They are opened when the service starts, so that no request reads from disk. Their ground in meters, for which an
+//! They are opened when the service starts, so that no request reads from disk, but for elevation larger than a raster in
+//! memory may be: of that, a request reads what it needs. Their ground in meters, for which an
 //! elevation file in degrees must be warped, is made in the background; queries for it wait.
-
-use std::sync::Arc;
 
 use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
 use crate::message::chain::error_text;
-use crate::pipeline::dataset::{Dataset, OpenError};
+use crate::pipeline::dataset::{Dataset, OpenError, QueryError};
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::service::{NamedFile, ServiceOptions};
+use crate::pipeline::windowed_elevation::GroundReach;
 use crate::serve::query::Service;
 use crate::serve::reply::{HttpError, OK, quoted};
-use crate::terrain::query::service::Snapshot;
 
 pub struct ServedDataset {
     pub name: String,
@@ -24,7 +24,7 @@ pub struct ServedDataset {
 impl ServedDataset {
     /// What it is.
     pub fn facts(&self) -> DatasetFacts<'_> {
-        let source = self.dataset.source();
+        let source = self.dataset.header();
         let extent = source.extent();
         DatasetFacts {
             name: &self.name,
@@ -40,13 +40,19 @@ impl ServedDataset {
         }
     }
 
-    /// The current ground; waits while it is being made.
-    pub fn snapshot(&self) -> Result<Arc<Snapshot>, HttpError> {
-        let service = self.dataset.service().map_err(|error| {
-            let (name, reason) = (quoted(&self.name), error_text(&error));
-            HttpError::wrong(format!("dataset {name} has no ground in meters: {reason}"))
-        })?;
-        Ok(service.snapshot())
+    /// The current ground as far as a query reaches; waits while it is being made.
+    pub fn ground(&self, reach: &GroundReach) -> Result<QueriedGround, HttpError> {
+        self.dataset.ground(reach).map_err(|error| self.no_ground(&error))
+    }
+
+    /// Waits until queries for the ground can be answered.
+    pub fn prepare_ground(&self) -> Result<(), HttpError> {
+        self.dataset.prepare_ground().map_err(|error| self.no_ground(&error))
+    }
+
+    fn no_ground(&self, error: &QueryError) -> HttpError {
+        let (name, reason) = (quoted(&self.name), error_text(error));
+        HttpError::wrong(format!("dataset {name} has no ground in meters: {reason}"))
     }
 }
 

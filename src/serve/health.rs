@@ -32,9 +32,9 @@ pub fn page(service: &Service) -> Response {
 fn dataset_health(served: &ServedDataset) -> DatasetHealth<'_> {
     DatasetHealth {
         facts: served.facts(),
-        ground: match served.dataset.service_if_made() {
+        ground: match served.dataset.prepared_ground() {
             None => "awaited".into(),
-            Some(Ok(_)) => "ready".into(),
+            Some(Ok(())) => "ready".into(),
             Some(Err(error)) => format!("none: {}", error_text(&error)),
         },
     }

@@ -99,7 +99,9 @@ impl Query for HeightsQuery {
 
     fn weight(&self, service: &Service) -> QueryWeight {
         let is_made = self.datasets.iter().map(|&index| service.datasets.at(index)).all(|served| {
-            self.surface_of(served) == Surface::Source || served.dataset.service_if_made().is_some()
+            let is_prepared =
+                self.surface_of(served) == Surface::Source || served.dataset.prepared_ground().is_some();
+            is_prepared && !served.dataset.reads_windows()
         });
         if is_made && self.above.is_none() && self.positions.len() <= LIGHT_POINTS {
             QueryWeight::Light
@@ -250,7 +252,7 @@ impl HeightsQuery {
         let surface = self.surface_of(served);
         if surface != Surface::Source {
             // Waits for the ground, and fails where it cannot be made.
-            served.snapshot()?;
+            served.prepare_ground()?;
         }
         let crs = &self.coordinates.crs;
         let mut answers = served.dataset.heights(surface, self.interpolation, crs, at)?;

@@ -59,12 +59,12 @@ impl Query for LosQuery {
 
     fn answer(self, service: &Service, _: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
-        let snapshot = served.snapshot()?;
+        let ground = served.ground(&self.ground.reach(&self.ends.map(|end| end.at), 0.0))?;
         let on_ground = |what: &str, end: SightEnd| {
-            Ok::<_, HttpError>(SightEnd { at: self.ground.to_ground(what, end.at, &snapshot)?, ..end })
+            Ok::<_, HttpError>(SightEnd { at: self.ground.to_ground(what, end.at, &ground)?, ..end })
         };
         let (observer, target) = (on_ground("from", self.ends[0])?, on_ground("to", self.ends[1])?);
-        let sight = line_of_sight(snapshot.lattice(), observer, target, self.curvature);
+        let sight = line_of_sight(&ground.lattice, observer, target, self.curvature);
         let (word, visible, blocker) = match sight {
             Sight::Clear => ("Clear", Some(true), None),
             Sight::Blocked(blocker) => ("Blocked", Some(false), Some(blocker)),
@@ -76,7 +76,7 @@ impl Query for LosQuery {
             visible,
             distance_m: observer.at.distance(target.at),
             blocker: blocker.map(|blocker| LosBlocker {
-                location: self.ground.location(&snapshot, blocker.at),
+                location: self.ground.location(&ground, blocker.at),
                 distance_m: blocker.distance_m,
                 elevation: blocker.height_m,
             }),

@@ -128,7 +128,7 @@ fn runtime() -> io::Result<Runtime> {
 /// Makes the ground of every dataset in the background. Queries for elevations as read do not wait for it.
 fn prepare(service: &Arc<Service>) {
     let service = Arc::clone(service);
-    let work = move || service.datasets.all().iter().for_each(|served| drop(served.dataset.service()));
+    let work = move || service.datasets.all().iter().for_each(|served| drop(served.dataset.prepare_ground()));
     // If the thread does not start, the first query for the ground makes it.
     let _ = std::thread::Builder::new().name("ground".into()).spawn(work);
 }

@@ -67,7 +67,7 @@ impl Query for ProfileQuery {
     }
 
     fn most_bytes(&self, service: &Service) -> usize {
-        let source = self.ground.served(service).dataset.source();
+        let source = self.ground.served(service).dataset.header();
         // A warped ground has about as many posts; twice as many are enough for any.
         let on_leg = 4 * (source.width as usize + source.height as usize) + 4;
         let most = service.limits.max_points as usize * STATIONS_PER_POINT;
@@ -76,26 +76,27 @@ impl Query for ProfileQuery {
 
     fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
-        let snapshot = served.snapshot()?;
-        let to_ground = |(&at, number): (&DVec2, usize)| {
-            self.ground.to_ground(&format!("location {number}"), at, &snapshot)
-        };
+        // The line's length is known before the ground under it is read.
+        let start = served.ground(&self.ground.reach(&self.vertices[..1], 0.0))?;
+        let to_ground =
+            |(&at, number): (&DVec2, usize)| self.ground.to_ground(&format!("location {number}"), at, &start);
         let line: Vec<DVec2> = self.vertices.iter().zip(1..).map(to_ground).collect::<Result<_, _>>()?;
         let most = service.limits.max_points as usize * STATIONS_PER_POINT;
-        let expected = most_stations(snapshot.lattice(), &line);
+        let expected = most_stations(&start.lattice, &line);
         if expected > most as f64 {
             return Err(HttpError::wrong(format!(
                 "the line may have {expected:.0} stations, {most} are the most of one profile; ask for a part of it"
             )));
         }
-        let stations = profile(snapshot.lattice(), &line);
+        let ground = served.ground(&self.ground.reach(&self.vertices, 0.0))?;
+        let stations = profile(&ground.lattice, &line);
         if stop.is_stopped() {
             return Err(HttpError::stopped());
         }
         let results = stations.iter().map(|station| ProfileResult {
             station_m: station.station_m,
             elevation: station.ground.height_m(),
-            location: self.ground.location(&snapshot, station.at),
+            location: self.ground.location(&ground, station.at),
             status: station.ground.status(),
         });
         Ok(Json(ProfileAnswer {

@@ -8,7 +8,9 @@ use tokio::sync::Semaphore;
 
 use crate::geom::crs::Crs;
 use crate::geom::geoid::Geoid;
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::service::{RequestLog, ServiceLimits};
+use crate::pipeline::windowed_elevation::GroundReach;
 use crate::serve::answers::AnswerMemory;
 use crate::serve::api::ApiAddress;
 use crate::serve::clients::Clients;
@@ -16,7 +18,6 @@ use crate::serve::coordinates::{Coordinates, Location};
 use crate::serve::datasets::{Datasets, ServedDataset};
 use crate::serve::parameters::Parameters;
 use crate::serve::reply::HttpError;
-use crate::terrain::query::service::Snapshot;
 use crate::terrain::sight::Curvature;
 use crate::terrain::stop_flag::StopFlag;
 
@@ -100,15 +101,20 @@ impl GroundQuery {
         service.datasets.at(self.dataset)
     }
 
+    /// The reach of a query about positions of the request, and `around_m` meters around them.
+    pub fn reach<'q>(&'q self, at: &'q [DVec2], around_m: f64) -> GroundReach<'q> {
+        GroundReach { crs: &self.coordinates.crs, at, around_m }
+    }
+
     /// A position of the request in the ground's system; `what` names it in messages.
-    pub fn to_ground(&self, what: &str, at: DVec2, ground: &Snapshot) -> Result<DVec2, HttpError> {
-        let transformed = self.coordinates.crs.transform(ground.crs(), at);
+    pub fn to_ground(&self, what: &str, at: DVec2, ground: &QueriedGround) -> Result<DVec2, HttpError> {
+        let transformed = self.coordinates.crs.transform(&ground.crs, at);
         transformed.map_err(|error| HttpError::wrong(format!("{what}: {error}")))
     }
 
     /// A position on the ground as a location of the answer; not finite where the request's system has none.
-    pub fn location(&self, ground: &Snapshot, at: DVec2) -> Location {
-        let at = ground.crs().transform(&self.coordinates.crs, at).unwrap_or(DVec2::NAN);
+    pub fn location(&self, ground: &QueriedGround, at: DVec2) -> Location {
+        let at = ground.crs.transform(&self.coordinates.crs, at).unwrap_or(DVec2::NAN);
         self.coordinates.location(at)
     }
 }

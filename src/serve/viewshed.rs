@@ -88,7 +88,7 @@ impl Query for ViewshedQuery {
     }
 
     fn most_bytes(&self, service: &Service) -> usize {
-        let source = self.ground.served(service).dataset.source();
+        let source = self.ground.served(service).dataset.header();
         let posts = 2 * source.width as usize * source.height as usize;
         match self.detail {
             ViewshedDetail::Runs => posts.min(service.limits.max_posts as usize) * POST_BYTES,
@@ -98,11 +98,14 @@ impl Query for ViewshedQuery {
 
     fn answer(self, service: &Service, stop: &StopFlag) -> Result<Response, HttpError> {
         let served = self.ground.served(service);
-        let snapshot = served.snapshot()?;
-        let lattice = snapshot.lattice();
-        let at = self.ground.to_ground("observer", self.options.observer.at, &snapshot)?;
-        let window = PostWindow::around(lattice, at, self.options.range_m);
-        window.check(lattice, service.limits.max_posts)?;
+        let observer_at = [self.options.observer.at];
+        // The answer's size is known before the ground within the range is read.
+        let here = served.ground(&self.ground.reach(&observer_at, 0.0))?;
+        let at = self.ground.to_ground("observer", observer_at[0], &here)?;
+        let window = PostWindow::around(&here.lattice, at, self.options.range_m);
+        window.check(&here.lattice, service.limits.max_posts)?;
+        let ground = served.ground(&self.ground.reach(&observer_at, self.options.range_m))?;
+        let lattice = &ground.lattice;
         let observer = SightEnd { at, ..self.options.observer };
         let options = ViewshedOptions { observer, ..self.options };
         let viewshed = viewshed::viewshed_until(lattice, &options, stop).map_err(|answer| {
@@ -113,14 +116,14 @@ impl Query for ViewshedQuery {
         let xy = |DVec2 { x, y }: DVec2| Location::Xy { x, y };
         Ok(Json(ViewshedAnswer {
             dataset: &served.name,
-            crs: snapshot.crs().name(),
+            crs: ground.crs.name(),
             columns: window.columns(),
             rows: window.rows(),
             south_west: xy(lattice.map_position(window.first)),
             cell: xy(lattice.cell()),
             visible_area_m2: counts.visible as f64 * lattice.cell().element_product(),
             counts,
-            runs: (self.detail == ViewshedDetail::Runs).then(|| window.runs(&viewshed)),
+            runs: (self.detail == ViewshedDetail::Runs).then(|| window.runs(&viewshed, lattice.held().first)),
             status: OK,
         })
         .into_response())
@@ -199,9 +202,11 @@ impl PostWindow {
         ViewshedCounts { beyond: (self.posts() as usize).saturating_sub(looked_at), ..all }
     }
 
-    fn runs(&self, viewshed: &Viewshed) -> Vec<String> {
+    /// The runs of a viewshed whose first post is `first`.
+    fn runs(&self, viewshed: &Viewshed, first: Post) -> Vec<String> {
         let row = |row: u32| {
-            let from = row as usize * viewshed.columns as usize + self.first.column as usize;
+            let (column, row) = (self.first.column - first.column, row - first.row);
+            let from = row as usize * viewshed.columns as usize + column as usize;
             let posts = &viewshed.posts[from..from + self.columns() as usize];
             posts.chunk_by(|a, b| a == b).fold(String::new(), |mut runs, run| {
                 let _ = write!(runs, "{}{}", run.len(), letter(run[0]));

@@ -23,6 +23,7 @@ use glam::{DVec2, Vec2, Vec3};
 use crate::dem::raster::{Raster, Samples};
 use crate::geom::rect::Rect;
 use crate::limits::memory::{MemoryRefused, check_memory};
+use crate::terrain::post_rect::PostRect;
 
 /// Posts of a regular grid with their heights.
 ///
@@ -35,6 +36,8 @@ pub struct Lattice {
     columns: u32,
     rows: u32,
     first: Post,
+    /// The posts whose heights are held: all but in a lattice of [`Lattice::held_part`].
+    held: PostRect,
     doublings: u32,
     heights: Vec<f32>,
     pinned: Vec<bool>,
@@ -185,6 +188,43 @@ impl Lattice {
         if columns < 2 || rows < 2 || heights.len() != columns as usize * rows as usize {
             return Err(LatticeError::TooSmall(columns, rows));
         }
+        let last = Post { column: columns - 1, row: rows - 1 };
+        let held = PostRect { first: Post { column: 0, row: 0 }, last };
+        Self::holding((origin, cell), first, (columns, rows), held, heights)
+    }
+
+    /// A lattice of this origin, cell, and numbers of columns and rows, of which the heights of the posts `held` alone are
+    /// in memory, row by row from the south-west. Grid positions are those of the whole, and so is every bit that follows
+    /// from them: what is asked of the ground among the held posts is answered as on the whole lattice.
+    ///
+    /// All methods that read a post's height panic for other posts. A held part may hold no data at all.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooSmall`] and [`LatticeError::TooHigh`].
+    ///
+    /// # Panics
+    /// Where `held` reaches beyond the lattice, or `heights` are not as many.
+    pub fn held_part(
+        frame: (DVec2, DVec2),
+        (columns, rows): (u32, u32),
+        held: PostRect,
+        heights: Vec<f32>,
+    ) -> Result<Self, LatticeError> {
+        if columns < 2 || rows < 2 {
+            return Err(LatticeError::TooSmall(columns, rows));
+        }
+        assert!(held.last.column < columns && held.last.row < rows, "{held:?} reaches beyond the lattice");
+        assert_eq!(heights.len(), held.width() * held.height(), "a height for each post of {held:?}");
+        Self::holding(frame, Post { column: 0, row: 0 }, (columns, rows), held, heights)
+    }
+
+    fn holding(
+        (origin, cell): (DVec2, DVec2),
+        first: Post,
+        (columns, rows): (u32, u32),
+        held: PostRect,
+        heights: Vec<f32>,
+    ) -> Result<Self, LatticeError> {
         if let Some(&height) = heights.iter().find(|height| height.abs() > HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
@@ -195,6 +235,7 @@ impl Lattice {
             columns,
             rows,
             first,
+            held,
             doublings: 0,
             heights,
             pinned,
@@ -217,7 +258,7 @@ impl Lattice {
     /// The heights of a row, where posts without data take the nearest height of the row, or `otherwise` if it has none.
     pub fn filled_row(&self, row: u32, otherwise: f32) -> Vec<f32> {
         let mut heights =
-            self.heights[row as usize * self.columns as usize..][..self.columns as usize].to_vec();
+            self.heights()[row as usize * self.columns as usize..][..self.columns as usize].to_vec();
         if heights.iter().any(|height| height.is_nan()) {
             spread(heights.iter_mut());
             spread(heights.iter_mut().rev());
@@ -277,8 +318,39 @@ impl Lattice {
     }
 
     /// All heights, row by row from the south-west.
+    ///
+    /// # Panics
+    /// Where only a part is held: [`Lattice::held_heights`] are that part's.
+    #[inline]
     pub fn heights(&self) -> &[f32] {
+        assert!(self.holds_all(), "of {}×{} posts {:?} are held", self.columns, self.rows, self.held);
         &self.heights
+    }
+
+    /// The posts whose heights are held: all but in a lattice of [`Lattice::held_part`].
+    pub fn held(&self) -> PostRect {
+        self.held
+    }
+
+    /// The heights of the held posts, row by row from the south-west.
+    pub fn held_heights(&self) -> &[f32] {
+        &self.heights
+    }
+
+    /// Whether the heights of all posts are held.
+    #[inline]
+    pub fn holds_all(&self) -> bool {
+        self.heights.len() == self.columns as usize * self.rows as usize
+    }
+
+    /// The held posts as a lattice of their own, a [part](Lattice::part) of this one. All heights are held then; diagonals
+    /// may differ.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooSmall`] where fewer than two columns or rows are held.
+    pub fn cut_to_held(&self) -> Result<Self, LatticeError> {
+        let first = self.held.first.offset(self.first.column, self.first.row);
+        Self::part((self.origin, self.cell), first, self.held.width() as u32, self.heights.clone())
     }
 
     /// The rectangle of all posts in world space, the origin's post at (0, 0).
@@ -341,14 +413,24 @@ impl Lattice {
         &mut self.heights[from..=from + (last - first.column) as usize]
     }
 
-    /// A post's index in [`Lattice::heights`].
+    /// A post's index in [`Lattice::held_heights`]: where all are held, in [`Lattice::heights`].
     ///
     /// # Panics
-    /// Where the post lies outside the lattice.
+    /// Where the post lies outside the lattice, or is not held.
     #[inline]
     pub fn index(&self, post: Post) -> usize {
-        assert!(post.column < self.columns && post.row < self.rows, "{post:?} is outside the lattice");
-        post.row as usize * self.columns as usize + post.column as usize
+        let (column, row) =
+            (post.column.wrapping_sub(self.held.first.column), post.row.wrapping_sub(self.held.first.row));
+        let columns = self.held_columns();
+        let is_held = column < columns && row <= self.held.last.row - self.held.first.row;
+        assert!(is_held, "{post:?} is outside the lattice, or of what is held of it");
+        row as usize * columns as usize + column as usize
+    }
+
+    /// Columns of held posts.
+    #[inline]
+    fn held_columns(&self) -> u32 {
+        self.held.last.column - self.held.first.column + 1
     }
 
     /// The rectangle of all posts in map coordinates.
@@ -359,11 +441,11 @@ impl Lattice {
 
     /// The post of an [index](Self::index).
     pub fn post_at(&self, index: usize) -> Post {
-        let columns = self.columns as usize;
-        Post { column: (index % columns) as u32, row: (index / columns) as u32 }
+        let columns = self.held_columns() as usize;
+        self.held.first.offset((index % columns) as u32, (index / columns) as u32)
     }
 
-    /// The lowest and highest height; finite unless the lattice is a part without data.
+    /// The lowest and highest height of the held posts; finite unless these are a part without data.
     pub fn height_range(&self) -> (f32, f32) {
         let start = (f32::INFINITY, f32::NEG_INFINITY);
         self.heights.iter().fold(start, |(low, high), &height| (low.min(height), high.max(height)))
@@ -402,7 +484,7 @@ impl Lattice {
     /// The heights of a cell's corners: south-west, south-east, north-west, north-east.
     #[inline]
     pub fn corner_heights(&self, cell: Post) -> [f32; 4] {
-        let stride = self.columns as usize;
+        let stride = self.held_columns() as usize;
         let heights = &self.heights[self.index(cell)..][..stride + 2];
         [heights[0], heights[1], heights[stride], heights[stride + 1]]
     }
@@ -473,7 +555,8 @@ impl Lattice {
         if self.doublings > 0 || row == 0 || row + 1 == self.rows {
             return posts.map(|post| self.slopes(post)).collect();
         }
-        let line = |row: u32| &self.heights[row as usize * self.columns as usize..][..self.columns as usize];
+        let all = self.heights();
+        let line = |row: u32| &all[row as usize * self.columns as usize..][..self.columns as usize];
         let span = (self.cell.as_vec2() * 8.0).to_array();
         let windows = line(row - 1).windows(3).zip(line(row).windows(3)).zip(line(row + 1).windows(3));
         let inner = windows.map(|((south, own), north)| {
@@ -583,6 +666,31 @@ mod tests {
         assert_eq!(part.cell_at(DVec2::new(0.05, 0.45)), None);
         let heights = vec![f32::NAN; 6];
         assert!(Lattice::part((DVec2::ZERO, cell), first, 3, heights).is_ok(), "a part may lie in the sea");
+    }
+
+    #[test]
+    fn a_held_part_is_the_whole_lattice_where_it_is_held_and_panics_elsewhere() {
+        let (frame, size) = ((DVec2::new(0.3, 0.7), DVec2::new(0.1, 0.3)), (6, 5));
+        let whole =
+            Lattice::new(frame.0, frame.1, size.0, (0..30u8).map(f32::from).collect()).expect("sound");
+        let held = PostRect { first: Post { column: 1, row: 2 }, last: Post { column: 4, row: 4 } };
+        let heights: Vec<f32> = held.posts().map(|post| whole.height(post)).collect();
+        let part = Lattice::held_part(frame, size, held, heights).expect("sound");
+        assert_eq!((part.columns(), part.rows(), part.map_extent()), (6, 5, whole.map_extent()));
+        for post in held.posts() {
+            assert_eq!(part.height(post), whole.height(post));
+            assert_eq!(part.post_at(part.index(post)), post);
+            assert_eq!(part.map_position(post), whole.map_position(post));
+        }
+        let cell = Post { column: 3, row: 3 };
+        assert_eq!(part.corner_heights(cell), whole.corner_heights(cell));
+        let cut = part.cut_to_held().expect("four by three posts");
+        assert_eq!(cut.heights(), part.held_heights());
+        assert_eq!(cut.map_position(Post { column: 0, row: 0 }), whole.map_position(held.first));
+        for beyond in [Post { column: 0, row: 2 }, Post { column: 5, row: 2 }, Post { column: 2, row: 1 }] {
+            assert!(std::panic::catch_unwind(|| part.height(beyond)).is_err(), "{beyond:?}");
+        }
+        assert!(std::panic::catch_unwind(|| part.heights().len()).is_err());
     }
 
     #[test]

@@ -57,6 +57,11 @@ impl PostRect {
         (self.last.column - self.first.column + 1) as usize
     }
 
+    /// Rows of posts.
+    pub fn height(&self) -> usize {
+        (self.last.row - self.first.row + 1) as usize
+    }
+
     /// Whether the post lies inside.
     pub fn contains(&self, post: Post) -> bool {
         (self.first.column..=self.last.column).contains(&post.column)

@@ -129,7 +129,7 @@ fn large_elevation(path: &Path, progress: &dyn Fn(&'static str)) -> Result<Optio
         return Ok(None);
     }
     progress("reading elevation");
-    PagedElevation::open(path, VIEWED_SAMPLES).map_err(|error| opening_error(&error))
+    PagedElevation::open(path, VIEWED_SAMPLES.get()).map_err(|error| opening_error(&error))
 }
 
 /// A large elevation file: its overview is the scene, and the terrain is shown in pages as soon as it is measured.

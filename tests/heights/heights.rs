@@ -24,7 +24,7 @@ use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
 use sandtable::view::camera::Camera;
 
-const ALL: [Interpolation; 5] = [
+pub const ALL: [Interpolation; 5] = [
     Interpolation::Planar,
     Interpolation::Bilinear,
     Interpolation::Cubic,
@@ -33,7 +33,7 @@ const ALL: [Interpolation; 5] = [
 ];
 
 /// Numbers from 0 up to 1, the same for the same seed.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
+pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     move || {
         state ^= state << 13;
@@ -44,7 +44,7 @@ fn numbers(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Answers that can be compared to the last bit.
-fn bits(answer: Answer) -> (u64, Status) {
+pub fn bits(answer: Answer) -> (u64, Status) {
     let (height_m, status) = answer.parts();
     (if status == Status::Ok { height_m.to_bits() } else { 0 }, status)
 }

@@ -6,3 +6,4 @@ mod common;
 mod heights;
 mod sight;
 mod viewshed;
+mod windows;

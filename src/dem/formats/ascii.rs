@@ -27,6 +27,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "ncols" },
     reader: read,
+    windows: None,
     most_bytes,
     writer: Some(write),
 };

@@ -25,7 +25,8 @@ use glam::DVec2;
 
 use crate::bytes::{ByteFields, ByteOrder};
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::plain_raster::{self, PlainRaster};
+use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};
 use crate::dem::georef::{crs_on_earth, projection_file_of, utm_code};
 use crate::dem::raster::{Raster, north_up_nodes};
@@ -44,7 +45,8 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         matches: |bytes| bytes.starts_with(b"binterr"),
         start: "'binterr1.' and a digit",
     },
-    reader: read,
+    reader: |file| plain_raster::read(file, plain),
+    windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
     writer: Some(write),
 };
@@ -65,11 +67,11 @@ fn most_bytes(head: &[u8]) -> u64 {
     HEADER as u64 + bytes + TRAILER
 }
 
-fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let header = BtHeader::read(file.bytes)?;
-    let size = (u64::from(header.columns), u64::from(header.rows));
-    let layout = SampleLayout::dense(size, header.sample, ByteOrder::Little, 0).by_columns();
-    let raster = layout.read(FORMAT.name, &file.bytes[HEADER..], NoData::Value(Some(NODATA)))?;
+    let sides = (u64::from(header.columns), u64::from(header.rows));
+    let layout = SampleLayout::dense(sides, header.sample, ByteOrder::Little, 0).by_columns();
+    let raster = layout.header(FORMAT.name, size.after(HEADER))?;
     let BtSystem { crs, meters_per_unit } = system(file, &header)?;
     let (min, max) = (header.min * meters_per_unit, header.max * meters_per_unit);
     let cell = (max - min) / (raster.grid_size() - 1.0);
@@ -79,13 +81,15 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
             remedy: "write it again with extents that grow to the north-east",
         });
     }
-    Ok(Raster {
+    let raster = Raster {
         driver: "BT",
         meters_per_z: header.meters_per_z,
         crs,
         nodata: Some(NODATA),
         ..raster.placed(north_up_nodes(DVec2::new(min.x, max.y), cell))
-    })
+    };
+    let layout = SampleLayout { start: HEADER as u64, ..layout };
+    Ok(PlainRaster::new(raster, layout, NoData::Value(Some(NODATA))))
 }
 
 struct BtHeader {

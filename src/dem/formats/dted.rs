@@ -29,6 +29,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: |bytes| label_at(bytes).is_some(), start: "UHL1" },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

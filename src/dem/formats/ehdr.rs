@@ -10,7 +10,8 @@ use glam::{DAffine2, DVec2};
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::plain_raster::{self, PlainRaster};
+use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::raster::{Raster, north_up, north_up_nodes};
@@ -22,7 +23,8 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     extensions: &["bil", "flt"],
     shared_extensions: &["bip", "bsq"],
     recognition: Recognition::HeaderFile { matches: is_header },
-    reader: read,
+    reader: |file| plain_raster::read(file, plain),
+    windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
     writer: None,
 };
@@ -35,16 +37,18 @@ fn is_header(header: &[u8]) -> bool {
     header.get("nrows").is_some() && header.get("ncols").is_some()
 }
 
-/// Reads the first band.
-fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+/// The first band.
+fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let header = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = HeaderFields::from_lines(FORMAT.name, &header, MOST_LINES);
     let nodata = header.first_number(["nodata", "nodata_value"])?;
     let sample = sample_type(&header, nodata, &file.extension())?;
-    let raster = layout(&header, sample)?.read(FORMAT.name, file.bytes, NoData::Value(nodata))?;
+    let layout = layout(&header, sample)?;
+    let raster = layout.header(FORMAT.name, size)?;
     let place = place(&header, raster.height)?;
     let raster = georef::placed(file, raster, place, &["blw", "bpw", "bqw", "flw", "wld"])?;
-    Ok(Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster })
+    let raster = Raster { driver: "EHdr", crs: file.crs()?, nodata, ..raster };
+    Ok(PlainRaster::new(raster, layout, NoData::Value(nodata)))
 }
 
 fn sample_type(

@@ -9,7 +9,8 @@ use glam::{DAffine2, DVec2};
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::header::HeaderFields;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::plain_raster::{self, PlainRaster};
+use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef::{self, utm_code};
 use crate::dem::raster::{Raster, north_up};
@@ -22,17 +23,19 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     extensions: &[],
     shared_extensions: &[],
     recognition: Recognition::HeaderFile { matches: |header| header.starts_with(b"ENVI") },
-    reader: read,
+    reader: |file| plain_raster::read(file, plain),
+    windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
     writer: None,
 };
 
-/// Reads the first band.
-fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+/// The first band.
+fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let text = file.header().ok_or(DemErrorKind::NoHeader(FORMAT.name))?;
     let header = header(&String::from_utf8_lossy(&text));
     let nodata = header.number("data ignore value")?;
-    let raster = layout(&header)?.read(FORMAT.name, file.bytes, NoData::Value(nodata))?;
+    let layout = layout(&header)?;
+    let raster = layout.header(FORMAT.name, size)?;
     let first_number = |key: &str| list(&header, key).first().map(|text| header.parse(key, text)).transpose();
     let gain = first_number("data gain values")?.unwrap_or(1.0);
     let offset = first_number("data offset values")?.unwrap_or(0.0);
@@ -42,7 +45,8 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         Some(text) => Ok(Some(Crs::parse(text)?)),
         None => system(&map),
     })?;
-    Ok(Raster { driver: "ENVI", samples: raster.samples.scaled(gain, offset), crs, nodata, ..raster })
+    let raster = Raster { driver: "ENVI", crs, nodata, ..raster };
+    Ok(PlainRaster::new(raster, layout, NoData::Value(nodata)).scaled(gain, offset))
 }
 
 /// The fields, values without their braces.

@@ -7,7 +7,8 @@ use glam::DVec2;
 
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::plain_raster::{self, PlainRaster};
+use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition};
 use crate::dem::raster::{Raster, north_up_nodes};
 use crate::dem::read::DemFile;
@@ -20,7 +21,8 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     extensions: &["hgt"],
     shared_extensions: &[],
     recognition: Recognition::Extension,
-    reader: read,
+    reader: |file| plain_raster::read(file, plain),
+    windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
     writer: Some(write),
 };
@@ -39,7 +41,7 @@ fn most_bytes(_: &[u8]) -> u64 {
     bytes.into_iter().fold(0, u64::max)
 }
 
-fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let corner = corner(file.stem()).ok_or_else(|| DemErrorKind::Georeference {
         reason: format!(
             "a tile's name states its corner, as N43E007.hgt does, and '{}' does not",
@@ -47,21 +49,22 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         ),
         remedy: "give the file its name back",
     })?;
-    let bytes = file.bytes.len() as u64;
-    let size = SIZES.map(|(width, height)| (u64::from(width), u64::from(height)));
-    let size = size.into_iter().find(|(width, height)| width * height * 2 == bytes).ok_or_else(|| {
+    let bytes = size.bytes as u64;
+    let sides = SIZES.map(|(width, height)| (u64::from(width), u64::from(height)));
+    let sides = sides.into_iter().find(|(width, height)| width * height * 2 == bytes).ok_or_else(|| {
         FORMAT.broken(format!("{bytes} bytes are not those of 1201 or 3601 samples squared"))
     })?;
-    let layout = SampleLayout::dense(size, SampleType::I16, ByteOrder::Big, 0);
-    let raster = layout.read(FORMAT.name, file.bytes, NoData::Value(Some(VOID.into())))?;
+    let layout = SampleLayout::dense(sides, SampleType::I16, ByteOrder::Big, 0);
+    let raster = layout.header(FORMAT.name, size)?;
     let cell = (raster.grid_size() - 1.0).recip();
-    Ok(Raster {
+    let raster = Raster {
         driver: "SRTMHGT",
         crs: Some(file.hints.crs.clone().unwrap_or_else(Crs::wgs84)),
         nodata: Some(VOID.into()),
         vertical_datum: Some("EGM96 geoid".into()),
         ..raster.placed(north_up_nodes(corner + DVec2::Y, cell))
-    })
+    };
+    Ok(PlainRaster::new(raster, layout, NoData::Value(Some(VOID.into()))))
 }
 
 /// The south-west corner in degrees that a name such as `N43E007` states.

@@ -11,6 +11,7 @@ mod envi;
 mod header;
 pub mod height_encoding;
 mod hgt;
+mod plain_raster;
 mod png;
 pub mod raw;
 mod sample_layout;
@@ -22,11 +23,13 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
+use std::io::{Read, Seek};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff;
+use crate::dem::windows::Windows;
 use crate::dem::write::{WriteError, WrittenDem};
 use crate::limits::UNPACKED_RASTER_BYTES;
 
@@ -49,6 +52,15 @@ pub static FORMATS: [&DemFormat; 13] = [
 
 type DemWriter = fn(&Raster, &str) -> Result<WrittenDem, WriteError>;
 
+/// Opens the content of a file, of whose bytes only the first are given; the number is that of the bytes to be cached.
+type WindowsOpener =
+    fn(&DemFile, Box<dyn FileContent>, usize) -> Result<Box<dyn Windows + Send>, DemErrorKind>;
+
+/// The content of a file that stays on disk.
+pub trait FileContent: Read + Seek + Send {}
+
+impl<C: Read + Seek + Send> FileContent for C {}
+
 /// The extensions of the formats that are written, for messages.
 pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .bt, .hgt or .png";
 
@@ -63,6 +75,8 @@ pub struct DemFormat {
     pub shared_extensions: &'static [&'static str],
     pub(crate) recognition: Recognition,
     pub(crate) reader: fn(&DemFile) -> Result<Raster, DemErrorKind>,
+    /// Opens a file to be read in windows; `None` where the format is read whole.
+    pub(crate) windows: Option<WindowsOpener>,
     /// The most bytes that a file has which starts with these: a packed one is unpacked no further.
     pub(crate) most_bytes: fn(&[u8]) -> u64,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.

@@ -28,6 +28,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "the signature of a PNG file",
     },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: Some(write),
 };

@@ -7,7 +7,8 @@ use std::str::FromStr;
 
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
+use crate::dem::formats::plain_raster::{self, PlainRaster};
+use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
 use crate::dem::formats::{DemFormat, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::raster::Raster;
@@ -19,7 +20,8 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     extensions: &[],
     shared_extensions: &["raw", "r16"],
     recognition: Recognition::Statement,
-    reader: read,
+    reader: |file| plain_raster::read(file, plain),
+    windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
     writer: None,
 };
@@ -86,14 +88,14 @@ fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
 }
 
 /// Heights are the samples, times the stated scale plus the stated offset.
-fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
+fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let raw = file.hints.raw.ok_or(DemErrorKind::NoRawLayout)?;
     let (scale, offset) = (file.height_scale()?.unwrap_or(1.0), file.height_offset()?);
     let layout = SampleLayout::dense((raw.width.into(), raw.height.into()), raw.sample, raw.order, raw.skip);
-    let raster = layout.read("RAW file", file.bytes, NoData::Value(raw.nodata))?;
+    let raster = layout.header("RAW file", size)?;
     let raster = georef::placed(file, raster, None, &["rww", "wld"])?;
-    let samples = raster.samples.scaled(scale, offset);
-    Ok(Raster { driver: "RAW", samples, crs: file.crs()?, nodata: raw.nodata, ..raster })
+    let raster = Raster { driver: "RAW", crs: file.crs()?, nodata: raw.nodata, ..raster };
+    Ok(PlainRaster::new(raster, layout, NoData::Value(raw.nodata)).scaled(scale, offset))
 }
 
 #[cfg(test)]

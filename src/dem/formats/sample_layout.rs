@@ -5,11 +5,15 @@
 //!         └ column_step                      └ row_step
 //! ```
 
+use std::ops::Range;
+
 use crate::bytes::ByteOrder;
 use crate::dem::error::DemErrorKind;
 use crate::dem::limits::SizeClaim;
 use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::dem::sample_type::SampleType;
+use crate::dem::windows::RasterWindow;
+use crate::limits::RASTER_SAMPLES;
 
 /// Places of the samples of one band in a file.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +29,25 @@ pub(crate) struct SampleLayout {
     /// Bytes from a row to the next.
     pub row_step: u64,
     pub first_row: FirstRow,
+}
+
+/// The size of a file, and of the rasters that are taken from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FileSize {
+    pub bytes: usize,
+    pub most_samples: u64,
+}
+
+impl FileSize {
+    /// Of a file that is read whole.
+    pub fn in_memory(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len(), most_samples: RASTER_SAMPLES }
+    }
+
+    /// Without a header of this many bytes.
+    pub fn after(self, header: usize) -> Self {
+        Self { bytes: self.bytes.saturating_sub(header), ..self }
+    }
 }
 
 /// The row that comes first in a file.
@@ -75,8 +98,23 @@ impl SampleLayout {
     /// # Errors
     /// The file is too short for them, or they overlap; nothing is allocated then.
     pub fn read(&self, format: &'static str, bytes: &[u8], nodata: NoData) -> Result<Raster, DemErrorKind> {
-        self.check(format, bytes.len())?;
-        let samples = match self.sample {
+        let raster = self.header(format, FileSize::in_memory(bytes))?;
+        Ok(Raster { samples: self.samples(bytes, nodata), ..raster })
+    }
+
+    /// The raster without its samples, and without a georeference.
+    ///
+    /// # Errors
+    /// A file of this size is too short for the samples, or they overlap or are too many.
+    pub fn header(&self, format: &'static str, file: FileSize) -> Result<Raster, DemErrorKind> {
+        self.check(format, file)?;
+        let raster = Raster::without_place(self.width as u32, self.height as u32);
+        Ok(Raster { data_type: self.sample.gdal_name(), ..raster })
+    }
+
+    /// The samples in bytes that hold all of them.
+    pub fn samples(&self, bytes: &[u8], nodata: NoData) -> Samples {
+        match self.sample {
             SampleType::U8 => self.values(bytes, nodata, |[byte]| f32::from(byte)),
             SampleType::I8 => self.values(bytes, nodata, |[byte]| f32::from(byte as i8)),
             SampleType::U16 => self.values(bytes, nodata, |raw| f32::from(u16::from_le_bytes(raw))),
@@ -88,15 +126,35 @@ impl SampleLayout {
             SampleType::U64 => self.values(bytes, nodata, |raw| u64::from_le_bytes(raw) as f64),
             SampleType::I64 => self.values(bytes, nodata, |raw| i64::from_le_bytes(raw) as f64),
             SampleType::F64 => self.values(bytes, nodata, f64::from_le_bytes),
-        };
-        Ok(Raster { data_type: self.sample.gdal_name(), ..Raster::new(self.width as u32, samples) })
+        }
+    }
+
+    /// The lines of the file, rows or columns, whichever lie in one piece, that hold the samples of a window; and the layout
+    /// of these samples where the lines follow each other without gaps.
+    pub fn lines(&self, window: RasterWindow) -> (Vec<Range<u64>>, Self) {
+        let RasterWindow { column, row, width, height } = window;
+        let [column, row, width, height] = [column, row, width, height].map(u64::from);
+        let row = if self.first_row == FirstRow::North { row } else { self.height - row - height };
+        let first = self.start + row * self.row_step + column * self.column_step;
+        let sample = self.sample.bytes() as u64;
+        let line = |count: u64, step: u64| (count - 1) * step + sample;
+        let part = Self { width, height, start: 0, ..*self };
+        if self.row_step >= self.column_step {
+            let length = line(width, self.column_step);
+            let starts = (0..height).map(|row| first + row * self.row_step);
+            return (starts.map(|at| at..at + length).collect(), Self { row_step: length, ..part });
+        }
+        let length = line(height, self.row_step);
+        let starts = (0..width).map(|column| first + column * self.column_step);
+        (starts.map(|at| at..at + length).collect(), Self { column_step: length, ..part })
     }
 
     /// Samples may not overlap, so that no more are allocated than the file holds.
-    fn check(&self, format: &'static str, file_bytes: usize) -> Result<(), DemErrorKind> {
+    fn check(&self, format: &'static str, file: FileSize) -> Result<(), DemErrorKind> {
         let Self { width, height, column_step, row_step, start, .. } = *self;
-        let sample = self.sample.bytes() as u64;
-        SizeClaim::new(width, height, sample).check(file_bytes)?;
+        let (sample, file_bytes) = (self.sample.bytes() as u64, file.bytes);
+        let claim = SizeClaim::new(width, height, sample);
+        SizeClaim { most_samples: file.most_samples, ..claim }.check(file_bytes)?;
         let length = |count: u64, step: u64, last: u64| (count - 1).checked_mul(step)?.checked_add(last);
         let row = length(width, column_step, sample);
         let column = length(height, row_step, sample);

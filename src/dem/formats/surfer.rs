@@ -33,6 +33,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
         start: "DSAA, DSBB or DSRB",
     },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

@@ -26,6 +26,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: |bytes| bytes.starts_with(START), start: "TERRAGENTERRAIN" },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

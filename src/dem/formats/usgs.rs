@@ -29,6 +29,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "a record A" },
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

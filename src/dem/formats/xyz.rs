@@ -19,6 +19,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &["csv", "txt", "tsv"],
     recognition: Recognition::Extension,
     reader: read,
+    windows: None,
     most_bytes: any_size,
     writer: None,
 };

@@ -13,7 +13,7 @@ use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition, any_size};
+use crate::dem::formats::{DemFormat, FileContent, Recognition, any_size};
 use crate::dem::georef;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemFile;
@@ -23,7 +23,9 @@ use crate::dem::tiff::geokeys::GeoKeys;
 use crate::dem::tiff::mask;
 use crate::dem::tiff::place::PlaceTags;
 use crate::dem::tiff::storage::{Storage, decode_error};
+use crate::dem::tiff::windows::GeoTiffWindows;
 use crate::dem::tiff::write::write;
+use crate::dem::windows::Windows;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::TIFF_TAG_BYTES;
 
@@ -33,6 +35,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     shared_extensions: &[],
     recognition: Recognition::Content { matches: recognizes, start: "the signature of a TIFF file" },
     reader: read,
+    windows: Some(windows),
     most_bytes: any_size,
     writer: Some(write),
 };
@@ -45,6 +48,15 @@ pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|start| bytes.starts_with(*start))
 }
 
+/// Opens the first band of the first image.
+fn windows(
+    file: &DemFile,
+    content: Box<dyn FileContent>,
+    cache_bytes: usize,
+) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
+    Ok(Box::new(GeoTiffWindows::open_first(file.name, content, file.hints, cache_bytes)?))
+}
+
 /// Reads the first band of the first image.
 fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let bytes = file.bytes;
@@ -53,7 +65,7 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
     let storage = Storage::read(&mut decoder, bytes.len(), &RASTER_SAMPLES)?;
     let GeoTiffHeader { raster, scale, offset } = GeoTiffHeader::read(&mut decoder, &storage, file)?;
     if raster.nodata.is_some() && storage.is_all_absent() {
-        return Err(FORMAT.broken("none of its blocks was ever written, so that all of it is no data"));
+        return Err(all_absent());
     }
     let mut samples = blocks::decode(bytes, &storage, raster.nodata)?;
     let size = (storage.width, storage.height);
@@ -63,6 +75,11 @@ fn read(file: &DemFile) -> Result<Raster, DemErrorKind> {
         mask::apply_beside(&mask, size, &mut samples)?;
     }
     Ok(Raster { samples: samples.scaled(scale, offset), ..raster })
+}
+
+/// The error of a file that is all no data.
+pub(crate) fn all_absent() -> DemErrorKind {
+    FORMAT.broken("none of its blocks was ever written, so that all of it is no data")
 }
 
 /// The most that the decoder may allocate for a file of `file_bytes` bytes. It reads tags; blocks are unpacked elsewhere.

@@ -2,28 +2,32 @@
 //!
 //! ```text
 //! ┌────┬────┬────┐   blocks (tiles, or strips as wide as the image); a window is copied
-//! │    │ ┌──┼──┐ │   from those it meets, each with scale, offset, unit and mask applied,
-//! ├────┼─┼──┼──┤ │   in the same order and precision as in the whole reader
+//! │    │ ┌──┼──┐ │   from those it meets, each with scale, offset and mask applied, in the
+//! ├────┼─┼──┼──┤ │   same order and precision as in the whole reader
 //! │    │ └──┼──┘ │
 //! └────┴────┴────┘
 //! ```
 //!
-//! Memory: the window, the blocks that are kept (a bound in bytes), one block while it is decoded, and the file's
-//! tables of blocks. A file whose single blocks are too large for that (a picture stored as one strip) is refused.
+//! Blocks that a window needs and that are not kept are decoded on all threads.
+//!
+//! Memory: the window, the blocks that are kept (a bound in bytes), the blocks while they are decoded, some for each
+//! thread, and the file's tables of blocks. A file whose single blocks are too large for that (a picture stored as one strip) is refused.
 //!
 //! Overviews — reduced images in the same file — are listed, and open as rasters of their own.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::{DAffine2, DVec2};
+use rayon::prelude::*;
 use tiff::decoder::Decoder;
 
 use crate::dem::cache::LruCache;
 use crate::dem::error::{DemError, DemErrorKind};
-use crate::dem::raster::{Raster, scaled};
+use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::{DemFile, DemHints};
 use crate::dem::tiff::blocks;
 use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
@@ -67,11 +71,16 @@ pub struct GeoTiffWindows<R> {
     images: LaterImages,
     heights: Storage,
     mask: Option<Storage>,
-    blocks: LruCache<u32, Arc<[f32]>>,
+    blocks: LruCache<u32, Arc<Samples>>,
     cache_bytes: usize,
+    /// The caller's value for no data, besides the file's.
+    cleared: Option<f64>,
 }
 
-impl<R: Read + Seek> GeoTiffWindows<R> {
+/// Blocks for each thread that are decoded before the next are: enough to keep all threads at work.
+const BLOCKS_PER_THREAD: usize = 4;
+
+impl<R: Read + Seek + Send> GeoTiffWindows<R> {
     /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those
     /// of [`crate::dem::read::read`].
     ///
@@ -83,7 +92,12 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
             .map_err(|kind| DemError { name: name.to_owned(), kind })
     }
 
-    fn open_first(name: &str, file: R, hints: &DemHints, cache_bytes: usize) -> Result<Self, DemErrorKind> {
+    pub(crate) fn open_first(
+        name: &str,
+        file: R,
+        hints: &DemHints,
+        cache_bytes: usize,
+    ) -> Result<Self, DemErrorKind> {
         let mut file = SharedFile::new(file).map_err(|error| FORMAT.undecodable(error))?;
         let start = file.bytes(0..4).map_err(|error| FORMAT.undecodable(error))?;
         if !geotiff::recognizes(&start) {
@@ -92,7 +106,13 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         let source = DemFile { name, bytes: &[], hints };
         let heights = file.storage(0)?;
         heights.elevation_type()?;
-        let header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
+        let mut header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
+        if header.raster.nodata.is_some() && heights.is_all_absent() {
+            return Err(geotiff::all_absent());
+        }
+        if hints.vertical_datum.is_some() {
+            header.raster.vertical_datum.clone_from(&hints.vertical_datum);
+        }
         if mask::file_beside(&source).is_some() {
             return Err(FORMAT.unsupported(
                 "a mask in a file beside it (.msk), and is to be read in parts",
@@ -100,7 +120,8 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
             ));
         }
         let images = file.later_images();
-        Self::new(name, file, header, heights, images, cache_bytes)
+        let opened = Self::new(name, file, header, heights, images, cache_bytes)?;
+        Ok(Self { cleared: hints.nodata, ..opened })
     }
 
     /// Looks for a mask of the image's size.
@@ -116,7 +137,7 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         let mask = images.masks.iter().find(is_of_size).map(|mask| file.storage(mask.image)).transpose()?;
         mask.iter().try_for_each(mask::check)?;
         let (name, blocks) = (name.to_owned(), LruCache::new(cache_bytes));
-        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes })
+        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes, cleared: None })
     }
 
     /// The reduced images of this one, as the file lists them: mostly from the finest to the coarsest.
@@ -141,7 +162,8 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
         let header = GeoTiffHeader { raster, ..self.header };
         let images = LaterImages { masks: self.images.masks.clone(), ..LaterImages::default() };
-        Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)
+        let opened = Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)?;
+        Ok(Self { cleared: self.cleared, ..opened })
     }
 
     /// Bytes of decoded blocks that are kept now.
@@ -149,42 +171,91 @@ impl<R: Read + Seek> GeoTiffWindows<R> {
         self.blocks.weight()
     }
 
-    /// The heights of a block, in meters.
-    fn block(&mut self, at: TiffBlock) -> Result<Arc<[f32]>, DemErrorKind> {
-        if let Some(block) = self.blocks.get(at.index) {
-            return Ok(Arc::clone(block));
-        }
-        self.blocks.make_room(at.window.samples() * 4);
+    /// Whether samples take 64 bits.
+    fn is_wide(&self) -> bool {
+        let is_scaled = self.header.scale != 1.0 || self.header.offset != 0.0;
+        is_scaled || self.heights.elevation_type().is_ok_and(|sample| sample.is_wide())
+    }
+
+    /// The samples of a block as the whole reader has them.
+    fn decode(&self, at: TiffBlock) -> Result<Arc<Samples>, DemErrorKind> {
         let GeoTiffHeader { raster, scale, offset } = &self.header;
-        let stored = blocks::block(&mut self.file, &self.heights, raster.nodata, at)?;
-        let meters = |stored: f64| scaled(scaled(stored, *scale, *offset), raster.meters_per_z, 0.0) as f32;
-        let mut heights: Vec<f32> = stored.iter().map(meters).collect();
+        let mut file = self.file.clone();
+        let mut samples = blocks::block(&mut file, &self.heights, raster.nodata, at)?;
         if let Some(mask) = &self.mask {
-            mask::each_hidden(&mut self.file, mask, at.window, |index| heights[index] = f32::NAN)?;
+            mask::each_hidden(&mut file, mask, at.window, |index| samples.set(index, f64::NAN))?;
         }
-        let block: Arc<[f32]> = heights.into();
-        self.blocks.put(at.index, Arc::clone(&block), block.len() * 4);
-        Ok(block)
+        let mut samples = samples.scaled(*scale, *offset);
+        if let Some(value) = self.cleared {
+            samples.clear(value);
+        }
+        Ok(Arc::new(samples))
+    }
+
+    /// Decodes those of `blocks` that are not kept, some at a time on all threads, and calls `each` with every block; those
+    /// that are kept come first. The error is that of the first broken block.
+    fn each_block(
+        &mut self,
+        blocks: impl Iterator<Item = TiffBlock>,
+        mut each: impl FnMut(TiffBlock, &Samples),
+    ) -> Result<(), DemErrorKind> {
+        let mut missing = Vec::new();
+        for at in blocks {
+            match self.blocks.get(at.index) {
+                Some(block) => each(at, block),
+                None => missing.push(at),
+            }
+        }
+        let at_once = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+        for some in missing.chunks(at_once) {
+            let decoded: Vec<Result<Arc<Samples>, DemErrorKind>> = match some {
+                [one] => vec![self.decode(*one)],
+                some => some.par_iter().map(|&at| self.decode(at)).collect(),
+            };
+            for (&at, block) in some.iter().zip(decoded) {
+                let block = block?;
+                each(at, &block);
+                let weight = block.bytes();
+                self.blocks.make_room(weight);
+                self.blocks.put(at.index, block, weight);
+            }
+        }
+        Ok(())
     }
 }
 
-impl<R: Read + Seek> Windows for GeoTiffWindows<R> {
+impl<R: Read + Seek + Send> Windows for GeoTiffWindows<R> {
     fn metadata(&self) -> &Raster {
         &self.header.raster
     }
 
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
-        out.clear();
-        out.resize(window.samples(), f32::NAN);
+        let mut out = Samples::absent(window.samples(), self.is_wide());
         let blocks: Vec<TiffBlock> = self.heights.blocks_meeting(window).collect();
-        for at in blocks {
-            let block = self.block(at)?;
+        self.each_block(blocks.into_iter(), |at, block| {
             for (from, to) in at.window.shared_rows(window) {
-                out[to].copy_from_slice(&block[from]);
+                out.copy_from(to, block, from);
             }
-        }
-        Ok(())
+        })?;
+        Ok(out)
+    }
+
+    /// Decodes the blocks under the windows as far as they fit the cache.
+    fn announce(&mut self, windows: &[RasterWindow]) {
+        let blocks: BTreeMap<u32, TiffBlock> = windows
+            .iter()
+            .flat_map(|&window| self.heights.blocks_meeting(window))
+            .map(|block| (block.index, block))
+            .collect();
+        let bytes = if self.is_wide() { 8 } else { 4 };
+        let fitting = blocks.into_values().scan(0, |total, block| {
+            *total += block.window.samples() * bytes;
+            (*total <= self.cache_bytes).then_some(block)
+        });
+        let fitting: Vec<TiffBlock> = fitting.collect();
+        // What cannot be read is an error of the window that needs it.
+        let _ = self.each_block(fitting.into_iter(), |_, _| ());
     }
 }
 

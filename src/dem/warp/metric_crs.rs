@@ -61,6 +61,16 @@ impl fmt::Display for OffScale {
 /// # Errors
 /// [`WarpError`]: see [`to_metric`](crate::dem::warp::to_metric).
 pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, WarpError> {
+    metric_crs_around(raster, target, &|| data_extent(raster))
+}
+
+/// [`metric_crs`] of a raster whose samples are not in memory: `valid` finds the rectangle of its grid around the valid ones,
+/// where that matters.
+pub(super) fn metric_crs_around(
+    raster: &Raster,
+    target: Option<&Crs>,
+    valid: &dyn Fn() -> Option<Rect>,
+) -> Result<Option<Crs>, WarpError> {
     check_source(raster)?;
     if let Some(target) = target.filter(|target| !target.is_metric()) {
         return Err(WarpError::TargetNotMetric(target.name().into()));
@@ -68,9 +78,9 @@ pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, 
     let Some(own) = raster.crs.as_ref().or(target) else { return Ok(None) };
     let stated = target.unwrap_or(own);
     if !stated.is_metric() {
-        return utm_zone(raster, own).map(Some);
+        return utm_zone(raster, own, valid).map(Some);
     }
-    let off = off_scale(raster, target)?;
+    let off = off_scale_around(raster, target, valid)?;
     Ok(Some(off.and_then(|off| off.zone).unwrap_or_else(|| stated.clone())))
 }
 
@@ -80,12 +90,21 @@ pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, 
 /// # Errors
 /// [`WarpError`]: the raster holds no data, or its border lies outside what its system covers.
 pub fn off_scale(raster: &Raster, target: Option<&Crs>) -> Result<Option<OffScale>, WarpError> {
+    off_scale_around(raster, target, &|| data_extent(raster))
+}
+
+/// [`off_scale`], as [`metric_crs_around`].
+pub(super) fn off_scale_around(
+    raster: &Raster,
+    target: Option<&Crs>,
+    valid: &dyn Fn() -> Option<Rect>,
+) -> Result<Option<OffScale>, WarpError> {
     let Some(own) = raster.crs.as_ref().or(target) else { return Ok(None) };
     let stated = target.unwrap_or(own);
     let center = own.transform(stated, raster.center()).ok();
     let scale = center.filter(|_| stated.is_metric()).and_then(|center| ScaleFactors::at(stated, center));
     let Some(scale) = scale.filter(|scale| scale.error() > MOST_SCALE_ERROR) else { return Ok(None) };
-    let zone = match utm_zone(raster, own) {
+    let zone = match utm_zone(raster, own, valid) {
         Ok(zone) => Some(zone),
         // The datum's shift is not known, or no zone suits: there is nothing better than what is stated.
         Err(WarpError::NoZone { .. } | WarpError::Crs(_)) => None,
@@ -95,8 +114,8 @@ pub fn off_scale(raster: &Raster, target: Option<&Crs>) -> Result<Option<OffScal
 }
 
 /// The UTM zone of the raster's center, if its valid samples lie near enough.
-fn utm_zone(raster: &Raster, own: &Crs) -> Result<Crs, WarpError> {
-    let valid = data_extent(raster).ok_or(WarpError::Empty)?;
+fn utm_zone(raster: &Raster, own: &Crs, valid: &dyn Fn() -> Option<Rect>) -> Result<Crs, WarpError> {
+    let valid = valid().ok_or(WarpError::Empty)?;
     let degrees = Crs::wgs84();
     let at = |grid: DVec2| own.transform(&degrees, raster.map_from_grid.transform_point2(grid));
     let center = at(valid.center())?;

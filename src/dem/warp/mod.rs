@@ -3,6 +3,7 @@
 mod crs_transform;
 mod data_extent;
 pub mod metric_crs;
+pub mod metric_windows;
 pub mod reproject;
 mod resample;
 pub(crate) mod row_positions;

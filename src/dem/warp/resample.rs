@@ -15,7 +15,7 @@ use crate::dem::sample::bilinear_at_grid;
 use crate::dem::warp::WarpError;
 use crate::dem::warp::crs_transform::CrsTransform;
 use crate::dem::warp::data_extent::{data_extent, outline};
-use crate::dem::warp::row_positions::positions;
+use crate::dem::warp::row_positions::{positions, positions_within};
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
@@ -41,6 +41,16 @@ impl<'a> Resampler<'a> {
         cell: Option<f64>,
     ) -> Result<Self, WarpError> {
         let valid = data_extent(source).ok_or(WarpError::Empty)?;
+        Self::around_valid(source, transform, cell, valid)
+    }
+
+    /// [`Resampler::around`] the valid samples, which lie in this rectangle of the source's grid; its samples are not used.
+    pub fn around_valid(
+        source: &'a Raster,
+        transform: &'a CrsTransform<'a>,
+        cell: Option<f64>,
+        valid: Rect,
+    ) -> Result<Self, WarpError> {
         transform.check_poles(source)?;
         let at = |grid: DVec2| transform.forward(source.map_from_grid.transform_point2(grid));
         let side = match cell {
@@ -48,8 +58,11 @@ impl<'a> Resampler<'a> {
             None => CellSize::new(valid.center(), &at)?.side,
         };
         let extent = Rect::around(outline(valid).map(at).collect::<Result<Vec<_>, _>>()?);
-        let most =
-            if cell.is_some() { RASTER_SAMPLES.get() } else { source.samples.len() as u64 * GROWTH + 1024 };
+        let most = if cell.is_some() {
+            RASTER_SAMPLES.get()
+        } else {
+            u64::from(source.width) * u64::from(source.height) * GROWTH + 1024
+        };
         Self::new(source, transform, CellGrid::around(extent, side), most)
     }
 
@@ -80,8 +93,23 @@ impl<'a> Resampler<'a> {
         }
     }
 
+    /// To cells that were found before.
+    pub fn to_cells(source: &'a Raster, transform: &'a CrsTransform<'a>, cells: CellGrid) -> Self {
+        Self { source, transform, cells }
+    }
+
     pub fn cell(&self) -> f64 {
         self.cells.cell()
+    }
+
+    /// The cells.
+    pub fn cells(&self) -> CellGrid {
+        self.cells
+    }
+
+    /// All of the output but its samples.
+    pub fn header(&self) -> Raster {
+        self.raster(Samples::F32(Vec::new()))
     }
 
     /// The source's values at the centers of the cells.
@@ -94,15 +122,21 @@ impl<'a> Resampler<'a> {
 
     fn interpolated<T: SampleFloat>(&self) -> Samples {
         let rows = (0..self.cells.height()).into_par_iter().map(|row| {
-            let position = |column: usize| {
-                let at = self.transform.back(self.cells.center(column as u32, row))?;
-                Some(self.source.grid_from_map(at))
-            };
             let value = |at: DVec2| bilinear_at_grid(self.source, at).parts().0;
-            let positions = positions(self.cells.width() as usize, &position);
+            let positions = self.row_positions(row, 0..self.cells.width());
             positions.into_iter().map(|at| T::from_f64(value(at))).collect::<Vec<T>>()
         });
         T::into_samples(rows.flatten_iter().collect())
+    }
+
+    /// Where the centers of some cells of a row lie in the source's grid; NaN where they have no place.
+    pub fn row_positions(&self, row: u32, columns: Range<u32>) -> Vec<DVec2> {
+        let position = |column: usize| {
+            let at = self.transform.back(self.cells.center(column as u32, row))?;
+            Some(self.source.grid_from_map(at))
+        };
+        let columns = columns.start as usize..columns.end as usize;
+        positions_within(self.cells.width() as usize, columns, &position)
     }
 
     /// The means of the source's samples in each cell.

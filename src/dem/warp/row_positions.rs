@@ -5,6 +5,8 @@
 //! it. A piece that fails is halved, down to a few cells that are all exact. The positions depend on the row alone: they
 //! are the same for every number of threads.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 /// The largest error of a parabola in source samples: a millimeter at a cliff of a kilometer between two samples.
@@ -19,10 +21,23 @@ const SHORTEST_PIECE: usize = 8;
 
 /// The positions of `count` indices, NaN where `exact` has none.
 pub(crate) fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
-    let mut row = vec![DVec2::NAN; count];
+    positions_within(count, 0..count, exact)
+}
+
+/// Those of some of the `count` indices: the same bits, at the cost of the pieces that they lie in.
+pub(crate) fn positions_within(
+    count: usize,
+    indices: Range<usize>,
+    exact: &impl Fn(usize) -> Option<DVec2>,
+) -> Vec<DVec2> {
+    let first = indices.start / LONGEST_PIECE * LONGEST_PIECE;
+    let end = indices.end.next_multiple_of(LONGEST_PIECE).min(count);
+    let mut row = vec![DVec2::NAN; end.saturating_sub(first)];
     for (piece, row) in row.chunks_mut(LONGEST_PIECE).enumerate() {
-        fill_piece(row, piece * LONGEST_PIECE, exact);
+        fill_piece(row, first + piece * LONGEST_PIECE, exact);
     }
+    row.truncate(indices.end - first);
+    row.drain(..indices.start - first);
     row
 }
 
@@ -95,6 +110,15 @@ mod tests {
             assert!(position.distance(curve(index)) <= 2.0 * TOLERANCE, "{index}");
         }
         assert!(calls.get() < 600, "{} exact positions", calls.get());
+    }
+
+    #[test]
+    fn some_positions_of_a_row_are_those_of_the_whole_to_the_last_bit() {
+        let exact = |index: usize| Some(DVec2::new(libm::exp(index as f64 * 1e-3), index as f64));
+        let whole = positions(1111, &exact);
+        for range in [0..1111, 0..1, 255..257, 256..512, 300..301, 1110..1111, 700..700] {
+            assert_eq!(positions_within(1111, range.clone(), &exact), whole[range]);
+        }
     }
 
     #[test]

@@ -23,7 +23,7 @@ const AROUND: f64 = 64.0;
 pub enum DiskGroundError {
     /// More than is read for one question.
     #[error(
-        "{0} posts lie around this, more than the {QUERIED_SAMPLES} that are read of a file at once; take a shorter line or a smaller outline"
+        "{0} posts lie around this, more than the {QUERIED_SAMPLES} that are read of a file at once; take a shorter line or a smaller outline, or {QUERIED_SAMPLES:#}"
     )]
     TooLarge(u64),
     /// There is no ground.
@@ -68,7 +68,7 @@ impl<W: Windows> DiskGround<W> {
         let first = even(Post::at_grid((low.floor() - 2.0).clamp(DVec2::ZERO, far - 1.0)));
         let last = Post::at_grid((high.ceil() + 2.0).clamp(DVec2::ONE, far));
         let count = u64::from(last.column - first.column + 1) * u64::from(last.row - first.row + 1);
-        if count > QUERIED_SAMPLES {
+        if count > QUERIED_SAMPLES.get() {
             return Err(DiskGroundError::TooLarge(count));
         }
         let rect = PostRect { first, last };

@@ -117,7 +117,7 @@ pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
 ///
 /// # Errors
 /// None fits, or the one that does cannot be opened.
-pub fn finest_that_fits<R: Read + Seek>(
+pub fn finest_that_fits<R: Read + Seek + Send>(
     file: GeoTiffWindows<R>,
     patch: u32,
 ) -> Result<GeoTiffWindows<R>, PagingError> {

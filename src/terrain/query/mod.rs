@@ -59,6 +59,7 @@ pub mod pieces;
 pub mod service;
 pub mod source;
 pub mod tiles;
+pub mod windowed;
 pub mod zone;
 
 use glam::{DVec2, UVec2};

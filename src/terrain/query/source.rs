@@ -8,7 +8,7 @@ use glam::{DVec2, UVec2};
 
 use crate::dem::answer::Answer;
 use crate::dem::raster::Raster;
-use crate::dem::sample;
+use crate::dem::sample::{self, SampleGrid};
 use crate::geom::crs::Crs;
 use crate::terrain::cell_triangle::Diagonal;
 use crate::terrain::lattice::Post;
@@ -21,7 +21,7 @@ use crate::terrain::query::cubic::cubic;
 const TRANSFORMED: usize = 512;
 
 /// The height of a raster at a position in its own coordinates, in meters.
-pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
+pub fn raster_height(raster: &impl SampleGrid, interpolation: Interpolation, at: DVec2) -> Answer {
     let answer = match interpolation {
         Interpolation::Nearest => sample::nearest(raster, at),
         Interpolation::Bilinear => sample::bilinear(raster, at),
@@ -31,7 +31,7 @@ pub fn raster_height(raster: &Raster, interpolation: Interpolation, at: DVec2) -
         }
     };
     match answer {
-        Answer::Height(height) => Answer::Height(height * raster.meters_per_z),
+        Answer::Height(height) => Answer::Height(height * raster.whole().meters_per_z),
         none => none,
     }
 }
@@ -82,7 +82,7 @@ pub(in crate::terrain::query) fn source_task(
 }
 
 /// The transform from one system's positions to a raster's own.
-struct SourceTransform<'a> {
+pub(in crate::terrain::query) struct SourceTransform<'a> {
     from: &'a Crs,
     /// The raster's system, where it is another.
     to: Option<&'a Crs>,
@@ -91,7 +91,8 @@ struct SourceTransform<'a> {
 }
 
 impl<'a> SourceTransform<'a> {
-    fn new(source: &'a Raster, from: &'a Crs) -> Self {
+    /// To the system of `source`, whose samples are not used.
+    pub fn new(source: &'a Raster, from: &'a Crs) -> Self {
         let own = source.crs.as_ref();
         let degrees = own.filter(|own| own.is_geographic()).map(|_| source.extent());
         Self {
@@ -107,7 +108,7 @@ impl<'a> SourceTransform<'a> {
     }
 
     /// A position in the raster's own coordinates; NaN where it cannot be transformed.
-    fn position(&self, at: DVec2) -> DVec2 {
+    pub fn position(&self, at: DVec2) -> DVec2 {
         let at = match self.to {
             Some(to) => self.from.transform(to, at).unwrap_or(DVec2::NAN),
             None => at,
@@ -124,8 +125,8 @@ impl<'a> SourceTransform<'a> {
 }
 
 /// The cubic height of a raster, in its vertical unit; bilinear where one of its samples has no data.
-fn cubic_between_samples(raster: &Raster, at: DVec2) -> Answer {
-    let bilinear = sample::bilinear(raster, at);
+fn cubic_between_samples(grid: &impl SampleGrid, at: DVec2) -> Answer {
+    let (raster, bilinear) = (grid.whole(), sample::bilinear(grid, at));
     if bilinear == Answer::Outside {
         return bilinear;
     }
@@ -134,12 +135,13 @@ fn cubic_between_samples(raster: &Raster, at: DVec2) -> Answer {
     // Rounding in map coordinates must not mix a neighbor, or a hole, into an exact value.
     let center = from_first.round();
     let is_on = (from_first - center).abs().cmple(DVec2::splat(sample::ON_CENTER));
-    let height = cubic(DVec2::select(is_on, center, from_first), size, |column, row| raster.at(column, row));
+    let height = cubic(DVec2::select(is_on, center, from_first), size, |column, row| grid.value(column, row));
     if height.is_nan() { bilinear } else { Answer::Height(height) }
 }
 
 /// Planar and distance-weighted heights of a raster, on the grid of its sample centers, in its vertical unit.
-fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> Answer {
+fn between_samples(samples: &impl SampleGrid, interpolation: Interpolation, at: DVec2) -> Answer {
+    let raster = samples.whole();
     let grid = raster.grid_from_map(at) - 0.5;
     let last = DVec2::new(f64::from(raster.width) - 1.0, f64::from(raster.height) - 1.0);
     if !(grid.cmpge(DVec2::ZERO).all() && grid.cmple(last).all()) || last.min_element() < 1.0 {
@@ -147,7 +149,7 @@ fn between_samples(raster: &Raster, interpolation: Interpolation, at: DVec2) -> 
     }
     let first = grid.floor().min(last - 1.0);
     let (column, row) = (first.x as u32, first.y as u32);
-    let corners = [(0, 1), (1, 1), (0, 0), (1, 0)].map(|(x, y)| raster.at(column + x, row + y));
+    let corners = [(0, 1), (1, 1), (0, 0), (1, 0)].map(|(x, y)| samples.value(column + x, row + y));
     let part = DVec2::new(grid.x - first.x, 1.0 - (grid.y - first.y));
     // Rows count from the south in a lattice.
     let diagonal = Diagonal::of_cell(Post { column, row: raster.height - 2 - row });

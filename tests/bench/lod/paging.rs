@@ -67,8 +67,8 @@ impl Windows for Rolling {
         &self.bare
     }
 
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
-        out.clear();
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        let mut out = Vec::with_capacity(window.samples());
         for row in window.row..window.row + window.height {
             out.extend((window.column..window.column + window.width).map(|column| {
                 let mixed = column.wrapping_mul(0x9e37_79b1) ^ row.wrapping_mul(0x85eb_ca77);
@@ -76,7 +76,7 @@ impl Windows for Rolling {
                 self.along[0][column as usize] + self.along[1][row as usize] + rough
             }));
         }
-        Ok(())
+        Ok(Samples::F32(out))
     }
 }
 

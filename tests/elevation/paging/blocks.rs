@@ -150,12 +150,11 @@ impl Windows for Failing {
         &self.raster
     }
 
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         if self.fails.load(std::sync::atomic::Ordering::Relaxed) {
-            out.clear();
             return Err(DemErrorKind::Broken { format: "test", reason: "the disk is gone".into() });
         }
-        self.raster.read(window, out)
+        self.raster.samples(window)
     }
 }
 

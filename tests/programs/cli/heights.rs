@@ -7,7 +7,8 @@ use sandtable::geom::crs::Crs;
 use sandtable::geom::geoid::Geoid;
 use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
 use sandtable::pipeline::dem::DemOptions;
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable::pipeline::windowed_elevation::GroundReach;
+use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use serde_json::Value;
 
 use crate::cli::{project, run, run_in, run_with_input};
@@ -206,14 +207,15 @@ fn a_scene_is_asked_for_its_ground_and_a_file_for_what_it_holds() {
     let scene = project("scenes/lake.toml");
     let ask = |more: &[&str]| run(&[&["height", scene.as_str(), "--json"], more].concat()).ok();
     let dataset = open(Path::new(&scene));
-    let lattice = dataset.service().expect("a ground").snapshot();
-    let middle = lattice.lattice().origin() + lattice.lattice().extent().center();
+    let reach = GroundReach { crs: &dataset.crs(), at: &[], around_m: 0.0 };
+    let lattice = dataset.ground(&reach).expect("a ground").lattice;
+    let middle = lattice.origin() + lattice.extent().center();
     let at = format!("{},{}", middle.x, middle.y);
     let usual = ask(&["--at", &at]);
     assert_eq!(usual, ask(&["--at", &at, "--surface", "ground"]));
     assert_eq!(usual, ask(&["--at", &at, "--surface", "scene"]), "no decks yet");
     let found: Value = serde_json::from_str(&usual).expect("JSON");
-    let library = lattice.height(Surface::Ground, Interpolation::Bilinear, middle);
+    let library = ground_height(&lattice, Interpolation::Bilinear, middle);
     assert_eq!(found[0]["height"].as_f64(), library.height_m());
     run(&["height", &scene, "--at", &at, "--surface", "displayed"]).failed(2);
     let scratch = grid();

@@ -7,6 +7,8 @@ use std::process::{Command, Stdio};
 use glam::DVec2;
 use sandtable::geom::crs::Crs;
 use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
+use sandtable::pipeline::ground::QueriedGround;
+use sandtable::pipeline::windowed_elevation::GroundReach;
 use sandtable::terrain::query::{Interpolation, Surface};
 
 use crate::common::data::data;
@@ -126,7 +128,7 @@ fn the_ground_is_answered_alike_by_library_and_service_at_latitudes_and_longitud
     for file in ["dem/zion_srtm_u16_deflate.tif", "dem/bigtujunga_utm11_i16_tiled.tif"] {
         let Some(file) = data(file) else { return };
         let dataset = open(&file);
-        let extent = dataset.source().extent();
+        let extent = dataset.header().extent();
         let wgs84 = Crs::wgs84();
         let at: Vec<DVec2> = (0..300)
             .map(|index| {
@@ -153,12 +155,12 @@ fn the_ground_is_answered_alike_by_library_and_service_at_latitudes_and_longitud
 fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/heightmap.toml");
     let dataset = open(&scene);
-    let snapshot = dataset.service().expect("a scene has ground").snapshot();
-    let extent = snapshot.lattice().extent();
+    let lattice = all_ground(&dataset).lattice;
+    let extent = lattice.extent();
     let at: Vec<DVec2> = (0..50)
         .map(|index| {
             let part = DVec2::new(f64::from(index % 7) / 6.3, f64::from(index % 11) / 9.5);
-            snapshot.lattice().origin() + extent.min + (extent.max - extent.min) * part
+            lattice.origin() + extent.min + (extent.max - extent.min) * part
         })
         .collect();
     let locations: Vec<[String; 2]> = at.iter().map(|at| [at.x.to_string(), at.y.to_string()]).collect();
@@ -172,6 +174,12 @@ fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
         assert_eq!(of_service(&server, query, &joined(&locations)), expected, "{query}");
         assert!(expected.iter().filter(|(height, _)| height.is_some()).count() > 20, "{query}");
     }
+}
+
+/// The ground everywhere.
+pub fn all_ground(dataset: &Dataset) -> QueriedGround {
+    let (crs, at) = (dataset.crs(), [dataset.header().center()]);
+    dataset.ground(&GroundReach { crs: &crs, at: &at, around_m: f64::INFINITY }).expect("in meters")
 }
 
 fn open(file: &Path) -> Dataset {

@@ -13,6 +13,7 @@ use serde_json::json;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
+use crate::serve::bits::all_ground;
 use crate::serve::client::{Server, numbers};
 
 /// 41 × 41 posts ten meters apart, level, with a wall 20 m high from south to north through the middle column.
@@ -108,8 +109,8 @@ fn a_viewshed_too_large_is_refused_with_the_range_that_is_not() {
 fn on_a_real_model_profile_and_viewshed_are_the_librarys() {
     let Some(file) = data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
     let dataset = Dataset::open(&file, &DatasetOptions::default()).expect("sound");
-    let snapshot = dataset.service().expect("in meters").snapshot();
-    let lattice = snapshot.lattice();
+    let ground = all_ground(&dataset);
+    let lattice = &ground.lattice;
     let server = Server::start(Path::new("."), &[&format!("dem={}", file.display())]);
 
     let line = [DVec2::new(380_000.0, 3_805_000.0), DVec2::new(398_000.0, 3_796_500.0)];

@@ -19,14 +19,16 @@ pub(super) struct OctantFrame {
     /// The position of ring 0 and of post 0 of a ring: at the observer, or the first behind it.
     ring_start: i64,
     cross_start: i64,
-    columns: i64,
-    /// Rings on the lattice, ring 0 included.
+    /// The first of the lattice's held posts, and how many a row has.
+    held_first: [i64; 2],
+    held_columns: i64,
+    /// Rings on the held part of the lattice, ring 0 included.
     pub rings: usize,
-    /// The last post of a ring on the lattice.
+    /// The last post of a ring on the held part of the lattice.
     pub last: i64,
     /// How far the observer stands beyond post 0 of a ring, in posts: 0..1.
     pub offset: f64,
-    /// The distance between rings, and between posts of a ring, in the order of the lattice's heights.
+    /// The distance between rings, and between posts of a ring, in the order of the lattice's held heights.
     pub ring_step: i64,
     pub cross_step: i64,
     pub ring_cell_m: f64,
@@ -34,8 +36,8 @@ pub(super) struct OctantFrame {
 }
 
 impl OctantFrame {
-    /// The frames around an observer at grid position `eye` on the lattice: eight, or fewer on its border, where a frame
-    /// without a cell is left out; its one row of posts lies in the next frame too.
+    /// The frames around an observer at grid position `eye` among the held posts of the lattice: eight, or fewer on their
+    /// border, where a frame without a cell is left out; its one row of posts lies in the next frame too.
     pub fn all(lattice: &Lattice, eye: DVec2) -> impl Iterator<Item = Self> {
         const SIGNS: [(i64, i64); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
         let frame = move |ring_axis, signs| Self::new(lattice, eye, ring_axis, signs);
@@ -45,10 +47,15 @@ impl OctantFrame {
 
     fn new(lattice: &Lattice, eye: DVec2, ring: usize, (ring_sign, cross_sign): (i64, i64)) -> Self {
         let cross = 1 - ring;
-        let counts = [i64::from(lattice.columns()), i64::from(lattice.rows())];
-        let (steps, cell) = ([1, counts[0]], lattice.cell());
+        let held = lattice.held();
+        let first = [held.first.column, held.first.row].map(i64::from);
+        let last = [held.last.column, held.last.row].map(i64::from);
+        let held_columns = held.width() as i64;
+        let (steps, cell) = ([1, held_columns], lattice.cell());
         let behind = |at: f64, sign: i64| if sign > 0 { at.floor() as i64 } else { at.ceil() as i64 };
-        let left = |start: i64, sign: i64, count: i64| if sign > 0 { count - 1 - start } else { start };
+        let left = |start: i64, sign: i64, axis: usize| {
+            if sign > 0 { last[axis] - start } else { start - first[axis] }
+        };
         let (ring_start, cross_start) = (behind(eye[ring], ring_sign), behind(eye[cross], cross_sign));
         Self {
             ring_axis: ring,
@@ -57,9 +64,10 @@ impl OctantFrame {
             eye: eye[ring],
             ring_start,
             cross_start,
-            columns: counts[0],
-            rings: left(ring_start, ring_sign, counts[ring]) as usize + 1,
-            last: left(cross_start, cross_sign, counts[cross]),
+            held_first: first,
+            held_columns,
+            rings: left(ring_start, ring_sign, ring) as usize + 1,
+            last: left(cross_start, cross_sign, cross),
             offset: (eye[cross] - cross_start as f64).abs(),
             ring_step: steps[ring] * ring_sign,
             cross_step: steps[cross] * cross_sign,
@@ -73,10 +81,11 @@ impl OctantFrame {
         self.ring_sign as f64 * (self.ring_position(ring) as f64 - self.eye)
     }
 
-    /// The index of post `j` of a ring in the lattice's heights.
+    /// The index of post `j` of a ring in the lattice's held heights.
     pub fn index(&self, ring: usize, j: i64) -> usize {
         let Post { column, row } = self.post(ring, j);
-        (i64::from(row) * self.columns + i64::from(column)) as usize
+        let [first, south] = self.held_first;
+        ((i64::from(row) - south) * self.held_columns + i64::from(column) - first) as usize
     }
 
     /// Post `j` of a ring.

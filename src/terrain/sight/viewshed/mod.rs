@@ -8,6 +8,9 @@
 //! to ring (Wang, Robinson and White 2000; XDraw, Franklin 1994) misses every tenth visible post, and a plane sweep over
 //! cells (Van Kreveld 1996) takes cells for flat. Here the ground is the triangles of the
 //! [lattice](crate::terrain::lattice), as everywhere.
+//!
+//! Where a lattice holds only some of its posts, these are the posts that are looked at; they must reach as far as the range,
+//! or to the lattice's border.
 
 mod frame;
 mod horizon;
@@ -83,14 +86,14 @@ pub enum PostVisibility {
     Visible,
 }
 
-/// The visibility of all posts.
+/// The visibility of all posts that the lattice holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Viewshed {
-    /// Posts per row.
+    /// Held posts per row.
     pub columns: u32,
-    /// Rows.
+    /// Rows of held posts.
     pub rows: u32,
-    /// Row by row from the south-west, as [`Lattice::heights`].
+    /// Row by row from the south-west, as [`Lattice::held_heights`].
     pub posts: Vec<PostVisibility>,
     /// The number of posts decided by a line of sight rather than by the sweep: a measure of the work, not part of the
     /// answer.
@@ -148,7 +151,8 @@ pub fn viewshed_until(
     stop: &StopFlag,
 ) -> Result<Option<Viewshed>, Answer> {
     let observer = Observer::new(lattice, options)?;
-    let visible: Vec<AtomicBool> = lattice.heights().par_iter().map(|_| AtomicBool::new(false)).collect();
+    let visible: Vec<AtomicBool> =
+        lattice.held_heights().par_iter().map(|_| AtomicBool::new(false)).collect();
     let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
     let is_clear_of_diagonals = |post: Post| !observer.may_meet_a_diagonal_at(post);
     let tests = PostTests { sees: &sees, is_clear_of_diagonals: &is_clear_of_diagonals };
@@ -165,8 +169,7 @@ pub fn viewshed_until(
         return Ok(None);
     }
     let posts = observer.posts(|index, _| visible[index].load(Ordering::Relaxed));
-    let (columns, rows) = (lattice.columns(), lattice.rows());
-    Ok(Some(Viewshed { columns, rows, posts, lines: lines.into_inner() }))
+    Ok(Some(Viewshed { lines: lines.into_inner(), ..observer.viewshed(posts) }))
 }
 
 /// [`viewshed`] by its definition, a line for each post: the reference for tests.
@@ -176,7 +179,7 @@ pub fn viewshed_until(
 pub fn viewshed_by_lines(lattice: &Lattice, options: &ViewshedOptions) -> Result<Viewshed, Answer> {
     let observer = Observer::new(lattice, options)?;
     let posts = observer.posts(|_, post| observer.sees(post));
-    Ok(Viewshed { columns: lattice.columns(), rows: lattice.rows(), lines: posts.len(), posts })
+    Ok(observer.viewshed(posts))
 }
 
 /// Parts of an octant that are swept apart, a power of two: enough for threads to share the work evenly, and few enough
@@ -248,16 +251,23 @@ impl<'a> Observer<'a> {
         offset.length() <= self.options.range_m && self.options.sector.contains(offset)
     }
 
-    /// The visibility of every post, by `sees` for those within reach that have data.
+    /// The viewshed of these held posts, each decided by a line.
+    fn viewshed(&self, posts: Vec<PostVisibility>) -> Viewshed {
+        let held = self.lattice.held();
+        Viewshed { columns: held.width() as u32, rows: held.height() as u32, lines: posts.len(), posts }
+    }
+
+    /// The visibility of every held post, by `sees` for those within reach that have data.
     fn posts(&self, sees: impl Fn(usize, Post) -> bool + Sync) -> Vec<PostVisibility> {
-        let columns = self.lattice.columns() as usize;
+        let (heights, held) = (self.lattice.held_heights(), self.lattice.held());
+        let columns = held.width();
         let is_everywhere = self.options.range_m.is_infinite() && self.options.sector.width_deg >= 360.0;
-        let mut posts = vec![PostVisibility::Beyond; self.lattice.heights().len()];
+        let mut posts = vec![PostVisibility::Beyond; heights.len()];
         posts.par_chunks_mut(columns).enumerate().for_each(|(row, posts)| {
             for (column, visibility) in posts.iter_mut().enumerate() {
-                let (post, index) = (Post { column: column as u32, row: row as u32 }, row * columns + column);
+                let (post, index) = (held.first.offset(column as u32, row as u32), row * columns + column);
                 if is_everywhere || self.reaches(post) {
-                    *visibility = if self.lattice.heights()[index].is_nan() {
+                    *visibility = if heights[index].is_nan() {
                         PostVisibility::NoData
                     } else if sees(index, post) {
                         PostVisibility::Visible

@@ -86,7 +86,7 @@ impl RingChunk {
         (ring + CHUNK - 1).min(far).min(frame.rings - 1).max(ring)
     }
 
-    /// Reads the posts `first..=end` of the rings `ring..=last` from a lattice's `heights`.
+    /// Reads the posts `first..=end` of the rings `ring..=last` from a lattice's held `heights`.
     pub fn read(
         &mut self,
         frame: &OctantFrame,

@@ -77,7 +77,7 @@ pub(super) struct PostTests<'a> {
     pub is_clear_of_diagonals: &'a (dyn Fn(Post) -> bool + Sync),
 }
 
-/// Decides every post of a wedge and marks the visible ones in `visible`, in the order of the lattice's heights; returns
+/// Decides every post of a wedge and marks the visible ones in `visible`, in the order of the lattice's held heights; returns
 /// the number of posts decided by a line of sight.
 pub(super) fn sweep(
     scene: &SweepScene<'_>,
@@ -181,7 +181,7 @@ impl Sweep<'_> {
             let last = RingChunk::last(self.frame, ring, far);
             let (near, distant) = (self.posts_at(x), self.posts_at(self.frame.distance(last)));
             let posts = (*near.start(), *distant.end());
-            self.chunk.read(self.frame, (ring, last), posts, self.scene.lattice.heights());
+            self.chunk.read(self.frame, (ring, last), posts, self.scene.lattice.held_heights());
         }
         let posts = self.posts_at(x);
         let (first, count) = (*posts.start(), (posts.end() - posts.start() + 1).max(0) as usize);

@@ -1,0 +1,288 @@
+//! What [`to_metric`](crate::dem::warp::to_metric) makes of a raster that stays on disk: computed where it is read.
+//!
+//! ```text
+//! window of the result ─► its cells' positions in the source's grid ─► the window of the source around them ─► heights
+//! ```
+//!
+//! The cells of a resampled raster lie around its valid samples, so that these must be found first. Where each side of the
+//! raster holds data, a few samples tell; else all of it is read once, some rows at a time.
+
+use std::cell::{Cell, RefCell};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::dem::cell_grid::CellGrid;
+use crate::dem::error::DemErrorKind;
+use crate::dem::raster::{Raster, Samples, north_up};
+use crate::dem::sample::bilinear_at_grid;
+use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
+use crate::dem::warp::resample::Resampler;
+use crate::dem::warp::{WarpError, with_crs};
+use crate::dem::windows::{RasterPart, RasterWindow, Windows};
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
+
+/// Cells that are computed at a time: their positions take some megabytes.
+const CELLS_AT_ONCE: u32 = 1 << 19;
+
+/// Samples on each side of a position that bilinear heights need.
+const HALO: u32 = 2;
+
+/// Samples along a side of the raster that are read at a time in search of one with data.
+const PROBE: u32 = 256;
+
+/// Samples that are read at a time where all are.
+const SAMPLES_AT_ONCE: u32 = 1 << 22;
+
+/// A raster on disk that cannot be brought to meters.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum MetricWindowsError {
+    #[error(transparent)]
+    Warp(#[from] WarpError),
+    #[error(transparent)]
+    Read(#[from] DemErrorKind),
+}
+
+/// What a raster becomes, but for its samples.
+#[derive(Clone, Debug)]
+pub struct MetricPlan {
+    /// The result without its samples.
+    header: Raster,
+    making: MetricMaking,
+    off_scale: Option<OffScale>,
+}
+
+/// A raster on disk in a metric system, north up, with heights in meters.
+pub struct MetricWindows<'a, W: ?Sized> {
+    source: &'a mut W,
+    plan: &'a MetricPlan,
+}
+
+/// How the samples of the result are made.
+#[derive(Clone, Debug)]
+enum MetricMaking {
+    /// They are the source's, mirrored where its columns run west or its rows north.
+    Kept { mirrors_x: bool, mirrors_y: bool },
+    /// They lie between the source's, whose system is `own`.
+    Resampled { own: Option<Crs>, cells: CellGrid },
+}
+
+impl MetricPlan {
+    /// What [`to_metric`](crate::dem::warp::to_metric) makes of `source` without a target.
+    ///
+    /// # Errors
+    /// [`MetricWindowsError`].
+    pub fn new(source: &mut (impl Windows + ?Sized)) -> Result<Self, MetricWindowsError> {
+        let raster = source.metadata().without_samples();
+        let search =
+            ValidSearch { source: RefCell::new(source), found: Cell::new(None), fault: Cell::new(None) };
+        let planned = plan(&raster, &search);
+        // A fault of reading comes before what follows from it.
+        match search.fault.into_inner() {
+            Some(fault) => Err(fault.into()),
+            None => Ok(planned?),
+        }
+    }
+
+    /// The result without its samples.
+    pub fn header(&self) -> &Raster {
+        &self.header
+    }
+
+    /// Why the result lies in another metric system than the raster, where it does.
+    pub fn off_scale(&self) -> Option<&OffScale> {
+        self.off_scale.as_ref()
+    }
+}
+
+impl<'a, W: Windows + ?Sized> MetricWindows<'a, W> {
+    /// The result of `plan`, which was made of `source`.
+    pub fn new(source: &'a mut W, plan: &'a MetricPlan) -> Self {
+        Self { source, plan }
+    }
+
+    /// The source's window that becomes `window`, mirrored.
+    fn kept(&mut self, window: RasterWindow, mirrors: (bool, bool)) -> Result<Samples, DemErrorKind> {
+        let (width, height) = self.size();
+        let RasterWindow { column, row, .. } = window;
+        let column = if mirrors.0 { width - column - window.width } else { column };
+        let row = if mirrors.1 { height - row - window.height } else { row };
+        let samples = self.source.samples(RasterWindow { column, row, ..window })?;
+        let width = window.width as usize;
+        Ok(match samples {
+            Samples::F32(values) => Samples::F32(mirrored(values, width, mirrors)),
+            Samples::F64(values) => Samples::F64(mirrored(values, width, mirrors)),
+        })
+    }
+
+    /// Some rows of the window, from its row `first` on.
+    fn resampled(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        let MetricMaking::Resampled { own, cells } = &self.plan.making else {
+            return Ok(Samples::absent(0, false));
+        };
+        let whole = self.source.metadata().without_samples();
+        let transform = CrsTransform::new(&whole, own.as_ref(), self.plan.header.crs.as_ref());
+        let resampler = Resampler::to_cells(&whole, &transform, *cells);
+        let columns = window.column..window.column + window.width;
+        let rows = (window.row..window.row + window.height).into_par_iter();
+        let positions: Vec<DVec2> =
+            rows.flat_map_iter(|row| resampler.row_positions(row, columns.clone())).collect();
+        let around = Rect::around(positions.iter().copied().filter(|at| at.is_finite()));
+        let needed = match around.is_empty() {
+            true => RasterWindow { column: 0, row: 0, width: 1, height: 1 },
+            false => RasterWindow::around(self.source.size(), around.min, around.max, HALO),
+        };
+        let part = RasterPart { whole: &whole, window: needed, samples: self.source.samples(needed)? };
+        let heights = positions.par_iter().map(|&at| bilinear_at_grid(&part, at).parts().0);
+        Ok(match part.samples {
+            Samples::F32(_) => Samples::F32(heights.map(|height| height as f32).collect()),
+            Samples::F64(_) => Samples::F64(heights.collect()),
+        })
+    }
+}
+
+impl<W: Windows + ?Sized> Windows for MetricWindows<'_, W> {
+    fn metadata(&self) -> &Raster {
+        &self.plan.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        let meters_per_z = self.source.metadata().meters_per_z;
+        let samples = match self.plan.making {
+            MetricMaking::Kept { mirrors_x, mirrors_y } => self.kept(window, (mirrors_x, mirrors_y))?,
+            MetricMaking::Resampled { .. } => {
+                let mut all: Option<Samples> = None;
+                for band in window.bands(CELLS_AT_ONCE) {
+                    let rows = self.resampled(band)?;
+                    let all = all.get_or_insert_with(|| Samples::absent(window.samples(), rows.is_wide()));
+                    let start = (band.row - window.row) as usize * window.width as usize;
+                    all.copy_from(start..start + rows.len(), &rows, 0..rows.len());
+                }
+                all.unwrap_or_else(|| Samples::absent(0, false))
+            }
+        };
+        Ok(samples.scaled(meters_per_z, 0.0))
+    }
+
+    fn announce(&mut self, windows: &[RasterWindow]) {
+        if let MetricMaking::Kept { mirrors_x: false, mirrors_y: false } = self.plan.making {
+            self.source.announce(windows);
+        }
+    }
+}
+
+fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (bool, bool)) -> Vec<T> {
+    if mirrors_x && mirrors_y {
+        values.reverse();
+    } else if mirrors_x {
+        values.chunks_mut(width).for_each(<[T]>::reverse);
+    } else if mirrors_y {
+        values = values.chunks(width).rev().flatten().copied().collect();
+    }
+    values
+}
+
+/// The steps of [`to_metric`](crate::dem::warp::to_metric) but for the samples.
+fn plan<W: Windows + ?Sized>(raster: &Raster, search: &ValidSearch<'_, W>) -> Result<MetricPlan, WarpError> {
+    let valid = || search.valid();
+    let system = metric_crs_around(raster, None, &valid)?;
+    let off_scale = off_scale_around(raster, None, &valid)?;
+    let own = raster.crs.as_ref().or(system.as_ref());
+    let (north_up, making) = if own == system.as_ref() && raster.is_axis_aligned() {
+        let axes = raster.map_from_grid.matrix2;
+        let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);
+        (turned(raster), MetricMaking::Kept { mirrors_x, mirrors_y })
+    } else {
+        let transform = CrsTransform::new(raster, own, system.as_ref());
+        let valid = valid().ok_or(WarpError::Empty)?;
+        let resampler = Resampler::around_valid(raster, &transform, None, valid)?;
+        let making = MetricMaking::Resampled { own: own.cloned(), cells: resampler.cells() };
+        (resampler.header(), making)
+    };
+    let metric = Raster { meters_per_z: 1.0, ..north_up };
+    let header = with_crs(std::borrow::Cow::Owned(metric), system.as_ref()).into_owned();
+    Ok(MetricPlan { header, making, off_scale })
+}
+
+/// An axis-aligned raster without samples as [`Raster::turned_north_up`] places it.
+fn turned(raster: &Raster) -> Raster {
+    if raster.is_north_up() {
+        return raster.without_samples();
+    }
+    let Rect { min, max } = raster.extent();
+    let map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
+    Raster { map_from_grid, ..raster.without_samples() }
+}
+
+/// The search for the valid samples of a raster on disk, done once.
+struct ValidSearch<'a, W: ?Sized> {
+    source: RefCell<&'a mut W>,
+    /// The outer `None` before the search.
+    found: Cell<Option<Option<Rect>>>,
+    fault: Cell<Option<DemErrorKind>>,
+}
+
+impl<W: Windows + ?Sized> ValidSearch<'_, W> {
+    /// The rectangle of the grid around the valid samples; `None` where there is none, or they cannot be read.
+    fn valid(&self) -> Option<Rect> {
+        if let Some(found) = self.found.get() {
+            return found;
+        }
+        let found = data_extent(&mut **self.source.borrow_mut()).unwrap_or_else(|fault| {
+            self.fault.set(Some(fault));
+            None
+        });
+        self.found.set(Some(found));
+        found
+    }
+}
+
+/// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.
+fn data_extent(source: &mut (impl Windows + ?Sized)) -> Result<Option<Rect>, DemErrorKind> {
+    let (width, height) = source.size();
+    let row = |row: u32| RasterWindow { column: 0, row, width, height: 1 };
+    let column = |column: u32| RasterWindow { column, row: 0, width: 1, height };
+    let mut reaches_all_sides = true;
+    for side in [row(0), row(height - 1), column(0), column(width - 1)] {
+        reaches_all_sides = reaches_all_sides && has_data(source, side)?;
+    }
+    if reaches_all_sides {
+        return Ok(Some(Rect { min: DVec2::ZERO, max: DVec2::new(width.into(), height.into()) }));
+    }
+    let mut around = Rect::EMPTY;
+    for band in RasterWindow::all((width, height)).bands(SAMPLES_AT_ONCE) {
+        let samples = source.samples(band)?;
+        let width = width as usize;
+        for row in 0..band.height as usize {
+            let valid = |column: &usize| !samples.get(row * width + column).is_nan();
+            if let (Some(left), Some(right)) = ((0..width).find(valid), (0..width).rev().find(valid)) {
+                let down = f64::from(band.row) + row as f64;
+                around = around.with(DVec2::new(left as f64, down));
+                around = around.with(DVec2::new(right as f64 + 1.0, down + 1.0));
+            }
+        }
+    }
+    Ok((!around.is_empty()).then_some(around))
+}
+
+/// Whether a row or a column holds a sample with data.
+fn has_data(source: &mut (impl Windows + ?Sized), line: RasterWindow) -> Result<bool, DemErrorKind> {
+    for column in (0..line.width).step_by(PROBE as usize) {
+        for row in (0..line.height).step_by(PROBE as usize) {
+            let part = RasterWindow {
+                column: line.column + column,
+                row: line.row + row,
+                width: PROBE.min(line.width - column),
+                height: PROBE.min(line.height - row),
+            };
+            if source.samples(part)?.valid().next().is_some() {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
+}
