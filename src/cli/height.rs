@@ -60,7 +60,7 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
         arguments.dataset.note_ground(&dataset)?;
     }
     let mut answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
-    let mut datum = dataset.source().vertical_datum.clone();
+    let mut datum = dataset.header().vertical_datum.clone();
     if let Some(above) = arguments.above {
         let brought = bring_heights(&mut answers, (datum.as_deref(), above), (&crs, &at), &Geoid::default());
         brought.map_err(FileError::at(&arguments.dataset.file))?;

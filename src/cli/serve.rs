@@ -66,7 +66,7 @@ pub fn run(arguments: &ServeArguments, serve: Option<ServeProgram>) -> Result<()
         dataset: DatasetOptions {
             dem: arguments.heights.dem_options(),
             allowed: arguments.access.allow.clone(),
-            most_kept: RASTER_SAMPLES,
+            most_kept: RASTER_SAMPLES.get(),
         },
         listen: arguments.listen,
         hosts: arguments.host.clone(),

@@ -55,7 +55,7 @@ pub enum GroundError {
     Read(#[from] DemErrorKind),
     /// A query reaches too far over elevation that is not kept in memory.
     #[error(
-        "the ground that is asked about has {columns} x {rows} posts, more than the {RASTER_SAMPLES} that are read at once; ask about less of it, with a range or a shorter line"
+        "the ground that is asked about has {columns} x {rows} posts, more than the {RASTER_SAMPLES} that are read at once; ask about less of it, with a range or a shorter line, or {RASTER_SAMPLES:#}"
     )]
     Reach {
         /// Posts per row.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Raster;
+use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemHints;
 use crate::dem::reduced::reduced;
 use crate::dem::tiff::windows::GeoTiffWindows;
@@ -96,14 +96,18 @@ impl<W: Windows> Windows for WatchedWindows<W> {
         self.windows.metadata()
     }
 
-    fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         if self.watch.is_stopped.load(Ordering::Relaxed) {
             let source = Box::new(io::Error::from(io::ErrorKind::Interrupted));
             return Err(DemErrorKind::Undecodable { format: self.windows.metadata().driver, source });
         }
-        self.windows.read(window, out)?;
+        let samples = self.windows.samples(window)?;
         self.watch.samples.fetch_add(window.samples() as u64, Ordering::Relaxed);
-        Ok(())
+        Ok(samples)
+    }
+
+    fn announce(&mut self, windows: &[RasterWindow]) {
+        self.windows.announce(windows);
     }
 }
 
@@ -124,7 +128,7 @@ impl PagedElevation {
         let paging = |error: PagingError| FileError::<PagingError>::new(path, error);
         match warp::check_metric(metadata) {
             // What fits is resampled in memory.
-            Err(_) if samples <= RASTER_SAMPLES => return Ok(None),
+            Err(_) if samples <= RASTER_SAMPLES.get() => return Ok(None),
             Err(error) => return Err(paging(PagingError::NotMetric(error)).into()),
             Ok(()) => {}
         }

@@ -257,7 +257,7 @@ impl HeightsQuery {
         let crs = &self.coordinates.crs;
         let mut answers = served.dataset.heights(surface, self.interpolation, crs, at)?;
         if let Some(above) = self.above {
-            let own = served.dataset.source().vertical_datum.clone();
+            let own = served.dataset.header().vertical_datum.clone();
             let brought = bring_heights(&mut answers, (own.as_deref(), above), (crs, at), &service.geoid);
             brought.map_err(|error| HttpError::wrong(format!("{}: {}", served.name, error_text(&error))))?;
         }
@@ -267,7 +267,7 @@ impl HeightsQuery {
     /// What the heights of a dataset are counted from in the answer, where that is known.
     fn vertical_datum(&self, served: &ServedDataset) -> Option<String> {
         let brought = self.above.map(|above| above.name().to_owned());
-        brought.or_else(|| served.dataset.source().vertical_datum.clone())
+        brought.or_else(|| served.dataset.header().vertical_datum.clone())
     }
 
     fn elevation(&self, answer: Answer) -> Option<f64> {

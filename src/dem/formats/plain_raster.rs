@@ -51,7 +51,7 @@ pub(super) fn windows(
     header: PlainHeader,
 ) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
     let length = content.seek(SeekFrom::End(0)).map_err(|fault| unreadable("elevation file", fault))?;
-    let size = FileSize { bytes: length as usize, most_samples: WINDOWED_SAMPLES };
+    let size = FileSize { bytes: length as usize, most_samples: &WINDOWED_SAMPLES };
     let mut plain = PlainRaster { cleared: file.hints.nodata, ..header(file, size)? };
     if file.hints.vertical_datum.is_some() {
         plain.raster.vertical_datum.clone_from(&file.hints.vertical_datum);

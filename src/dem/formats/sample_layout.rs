@@ -14,6 +14,7 @@ use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::dem::sample_type::SampleType;
 use crate::dem::windows::RasterWindow;
 use crate::limits::RASTER_SAMPLES;
+use crate::limits::work_limit::WorkLimit;
 
 /// Places of the samples of one band in a file.
 #[derive(Clone, Copy, Debug)]
@@ -35,13 +36,13 @@ pub(crate) struct SampleLayout {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FileSize {
     pub bytes: usize,
-    pub most_samples: u64,
+    pub most_samples: &'static WorkLimit,
 }
 
 impl FileSize {
     /// Of a file that is read whole.
     pub fn in_memory(bytes: &[u8]) -> Self {
-        Self { bytes: bytes.len(), most_samples: RASTER_SAMPLES }
+        Self { bytes: bytes.len(), most_samples: &RASTER_SAMPLES }
     }
 
     /// Without a header of this many bytes.
