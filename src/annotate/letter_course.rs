@@ -29,7 +29,9 @@ pub struct CourseLetter {
 /// A letter's place: the middle of its advance on the baseline, and the direction of the baseline there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SetLetter {
+    /// The middle of its advance on the baseline.
     pub at: Vec2,
+    /// The direction of the baseline there, of length 1.
     pub along: Vec2,
 }
 
@@ -42,6 +44,7 @@ pub struct LetterCourse {
     pub is_reversed: bool,
     /// The height of the baseline above the line.
     pub baseline: f32,
+    /// What the name may do.
     pub limits: LetterLimits,
 }
 

@@ -287,7 +287,8 @@ impl DiskQuestions {
 fn work(terrain: ElevationWindows, requests: Receiver<PagingRequest>, tell: impl Fn(PagingNews)) {
     let options = PagedWalkOptions {
         reach: REACH,
-        paging: PagingOptions { capacity: MOST_PAGES, ..PagingOptions::default() },
+        // Refined pages may be a quarter more for a while.
+        paging: PagingOptions { capacity: MOST_PAGES / 4 * 3, ..PagingOptions::default() },
         kept_patches: MOST_PAGES,
         most_near: MOST_PAGES / 2,
         most_loads: MOST_LOADS,

@@ -248,8 +248,11 @@ fn block_positions(block: &PatchBlock) -> Vec<[f32; 3]> {
 mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
+    use glam::Vec3;
+
     use super::*;
     use crate::dem::raster::{Raster, Samples, north_up_nodes};
+    use crate::roam::shown::LocalTriangle;
 
     /// Hills with a lake without data, 2 × 2 blocks of patches of 8 cells.
     fn raster() -> Raster {
