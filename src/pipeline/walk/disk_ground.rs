@@ -100,7 +100,9 @@ impl<W: Windows> DiskGround<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dem::error::DemErrorKind;
     use crate::dem::raster::{Raster, Samples, north_up_nodes};
+    use crate::dem::windows::RasterWindow;
     use crate::terrain::profile::profile;
     use crate::terrain::query::{Interpolation, ground_height};
 
@@ -152,11 +154,7 @@ mod tests {
                 &self.0
             }
 
-            fn read(
-                &mut self,
-                _: crate::dem::windows::RasterWindow,
-                _: &mut Vec<f32>,
-            ) -> Result<(), crate::dem::error::DemErrorKind> {
+            fn samples(&mut self, _: RasterWindow) -> Result<Samples, DemErrorKind> {
                 unreachable!("nothing is read of what is too large")
             }
         }
