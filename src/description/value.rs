@@ -329,7 +329,7 @@ impl<'t> KeyValue<'_, 't> {
                 self.each_entry(table, |name| name.file())
             }
             _ => {
-                let help = "write { name = \"text\", ... }";
+                let help = format!("write {{ name = \"text\", ... }} of so many, or {SCENE_LIST:#}");
                 self.wrong_type(&format!("a table of 1 to {SCENE_LIST} texts"), help)
             }
         }
@@ -386,7 +386,10 @@ impl<'t> KeyValue<'_, 't> {
         let help = "write [[height, \"#rrggbb\"], ...] with heights in meters that grow";
         if !(2..=SCENE_LIST.count()).contains(&list.len()) {
             let message = format!("a ramp has from 2 to {SCENE_LIST} stops, but this has {}", list.len());
-            return self.wrong(message, help);
+            return match list.len() {
+                0 | 1 => self.wrong(message, help),
+                _ => self.wrong(message, format!("leave some out, or {SCENE_LIST:#}")),
+            };
         }
         let stops = self.each(list, |stop| stop.stop(help))?;
         match stops.windows(2).position(|pair| pair[0].0 >= pair[1].0) {

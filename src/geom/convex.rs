@@ -40,6 +40,11 @@ pub fn overlap(one: &[DVec2], other: &[DVec2]) -> bool {
 fn separates(one: &[DVec2], other: &[DVec2]) -> bool {
     polygon::edges(one).any(|(from, to)| {
         let along = to - from;
+        // Most sides separate nothing, which a bound on their length tells.
+        let most = TOUCHING_M * along.abs().element_sum();
+        if other.iter().any(|&point| along.perp_dot(point - from) > most) {
+            return false;
+        }
         let (length, touching) = (along.length(), TOUCHING_M * along.length());
         // Clipping repeats corners, and an edge between two of them has no direction.
         length > TOUCHING_M && other.iter().all(|&point| along.perp_dot(point - from) <= touching)

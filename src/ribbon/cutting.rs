@@ -263,12 +263,12 @@ mod tests {
         #[test]
         fn what_is_left_is_what_comparing_all_pairs_leaves(
             corners in prop::collection::vec(prop::array::uniform3((0.0..100.0, 0.0..60.0)), 0..120),
-            size in 1.0..80.0,
+            smaller in 1.0..80.0f64,
         ) {
             let counter_clockwise = |corners: [(f64, f64); 3]| {
                 let [a, b, c] = corners.map(DVec2::from);
                 // Small ones, so that something is left.
-                let [b, c] = [b, c].map(|at| a + (at - a) / size);
+                let [b, c] = [b, c].map(|at: DVec2| a + (at - a) / smaller);
                 if (b - a).perp_dot(c - a) > 0.0 { [a, b, c] } else { [a, c, b] }
             };
             let windows: Vec<[DVec2; 3]> = corners.into_iter().map(counter_clockwise).collect();

@@ -3,13 +3,14 @@
 //! A relation is only read complete: with a way missing or open, its islands would turn into lakes.
 
 use std::collections::BTreeMap;
+use std::error::Error;
 
 use crate::limits::OSM_AREA_VERTICES;
 use crate::vector::builder::Vertices;
 use crate::vector::error::VectorError;
 use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 use crate::vector::osm::significant_tags;
-use crate::vector::rings::{HoleRule, RingLimitExceeded, RingSorter};
+use crate::vector::rings::{HoleRule, RingSorter};
 
 /// Assembles areas, and tracks the ways that they replace.
 pub(super) struct AreaAssembler<'a> {
@@ -69,18 +70,23 @@ impl<'a> AreaAssembler<'a> {
             ids.iter().map(|&id| data.way_index(id).map(|index| &data.ways[index])).collect();
         let loops = ways.filter(|ways| !ways.is_empty()).and_then(|ways| closed_loops(&ways));
         let Some(loops) = loops else { return Ok(None) };
-        let exceeded = |error: RingLimitExceeded| {
+        let exceeded = |error: Box<dyn Error + Send + Sync>| {
             let place = format!("relation {}", relation.id);
             VectorError::broken("OpenStreetMap extract", place, error)
         };
+        let too_many = || {
+            format!(
+                "the areas up to here have more than {OSM_AREA_VERTICES} vertices; cut the extract, or {OSM_AREA_VERTICES:#}"
+            )
+        };
         let vertices = loops.iter().map(Vec::len).sum();
         self.vertices_left =
-            self.vertices_left.checked_sub(vertices).ok_or_else(|| exceeded(RingLimitExceeded))?;
+            self.vertices_left.checked_sub(vertices).ok_or_else(|| exceeded(too_many().into()))?;
         let rings: Vec<Vertices> = loops.iter().map(|ids| data.positions(ids)).collect();
         if rings.iter().zip(&loops).any(|(ring, ids)| ring.len() < ids.len()) {
             return Ok(None);
         }
-        self.sorter.polygons(rings).map(Some).map_err(exceeded)
+        self.sorter.polygons(rings).map(Some).map_err(|error| exceeded(error.into()))
     }
 }
 
