@@ -138,11 +138,12 @@ finding_codes! {
         "A feature lies wholly off the elevation model, so that no picture shows it; of a file, all features do. Most often \
          its coordinates are in another system than stated, or belong to another scene.";
     PartlyOffTerrain = "partly-off-terrain", Warning,
-        "A feature whose points the scene file states lies partly off the elevation model, or a part of a file does, and is cut off \
-         at its border. Move the points, choose features by `where`, or take a larger model.";
+        "A feature whose points the scene file states lies partly off the elevation model, and is cut off at its border; or those of a \
+         file lie beyond one side of it and leave the other side without any, as those of another area do. Move the points, choose \
+         features by `where`, or take another model.";
     ReachesBeyond = "reaches-beyond", Note,
-        "Features of a file reach beyond the elevation model by little, cover the ground, or reach beyond the `extent` that the scene \
-         takes of it, and are cut off at its border or left out.";
+        "Features of a file reach beyond the elevation model, as those of maps of a larger area do, and are cut off at its border or \
+         left out.";
     AxesSwapped = "axes-swapped", Error,
         "A feature lies off the elevation model, and on it where its two coordinates are exchanged: they are written as \
          northing and easting, or as latitude and longitude. Coordinates are `[easting, northing]` or `[longitude, latitude]`.";

@@ -55,6 +55,8 @@ pub struct SourceOverlap {
     pub partly: usize,
     /// Of a line that the scene file states, the share of its length that is off; else that of the vertices.
     pub share_off: f64,
+    /// The rectangle around all shapes, in world coordinates.
+    pub around: Rect,
 }
 
 impl SourceReach {
@@ -104,7 +106,13 @@ impl SourceReach {
             off,
             partly: shapes - off - inside,
             share_off: self.share_off(extent),
+            around: self.around(),
         }
+    }
+
+    fn around(&self) -> Rect {
+        let boxes = self.boxes.iter().filter(|rect| !rect.is_empty());
+        Rect::around(boxes.flat_map(|rect| [rect.min, rect.max]))
     }
 
     fn share_off(&self, extent: &Rect) -> f64 {
@@ -130,8 +138,7 @@ impl SourceReach {
             (Some(file), 1) => format!("the only feature of '{}' that is taken lies", quoted(file)),
             (Some(file), shapes) => format!("all {shapes} features of '{}' that are taken lie", quoted(file)),
         };
-        let boxes = self.boxes.iter().filter(|rect| !rect.is_empty());
-        let rect = Rect::around(boxes.flat_map(|rect| [rect.min, rect.max]));
+        let rect = self.around();
         let far_km = gap(&rect, extent) / 1000.0;
         let far = if rect.is_empty() { String::new() } else { format!(", {far_km:.1} km from it") };
         let map = Rect { min: extent.min + frame.origin, max: extent.max + frame.origin };

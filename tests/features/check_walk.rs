@@ -56,6 +56,8 @@ const TRUE_OF_GALLERY: &[(&str, &[&str])] = &[
     ),
     // A ridge without a road, and hills that were made up to show how roads lie on them.
     ("road-steep", &["bridge", "junctions"]),
+    // A bridge from the bottom of a valley to its side, 35 m higher.
+    ("bridge-steep", &["bridge"]),
     // A hill that a road goes through to show the cutting.
     ("deep-earthwork", &["earthworks"]),
     // A reservoir, with the valley below its dam in its outline.

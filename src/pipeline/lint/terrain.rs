@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use crate::description::finding_code::FindingCode;
+use crate::geom::rect::Rect;
 use crate::message::suggest::quoted;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
@@ -12,16 +15,19 @@ use crate::scene::source_reach::SourceOverlap;
 /// A smaller share of a feature or a file off the model is the width of a pen.
 const LEAST_SHARE: f64 = 0.01;
 
-/// Finds features that lie partly off the model, whether the scene file states their points or names their file. Where it
-/// names a part of the model as well, files are meant to reach beyond.
+/// A file whose features reach beyond the model by this share of its side, and leave as much of it without any on the other
+/// side, is of another area. Others hold more than the scene shows, as maps do.
+const BESIDE: f64 = 0.25;
+
+/// Finds features whose points the scene file states that lie partly off the model, and files that reach beyond it.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let tables = table_sources(context.document);
-    let is_part = context.document.terrain.extent.is_some();
     let covers = |span: &Range<usize>| {
         tables.iter().any(|table| table.role == SourceRole::Over && table.source.span() == *span)
     };
+    let extent = context.scene.lattice.extent();
     for overlap in context.scene.overlaps.iter().filter(|overlap| overlap.off < overlap.shapes) {
-        let SourceOverlap { span, file, shapes, off, partly, share_off } = overlap.clone();
+        let SourceOverlap { span, file, shapes, off, partly, share_off, around } = overlap.clone();
         let is_grave = share_off >= LEAST_SHARE && !covers(&span);
         let percent = share_off * 100.0;
         match file {
@@ -36,10 +42,13 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
                      beyond its border",
                     quoted(&file)
                 );
-                if is_grave && !is_part {
-                    let message = format!("{message}: {percent:.0} % of all vertices");
-                    let help = "take a larger model, choose the features on it by `where`, or cut the file to it, for example \
-                                with: ogr2ogr -clipsrc";
+                if is_grave && lies_beside(&around, &extent) {
+                    let message = format!(
+                        "{message}, {percent:.0} % of all vertices, and a part of the model has none of them: they are another \
+                         area's"
+                    );
+                    let help =
+                        "take a model and a file of one area, or choose the features on the model by `where`";
                     sink.add(context.finding(FindingCode::PartlyOffTerrain, span, message).with_help(help));
                 } else {
                     sink.add(context.finding(FindingCode::ReachesBeyond, span, message));
@@ -47,5 +56,32 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
             }
             _ => {}
         }
+    }
+}
+
+/// Whether features in a rectangle lie to one side of the model.
+fn lies_beside(around: &Rect, extent: &Rect) -> bool {
+    let least = extent.size() * BESIDE;
+    let (before, beyond) = (extent.min - around.min, around.max - extent.max);
+    let is_toward = |out: DVec2, back: DVec2| out.cmpge(least) & back.cmple(-least);
+    let is_beside = is_toward(before, beyond) | is_toward(beyond, before);
+    let is_beyond_both = before.cmpge(least) & beyond.cmpge(least);
+    is_beside.any() && !is_beyond_both.any()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn features_lie_beside_the_model_where_they_reach_beyond_one_side_and_not_to_the_other() {
+        let extent = Rect { min: DVec2::ZERO, max: DVec2::splat(100.0) };
+        let beside =
+            |min: [f64; 2], max: [f64; 2]| lies_beside(&Rect { min: min.into(), max: max.into() }, &extent);
+        assert!(beside([60.0, 10.0], [150.0, 90.0]) && beside([10.0, -90.0], [90.0, 40.0]));
+        assert!(!beside([-500.0, -500.0], [600.0, 600.0]), "a map of a larger area");
+        assert!(!beside([40.0, -500.0], [60.0, 600.0]), "a road across it");
+        assert!(!beside([60.0, -500.0], [150.0, 600.0]), "another road across it");
+        assert!(!beside([10.0, 10.0], [150.0, 90.0]), "nearly all of it");
     }
 }
