@@ -72,7 +72,7 @@ finding_codes! {
          not in the system that is stated for them. State the right one with the key `crs`.";
     CrsOverridden = "crs-overridden", Warning,
         "A file states its coordinate system, and the scene states another in its place, which puts the file a meter or more \
-         elsewhere. The scene is believed. Leave `crs` out, unless the file is known to state the wrong system.";
+         elsewhere, or on a datum from which no shift is known. The scene is believed. Leave `crs` out, unless the file is known to state the wrong system.";
     NoSystem = "no-system", Note,
         "Neither the elevation file nor the scene names a coordinate system: coordinates are meters in a plane without a place on \
          Earth, so that data in other systems cannot be added.";
@@ -225,8 +225,8 @@ finding_codes! {
          road lies on a trace that the elevation model does not show, or its line is shifted. Let the ground follow it with \
          `profile = \"conform\"`, or mend the line.";
     BridgeSteep = "bridge-steep", Warning,
-        "The deck of a bridge for vehicles is steeper than 15 % over 30 m, or over all of it where it is shorter: bridges are built \
-         with up to about 6 %. A deck runs from the ground at one end to the ground at the other, so that most often one end lies \
+        "The deck of a bridge for vehicles is steeper than 15 % over 30 m, or over two cells of the elevation model where these are \
+         wider: bridges are built with up to about 6 %. A deck runs from the ground at one end to the ground at the other, so that most often one end lies \
          beside its bank, or in the valley. Move it, or state the level of a `[[bridge]]` with `deck`.";
     DeepEarthwork = "deep-earthwork", Warning,
         "A road that the ground follows stands on more than 15 m of fill, or lies in a cutting deeper than 25 m. Beyond about \

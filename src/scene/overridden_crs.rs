@@ -26,17 +26,24 @@ pub struct OverriddenCrs<'a> {
 
 impl OverriddenCrs<'_> {
     /// The finding at the bytes `span` of the scene file, where the systems put the coordinates `at` of the file a meter or
-    /// more from each other; `None` where they do not, or one of them puts these nowhere on Earth.
+    /// more from each other, or the shift between their datums is not known; `None` where they do not, or one of them puts
+    /// these nowhere on Earth.
     pub fn finding(&self, at: DVec2, document: &Document, span: Range<usize>) -> Option<Finding> {
-        let apart_m = Geodesic::between_systems(self.own, self.stated, at)?.length_m();
+        let effect = match Geodesic::between_systems(self.own, self.stated, at).map(|line| line.length_m()) {
+            Some(apart_m) if apart_m >= LEAST_M => format!("which puts it {apart_m:.0} m elsewhere"),
+            None if self.own.datum_shift_to(self.stated).is_err() => {
+                "and the shift between their datums is not known here".to_owned()
+            }
+            Some(_) | None => return None,
+        };
         let message = format!(
-            "'{}' states {}, and the scene says {} in its place, which puts it {apart_m:.0} m elsewhere",
+            "'{}' states {}, and the scene says {} in its place, {effect}",
             quoted(self.file),
             self.own.name(),
             self.stated.name()
         );
         let finding = Finding::new(FindingCode::CrsOverridden, message).at(&document.source, span);
         let help = "leave `crs` out, unless the file is known to state the wrong system";
-        (apart_m >= LEAST_M).then(|| finding.with_help(help))
+        Some(finding.with_help(help))
     }
 }

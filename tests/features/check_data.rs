@@ -161,7 +161,7 @@ fn of_systems() -> Vec<Seed> {
         seed("off-terrain", NEXT + 1, file).with("road.geojson", line_file(&[[10.0, 50.0], [10.1, 50.0]])),
         seed("off-terrain", NEXT + 2, "[[label]]\ntext = \"a\"\nat = [850100, 4018100]\n"),
         seed("partly-off-terrain", NEXT + 1, road("[[750100, 4018100], [750700, 4018100]]")),
-        seed("crs-overridden", 2, HEAD).with("hill.prj", "EPSG:26716"),
+        seed("crs-overridden", 2, HEAD).with("hill.prj", "EPSG:32617"),
         seed("crs-overridden", NEXT + 1, format!("{file}crs = \"EPSG:32616\"\n")).with("road.geojson", in_nad27()),
         seed("no-place-on-earth", 2, "[terrain]\ndem = \"hill.asc\"\n[furniture]\ngrid = \"utm\"\n"),
         seed("lengths-not-true", 2, "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:3857\"\n")

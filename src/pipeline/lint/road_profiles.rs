@@ -27,9 +27,6 @@ const GRADE_OVER_CELLS: f64 = 2.0;
 /// are climbed in the wet up to about 15 %.
 const STEEPEST_DECK: f64 = 0.15;
 
-/// A rise up to this is not found, meters: as much as the ground at the two ends of a bridge may be off.
-const DECK_RISE_M: f64 = 3.0;
-
 /// The highest embankment in meters: where more fill is needed, a viaduct costs less.
 const HIGHEST_FILL_M: f64 = 15.0;
 
@@ -43,9 +40,14 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     earthworks(context, sink);
 }
 
+/// The meters over which grades are measured.
+fn grade_base_m(context: &LintContext<'_>) -> f64 {
+    GRADE_OVER_M.max(GRADE_OVER_CELLS * context.scene.lattice.measured_cell().max_element())
+}
+
 fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
-    let base_m = GRADE_OVER_M.max(GRADE_OVER_CELLS * scene.lattice.measured_cell().max_element());
+    let base_m = grade_base_m(context);
     let mut worst = WorstOfTables::default();
     let driven = context.roads_on_ground().filter(|road| is_for_wheels(road.surface));
     for road in driven.filter(|road| road.alignment.level.is_none()) {
@@ -71,13 +73,13 @@ fn steep(context: &LintContext<'_>, sink: &mut FindingSink) {
 }
 
 fn steep_decks(context: &LintContext<'_>, sink: &mut FindingSink) {
+    let base_m = grade_base_m(context);
     let mut worst = WorstOfTables::default();
     for bridge in context.scene.bridge_profiles.iter().filter(|bridge| is_for_wheels(bridge.surface)) {
         let [first, last] = bridge.level.span();
-        let base_m = GRADE_OVER_M.min(last - first);
+        // Of shorter ones the ground at both ends says too little.
         let steepest = bridge.level.steepest_over(base_m);
-        let is_steep = |grade: f64| grade > STEEPEST_DECK && grade * base_m > DECK_RISE_M;
-        let Some((grade, from_m)) = steepest.filter(|(grade, _)| is_steep(*grade)) else { continue };
+        let Some((grade, from_m)) = steepest.filter(|(grade, _)| *grade > STEEPEST_DECK) else { continue };
         worst.add(context.origin(bridge.feature), grade, || {
             format!(
                 "{} is {:.0} % steep over the {base_m:.0} m from station {from_m:.0} m at {}: its deck runs from {:.1} m to \
