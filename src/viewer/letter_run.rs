@@ -247,7 +247,7 @@ mod tests {
             width = next;
         }
         assert!(
-            (1..60).contains(&steps.len()) && steps.iter().all(|&step| step > 0.0 && step < 4.0),
+            (1..60).contains(&steps.len()) && steps.iter().all(|&step| step > 0.0 && step < 8.0),
             "{steps:?}"
         );
         assert_eq!(spread_width(50.0, 60.0, Some(90.0)).0, 60.0, "never past the ends of its axis");

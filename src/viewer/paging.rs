@@ -170,15 +170,13 @@ impl PagedTerrain {
         self.is_busy || self.kept.waiting > 0
     }
 
-    /// Takes over what the thread has sent; returns whether the terrain is to be shown from now on.
-    pub fn follow(&mut self) -> bool {
-        let mut begins = false;
+    /// Takes over what the thread has sent.
+    pub fn follow(&mut self) {
         loop {
             match self.news.try_recv() {
                 Ok(PagingNews::Opened(frame)) => {
                     self.heights = Some(PageHeights::new(frame));
                     self.stage = PagingStage::Shown;
-                    begins = true;
                 }
                 Ok(PagingNews::Updated(update)) => {
                     self.is_busy = false;
@@ -187,12 +185,12 @@ impl PagedTerrain {
                 Ok(PagingNews::Failed(text)) => {
                     (self.is_busy, self.stage) = (false, PagingStage::Failed(text))
                 }
-                Err(TryRecvError::Empty) => return begins,
+                Err(TryRecvError::Empty) => return,
                 Err(TryRecvError::Disconnected) => {
                     if !matches!(self.stage, PagingStage::Failed(_)) {
                         self.stage = PagingStage::Failed("reading it ended; please report this".to_owned());
                     }
-                    return begins;
+                    return;
                 }
             }
         }
@@ -213,7 +211,7 @@ impl PagedTerrain {
             let PagedUpdate { changes: new, statistics, pages, counts, meshes, .. } = *update;
             if let Some(heights) = &mut self.heights {
                 heights.update(pages, &new.dropped);
-                let pages = heights.len().max(meshes);
+                let pages = heights.count().max(meshes);
                 let waiting = statistics.waiting_patches;
                 self.kept = PagesKept { pages, bytes: pages * PAGE_BYTES, waiting, counts };
             }

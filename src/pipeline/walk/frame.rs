@@ -71,7 +71,8 @@ pub struct WalkStatistics {
     pub changed_patches: usize,
     /// Patches on which what lies is handed over.
     pub cut_patches: usize,
-    /// Patches on which what lies is to be handed over in the updates that follow, though nothing moves.
+    /// Patches that the updates that follow are to hand over though nothing moves: those on which what lies is to be cut
+    /// anew, and those that are to be read from disk.
     pub waiting_patches: usize,
     /// Bytes of vertices of patches that are handed over.
     pub vertex_bytes: usize,

@@ -56,7 +56,7 @@ impl PageHeights {
     }
 
     /// The number of patches.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.pages.len()
     }
 
@@ -135,6 +135,6 @@ mod tests {
         }
         assert!(met > 100, "{met} met");
         pages.update(Vec::new(), &[PatchId(0)]);
-        assert_eq!((pages.height(DVec2::splat(50.0)), pages.len()), (None, 8));
+        assert_eq!((pages.height(DVec2::splat(50.0)), pages.count()), (None, 8));
     }
 }

@@ -348,7 +348,7 @@ mod tests {
 
     #[test]
     fn patches_that_wait_to_be_read_are_shown_as_if_they_were_far() {
-        let slow = PagedWalkOptions { most_loads: 3, most_near: 40, ..options(20) };
+        let slow = PagedWalkOptions { reach: 150.0, most_loads: 3, most_near: 40, ..options(20) };
         let mut walk = PagedWalk::open(raster(), &slow).expect("sound");
         let (mut handed, mut waited) = (Handed::default(), 0);
         for update in 0.. {
