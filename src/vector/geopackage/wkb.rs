@@ -198,7 +198,7 @@ mod tests {
             assert_eq!(features(&line(2, &[1.0, 2.0, 3.0, 4.0], count)), Err(WkbError::Broken));
         }
         let nested = [1u8, 7, 0, 0, 0, 1, 0, 0, 0].repeat(100_000);
-        assert_eq!(features(&nested), Err(WkbError::Broken));
+        assert_eq!(features(&nested), Err(WkbError::TooDeep));
         assert_eq!(features(&line(10, &[], 0)), Err(WkbError::Unsupported("CurvePolygon")));
     }
 
