@@ -139,8 +139,8 @@ finding_codes! {
          its coordinates are in another system than stated, or belong to another scene.";
     PartlyOffTerrain = "partly-off-terrain", Warning,
         "A feature whose points the scene file states lies partly off the elevation model, and is cut off at its border; or those of a \
-         file lie beyond one side of it and leave the other side without any, as those of another area do. Move the points, choose \
-         features by `where`, or take another model.";
+         file lie beyond one side of it and leave the other side without any, as those of another area do, or those with wrong \
+         coordinates. Move the points, choose features by `where`, or take another model.";
     ReachesBeyond = "reaches-beyond", Note,
         "Features of a file reach beyond the elevation model, as those of maps of a larger area do, and are cut off at its border or \
          left out.";

@@ -92,6 +92,8 @@ const TRUE_OF: &[(&str, &str, &str)] = &[
     ("porto_alegre", "road-steep", "road 'Travessa P' is 37 % steep"),
     // A stream in a pipe that its file does not tell.
     ("monaco", "road-in-water", "4 m wide, on the ground at (373327, 4844233)"),
+    // One line of four begins at (0, 0).
+    ("taunton", "partly-off-terrain", "of 4 features of"),
     // Streams of a single point, which the tracing left.
     ("wake", "empty-shape", "15 rivers left out: all of their points are one place"),
     // Streams traced on another elevation model than the scene's, meander by meander.

@@ -44,8 +44,8 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
                 );
                 if is_grave && lies_beside(&around, &extent) {
                     let message = format!(
-                        "{message}, {percent:.0} % of all vertices, and a part of the model has none of them: they are another \
-                         area's"
+                        "{message}, to one side of it, with {percent:.0} % of all vertices: coordinates that are wrong, or \
+                         another area's"
                     );
                     let help =
                         "take a model and a file of one area, or choose the features on the model by `where`";
