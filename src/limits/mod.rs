@@ -56,10 +56,10 @@ limits! {
             "that a packed raster of any file size may claim to hold; beyond, the file must be large enough for what it claims",
             "fetch the file again: it is cut short";
         WINDOWED_SAMPLES: u64 = 1 << 36, "samples",
-            "of a GeoTIFF that is read in windows, 262,144 a side",
+            "of a raster that is read where it is needed, 262,144 a side",
             "cut it";
         BLOCK_SAMPLES: u64 = 1 << 22, "samples",
-            "of one tile or strip of such a GeoTIFF, 2048 a side",
+            "of one tile or strip of a GeoTIFF that is so read, 2048 a side",
             "rewrite it in tiles: gdal_translate -co TILED=YES";
         TIFF_TAG_BYTES: usize = 16 << 20, "bytes",
             "of one tag of a TIFF: the offsets of a million blocks",
