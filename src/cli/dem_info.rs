@@ -12,6 +12,7 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::stats::Stats;
 use crate::dem::void_counts::VoidCounts;
+use crate::limits::RASTER_SAMPLES;
 use crate::pipeline::dem::{self, OpenedDem};
 use crate::pipeline::error::FileError;
 
@@ -31,7 +32,9 @@ pub struct DemInfoArguments {
 }
 
 pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
-    let opened = dem::open_either(&arguments.file, &arguments.heights.dem_options(), MOST_KEPT)?;
+    // What tiles share is known where all of them are joined.
+    let most_kept = if arguments.file.is_dir() { RASTER_SAMPLES } else { MOST_KEPT };
+    let opened = dem::open_either(&arguments.file, &arguments.heights.dem_options(), most_kept)?;
     let info = match opened {
         OpenedDem::Kept(mosaic) => {
             let joined = arguments.file.is_dir().then(|| mosaic.note());

@@ -39,6 +39,14 @@ impl<K: Ord + Copy, V> LruCache<K, V> {
         Some(&entry.value)
     }
 
+    /// Takes the value of `key` out; `None` where it is not cached.
+    pub fn take(&mut self, key: K) -> Option<V> {
+        let CacheEntry { value, weight, used } = self.values.remove(&key)?;
+        self.by_use.remove(&used);
+        self.weight -= weight;
+        Some(value)
+    }
+
     /// Whether `key` is cached; does not count as a use.
     pub fn contains(&self, key: K) -> bool {
         self.values.contains_key(&key)
@@ -129,6 +137,12 @@ mod tests {
                 prop_assert_eq!(cache.get(key), Some(&weight));
                 cache.check();
             }
+            let keys: Vec<u8> = cache.iter().map(|(key, _)| key).collect();
+            for key in keys {
+                prop_assert!(cache.take(key).is_some() && cache.take(key).is_none());
+                cache.check();
+            }
+            prop_assert_eq!(cache.weight(), 0);
         }
     }
 }

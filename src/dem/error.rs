@@ -87,6 +87,15 @@ pub enum DemErrorKind {
     NoRawLayout,
     #[error("this {0} needs its header, a file of the same name with .hdr, beside it; put it there")]
     NoHeader(&'static str),
+    /// A tile of a mosaic cannot be read.
+    #[error("{name}: {source}")]
+    Tile {
+        name: String,
+        #[source]
+        source: Box<DemErrorKind>,
+    },
+    #[error("it has changed since it was opened; run the command again")]
+    Changed,
     #[error("{what} is {value}; it must be {wanted}")]
     Hint { what: &'static str, value: f64, wanted: &'static str },
 }

@@ -14,6 +14,7 @@ pub mod imagery;
 pub mod largest_rectangle;
 pub mod limits;
 pub mod mosaic;
+pub mod mosaic_windows;
 mod north_up;
 pub mod outliers;
 mod point_text;

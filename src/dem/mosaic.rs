@@ -111,7 +111,7 @@ impl Tiles {
     /// # Errors
     /// [`MosaicError::TooMany`].
     pub fn push(&mut self, name: impl Into<String>, tile: Raster) -> Result<(), MosaicError> {
-        self.samples += tile.samples.len() as u64;
+        self.samples += u64::from(tile.width) * u64::from(tile.height);
         self.names.push(name.into());
         self.rasters.push(tile);
         if self.samples > TILE_SAMPLES.get() { Err(MosaicError::TooMany(self.samples)) } else { Ok(()) }
@@ -138,20 +138,46 @@ impl Tiles {
                 without_datum: 0,
             });
         }
-        for index in 0..self.rasters.len() {
-            self.compare_with_first(index)?;
-        }
-        let corners: Vec<I64Vec2> = turns(&self.rasters)
-            .into_iter()
-            .enumerate()
-            .map(|(index, turn)| self.corner(index, turn))
-            .collect::<Result<_, _>>()?;
-        let frame = MosaicFrame::around(&self.rasters, &corners)?;
+        let corners = self.corners()?;
+        let frame = MosaicFrame::around(&self.rasters, &corners, RASTER_SAMPLES.get())?;
         Ok(if self.rasters.iter().any(|tile| matches!(tile.samples, Samples::F64(_))) {
             join::<f64>(&self.rasters, &corners, frame)
         } else {
             join::<f32>(&self.rasters, &corners, frame)
         })
+    }
+
+    /// Tiles whose samples are not in memory, with their names.
+    pub(crate) fn of_headers(tiles: Vec<(String, Raster)>) -> Self {
+        let (names, rasters) = tiles.into_iter().unzip();
+        Self { names, rasters, samples: 0 }
+    }
+
+    /// The tiles with their names.
+    pub(crate) fn into_named(self) -> Vec<(String, Raster)> {
+        self.names.into_iter().zip(self.rasters).collect()
+    }
+
+    /// The mosaic of tiles whose samples are not in memory, without its own, and the place of each tile's first sample in it:
+    /// columns and rows. It may hold `most` samples.
+    ///
+    /// # Errors
+    /// [`MosaicError`].
+    pub(crate) fn placed(&self, most: u64) -> Result<(Raster, Vec<U64Vec2>), MosaicError> {
+        let corners = self.corners()?;
+        let frame = MosaicFrame::around(&self.rasters, &corners, most)?;
+        let is_wide = self.rasters.iter().any(|tile| tile.samples.is_wide());
+        let header = header(&self.rasters, frame, Samples::absent(0, is_wide));
+        Ok((header, corners.into_iter().map(|corner| (corner - frame.min).as_u64vec2()).collect()))
+    }
+
+    /// Where each tile's first sample lies in the first tile's grid, after all were compared.
+    fn corners(&self) -> Result<Vec<I64Vec2>, MosaicError> {
+        for index in 0..self.rasters.len() {
+            self.compare_with_first(index)?;
+        }
+        let turns = turns(&self.rasters);
+        turns.into_iter().enumerate().map(|(index, turn)| self.corner(index, turn)).collect()
     }
 
     /// Checks that a tile is of the same kind as the first; places are compared apart.
@@ -203,7 +229,7 @@ impl Tiles {
             let (first, other) = (self.names[0].clone(), self.names[index].clone());
             return Err(MosaicError::Misaligned { first, other, off });
         }
-        if at.abs().max_element() > RASTER_SAMPLES.get() as f64 {
+        if at.abs().max_element() > f64::from(u32::MAX) {
             return Err(MosaicError::TooLarge((at.abs() + 1.0).as_u64vec2()));
         }
         Ok(at.round().as_i64vec2())
@@ -248,18 +274,34 @@ struct MosaicFrame {
 }
 
 impl MosaicFrame {
-    fn around(tiles: &[Raster], corners: &[I64Vec2]) -> Result<Self, MosaicError> {
+    /// Of at most `most` samples.
+    fn around(tiles: &[Raster], corners: &[I64Vec2], most: u64) -> Result<Self, MosaicError> {
         let size = |tile: &Raster| I64Vec2::new(tile.width.into(), tile.height.into());
         let ends = tiles.iter().zip(corners).map(|(tile, corner)| *corner + size(tile));
         let min = corners.iter().copied().fold(I64Vec2::MAX, I64Vec2::min);
         let max = ends.fold(I64Vec2::MIN, I64Vec2::max);
         let size = (max - min).as_u64vec2();
         match size.x.checked_mul(size.y) {
-            Some(samples) if samples <= RASTER_SAMPLES.get() => {
+            Some(samples) if samples <= most && size.max_element() <= u32::MAX.into() => {
                 Ok(Self { min, width: size.x as usize, height: size.y as usize })
             }
             _ => Err(MosaicError::TooLarge(size)),
         }
+    }
+}
+
+/// The mosaic with these samples.
+fn header(tiles: &[Raster], frame: MosaicFrame, samples: Samples) -> Raster {
+    let first = &tiles[0];
+    let mut map_from_grid = first.map_from_grid;
+    map_from_grid.translation = map_from_grid.transform_point2(frame.min.as_dvec2());
+    Raster {
+        width: frame.width as u32,
+        height: frame.height as u32,
+        samples,
+        map_from_grid,
+        vertical_datum: tiles.iter().find_map(|tile| tile.vertical_datum.clone()),
+        ..first.without_samples()
     }
 }
 
@@ -291,21 +333,10 @@ fn join<T: SampleFloat>(tiles: &[Raster], corners: &[I64Vec2], frame: MosaicFram
     }
     let kept: u64 = covered.iter().map(|word| u64::from(word.count_ones())).sum();
     let gaps = values.len() as u64 - kept;
-    let first = &tiles[0];
-    let mut map_from_grid = first.map_from_grid;
-    map_from_grid.translation = map_from_grid.transform_point2(frame.min.as_dvec2());
-    let datum = tiles.iter().find_map(|tile| tile.vertical_datum.clone());
-    let without_datum = match datum {
+    let raster = header(tiles, frame, T::into_samples(values));
+    let without_datum = match raster.vertical_datum {
         Some(_) => tiles.iter().filter(|tile| tile.vertical_datum.is_none()).count(),
         None => 0,
-    };
-    let raster = Raster {
-        width: frame.width as u32,
-        height: frame.height as u32,
-        samples: T::into_samples(values),
-        map_from_grid,
-        vertical_datum: datum,
-        ..first.without_samples()
     };
     let tiles = tiles.len();
     Mosaic { raster, tiles, overlaps, differing, greatest_difference, in_feet, gaps, without_datum }

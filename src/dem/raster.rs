@@ -252,10 +252,10 @@ impl Raster {
         Self { samples: self.samples.scaled(self.meters_per_z, 0.0), meters_per_z: 1.0, ..self }
     }
 
-    /// All but the samples.
+    /// All but the samples; their precision stays known.
     pub(crate) fn without_samples(&self) -> Self {
         let (crs, vertical_datum) = (self.crs.clone(), self.vertical_datum.clone());
-        Self { samples: Samples::F32(Vec::new()), crs, vertical_datum, ..*self }
+        Self { samples: Samples::absent(0, self.samples.is_wide()), crs, vertical_datum, ..*self }
     }
 
     /// Grid position (column, row) of a map position; NaN where the georeference cannot be inverted.

@@ -39,6 +39,18 @@ impl RasterWindow {
         self.width as usize * self.height as usize
     }
 
+    /// The samples that this window shares with another; `None` where there are none.
+    pub(crate) fn intersection(self, other: Self) -> Option<Self> {
+        let shared = |first: u32, count: u32, other: u32, others: u32| {
+            let start = first.max(other);
+            let end = (first + count).min(other + others);
+            (start < end).then(|| (start, end - start))
+        };
+        let (column, width) = shared(self.column, self.width, other.column, other.width)?;
+        let (row, height) = shared(self.row, self.height, other.row, other.height)?;
+        Some(Self { column, row, width, height })
+    }
+
     /// For each row that this window shares with another, its samples as ranges of indices in either.
     pub(crate) fn shared_rows(self, other: Self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let first = self.column.max(other.column);
@@ -81,6 +93,19 @@ impl RasterWindow {
         })
     }
 
+    /// The window in squares of `side` samples, row by row; those at its end are smaller.
+    pub(crate) fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
+        let starts = move |count: u32| (0..count).step_by(side as usize);
+        starts(self.height).flat_map(move |row| {
+            starts(self.width).map(move |column| Self {
+                column: self.column + column,
+                row: self.row + row,
+                width: side.min(self.width - column),
+                height: side.min(self.height - row),
+            })
+        })
+    }
+
     /// # Panics
     /// Where the window reaches beyond a raster of this size.
     pub(crate) fn assert_within(&self, (width, height): (u32, u32)) {
@@ -94,7 +119,8 @@ impl RasterWindow {
 
 /// A raster that is read in rectangles.
 pub trait Windows {
-    /// The raster's size, place and coordinate system. Its `samples` mean nothing and may be empty.
+    /// The raster's size, place and coordinate system. Its `samples` have the precision of those in windows, and mean
+    /// nothing else; they may be empty.
     fn metadata(&self) -> &Raster;
 
     /// The samples of `window` in the raster's vertical unit, row by row from its first; NaN without data. They have the

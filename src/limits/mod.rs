@@ -53,7 +53,7 @@ limits! {
             "that a packed raster of any file size may claim to hold; beyond, the file must be large enough for what it claims",
             "fetch the file again: it is cut short";
         WINDOWED_SAMPLES = 1 << 36 => To(1 << 40), "samples",
-            "of a GeoTIFF that is read in windows, 262,144 a side",
+            "of a raster that is read where it is needed, 262,144 a side",
             "cut it";
         VIEWED_SAMPLES = 1 << 25 => POSTS, "samples",
             "of an elevation file that the window holds in memory, 5,793 a side: two gigabytes with what is measured of them",
@@ -62,7 +62,7 @@ limits! {
             "that are read of such a file for one question, 4,096 a side",
             "measure a shorter line or a smaller outline";
         BLOCK_SAMPLES = 1 << 22 => POSTS, "samples",
-            "of one tile or strip of such a GeoTIFF, 2048 a side",
+            "of one tile or strip of a GeoTIFF that is so read, 2048 a side",
             "rewrite it in tiles: gdal_translate -co TILED=YES";
         TIFF_TAG_BYTES = 16 << 20 => COUNT, "bytes",
             "of one tag of a TIFF: the offsets of a million blocks",

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
+use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::windows::Windows;
@@ -36,15 +37,14 @@ pub enum OpenDemError {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
-    if !path.is_dir() {
-        return open_tiles(&[path], options);
-    }
-    let mut tiles = files::list_folder(path)?;
+    if path.is_dir() { open_tiles(&tiles_in(path)?, options) } else { open_tiles(&[path], options) }
+}
+
+/// The tiles in a folder, at least one, sorted by name.
+fn tiles_in(folder: &Path) -> Result<Vec<PathBuf>, OpenDemError> {
+    let mut tiles = files::list_folder(folder)?;
     tiles.retain(|tile| read::is_tile_name(&files::file_name(tile)));
-    if tiles.is_empty() {
-        return Err(OpenDemError::NoTiles(path.to_owned()));
-    }
-    open_tiles(&tiles, options)
+    if tiles.is_empty() { Err(OpenDemError::NoTiles(folder.to_owned())) } else { Ok(tiles) }
 }
 
 /// Opened elevation: in memory, or to be read where it is needed.
@@ -61,7 +61,7 @@ pub enum OpenedDem {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
-    let windows = if path.is_dir() { Ok(None) } else { open_windows(path, options) };
+    let windows = if path.is_dir() { open_folder(path, options) } else { open_windows(path, options) };
     let fault = match windows {
         Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
         windows => windows.err(),
@@ -76,6 +76,39 @@ pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<
 fn samples(windows: &dyn Windows) -> u64 {
     let (width, height) = windows.size();
     u64::from(width) * u64::from(height)
+}
+
+/// The windows of the mosaic of the tiles in a folder, opened by their headers; `None` where a tile has none.
+fn open_folder(folder: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
+    let paths = tiles_in(folder)?;
+    let mut headers = Vec::new();
+    for path in &paths {
+        let Some(tile) = open_windows(path, options)? else { return Ok(None) };
+        headers.push((files::file_name(path), tile.metadata().without_samples()));
+    }
+    // The tiles' own files beside them are looked for anew.
+    let DemHints { height_scale, height_offset, nodata, height_encoding, raw, cell, .. } = *options;
+    let (vertical_datum, crs) = (options.vertical_datum.clone(), options.crs.clone());
+    let opener = move |index: usize| {
+        let (vertical_datum, crs) = (vertical_datum.clone(), crs.clone());
+        let options = DemOptions {
+            height_scale,
+            height_offset,
+            nodata,
+            height_encoding,
+            raw,
+            cell,
+            vertical_datum,
+            crs,
+            ..DemOptions::default()
+        };
+        match open_windows(&paths[index], &options) {
+            Ok(Some(tile)) => Ok(tile),
+            Err(OpenDemError::Format(error)) => Err(error.cause),
+            Ok(None) | Err(_) => Err(DemErrorKind::Changed),
+        }
+    };
+    Ok(Some(Box::new(MosaicWindows::new(headers, Box::new(opener))?)))
 }
 
 /// The windows of an elevation file; `None` where its format is read whole.

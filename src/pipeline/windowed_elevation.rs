@@ -62,8 +62,13 @@ impl WindowedElevation {
     /// # Errors
     /// The raster has no ground, or cannot be read.
     pub fn plan(&self) -> Result<&MetricPlan, Arc<GroundError>> {
-        let make = || MetricPlan::new(&mut **self.source()).map_err(|error| Arc::new(error.into()));
-        self.plan.get_or_init(make).as_ref().map_err(Arc::clone)
+        let make = || {
+            let plan = MetricPlan::new(&mut **self.source())?;
+            Lattice::frame(plan.header())?;
+            Ok(plan)
+        };
+        let made = self.plan.get_or_init(|| make().map_err(|error: GroundError| Arc::new(error)));
+        made.as_ref().map_err(Arc::clone)
     }
 
     /// Whether [`WindowedElevation::plan`] is known.

@@ -12,6 +12,7 @@ pub mod prominence;
 pub mod pyramid;
 pub mod query;
 pub mod sight;
+mod slopes;
 pub mod stop_flag;
 pub mod support_surface;
 pub mod terraces;

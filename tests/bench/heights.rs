@@ -29,6 +29,8 @@ mod rays;
 mod service;
 #[path = "heights/viewshed.rs"]
 mod viewshed;
+#[path = "heights/windows.rs"]
+mod windows;
 
 /// A section's name and what prints it.
 type Section = (&'static str, fn());
@@ -36,6 +38,7 @@ type Section = (&'static str, fn());
 const SECTIONS: &[Section] = &[
     ("service", service::print),
     ("reading", reading::print),
+    ("windows", windows::print),
     ("queries", queries::print),
     ("rays", rays::print),
     ("viewshed", viewshed::print),

@@ -70,7 +70,7 @@ impl Pair {
 
     fn assert_heights(&self) {
         let wgs84 = Crs::wgs84();
-        let at = self.positions(400);
+        let at = self.positions(200);
         let own = self.kept.crs();
         let elsewhere = at.iter().map(|&at| own.transform(&wgs84, at).unwrap_or(DVec2::NAN)).collect();
         for (from, at) in [(&own, at), (&wgs84, elsewhere)] {
@@ -115,7 +115,7 @@ impl Pair {
     /// Profiles and lines of sight along random lines, which may leave the elevation.
     fn assert_lines(&self) {
         let crs = self.kept.crs();
-        for line in self.positions(40).chunks_exact(4) {
+        for line in self.positions(20).chunks_exact(4) {
             let reach = GroundReach { crs: &crs, at: line, around_m: 0.0 };
             let Some([kept, windows]) = self.grounds(&reach) else { return };
             let to_ground = |&at: &DVec2| crs.transform(&kept.crs, at).unwrap_or(DVec2::NAN);
@@ -146,12 +146,19 @@ impl Pair {
 
     fn assert_viewsheds(&self) {
         let (crs, mut random) = (self.kept.crs(), numbers(5));
-        for &at in &self.positions(8) {
-            let all = GroundReach { crs: &crs, at: &[at], around_m: f64::INFINITY };
-            let Some([kept, _]) = self.grounds(&all) else { return };
+        let positions = self.positions(4);
+        let all = GroundReach { crs: &crs, at: &positions, around_m: f64::INFINITY };
+        let Some([kept, windows]) = self.grounds(&all) else { return };
+        let bits_of = |ground: &QueriedGround| -> Vec<u32> {
+            let heights = ground.lattice.heights().iter();
+            heights.map(|height| if height.is_nan() { u32::MAX } else { height.to_bits() }).collect()
+        };
+        assert!(bits_of(&kept) == bits_of(&windows), "{}: all of the ground", self.name);
+        for &at in &positions {
             let cells = 3.0 + 40.0 * random();
             let range_m = cells * kept.lattice.cell().max_element();
-            let Some([kept, windows]) = self.grounds(&GroundReach { around_m: range_m, ..all }) else {
+            let Some([kept, windows]) = self.grounds(&GroundReach { at: &[at], around_m: range_m, ..all })
+            else {
                 return;
             };
             let Ok(observer_at) = crs.transform(&kept.crs, at) else { continue };
@@ -195,12 +202,12 @@ impl Pair {
     }
 }
 
-/// Hills with holes, 700 by 600 samples.
+/// Hills with holes, 420 by 330 samples: two tiles by two.
 fn hills(samples: fn(Vec<f64>) -> Samples) -> Raster {
-    let (width, height) = (700u32, 600u32);
+    let (width, height) = (420u32, 330u32);
     let value = |at: u32| {
         let (column, row) = (f64::from(at % width), f64::from(at / width));
-        let is_hole = (column - 300.0).hypot(row - 250.0) < 30.0 || at % 1009 == 0;
+        let is_hole = (column - 250.0).hypot(row - 240.0) < 20.0 || at % 1009 == 0;
         let hill = 300.0
             + 200.0 * libm::sin(column * 0.021) * libm::cos(row * 0.017)
             + 9.0 * libm::sin(column * row);
@@ -264,8 +271,8 @@ fn a_collar_without_data_moves_the_warped_ground_alike() {
     let mut raster = hills(narrow);
     let Samples::F32(samples) = &mut raster.samples else { panic!("narrow") };
     for (index, sample) in samples.iter_mut().enumerate() {
-        let (column, row) = (index % 700, index / 700);
-        if column < 41 || column > 650 || row < 7 || row > 560 {
+        let (column, row) = (index % 420, index / 420);
+        if column < 41 || column > 390 || row < 7 || row > 310 {
             *sample = f32::NAN;
         }
     }
@@ -276,7 +283,7 @@ fn a_collar_without_data_moves_the_warped_ground_alike() {
     let crs = Some(Crs::wgs84());
     let raster = Raster { map_from_grid, georeferenced: true, crs, ..raster };
     written(&scratch, "collar", &raster).assert_alike();
-    let none = Raster { samples: Samples::F32(vec![f32::NAN; 700 * 600]), ..raster };
+    let none = Raster { samples: Samples::F32(vec![f32::NAN; 420 * 330]), ..raster };
     written(&scratch, "none", &none).assert_heights();
 }
 
@@ -298,15 +305,15 @@ fn unpacked_formats_answer_from_windows_as_from_memory() {
     let floats: Vec<u8> = values.iter().flat_map(|&value| (value as f32).to_le_bytes()).collect();
     save("b.flt", &floats);
     let place = "xllcorner 412345\nyllcorner 4612345\ncellsize 12.5\nNODATA_value -9999\n";
-    save("b.hdr", format!("ncols 700\nnrows 600\n{place}byteorder LSBFIRST\n").as_bytes());
+    save("b.hdr", format!("ncols 420\nnrows 330\n{place}byteorder LSBFIRST\n").as_bytes());
     // Two bands side by side in each pixel, of which the first is read, after 7 bytes of something else.
     let pixels = values.iter().flat_map(|&value| [value as i16, 77]).flat_map(i16::to_be_bytes);
     save("c.bip", &std::iter::repeat_n(9, 7).chain(pixels).collect::<Vec<u8>>());
     let layout = "NBITS 16\nNBANDS 2\nLAYOUT BIP\nSKIPBYTES 7\nPIXELTYPE SIGNEDINT\nBYTEORDER M\n";
-    save("c.hdr", format!("NROWS 600\nNCOLS 700\n{place}{layout}").as_bytes());
+    save("c.hdr", format!("NROWS 330\nNCOLS 420\n{place}{layout}").as_bytes());
     let doubles: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
     save("d.img", &doubles);
-    let envi = "ENVI\nsamples = 700\nlines = 600\nbands = 1\ndata type = 5\ninterleave = bsq\nbyte order = 0\n\
+    let envi = "ENVI\nsamples = 420\nlines = 330\nbands = 1\ndata type = 5\ninterleave = bsq\nbyte order = 0\n\
                 data ignore value = -9999\ndata gain values = {0.5}\ndata offset values = {20}\n\
                 map info = {UTM, 1, 1, 412345, 4612345, 12.5, 12.5, 12, North, WGS-84}\n";
     save("d.img.hdr", envi.as_bytes());
@@ -319,7 +326,43 @@ fn unpacked_formats_answer_from_windows_as_from_memory() {
     save("b.flt", &floats[..floats.len() - 1]);
     let options = DatasetOptions { most_kept: 0, ..DatasetOptions::default() };
     let refused = error_text(&Dataset::open(&folder.join("b.flt"), &options).err().expect("cut short"));
-    assert!(refused.contains("700 x 600"), "{refused}");
+    assert!(refused.contains("420 x 330"), "{refused}");
+}
+
+#[test]
+fn tiles_in_a_folder_answer_from_windows_as_joined() {
+    let scratch = Scratch::new();
+    let folder = scratch.folder().join("tiles");
+    std::fs::create_dir(&folder).expect("a scratch folder");
+    let whole = hills(narrow);
+    let format = DemFormat::to_write("tif").expect("written");
+    // Tiles share two rows and columns; where they do, those further south-east hold other heights. One is missing.
+    for (number, (column, row)) in [(0, 0), (148, 0), (296, 0), (0, 168), (296, 168)].into_iter().enumerate()
+    {
+        let (width, height) = (150.min(420 - column), 170.min(330 - row));
+        let value =
+            |at: u32| whole.at(column + at % width, row + at / width) as f32 + (row + column) as f32 / 900.0;
+        let samples = Samples::F32((0..width * height).map(value).collect());
+        let corner = DVec2::new(600_000.0 + 10.0 * f64::from(column), 5_100_000.0 - 10.0 * f64::from(row));
+        let map_from_grid =
+            DAffine2 { matrix2: DMat2::from_diagonal(DVec2::new(10.0, -10.0)), translation: corner };
+        let crs = Some(Crs::from_epsg(32612).expect("known"));
+        let tile = Raster { map_from_grid, georeferenced: true, crs, ..Raster::new(width, samples) };
+        let bytes = write::write(&tile, format, "tile").expect("it has a place").bytes;
+        std::fs::write(folder.join(format!("{number}.tif")), bytes).expect("a scratch folder");
+    }
+    let pair = Pair::open(&folder).expect("tiles have windows");
+    pair.assert_alike();
+    // A tile that is lost later is an error that names it.
+    std::fs::remove_file(folder.join("1.tif")).expect("it is there");
+    let lost = pair.windows.heights(
+        Surface::Source,
+        ALL[1],
+        &pair.windows.crs(),
+        &[DVec2::new(602_100.0, 5_099_500.0)],
+    );
+    let fault = lost.map_err(|error| error_text(&error));
+    assert!(fault.as_ref().is_err_and(|fault| fault.contains("1.tif")), "{fault:?}");
 }
 
 #[test]

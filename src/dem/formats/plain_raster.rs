@@ -56,6 +56,8 @@ pub(super) fn windows(
     if file.hints.vertical_datum.is_some() {
         plain.raster.vertical_datum.clone_from(&file.hints.vertical_datum);
     }
+    let is_wide = plain.layout.sample.is_wide() || plain.scale != 1.0 || plain.offset != 0.0;
+    plain.raster.samples = Samples::absent(0, is_wide);
     Ok(Box::new(PlainWindows { plain, content }))
 }
 

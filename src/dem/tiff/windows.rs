@@ -137,6 +137,10 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         let mask = images.masks.iter().find(is_of_size).map(|mask| file.storage(mask.image)).transpose()?;
         mask.iter().try_for_each(mask::check)?;
         let (name, blocks) = (name.to_owned(), LruCache::new(cache_bytes));
+        let is_scaled = header.scale != 1.0 || header.offset != 0.0;
+        let is_wide = is_scaled || heights.elevation_type()?.is_wide();
+        let raster = Raster { samples: Samples::absent(0, is_wide), ..header.raster };
+        let header = GeoTiffHeader { raster, ..header };
         Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes, cleared: None })
     }
 
@@ -173,8 +177,12 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
 
     /// Whether samples take 64 bits.
     fn is_wide(&self) -> bool {
-        let is_scaled = self.header.scale != 1.0 || self.header.offset != 0.0;
-        is_scaled || self.heights.elevation_type().is_ok_and(|sample| sample.is_wide())
+        self.header.raster.samples.is_wide()
+    }
+
+    /// Bytes of a decoded sample.
+    fn sample_bytes(&self) -> usize {
+        if self.is_wide() { size_of::<f64>() } else { size_of::<f32>() }
     }
 
     /// The samples of a block as the whole reader has them.
@@ -206,7 +214,10 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
                 None => missing.push(at),
             }
         }
-        let at_once = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+        // No more than are kept, so that a file of large blocks takes no more memory for many threads.
+        let largest = missing.iter().map(|at| at.window.samples() * self.sample_bytes()).max().unwrap_or(1);
+        let most = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+        let at_once = (self.cache_bytes / largest.max(1)).clamp(1, most);
         for some in missing.chunks(at_once) {
             let decoded: Vec<Result<Arc<Samples>, DemErrorKind>> = match some {
                 [one] => vec![self.decode(*one)],
@@ -248,7 +259,7 @@ impl<R: Read + Seek + Send> Windows for GeoTiffWindows<R> {
             .flat_map(|&window| self.heights.blocks_meeting(window))
             .map(|block| (block.index, block))
             .collect();
-        let bytes = if self.is_wide() { 8 } else { 4 };
+        let bytes = self.sample_bytes();
         let fitting = blocks.into_values().scan(0, |total, block| {
             *total += block.window.samples() * bytes;
             (*total <= self.cache_bytes).then_some(block)

@@ -24,8 +24,9 @@ use crate::dem::windows::{RasterPart, RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 
-/// Cells that are computed at a time: their positions take some megabytes.
-const CELLS_AT_ONCE: u32 = 1 << 19;
+/// The side of the squares of cells that are computed at a time. Their positions take some megabytes; in a long row of cells,
+/// the source around them would be much larger where it is turned against them.
+const TILE: u32 = 512;
 
 /// Samples on each side of a position that bilinear heights need.
 const HALO: u32 = 2;
@@ -118,7 +119,7 @@ impl<'a, W: Windows + ?Sized> MetricWindows<'a, W> {
         })
     }
 
-    /// Some rows of the window, from its row `first` on.
+    /// The samples of a square of cells, in the source's vertical unit.
     fn resampled(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         let MetricMaking::Resampled { own, cells } = &self.plan.making else {
             return Ok(Samples::absent(0, false));
@@ -155,14 +156,14 @@ impl<W: Windows + ?Sized> Windows for MetricWindows<'_, W> {
         let samples = match self.plan.making {
             MetricMaking::Kept { mirrors_x, mirrors_y } => self.kept(window, (mirrors_x, mirrors_y))?,
             MetricMaking::Resampled { .. } => {
-                let mut all: Option<Samples> = None;
-                for band in window.bands(CELLS_AT_ONCE) {
-                    let rows = self.resampled(band)?;
-                    let all = all.get_or_insert_with(|| Samples::absent(window.samples(), rows.is_wide()));
-                    let start = (band.row - window.row) as usize * window.width as usize;
-                    all.copy_from(start..start + rows.len(), &rows, 0..rows.len());
+                let mut all = Samples::absent(window.samples(), self.source.metadata().samples.is_wide());
+                for tile in window.tiles(TILE) {
+                    let samples = self.resampled(tile)?;
+                    for (from, to) in tile.shared_rows(window) {
+                        all.copy_from(to, &samples, from);
+                    }
                 }
-                all.unwrap_or_else(|| Samples::absent(0, false))
+                all
             }
         };
         Ok(samples.scaled(meters_per_z, 0.0))
@@ -203,7 +204,8 @@ fn plan<W: Windows + ?Sized>(raster: &Raster, search: &ValidSearch<'_, W>) -> Re
         let making = MetricMaking::Resampled { own: own.cloned(), cells: resampler.cells() };
         (resampler.header(), making)
     };
-    let metric = Raster { meters_per_z: 1.0, ..north_up };
+    let is_wide = raster.samples.is_wide() || raster.meters_per_z != 1.0;
+    let metric = Raster { meters_per_z: 1.0, samples: Samples::absent(0, is_wide), ..north_up };
     let header = with_crs(std::borrow::Cow::Owned(metric), system.as_ref()).into_owned();
     Ok(MetricPlan { header, making, off_scale })
 }
