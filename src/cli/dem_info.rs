@@ -33,7 +33,7 @@ pub struct DemInfoArguments {
 
 pub fn run(arguments: &DemInfoArguments) -> Result<(), CliError> {
     // What tiles share is known where all of them are joined.
-    let most_kept = if arguments.file.is_dir() { RASTER_SAMPLES } else { MOST_KEPT };
+    let most_kept = if arguments.file.is_dir() { RASTER_SAMPLES.get() } else { MOST_KEPT };
     let opened = dem::open_either(&arguments.file, &arguments.heights.dem_options(), most_kept)?;
     let info = match opened {
         OpenedDem::Kept(mosaic) => {

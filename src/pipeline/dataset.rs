@@ -56,7 +56,7 @@ enum DatasetContent {
         warning: Option<String>,
     },
     /// Too large to be kept.
-    Windows(WindowedElevation),
+    Windows(Box<WindowedElevation>),
     Scene(SceneGround),
 }
 
@@ -121,7 +121,7 @@ impl Dataset {
                 let raster = Arc::new(mosaic.raster);
                 DatasetContent::Raster { raster, ground: OnceLock::new(), warning }
             }
-            OpenedDem::Windows(windows) => DatasetContent::Windows(WindowedElevation::new(windows)),
+            OpenedDem::Windows(windows) => DatasetContent::Windows(Box::new(WindowedElevation::new(windows))),
         };
         Ok(Self { name, content })
     }

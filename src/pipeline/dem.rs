@@ -50,7 +50,7 @@ fn tiles_in(folder: &Path) -> Result<Vec<PathBuf>, OpenDemError> {
 /// Opened elevation: in memory, or to be read where it is needed.
 pub enum OpenedDem {
     /// All of it.
-    Kept(Mosaic),
+    Kept(Box<Mosaic>),
     /// Any window of it.
     Windows(Box<dyn Windows + Send>),
 }
@@ -66,10 +66,14 @@ pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<
         Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
         windows => windows.err(),
     };
-    open(path, options).map(OpenedDem::Kept).map_err(|whole| match (whole, fault) {
-        // The reason why there are no windows has a remedy that keeps all samples.
-        (OpenDemError::Format(FileError { cause: DemErrorKind::TooLarge { .. }, .. }), Some(fault)) => fault,
-        (whole, _) => whole,
+    open(path, options).map(|mosaic| OpenedDem::Kept(Box::new(mosaic))).map_err(|whole| {
+        match (whole, fault) {
+            // The reason why there are no windows has a remedy that keeps all samples.
+            (OpenDemError::Format(FileError { cause: DemErrorKind::TooLarge { .. }, .. }), Some(fault)) => {
+                fault
+            }
+            (whole, _) => whole,
+        }
     })
 }
 
