@@ -51,7 +51,7 @@ pub struct HeightArguments {
     /// What the colors of a PNG mean: terrain-rgb (Mapbox) or terrarium (Mapzen)
     #[arg(long, value_name = "ENCODING", conflicts_with_all = ["height_scale", "height_offset"])]
     pub height_encoding: Option<HeightEncoding>,
-    /// What its heights are counted from, in place of what it states: egm96, ellipsoid, or a name to print
+    /// What heights are counted from: egm96, ellipsoid or a name [default: what the file states]
     #[arg(long, value_name = "DATUM")]
     pub vertical_datum: Option<String>,
     /// The layout of a RAW file: 1201x1201:i16be, then :skip=BYTES and :nodata=VALUE
