@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn features_beyond_one_side_alone_lie_beside_the_model() {
+    fn features_beside_the_model_reach_beyond_one_side_and_not_to_the_other() {
         let extent = Rect { min: DVec2::ZERO, max: DVec2::splat(100.0) };
         let beside =
             |min: [f64; 2], max: [f64; 2]| lies_beside(&Rect { min: min.into(), max: max.into() }, &extent);
