@@ -1,5 +1,8 @@
 //! The option `--limit` of all commands.
 
+use std::env::args_os;
+use std::ffi::OsString;
+
 use crate::cli::error::CliError;
 use crate::limits::all;
 use crate::limits::set_limit::set_limit;
@@ -33,8 +36,15 @@ fn count(text: &str) -> Option<u64> {
 /// Sets the limits, before anything is read.
 ///
 /// # Errors
-/// A name is unknown, a limit is fixed or stated twice, or a value is out of range.
+/// A name is unknown, a limit is fixed or stated twice, a value is out of range, or limits are stated both before and after
+/// the command.
 pub fn set(limits: &[StatedLimit]) -> Result<(), CliError> {
+    // Of options of all commands, only those on one side of the command are parsed.
+    let is_limit =
+        |argument: &OsString| argument == "--limit" || argument.as_encoded_bytes().starts_with(b"--limit=");
+    if args_os().filter(is_limit).count() > limits.len() {
+        return Err(CliError::usage("state every --limit after the command"));
+    }
     for (index, StatedLimit { name, value }) in limits.iter().enumerate() {
         if limits[..index].iter().any(|before| before.name == *name) {
             return Err(CliError::usage(format!("--limit {} is stated twice", quoted(name))));

@@ -73,7 +73,7 @@ pub enum AssetError {
         kind: &'static str,
     },
     /// More bytes than [`ASSET_BYTES`], or than there is memory for.
-    #[error("{} has {bytes} bytes, more than the {ASSET_BYTES} that are read of a file; cut it, or {ASSET_BYTES:#}", resolved.display())]
+    #[error("{} has {bytes} bytes, more than can be read: at most {ASSET_BYTES}; cut it, or {ASSET_BYTES:#}", resolved.display())]
     TooLarge {
         /// Where it is.
         resolved: PathBuf,
