@@ -353,14 +353,12 @@ fn tiles_in_a_folder_answer_from_windows_as_joined() {
     }
     let pair = Pair::open(&folder).expect("tiles have windows");
     pair.assert_alike();
-    // A tile that is lost later is an error that names it.
+    // A tile that is lost before a query meets it is an error that names it.
+    let options = DatasetOptions { most_kept: 0, ..DatasetOptions::default() };
+    let opened = Dataset::open(&folder, &options).expect("tiles have windows");
     std::fs::remove_file(folder.join("1.tif")).expect("it is there");
-    let lost = pair.windows.heights(
-        Surface::Source,
-        ALL[1],
-        &pair.windows.crs(),
-        &[DVec2::new(602_100.0, 5_099_500.0)],
-    );
+    let at = [DVec2::new(602_100.0, 5_099_500.0)];
+    let lost = opened.heights(Surface::Source, ALL[1], &opened.crs(), &at);
     let fault = lost.map_err(|error| error_text(&error));
     assert!(fault.as_ref().is_err_and(|fault| fault.contains("1.tif")), "{fault:?}");
 }
