@@ -202,12 +202,15 @@ impl Pair {
     }
 }
 
+/// Stores heights as samples of a type.
+type MakeSamples = fn(Vec<f64>) -> Samples;
+
 /// Hills with holes, 420 by 330 samples: two tiles by two.
-fn hills(samples: fn(Vec<f64>) -> Samples) -> Raster {
+fn hills(samples: MakeSamples) -> Raster {
     let (width, height) = (420u32, 330u32);
     let value = |at: u32| {
         let (column, row) = (f64::from(at % width), f64::from(at / width));
-        let is_hole = (column - 250.0).hypot(row - 240.0) < 20.0 || at % 1009 == 0;
+        let is_hole = (column - 250.0).hypot(row - 240.0) < 20.0 || at.is_multiple_of(1009);
         let hill = 300.0
             + 200.0 * libm::sin(column * 0.021) * libm::cos(row * 0.017)
             + 9.0 * libm::sin(column * row);
@@ -242,7 +245,7 @@ fn windows_answer_as_memory_does_in_every_type_system_and_direction() {
         translation: DVec2::new(-111.3, 37.25),
     };
     let mercator = DAffine2 { translation: DVec2::new(-12_381_000.0, 4_470_000.0), ..north_up };
-    let cases: [(&str, fn(Vec<f64>) -> Samples, DAffine2, Option<u32>); 9] = [
+    let cases: [(&str, MakeSamples, DAffine2, Option<u32>); 9] = [
         ("float", narrow, north_up, Some(32612)),
         ("double", Samples::F64, north_up, Some(32612)),
         ("whole", whole_meters, north_up, Some(32612)),
@@ -272,7 +275,7 @@ fn a_collar_without_data_moves_the_warped_ground_alike() {
     let Samples::F32(samples) = &mut raster.samples else { panic!("narrow") };
     for (index, sample) in samples.iter_mut().enumerate() {
         let (column, row) = (index % 420, index / 420);
-        if column < 41 || column > 390 || row < 7 || row > 310 {
+        if !((41..=390).contains(&column) && (7..=310).contains(&row)) {
             *sample = f32::NAN;
         }
     }
