@@ -38,7 +38,7 @@ pub enum PagedElevationError {
     Samples(#[from] FileError<DemErrorKind>),
     /// It has too many patches.
     #[error(transparent)]
-    Paging(#[from] FileError<PagingError>),
+    Paging(#[from] Box<FileError<PagingError>>),
 }
 
 /// A file in windows.
@@ -121,7 +121,7 @@ impl PagedElevation {
         if samples <= most_samples || Lattice::frame(metadata).is_err() {
             return Ok(None);
         }
-        let paging = |error: PagingError| FileError::<PagingError>::new(path, error);
+        let paging = |error: PagingError| Box::new(FileError::<PagingError>::new(path, error));
         match warp::check_metric(metadata) {
             // What fits is resampled in memory.
             Err(_) if samples <= RASTER_SAMPLES => return Ok(None),

@@ -72,7 +72,7 @@ impl PageHeights {
         let last = DVec2::new(east as f64 - 1.0, north as f64 - 1.0);
         let patch = (grid / side).floor().min(last);
         let is_inside = patch.cmpge(DVec2::ZERO).all();
-        let id = is_inside.then(|| PatchId((patch.y * east as f64 + patch.x) as u32))?;
+        let id = is_inside.then_some(PatchId((patch.y * east as f64 + patch.x) as u32))?;
         self.pages.get(&id).map(SightGround::lattice)
     }
 
