@@ -12,7 +12,7 @@ use crate::roam::paging::region::read_part;
 use crate::terrain::lattice::{Lattice, LatticeError, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::sight::ground::SightGround;
-use crate::terrain::sight::ray::Ray;
+use crate::terrain::sight::ray::{Ray, RayHit};
 
 /// Posts on each side of where a ray is expected to meet the ground that are read first; then four times and sixteen times
 /// as many.
@@ -75,8 +75,8 @@ impl<W: Windows> DiskGround<W> {
         Ok(read_part(&mut self.windows, (self.origin, self.cell), rect, &mut self.buffer)?)
     }
 
-    /// Where a ray in world space meets the ground, near where it is expected to, and the ground there; `None` where it meets
-    /// none.
+    /// Where a ray in world space meets the ground from above, near where it is expected to, and the ground there; `None` where
+    /// it meets none.
     ///
     /// # Errors
     /// See [`DiskGroundError`].
@@ -89,7 +89,9 @@ impl<W: Windows> DiskGround<W> {
         for times in [1.0, 4.0, 16.0] {
             let part = self.part(&Rect::around([middle]).grown(AROUND * times * self.cell.max_element()))?;
             let ground = SightGround::new(Arc::new(part));
-            if let Some(hit) = ground.pick(ray, f64::INFINITY) {
+            // A ray that comes from below has met the ground before it came to this part.
+            let from_above = |hit: &RayHit| hit.normal.dot(ray.direction) < 0.0;
+            if let Some(hit) = ground.pick(ray, f64::INFINITY).filter(from_above) {
                 return Ok(Some((hit.at, Arc::clone(ground.lattice()))));
             }
         }
