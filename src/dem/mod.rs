@@ -28,7 +28,7 @@ pub mod stats;
 mod stored;
 pub mod tiff;
 pub mod undeclared;
-mod units;
+pub mod units;
 pub mod vertical;
 pub mod void_counts;
 pub mod voids;

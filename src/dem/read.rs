@@ -5,8 +5,8 @@ use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::dem::formats::raw::RawLayout;
 use crate::dem::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
-use crate::dem::raster::Raster;
-use crate::dem::windows::Windows;
+use crate::dem::raster::{Raster, Samples};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::limits::COMPANION_BYTES;
 use crate::limits::UNPACKED_RASTER_BYTES;
@@ -164,11 +164,9 @@ fn checked(
 /// # Errors
 /// [`DemError`] with the name and what was wrong; for an unknown format it lists the known ones.
 pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemError> {
-    let mut raster = read_packed(&DemFile { name, bytes, hints })
+    let raster = read_packed(&DemFile { name, bytes, hints })
         .map_err(|kind| DemError { name: name.to_owned(), kind })?;
-    if hints.vertical_datum.is_some() {
-        raster.vertical_datum.clone_from(&hints.vertical_datum);
-    }
+    let mut raster = with_stated_datum(raster, hints);
     if let Some(nodata) = hints.nodata {
         raster.samples.clear(nodata);
     }
@@ -190,8 +188,45 @@ pub fn open_windows(
 ) -> Result<Option<Box<dyn Windows + Send>>, DemError> {
     let file = DemFile { name, bytes: head, hints };
     let Some(open) = format_of(&file).ok().and_then(|format| format.windows) else { return Ok(None) };
-    let opened = open(&file, content, cache_bytes);
-    opened.map(Some).map_err(|kind| DemError { name: name.to_owned(), kind })
+    let windows =
+        open(&file, content, cache_bytes).map_err(|kind| DemError { name: name.to_owned(), kind })?;
+    if hints.vertical_datum.is_none() && hints.nodata.is_none() {
+        return Ok(Some(windows));
+    }
+    let header = with_stated_datum(windows.metadata().without_samples(), hints);
+    Ok(Some(Box::new(StatedWindows { windows, header, nodata: hints.nodata })))
+}
+
+/// A raster with the vertical datum that the caller states, if any, in place of the file's.
+fn with_stated_datum(raster: Raster, hints: &DemHints) -> Raster {
+    let vertical_datum = hints.vertical_datum.clone().or(raster.vertical_datum);
+    Raster { vertical_datum, ..raster }
+}
+
+/// Windows of a file of which the caller states more than the file does.
+struct StatedWindows {
+    windows: Box<dyn Windows + Send>,
+    header: Raster,
+    /// A value for no data, besides the file's.
+    nodata: Option<f64>,
+}
+
+impl Windows for StatedWindows {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        let mut samples = self.windows.samples(window)?;
+        if let Some(nodata) = self.nodata {
+            samples.clear(nodata);
+        }
+        Ok(samples)
+    }
+
+    fn announce(&mut self, windows: &[RasterWindow]) {
+        self.windows.announce(windows);
+    }
 }
 
 /// The name of the format that a file seems to have by its name and its first bytes, of which [`HEAD_BYTES`] are enough;

@@ -12,7 +12,6 @@
 use glam::DVec2;
 
 use crate::dem::raster::Raster;
-use crate::dem::void_counts::VoidCounts;
 use crate::geom::crs::Crs;
 
 /// Voids of more samples than this are not filled: across three hundred posts a membrane is unrelated to the ground.
@@ -73,12 +72,6 @@ pub fn fill(raster: &mut Raster) -> Filled {
         raster.samples.set(index, height);
     }
     filled
-}
-
-/// The number of voids, and of the samples in all of them.
-pub fn count(raster: &Raster) -> (u64, u64) {
-    let VoidCounts { voids, samples } = VoidCounts::of(raster);
-    (voids, samples)
 }
 
 struct Void {
@@ -204,6 +197,7 @@ impl Membrane {
 mod tests {
     use super::*;
     use crate::dem::raster::tests::small;
+    use crate::dem::void_counts::VoidCounts;
 
     /// A plane with the samples cleared that `hole` names by column and row.
     fn plane(side: u32, hole: impl Fn(u32, u32) -> bool) -> Raster {
@@ -230,7 +224,7 @@ mod tests {
     #[test]
     fn holes_at_the_border_are_left() {
         let mut raster = plane(8, |column, row| (column == 3 && row < 4) || (column == 6 && row == 6));
-        assert_eq!(count(&raster), (1, 1));
+        assert_eq!(VoidCounts::of(&raster), VoidCounts { voids: 1, samples: 1 });
         assert_eq!(fill(&mut raster), Filled { voids: 1, cells: 1, ..Filled::default() });
         assert_eq!(raster.at(6, 6), 106.0);
         assert!(raster.at(3, 0).is_nan() && raster.at(3, 3).is_nan());
@@ -239,7 +233,7 @@ mod tests {
     #[test]
     fn voids_that_touch_at_a_corner_are_two() {
         let raster = plane(8, |column, row| column == row && (2..4).contains(&column));
-        assert_eq!(count(&raster), (2, 2));
+        assert_eq!(VoidCounts::of(&raster), VoidCounts { voids: 2, samples: 2 });
     }
 
     #[test]

@@ -14,6 +14,7 @@ use crate::dem::mosaic::Tiles;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
 use crate::dem::undeclared::{NodataSign, undeclared_nodata};
+use crate::dem::void_counts::VoidCounts;
 use crate::dem::voids;
 use crate::dem::warp;
 use crate::dem::warp::metric_crs::{metric_crs, off_scale};
@@ -67,7 +68,7 @@ pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagno
     match document.terrain.fill_voids {
         Some(true) => findings.add(FindingCode::VoidsFilled, span.clone(), voids::fill(&mut source).note()),
         // The source stays as it is read: the ground alone is without holes.
-        None if voids::count(&source).0 > 0 => {
+        None if VoidCounts::of(&source).voids > 0 => {
             let mut ground = source.clone();
             findings.add(FindingCode::VoidsFilled, span.clone(), voids::fill(&mut ground).note());
             filled = Some(ground);

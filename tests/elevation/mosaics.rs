@@ -8,6 +8,7 @@ use glam::{DAffine2, DVec2};
 use sandtable::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use sandtable::dem::raster::{Raster, Samples};
 use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::void_counts::VoidCounts;
 use sandtable::dem::voids;
 use sandtable::description::parse::parse_bytes;
 use sandtable::scene::assets::Assets;
@@ -106,11 +107,11 @@ fn tiles_of_two_resolutions_are_refused() {
 fn the_voids_of_a_real_tile_are_filled_within_the_heights_around() {
     let Some(mut raster) = monaco() else { return };
     let before = raster.clone();
-    let (voids, cells) = voids::count(&before);
+    let VoidCounts { voids, samples: cells } = VoidCounts::of(&before);
     assert!(voids > 0, "the tile has voids");
     let filled = voids::fill(&mut raster);
     assert_eq!((filled.voids, filled.cells, filled.voids_left), (voids, cells, 0));
-    assert_eq!(voids::count(&raster), (0, 0));
+    assert_eq!(VoidCounts::of(&raster), VoidCounts::default());
     let (low, high) = before
         .samples
         .iter()

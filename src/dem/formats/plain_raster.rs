@@ -18,8 +18,6 @@ pub(super) struct PlainRaster {
     nodata: NoData,
     scale: f64,
     offset: f64,
-    /// The caller's value for no data, besides the file's.
-    cleared: Option<f64>,
 }
 
 /// What a format says of a file of a given size; only its first bytes are there.
@@ -28,7 +26,7 @@ type PlainHeader = fn(&DemFile, FileSize) -> Result<PlainRaster, DemErrorKind>;
 impl PlainRaster {
     /// Of a raster without its samples, whose places are checked.
     pub fn new(raster: Raster, layout: SampleLayout, nodata: NoData) -> Self {
-        Self { raster, layout, nodata, scale: 1.0, offset: 0.0, cleared: None }
+        Self { raster, layout, nodata, scale: 1.0, offset: 0.0 }
     }
 
     /// With heights that are the samples times `scale` plus `offset`.
@@ -39,7 +37,7 @@ impl PlainRaster {
 
 /// Reads a file whole.
 pub(super) fn read(file: &DemFile, header: PlainHeader) -> Result<Raster, DemErrorKind> {
-    let PlainRaster { raster, layout, nodata, scale, offset, .. } =
+    let PlainRaster { raster, layout, nodata, scale, offset } =
         header(file, FileSize::in_memory(file.bytes))?;
     Ok(Raster { samples: layout.samples(file.bytes, nodata).scaled(scale, offset), ..raster })
 }
@@ -52,10 +50,7 @@ pub(super) fn windows(
 ) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
     let length = content.seek(SeekFrom::End(0)).map_err(|fault| unreadable("elevation file", fault))?;
     let size = FileSize { bytes: length as usize, most_samples: &WINDOWED_SAMPLES };
-    let mut plain = PlainRaster { cleared: file.hints.nodata, ..header(file, size)? };
-    if file.hints.vertical_datum.is_some() {
-        plain.raster.vertical_datum.clone_from(&file.hints.vertical_datum);
-    }
+    let mut plain = header(file, size)?;
     let is_wide = plain.layout.sample.is_wide() || plain.scale != 1.0 || plain.offset != 0.0;
     plain.raster.samples = Samples::absent(0, is_wide);
     Ok(Box::new(PlainWindows { plain, content }))
@@ -73,7 +68,7 @@ impl Windows for PlainWindows {
 
     fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
-        let PlainRaster { raster, layout, nodata, scale, offset, cleared } = &self.plain;
+        let PlainRaster { raster, layout, nodata, scale, offset } = &self.plain;
         let (lines, layout) = layout.lines(window);
         let mut bytes = vec![0; lines.iter().map(|line| (line.end - line.start) as usize).sum()];
         let mut rest = &mut bytes[..];
@@ -84,11 +79,7 @@ impl Windows for PlainWindows {
             read.map_err(|fault| unreadable(raster.driver, fault))?;
             rest = later;
         }
-        let mut samples = layout.samples(&bytes, *nodata).scaled(*scale, *offset);
-        if let Some(value) = cleared {
-            samples.clear(*value);
-        }
-        Ok(samples)
+        Ok(layout.samples(&bytes, *nodata).scaled(*scale, *offset))
     }
 }
 

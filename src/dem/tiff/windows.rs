@@ -73,16 +73,15 @@ pub struct GeoTiffWindows<R> {
     mask: Option<Storage>,
     blocks: LruCache<u32, Arc<Samples>>,
     cache_bytes: usize,
-    /// The caller's value for no data, besides the file's.
-    cleared: Option<f64>,
 }
 
 /// Blocks for each thread that are decoded before the next are: enough to keep all threads at work.
 const BLOCKS_PER_THREAD: usize = 4;
 
 impl<R: Read + Seek + Send> GeoTiffWindows<R> {
-    /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those
-    /// of [`crate::dem::read::read`].
+    /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those of
+    /// [`crate::dem::read::read`], but for a stated no-data value and vertical datum, which
+    /// [`open_windows`](crate::dem::read::open_windows) applies.
     ///
     /// # Errors
     /// Those of the whole reader, except for images that are merely too large for the memory; and single blocks that
@@ -106,12 +105,9 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         let source = DemFile { name, bytes: &[], hints };
         let heights = file.storage(0)?;
         heights.elevation_type()?;
-        let mut header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
+        let header = GeoTiffHeader::read(&mut file.decoder(&mut file.lock())?, &heights, &source)?;
         if header.raster.nodata.is_some() && heights.is_all_absent() {
             return Err(geotiff::all_absent());
-        }
-        if hints.vertical_datum.is_some() {
-            header.raster.vertical_datum.clone_from(&hints.vertical_datum);
         }
         if mask::file_beside(&source).is_some() {
             return Err(FORMAT.unsupported(
@@ -120,8 +116,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
             ));
         }
         let images = file.later_images();
-        let opened = Self::new(name, file, header, heights, images, cache_bytes)?;
-        Ok(Self { cleared: hints.nodata, ..opened })
+        Self::new(name, file, header, heights, images, cache_bytes)
     }
 
     /// Looks for a mask of the image's size.
@@ -141,7 +136,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         let is_wide = is_scaled || heights.elevation_type()?.is_wide();
         let raster = Raster { samples: Samples::absent(0, is_wide), ..header.raster };
         let header = GeoTiffHeader { raster, ..header };
-        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes, cleared: None })
+        Ok(Self { name, file, header, images, heights, mask, blocks, cache_bytes })
     }
 
     /// The reduced images of this one, as the file lists them: mostly from the finest to the coarsest.
@@ -166,8 +161,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
         let header = GeoTiffHeader { raster, ..self.header };
         let images = LaterImages { masks: self.images.masks.clone(), ..LaterImages::default() };
-        let opened = Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)?;
-        Ok(Self { cleared: self.cleared, ..opened })
+        Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)
     }
 
     /// Bytes of decoded blocks that are kept now.
@@ -193,11 +187,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         if let Some(mask) = &self.mask {
             mask::each_hidden(&mut file, mask, at.window, |index| samples.set(index, f64::NAN))?;
         }
-        let mut samples = samples.scaled(*scale, *offset);
-        if let Some(value) = self.cleared {
-            samples.clear(value);
-        }
-        Ok(Arc::new(samples))
+        Ok(Arc::new(samples.scaled(*scale, *offset)))
     }
 
     /// Decodes those of `blocks` that are not kept, some at a time on all threads, and calls `each` with every block; those

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
+use crate::dem::raster::{Raster, Samples};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::rect::Rect;
 
 /// Points along a side of a raster whose extent is projected: enough to miss less than a thousandth of a cell.
@@ -10,16 +11,22 @@ const SIDE_POINTS: u32 = 400;
 
 /// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.
 pub(super) fn data_extent(raster: &Raster) -> Option<Rect> {
-    let width = raster.width as usize;
-    let mut around = Rect::EMPTY;
-    for row in 0..raster.height as usize {
-        let valid = |column: &usize| !raster.samples.get(row * width + column).is_nan();
-        if let (Some(first), Some(last)) = ((0..width).find(valid), (0..width).rev().find(valid)) {
-            around = around.with(DVec2::new(first as f64, row as f64));
-            around = around.with(DVec2::new(last as f64 + 1.0, row as f64 + 1.0));
-        }
-    }
+    let around = with_valid(Rect::EMPTY, &raster.samples, RasterWindow::all(raster.size()));
     (!around.is_empty()).then_some(around)
+}
+
+/// `around` and the valid samples of a window, out to their edges.
+pub(super) fn with_valid(around: Rect, samples: &Samples, window: RasterWindow) -> Rect {
+    let width = window.width as usize;
+    let at = |column: usize, row: usize| DVec2::new(column as f64, row as f64);
+    (0..window.height as usize).fold(around, |around, row| {
+        let valid = |column: &usize| !samples.get(row * width + column).is_nan();
+        let (Some(first), Some(last)) = ((0..width).find(valid), (0..width).rev().find(valid)) else {
+            return around;
+        };
+        let corner = at(window.column as usize, window.row as usize);
+        around.with(corner + at(first, row)).with(corner + at(last + 1, row + 1))
+    })
 }
 
 /// Points along the sides of a rectangle, corners included.

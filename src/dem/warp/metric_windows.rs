@@ -17,6 +17,7 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, north_up};
 use crate::dem::sample::bilinear_at_grid;
 use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::data_extent::with_valid;
 use crate::dem::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
 use crate::dem::warp::resample::Resampler;
 use crate::dem::warp::{WarpError, with_crs};
@@ -257,16 +258,7 @@ fn data_extent(source: &mut (impl Windows + ?Sized)) -> Result<Option<Rect>, Dem
     }
     let mut around = Rect::EMPTY;
     for band in RasterWindow::all((width, height)).bands(SAMPLES_AT_ONCE) {
-        let samples = source.samples(band)?;
-        let width = width as usize;
-        for row in 0..band.height as usize {
-            let valid = |column: &usize| !samples.get(row * width + column).is_nan();
-            if let (Some(left), Some(right)) = ((0..width).find(valid), (0..width).rev().find(valid)) {
-                let down = f64::from(band.row) + row as f64;
-                around = around.with(DVec2::new(left as f64, down));
-                around = around.with(DVec2::new(right as f64 + 1.0, down + 1.0));
-            }
-        }
+        around = with_valid(around, &source.samples(band)?, band);
     }
     Ok((!around.is_empty()).then_some(around))
 }

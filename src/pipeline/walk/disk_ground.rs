@@ -39,7 +39,6 @@ pub struct DiskGround<W> {
     windows: W,
     origin: DVec2,
     cell: DVec2,
-    buffer: Vec<f32>,
 }
 
 impl<W: Windows> DiskGround<W> {
@@ -49,7 +48,7 @@ impl<W: Windows> DiskGround<W> {
     /// See [`Lattice::frame`].
     pub fn new(windows: W) -> Result<Self, LatticeError> {
         let (origin, cell) = Lattice::frame(windows.metadata())?;
-        Ok(Self { windows, origin, cell, buffer: Vec::new() })
+        Ok(Self { windows, origin, cell })
     }
 
     /// The part of the terrain over a rectangle of map coordinates, with the posts around it.
@@ -72,7 +71,7 @@ impl<W: Windows> DiskGround<W> {
             return Err(DiskGroundError::TooLarge(count));
         }
         let rect = PostRect { first, last };
-        Ok(read_part(&mut self.windows, (self.origin, self.cell), rect, &mut self.buffer)?)
+        Ok(read_part(&mut self.windows, (self.origin, self.cell), rect)?)
     }
 
     /// Where a ray in world space meets the ground from above, near where it is expected to, and the ground there; `None` where

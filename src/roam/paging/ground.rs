@@ -100,7 +100,6 @@ pub struct PagedGround<W, S> {
     cache: LruCache<usize, Arc<PatchBlock>>,
     capacity: usize,
     counts: PagingCounts,
-    buffer: Vec<f32>,
 }
 
 /// Measures plain nested spheres: the own radius is the exact error times `reach` meters of distance a meter of error.
@@ -151,7 +150,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
         }
         let capacity = options.capacity.max(1);
         let (cache, counts) = (LruCache::new(capacity), PagingCounts::default());
-        Ok(Self { windows, spheres, frame, summaries, cache, capacity, counts, buffer: Vec::new() })
+        Ok(Self { windows, spheres, frame, summaries, cache, capacity, counts })
     }
 
     /// The summary of the patch with south-west corner `corner`.
@@ -256,7 +255,7 @@ impl<W: Windows, S: Fn(PatchedGround<'_>) -> SphereMap> PagedGround<W, S> {
     /// Reads and measures a patch.
     fn load(&mut self, corner: Vertex) -> Result<PatchBlock, BlockError> {
         let patches = Patches::one(&self.frame.layout, corner);
-        let region = PagedRegion::read(&mut self.windows, &self.frame, patches, &mut self.buffer);
+        let region = PagedRegion::read(&mut self.windows, &self.frame, patches);
         let region =
             region.map_err(|source| BlockError { column: corner.x as u32, row: corner.y as u32, source })?;
         let spheres = (self.spheres)(region.ground());

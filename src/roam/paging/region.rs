@@ -2,13 +2,14 @@
 
 use glam::DVec2;
 
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::dem::windows::Windows;
 use crate::roam::block::BlockFault;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
 use crate::roam::patched_ground::PatchedGround;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
+use crate::terrain::query::windowed::post_heights;
 
 /// The whole terrain, without its heights.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,7 @@ pub struct PagedRegion {
 }
 
 impl PagedRegion {
-    /// Reads `patches` with all that their errors and spheres depend on. `buffer` is scratch.
+    /// Reads `patches` with all that their errors and spheres depend on.
     ///
     /// # Errors
     /// See [`BlockFault`].
@@ -70,7 +71,6 @@ impl PagedRegion {
         windows: &mut impl Windows,
         frame: &PagedFrame,
         patches: Patches,
-        buffer: &mut Vec<f32>,
     ) -> Result<Self, BlockFault> {
         let side = frame.layout.patch();
         let Patches { first, last } = patches.with_surroundings(&frame.layout);
@@ -78,7 +78,7 @@ impl PagedRegion {
         let end = frame.layout.post(Vertex::new((last.0 + 1) * side, (last.1 + 1) * side));
         let (columns, rows) = (end.column - first.x as u32 + 1, end.row - first.y as u32 + 1);
         let rect = PostRect { first: Post { column: first.x as u32, row: first.y as u32 }, last: end };
-        let lattice = read_part(windows, (frame.origin, frame.cell), rect, buffer)?;
+        let lattice = read_part(windows, (frame.origin, frame.cell), rect)?;
         let layout = PatchLayout::new(columns, rows, side as u32);
         Ok(Self { lattice, layout: layout.ok_or(BlockFault::TooMany { columns, rows })?, first })
     }
@@ -94,22 +94,17 @@ impl PagedRegion {
     }
 }
 
-/// Reads the posts of a rectangle as a part of the lattice with this origin and cell. `buffer` is scratch.
+/// Reads the posts of a rectangle as a part of the lattice with this origin and cell.
 ///
 /// # Errors
 /// See [`BlockFault`].
 pub fn read_part(
     windows: &mut impl Windows,
     frame: (DVec2, DVec2),
-    PostRect { first, last }: PostRect,
-    buffer: &mut Vec<f32>,
+    posts: PostRect,
 ) -> Result<Lattice, BlockFault> {
-    let (width, height) = (last.column - first.column + 1, last.row - first.row + 1);
-    // Rasters are counted from the north.
-    let row = windows.size().1 - 1 - last.row;
-    windows.read(RasterWindow { column: first.column, row, width, height }, buffer)?;
-    let heights = buffer.chunks_exact(width as usize).rev().flatten().copied().collect();
-    Ok(Lattice::part(frame, first, width, heights)?)
+    let heights = post_heights(windows, posts)?;
+    Ok(Lattice::part(frame, posts.first, posts.width() as u32, heights)?)
 }
 
 #[cfg(test)]

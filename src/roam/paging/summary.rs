@@ -71,11 +71,11 @@ pub fn summaries(
     frame: &PagedFrame,
     spheres: &impl Fn(PatchedGround<'_>) -> SphereMap,
 ) -> Result<Vec<PatchSummary>, BlockError> {
-    let (layout, mut buffer) = (&frame.layout, Vec::new());
+    let layout = &frame.layout;
     let nothing = PatchSummary { corners: [f32::NAN; 4], middle: 0.0, radius: 0.0, low: 0.0, high: 0.0 };
     let mut summaries = vec![nothing; layout.patch_count()];
     for square in squares(layout.patch_grid()) {
-        let region = PagedRegion::read(windows, frame, square, &mut buffer).map_err(|source| {
+        let region = PagedRegion::read(windows, frame, square).map_err(|source| {
             let side = layout.patch() as u32;
             let (column, row) = (square.first.0 as u32 * side, square.first.1 as u32 * side);
             BlockError { column, row, source }

@@ -110,14 +110,29 @@ pub fn lattice_part(
     windows: &mut (impl Windows + ?Sized),
     held: PostRect,
 ) -> Result<Lattice, LatticePartError> {
-    let (frame, (columns, rows)) = (Lattice::frame(windows.metadata())?, windows.size());
-    let (width, height) = (held.width() as u32, held.height() as u32);
-    let window = RasterWindow { column: held.first.column, row: rows - 1 - held.last.row, width, height };
-    let mut southward = Vec::new();
-    windows.read(window, &mut southward)?;
-    let mut heights = southward;
-    reverse_rows(&mut heights, width as usize);
-    Ok(Lattice::held_part(frame, (columns, rows), held, heights)?)
+    let frame = Lattice::frame(windows.metadata())?;
+    let heights = post_heights(windows, held)?;
+    Ok(Lattice::held_part(frame, windows.size(), held, heights)?)
+}
+
+/// The heights of the posts of a north-up raster in a rectangle, in meters, row by row from the south-west; NaN without data.
+///
+/// # Errors
+/// The samples cannot be read.
+///
+/// # Panics
+/// Where the rectangle reaches beyond the raster.
+pub fn post_heights(
+    windows: &mut (impl Windows + ?Sized),
+    posts: PostRect,
+) -> Result<Vec<f32>, DemErrorKind> {
+    let (width, height) = (posts.width() as u32, posts.height() as u32);
+    // Rasters are counted from the north.
+    let row = windows.size().1 - 1 - posts.last.row;
+    let mut heights = Vec::new();
+    windows.read(RasterWindow { column: posts.first.column, row, width, height }, &mut heights)?;
+    reverse_rows(&mut heights, posts.width());
+    Ok(heights)
 }
 
 /// The posts of a window of a raster with `rows` rows.
