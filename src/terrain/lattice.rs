@@ -499,10 +499,11 @@ fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(in crate::terrain) mod tests {
     use super::*;
 
-    fn plane() -> Lattice {
+    /// A plane of 4 × 3 posts 10 m and 5 m apart.
+    pub(in crate::terrain) fn plane() -> Lattice {
         let heights = (0..12).map(|index| (index % 4) as f32 * 2.0 - (index / 4) as f32).collect();
         Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 5.0), 4, heights).expect("sound")
     }

@@ -109,11 +109,7 @@ impl Lattice {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn plane() -> Lattice {
-        let heights = (0..12).map(|index| (index % 4) as f32 * 2.0 - (index / 4) as f32).collect();
-        Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 5.0), 4, heights).expect("sound")
-    }
+    use crate::terrain::lattice::tests::plane;
 
     #[test]
     fn slopes_of_a_plane_are_exact_inside_and_at_the_border() {

@@ -3,10 +3,13 @@
 //! Nothing is guessed of the numbers alone: hills of 900 may be meters as well. Evidence is the vertical unit of the `.prj`
 //! beside a file, the name of its vertical datum, and its own name.
 
+use std::path::Path;
+
 use crate::dem::raster::Raster;
 use crate::dem::vertical::{name_of_wkt, unit_of_wkt};
 use crate::description::finding_code::FindingCode;
 use crate::message::suggest::quoted;
+use crate::pipeline::files::file_stem;
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::sink::FindingSink;
 
@@ -29,8 +32,8 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     }
     for file in terrain.dem.iter() {
         let beside = ["prj", "PRJ"].into_iter().find_map(|extension| {
-            let name = format!("{}.{extension}", stem(file));
-            Some(String::from_utf8_lossy(&context.sources.assets.read(&name).ok()?).into_owned())
+            let name = Path::new(file).with_extension(extension);
+            Some(String::from_utf8_lossy(&context.sources.assets.read(name.to_str()?).ok()?).into_owned())
         });
         let Some(evidence) = evidence(file, beside.as_deref(), raster) else { continue };
         let message = format!(
@@ -56,15 +59,10 @@ fn evidence(file: &str, beside: Option<&str>, raster: &Raster) -> Option<String>
     if let Some(datum) = datum {
         return Some(format!("its vertical datum is called '{}'", quoted(datum)));
     }
-    let names: Vec<String> = words(stem(file).rsplit(['/', '\\']).next().unwrap_or_default()).collect();
+    let names: Vec<String> = words(&file_stem(Path::new(file))).collect();
     let is_named = names.iter().any(|word| NAME_WORDS.contains(&word.as_str()))
         || names.len() > 1 && names.last().is_some_and(|last| last == "ft");
     is_named.then(|| "its name says feet".to_owned())
-}
-
-/// The name of a file without its extension.
-fn stem(file: &str) -> &str {
-    file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }
 
 /// The words of a text in lower case.

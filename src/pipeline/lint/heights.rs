@@ -8,6 +8,7 @@
 
 use glam::DVec2;
 
+use crate::dem::units::FOOT_M;
 use crate::description::features::ModelPlacement;
 use crate::description::finding_code::FindingCode;
 use crate::description::words::Clamp;
@@ -27,8 +28,6 @@ const MOST_OFFSET_M: f64 = 115.0;
 /// Half of the offsets lie within so many meters, and within such a part of their median, where one surface lies over another.
 const MOST_SPREAD_M: f64 = 6.0;
 const MOST_SPREAD: f64 = 0.2;
-/// Meters in a foot; that of US surveys differs by two parts in a million.
-const FOOT_M: f64 = 0.3048;
 /// The heights of one source that are compared are at most about this many.
 const MOST_HEIGHTS: usize = 20_000;
 

@@ -27,11 +27,11 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
     let Some(view) = scene.cameras.first().filter(|_| !context.document.labels.is_empty()) else { return };
     // A camera without a picture is another finding.
-    let Some((report, sight)) = placed(scene, view) else { return };
+    let Some((report, standing_before)) = placed(scene, view) else { return };
     let dropped = DroppedLabels { context, view };
-    let is_covered = |text: &&String| sight.behind.contains_key(*text);
+    let is_covered = |text: &&String| standing_before.contains_key(*text);
     let (covered, hidden): (Vec<&String>, Vec<&String>) = report.hidden.iter().partition(is_covered);
-    dropped.report(&covered, &|texts| by_standing(context, &sight, texts), sink);
+    dropped.report(&covered, &|texts| by_standing(context, &standing_before, texts), sink);
     for (texts, why) in [
         (hidden, "the ground hides their places"),
         (report.outside.iter().collect(), "their places are outside the picture, or too close to its border"),
@@ -89,9 +89,13 @@ impl DroppedLabels<'_> {
 }
 
 /// What stands before the places of labels with these texts.
-fn by_standing(context: &LintContext<'_>, sight: &LabelSight, texts: &[&str]) -> String {
+fn by_standing(
+    context: &LintContext<'_>,
+    standing_before: &BTreeMap<String, FeatureId>,
+    texts: &[&str],
+) -> String {
     let standing: BTreeSet<FeatureId> =
-        texts.iter().filter_map(|text| sight.behind.get(*text)).copied().collect();
+        texts.iter().filter_map(|text| standing_before.get(*text)).copied().collect();
     let hide = if standing.len() == 1 { "hides" } else { "hide" };
     let mut names: Vec<String> =
         standing.iter().take(MOST_QUOTED).map(|&feature| context.name(feature)).collect();
@@ -102,12 +106,12 @@ fn by_standing(context: &LintContext<'_>, sight: &LabelSight, texts: &[&str]) ->
 }
 
 /// What becomes of the labels of a view, and what hides them; `None` where it has no picture.
-fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, LabelSight)> {
+fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, BTreeMap<String, FeatureId>)> {
     let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
-    let sight = label_sight(scene, &camera);
-    let annotations = annotations(scene, &camera, &sight.picture, frame.as_ref(), &[]);
-    let report = compose_sheet(sight.picture.pixels.clone(), &annotations).1;
-    Some((report, sight))
+    let LabelSight { picture, behind } = label_sight(scene, &camera);
+    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &[]);
+    let report = compose_sheet(picture.pixels, &annotations).1;
+    Some((report, behind))
 }
 
 /// The labels of which nothing becomes, since their places have no place on the picture.

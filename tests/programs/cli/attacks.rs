@@ -54,11 +54,27 @@ fn a_packed_file_is_unpacked_no_further_than_its_head_promises() {
     }
 }
 
+/// A little-endian TIFF with `data` before its only directory, of entries of tag, type, count and value.
+fn tiff_of(data: &[u8], entries: &[(u16, u16, u32, u32)]) -> Vec<u8> {
+    let mut file = b"II*\0".to_vec();
+    file.extend((8 + data.len() as u32).to_le_bytes());
+    file.extend(data);
+    file.extend((entries.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        file.extend(tag.to_le_bytes());
+        file.extend(kind.to_le_bytes());
+        file.extend(count.to_le_bytes());
+        file.extend(value.to_le_bytes());
+    }
+    file.extend([0; 4]);
+    file
+}
+
 /// A TIFF of so many 32-bit floats a side in tiles of 512, none of which was ever written.
 fn sparse_tiff(side: u32) -> Vec<u8> {
     let tiles = side.div_ceil(512).pow(2);
     let after = 8 + 11 * 12 + 6;
-    let entries: [(u16, u16, u32, u32); 11] = [
+    let entries = [
         (256, 4, 1, side),
         (257, 4, 1, side),
         (258, 3, 1, 32),
@@ -71,14 +87,7 @@ fn sparse_tiff(side: u32) -> Vec<u8> {
         (325, 4, tiles, after),
         (339, 3, 1, 3),
     ];
-    let mut file = b"II*\0\x08\0\0\0".to_vec();
-    file.extend((entries.len() as u16).to_le_bytes());
-    for (tag, kind, count, value) in entries {
-        file.extend(tag.to_le_bytes());
-        file.extend(kind.to_le_bytes());
-        file.extend(count.to_le_bytes());
-        file.extend(value.to_le_bytes());
-    }
+    let mut file = tiff_of(b"", &entries);
     file.resize(after as usize + 4 * tiles as usize, 0);
     file
 }
@@ -118,7 +127,7 @@ fn small_questions_are_answered_in_little_memory() {
 
 /// A TIFF of two by two bytes whose GeoKey directory claims `count` numbers.
 fn tiff(count: u32) -> Vec<u8> {
-    let entries: [(u16, u16, u32, u32); 9] = [
+    let entries = [
         (256, 3, 1, 2),
         (257, 3, 1, 2),
         (258, 3, 1, 8),
@@ -129,16 +138,7 @@ fn tiff(count: u32) -> Vec<u8> {
         (279, 4, 1, 4),
         (34735, 3, count, 8),
     ];
-    let mut file = b"II*\0\x0c\0\0\0\x01\x02\x03\x04".to_vec();
-    file.extend((entries.len() as u16).to_le_bytes());
-    for (tag, kind, count, value) in entries {
-        file.extend(tag.to_le_bytes());
-        file.extend(kind.to_le_bytes());
-        file.extend(count.to_le_bytes());
-        file.extend(value.to_le_bytes());
-    }
-    file.extend([0; 4]);
-    file
+    tiff_of(b"\x01\x02\x03\x04", &entries)
 }
 
 #[test]
