@@ -3,12 +3,19 @@
 use glam::{DAffine2, DVec2};
 
 use crate::dem::raster::{Raster, Samples};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::rect::Rect;
+
+/// The part of `raster` in [`crop_window`]; `None` where that is.
+pub fn crop(raster: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
+    let window = crop_window(raster, rect, margin)?;
+    Some(part(raster, window, window_samples(raster, RasterWindow::all(raster.size()), window)))
+}
 
 /// The samples of `raster` with their centers in `rect`, a rectangle in its map coordinates (where the raster is turned
 /// against them: in the smallest rectangle of samples around that), and `margin` more on each side as far as there are any.
-/// `None` where these are less than two samples a side.
-pub fn crop(raster: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
+/// `None` where these are less than two samples a side. The raster's own samples are not looked at.
+pub fn crop_window(raster: &Raster, rect: &Rect, margin: u32) -> Option<RasterWindow> {
     let corners =
         [rect.min, DVec2::new(rect.min.x, rect.max.y), rect.max, DVec2::new(rect.max.x, rect.min.y)];
     let centers = Rect::around(corners.map(|corner| raster.grid_from_map(corner) - 0.5));
@@ -21,20 +28,32 @@ pub fn crop(raster: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
         return None;
     }
     let (first, last) = (low.as_uvec2(), high.as_uvec2());
-    let columns = first.x as usize..last.x as usize + 1;
-    let rows = (first.y..=last.y).map(|row| row as usize * raster.width as usize);
-    let ranges = rows.map(|start| start + columns.start..start + columns.end);
-    let samples = match &raster.samples {
-        Samples::F32(samples) => Samples::F32(ranges.flat_map(|range| &samples[range]).copied().collect()),
-        Samples::F64(samples) => Samples::F64(ranges.flat_map(|range| &samples[range]).copied().collect()),
-    };
-    Some(Raster {
-        width: last.x - first.x + 1,
-        height: last.y - first.y + 1,
+    let (width, height) = (last.x - first.x + 1, last.y - first.y + 1);
+    Some(RasterWindow { column: first.x, row: first.y, width, height })
+}
+
+/// The samples of `window` as a raster of their own, in their places; `whole` is the raster that they are of.
+pub fn part(whole: &Raster, window: RasterWindow, samples: Samples) -> Raster {
+    let corner = DVec2::new(f64::from(window.column), f64::from(window.row));
+    Raster {
+        width: window.width,
+        height: window.height,
         samples,
-        map_from_grid: raster.map_from_grid * DAffine2::from_translation(low),
-        ..raster.without_samples()
-    })
+        map_from_grid: whole.map_from_grid * DAffine2::from_translation(corner),
+        ..whole.without_samples()
+    }
+}
+
+/// The samples of `window`, of a raster that holds those of a window around it.
+///
+/// # Panics
+/// Where `window` reaches beyond `held`.
+pub fn window_samples(raster: &Raster, held: RasterWindow, window: RasterWindow) -> Samples {
+    let mut samples = Samples::absent(window.samples(), raster.samples.is_wide());
+    for (from, to) in held.shared_rows(window) {
+        samples.copy_from(to, &raster.samples, from);
+    }
+    samples
 }
 
 #[cfg(test)]

@@ -57,6 +57,63 @@ impl Default for DemHints<'_> {
     }
 }
 
+/// What a caller states of elevation files: [`DemHints`] without what is read beside them.
+#[derive(Clone, Debug, Default)]
+#[allow(missing_docs, reason = "the fields are those of the hints")]
+pub struct StatedElevation {
+    pub height_scale: Option<f64>,
+    pub height_offset: Option<f64>,
+    pub nodata: Option<f64>,
+    pub height_encoding: Option<HeightEncoding>,
+    pub raw: Option<RawLayout>,
+    pub vertical_datum: Option<String>,
+    pub cell: Option<f64>,
+    pub crs: Option<Crs>,
+}
+
+impl StatedElevation {
+    /// The hints for a file; see there for `overridden` and `companions`.
+    pub fn hints<'a>(
+        &self,
+        overridden: &'a dyn Fn(&Crs),
+        companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+    ) -> DemHints<'a> {
+        let Self { height_scale, height_offset, nodata, height_encoding, raw, vertical_datum, cell, crs } =
+            self.clone();
+        DemHints {
+            height_scale,
+            height_offset,
+            nodata,
+            height_encoding,
+            raw,
+            vertical_datum,
+            cell,
+            crs,
+            overridden,
+            companions,
+        }
+    }
+}
+
+impl DemHints<'_> {
+    /// What is stated, to open other files by.
+    pub fn stated(&self) -> StatedElevation {
+        let Self {
+            height_scale, height_offset, nodata, height_encoding, raw, vertical_datum, cell, crs, ..
+        } = self.clone();
+        StatedElevation {
+            height_scale,
+            height_offset,
+            nodata,
+            height_encoding,
+            raw,
+            vertical_datum,
+            cell,
+            crs,
+        }
+    }
+}
+
 /// Whether the name of a file in a folder or an archive is that of a tile of elevation. Extensions that pictures and
 /// tables have as well do not count.
 pub fn is_tile_name(name: &str) -> bool {

@@ -16,9 +16,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use crate::dem::crop::window_samples;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, scaled};
 use crate::dem::sample::SampleGrid;
+
+/// Rasters of at most so many samples are read whole even where a part would do: that takes milliseconds.
+pub const MOST_KEPT_SAMPLES: u64 = 1 << 20;
 
 /// A rectangle of a raster's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,12 +174,7 @@ impl Windows for Raster {
 
     fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
-        let all = RasterWindow::all(self.size());
-        let mut samples = Samples::absent(window.samples(), self.samples.is_wide());
-        for (from, to) in all.shared_rows(window) {
-            samples.copy_from(to, &self.samples, from);
-        }
-        Ok(samples)
+        Ok(window_samples(self, RasterWindow::all(self.size()), window))
     }
 }
 

@@ -162,7 +162,8 @@ table! {
         fill_voids: Option<bool> = key::switch(), otherwise "the ground is filled, the source stays as it is read";
         /// Whether ground at or below 0 m that is connected to the border is drawn as sea, and level basins as lakes.
         infer_water: bool = key::switch(), default true;
-        /// Points around the part that the scene is made of, such as two corners of a map.
+        /// Points around the part that the scene is made of, such as two corners of a map. Of a large
+        /// model only that part is read.
         extent: Option<Stated<Vec<[f64; 2]>>> = key::points(2),
             otherwise "the whole model; of one in degrees or turned against north, the largest part with straight edges";
         /// Distance between samples of a file without georeference; its south-west sample is at (0, 0).

@@ -14,6 +14,7 @@ use crate::dem::answer::Answer;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::warp::metric_crs::off_scale;
+use crate::dem::windows::MOST_KEPT_SAMPLES;
 use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::dem::{self, DemOptions, OpenDemError, OpenedDem};
 use crate::pipeline::ground::{self, GroundError, QueriedGround};
@@ -38,7 +39,7 @@ pub struct DatasetOptions {
 
 impl Default for DatasetOptions {
     fn default() -> Self {
-        Self { dem: DemOptions::default(), allowed: Vec::new(), most_kept: 1 << 20 }
+        Self { dem: DemOptions::default(), allowed: Vec::new(), most_kept: MOST_KEPT_SAMPLES }
     }
 }
 

@@ -91,32 +91,17 @@ fn open_folder(folder: &Path, options: &DemOptions) -> Result<Option<Box<dyn Win
         headers.push((files::file_name(path), tile.metadata().without_samples()));
     }
     // The tiles' own files beside them are looked for anew.
-    let DemHints { height_scale, height_offset, nodata, height_encoding, raw, cell, .. } = *options;
-    let (vertical_datum, crs) = (options.vertical_datum.clone(), options.crs.clone());
-    let opener = move |index: usize| {
-        let (vertical_datum, crs) = (vertical_datum.clone(), crs.clone());
-        let options = DemOptions {
-            height_scale,
-            height_offset,
-            nodata,
-            height_encoding,
-            raw,
-            cell,
-            vertical_datum,
-            crs,
-            ..DemOptions::default()
-        };
-        match open_windows(&paths[index], &options) {
-            Ok(Some(tile)) => Ok(tile),
-            Err(OpenDemError::Format(error)) => Err(error.cause),
-            Ok(None) | Err(_) => Err(DemErrorKind::Changed),
-        }
+    let stated = options.stated();
+    let opener = move |index: usize| match open_windows(&paths[index], &stated.hints(&|_| (), &|_| None)) {
+        Ok(Some(tile)) => Ok(tile),
+        Err(OpenDemError::Format(error)) => Err(error.cause),
+        Ok(None) | Err(_) => Err(DemErrorKind::Changed),
     };
     Ok(Some(Box::new(MosaicWindows::new(headers, Box::new(opener))?)))
 }
 
 /// The windows of an elevation file; `None` where its format is read whole.
-fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
+fn open_windows(path: &Path, options: &DemHints) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let (head, content) = (files::read_head(path, read::HEAD_BYTES)?, files::open(path)?);
     let hints = DemHints { companions: &files::beside(path), ..options.clone() };
     let windows = read::open_windows(&files::file_name(path), &head, Box::new(content), &hints, CACHE_BYTES);

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -156,6 +156,24 @@ impl Assets {
     /// [`AssetError`].
     pub fn read(&self, name: &str) -> Result<Vec<u8>, AssetError> {
         self.read_resolved(self.resolve(name)?)
+    }
+
+    /// The file that the scene calls `name`, of any size, to be read in parts, and its first `head` bytes.
+    ///
+    /// # Errors
+    /// [`AssetError`].
+    pub fn open(&self, name: &str, head: u64) -> Result<(Vec<u8>, File), AssetError> {
+        let path = self.resolve(name)?;
+        check_is_file(&path)?;
+        let mut bytes = Vec::new();
+        let opened = File::open(&path).and_then(|mut file| {
+            (&mut file).take(head).read_to_end(&mut bytes)?;
+            file.rewind()?;
+            Ok(file)
+        });
+        let file = opened.map_err(|source| AssetError::Unreadable { resolved: path.clone(), source })?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+        Ok((bytes, file))
     }
 
     /// The files read so far, links followed, in alphabetical order: what no output may be written over.
@@ -338,15 +356,22 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// All bytes of a regular file. What it is is asked before it is opened, since opening a pipe waits for
-/// somebody to write to it.
-fn read_file(resolved: &Path) -> Result<Vec<u8>, AssetError> {
-    let unreadable = |source| AssetError::Unreadable { resolved: resolved.into(), source };
-    let about = fs::metadata(resolved).map_err(unreadable)?;
+/// What the system knows of a regular file. That is asked before it is opened, since opening a pipe waits for somebody to
+/// write to it.
+fn check_is_file(resolved: &Path) -> Result<fs::Metadata, AssetError> {
+    let about = fs::metadata(resolved)
+        .map_err(|source| AssetError::Unreadable { resolved: resolved.into(), source })?;
     if !about.is_file() {
         let kind = if about.is_dir() { "a folder" } else { "a pipe or a device" };
         return Err(AssetError::NotAFile { resolved: resolved.into(), kind });
     }
+    Ok(about)
+}
+
+/// All bytes of a regular file.
+fn read_file(resolved: &Path) -> Result<Vec<u8>, AssetError> {
+    let unreadable = |source| AssetError::Unreadable { resolved: resolved.into(), source };
+    let about = check_is_file(resolved)?;
     let too_large = |bytes| AssetError::TooLarge { resolved: resolved.into(), bytes };
     let (size, most) = (about.len(), ASSET_BYTES.get());
     let mut bytes = Vec::new();

@@ -15,6 +15,7 @@ pub mod building_colors;
 pub mod buildings;
 pub mod crossed_shapes;
 pub mod earthworks;
+mod elevation;
 mod facade;
 pub mod feature_labels;
 pub mod feature_origin;

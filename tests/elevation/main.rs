@@ -5,6 +5,7 @@ mod common;
 
 mod dem_oracle;
 mod demo_data;
+mod extents;
 mod gridding;
 mod mosaics;
 mod paging;

@@ -57,6 +57,53 @@ pub struct MetricPlan {
     off_scale: Option<OffScale>,
 }
 
+/// The system that a raster's ground is made in, and why that is another than the stated one.
+#[derive(Clone, Debug)]
+pub struct MetricSystem {
+    /// As [`metric_crs`](crate::dem::warp::metric_crs::metric_crs).
+    pub crs: Option<Crs>,
+    /// As [`off_scale`](crate::dem::warp::metric_crs::off_scale).
+    pub off_scale: Option<OffScale>,
+}
+
+impl MetricSystem {
+    /// That of a raster on disk, of which few samples are read in most cases.
+    ///
+    /// # Errors
+    /// [`MetricWindowsError`].
+    pub fn of(
+        source: &mut (impl Windows + ?Sized),
+        target: Option<&Crs>,
+    ) -> Result<Self, MetricWindowsError> {
+        searched(source, |raster, search| Self::found(raster, target, search))
+    }
+
+    fn found<W: Windows + ?Sized>(
+        raster: &Raster,
+        target: Option<&Crs>,
+        search: &ValidSearch<'_, W>,
+    ) -> Result<Self, WarpError> {
+        let valid = || search.valid();
+        let crs = metric_crs_around(raster, target, &valid)?;
+        Ok(Self { crs, off_scale: off_scale_around(raster, target, &valid)? })
+    }
+}
+
+/// What `find` makes of a raster's header and of a search for its valid samples.
+fn searched<W: Windows + ?Sized, T>(
+    source: &mut W,
+    find: impl FnOnce(&Raster, &ValidSearch<'_, W>) -> Result<T, WarpError>,
+) -> Result<T, MetricWindowsError> {
+    let raster = source.metadata().without_samples();
+    let search = ValidSearch { source: RefCell::new(source), found: Cell::new(None), fault: Cell::new(None) };
+    let found = find(&raster, &search);
+    // A fault of reading comes before what follows from it.
+    match search.fault.into_inner() {
+        Some(fault) => Err(fault.into()),
+        None => Ok(found?),
+    }
+}
+
 /// A raster on disk in a metric system, north up, with heights in meters.
 pub struct MetricWindows<'a, W: ?Sized> {
     source: &'a mut W,
@@ -78,15 +125,7 @@ impl MetricPlan {
     /// # Errors
     /// [`MetricWindowsError`].
     pub fn new(source: &mut (impl Windows + ?Sized)) -> Result<Self, MetricWindowsError> {
-        let raster = source.metadata().without_samples();
-        let search =
-            ValidSearch { source: RefCell::new(source), found: Cell::new(None), fault: Cell::new(None) };
-        let planned = plan(&raster, &search);
-        // A fault of reading comes before what follows from it.
-        match search.fault.into_inner() {
-            Some(fault) => Err(fault.into()),
-            None => Ok(planned?),
-        }
+        searched(source, plan)
     }
 
     /// The result without its samples.
@@ -190,9 +229,7 @@ fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (
 
 /// The steps of [`to_metric`](crate::dem::warp::to_metric) but for the samples.
 fn plan<W: Windows + ?Sized>(raster: &Raster, search: &ValidSearch<'_, W>) -> Result<MetricPlan, WarpError> {
-    let valid = || search.valid();
-    let system = metric_crs_around(raster, None, &valid)?;
-    let off_scale = off_scale_around(raster, None, &valid)?;
+    let MetricSystem { crs: system, off_scale } = MetricSystem::found(raster, None, search)?;
     let own = raster.crs.as_ref().or(system.as_ref());
     let (north_up, making) = if own == system.as_ref() && raster.is_axis_aligned() {
         let axes = raster.map_from_grid.matrix2;
@@ -200,7 +237,7 @@ fn plan<W: Windows + ?Sized>(raster: &Raster, search: &ValidSearch<'_, W>) -> Re
         (turned(raster), MetricMaking::Kept { mirrors_x, mirrors_y })
     } else {
         let transform = CrsTransform::new(raster, own, system.as_ref());
-        let valid = valid().ok_or(WarpError::Empty)?;
+        let valid = search.valid().ok_or(WarpError::Empty)?;
         let resampler = Resampler::around_valid(raster, &transform, None, valid)?;
         let making = MetricMaking::Resampled { own: own.cloned(), cells: resampler.cells() };
         (resampler.header(), making)

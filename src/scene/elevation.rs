@@ -1,0 +1,318 @@
+//! The elevation files of a scene, as one raster: all of it, or the part that the scene's extent needs.
+//!
+//! ```text
+//! files without an extent, or small ──► read whole, tiles joined
+//! large files with an extent        ──► opened by their headers ──► the system of the ground ──► the window around the extent
+//! ```
+
+use std::cell::RefCell;
+
+use glam::DVec2;
+
+use crate::dem::crop::{crop_window, part, window_samples};
+use crate::dem::error::{DemError, DemErrorKind};
+use crate::dem::formats::height_encoding::HeightEncoding;
+use crate::dem::formats::raw::{RawLayout, RawLayoutError};
+use crate::dem::mosaic::Tiles;
+use crate::dem::mosaic_windows::MosaicWindows;
+use crate::dem::raster::Raster;
+use crate::dem::read::{self, StatedElevation};
+use crate::dem::warp::metric_crs::{metric_crs, off_scale};
+use crate::dem::warp::metric_windows::MetricSystem;
+use crate::dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, Windows};
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
+use crate::description::words::HeightEncodingWord;
+use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
+use crate::limits::RASTER_SAMPLES;
+use crate::message::suggest::quoted;
+use crate::scene::assets::{AssetError, Assets};
+use crate::scene::overridden_crs::OverriddenCrs;
+use crate::scene::scene_findings::SceneFindings;
+
+/// Samples beside an extent that are read of large files, so that voids on its border are known to end.
+const MARGIN: u32 = 512;
+
+/// Bytes of decoded samples that are kept of a file that is read in windows.
+const CACHE_BYTES: usize = 64 << 20;
+
+/// Elevation as it is read.
+pub(super) struct ReadElevation {
+    /// What is held, as a raster.
+    pub held: Raster,
+    /// The whole raster without its samples.
+    whole: Raster,
+    /// What is held of it.
+    window: RasterWindow,
+    /// The system of the ground.
+    pub system: MetricSystem,
+    /// The part of the whole that the scene is made of; `None` where that is all.
+    pub extent: Option<ExtentRects>,
+}
+
+/// An extent in two systems.
+#[derive(Clone, Copy)]
+pub(super) struct ExtentRects {
+    /// In the system of the ground.
+    pub ground: Rect,
+    /// In that of the elevation files: the rectangle around the former.
+    pub source: Rect,
+}
+
+impl ReadElevation {
+    /// Reads the document's elevation files.
+    ///
+    /// # Errors
+    /// They cannot be read, are not of one raster, or have no place in a system in meters; the extent has none on them.
+    pub fn new(
+        document: &Document,
+        assets: &Assets,
+        findings: &mut SceneFindings,
+    ) -> Result<Self, Diagnostic> {
+        let dem = &document.terrain.dem;
+        if let Some(windows) = windows(document, assets, findings)? {
+            return Self::around_extent(document, windows);
+        }
+        let held = joined(document, assets, findings)?;
+        let (whole, window) = (held.without_samples(), RasterWindow::all(held.size()));
+        let failed = |error| document.error(dem, error);
+        let system = MetricSystem {
+            crs: metric_crs(&held, document.crs.as_ref()).map_err(failed)?,
+            off_scale: off_scale(&held, document.crs.as_ref()).map_err(failed)?,
+        };
+        let extent = extent_rects(document, &whole, &system)?;
+        Ok(Self { held, whole, window, system, extent })
+    }
+
+    /// Reads what the extent needs, and [`MARGIN`].
+    fn around_extent(document: &Document, mut windows: Box<dyn Windows + Send>) -> Result<Self, Diagnostic> {
+        let terrain = &document.terrain;
+        let whole = windows.metadata().without_samples();
+        let system = MetricSystem::of(&mut windows, document.crs.as_ref())
+            .map_err(|error| document.error(&terrain.dem, error))?;
+        let extent = extent_rects(document, &whole, &system)?;
+        let window = extent.as_ref().and_then(|rects| crop_window(&whole, &rects.source, MARGIN));
+        let window = window.ok_or_else(|| nothing_within(document))?;
+        if window.samples() as u64 > RASTER_SAMPLES.get() {
+            let message = format!(
+                "the extent holds {} x {} samples of the elevation model, more than the {RASTER_SAMPLES} of a scene; name a \
+                 smaller one, or {RASTER_SAMPLES:#}",
+                window.width, window.height
+            );
+            return Err(document
+                .error_at(terrain.extent.as_ref().and_then(|it| it.span()).unwrap_or_default(), message));
+        }
+        let samples = windows.samples(window).map_err(|error| document.error(&terrain.dem, error))?;
+        Ok(Self { held: part(&whole, window, samples), whole, window, system, extent })
+    }
+
+    /// The part of the raster with its samples in `rect`, in its own system, and `margin` more on each side, from `held` or one
+    /// like it with other samples.
+    pub fn part(&self, held: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
+        let window = crop_window(&self.whole, rect, margin)?;
+        Some(part(&self.whole, window, window_samples(held, self.window, window)))
+    }
+}
+
+/// The error where an extent does not lie on the elevation.
+pub(super) fn nothing_within(document: &Document) -> Diagnostic {
+    let message = "the extent holds less than two samples a side of the elevation model";
+    let span = document.terrain.extent.as_ref().and_then(|extent| extent.span()).unwrap_or_default();
+    document
+        .error_at(span, message)
+        .with_help("name points on the model, or remove `extent` to take all of it")
+}
+
+/// The extent that the document states.
+fn extent_rects(
+    document: &Document,
+    whole: &Raster,
+    system: &MetricSystem,
+) -> Result<Option<ExtentRects>, Diagnostic> {
+    let Some(extent) = &document.terrain.extent else { return Ok(None) };
+    let scene = system.crs.clone().unwrap_or_else(Crs::local);
+    let stated = system.off_scale.as_ref().map_or_else(|| scene.clone(), |off| off.stated.clone());
+    let given = document.points_crs.as_ref().unwrap_or(&stated);
+    let own = whole.crs.as_ref().unwrap_or(&stated);
+    let misplaced = |error| document.error(extent, error);
+    let corners: Result<Vec<DVec2>, _> =
+        extent.iter().map(|&at| given.transform(&scene, DVec2::from(at))).collect();
+    let ground = Rect::around(corners.map_err(misplaced)?);
+    let in_source: Result<Vec<DVec2>, _> = ground.grid_points().map(|at| scene.transform(own, at)).collect();
+    let source = Rect::around(in_source.map_err(misplaced)?);
+    Ok(Some(ExtentRects { ground, source }))
+}
+
+/// The document's elevation files as one raster on disk, where it states an extent, their formats allow that, and they are
+/// large. What is wrong with a file is left to be told by who reads it whole.
+fn windows(
+    document: &Document,
+    assets: &Assets,
+    findings: &mut SceneFindings,
+) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
+    let dem = &document.terrain.dem;
+    if document.terrain.extent.is_none() {
+        return Ok(None);
+    }
+    let stated = stated(document)?;
+    let names: Vec<String> = dem.iter().cloned().collect();
+    let mut tiles = Vec::new();
+    for name in &names {
+        if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
+            return Ok(None);
+        }
+        // What the file states is compared with what the scene does.
+        let own = StatedElevation { vertical_datum: None, ..stated.clone() };
+        let overridden = RefCell::new(None);
+        let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
+        let Ok(Some(windows)) = open_windows(name, assets, &own, &note) else { return Ok(None) };
+        tiles.push((windows.metadata().without_samples(), overridden.into_inner()));
+    }
+    let samples = tiles.iter().map(|(tile, _)| u64::from(tile.width) * u64::from(tile.height)).sum::<u64>();
+    if samples <= MOST_KEPT_SAMPLES {
+        return Ok(None);
+    }
+    let mut headers = Vec::new();
+    for (name, (mut tile, overridden)) in names.iter().zip(tiles) {
+        check_tile(name, &mut tile, overridden, document, findings);
+        headers.push((name.clone(), tile));
+    }
+    let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
+    let (count, assets) = (headers.len(), assets.clone());
+    let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
+        Ok(Some(windows)) => Ok(windows),
+        Err(TileError::Dem(error)) => Err(error.kind),
+        Ok(None) | Err(TileError::Asset(_)) => Err(DemErrorKind::Changed),
+    };
+    if count == 1 {
+        return open(0).map(Some).map_err(|error| document.error(dem, error));
+    }
+    if stating > 0 {
+        find_missing_datums(count - stating, count, document, findings);
+    }
+    let message = format!("{count} tiles joined by their headers; what they share is not compared");
+    findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
+    let mosaic = MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
+    Ok(Some(Box::new(mosaic)))
+}
+
+/// An elevation file that has no windows.
+#[derive(Debug, thiserror::Error)]
+enum TileError {
+    #[error(transparent)]
+    Asset(#[from] AssetError),
+    #[error(transparent)]
+    Dem(#[from] DemError),
+}
+
+/// The windows of an elevation file; `None` where its format is read whole.
+fn open_windows(
+    name: &str,
+    assets: &Assets,
+    stated: &StatedElevation,
+    overridden: &dyn Fn(&Crs),
+) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
+    let (head, content) = assets.open(name, read::HEAD_BYTES)?;
+    let companions = |name: &str| assets.read(name).ok();
+    let hints = stated.hints(overridden, &companions);
+    Ok(read::open_windows(name, &head, Box::new(content), &hints, CACHE_BYTES)?)
+}
+
+/// What the document states of its elevation files.
+fn stated(document: &Document) -> Result<StatedElevation, Diagnostic> {
+    let terrain = &document.terrain;
+    Ok(StatedElevation {
+        height_scale: terrain.height_scale,
+        height_offset: Some(terrain.height_offset),
+        nodata: terrain.nodata,
+        height_encoding: terrain.height_encoding.map(|encoding| match encoding {
+            HeightEncodingWord::TerrainRgb => HeightEncoding::TerrainRgb,
+            HeightEncodingWord::Terrarium => HeightEncoding::Terrarium,
+        }),
+        raw: raw_layout(document)?,
+        vertical_datum: terrain.vertical_datum.clone(),
+        cell: terrain.cell,
+        crs: terrain.crs.clone(),
+    })
+}
+
+/// The document's elevation files as one raster in memory.
+fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) -> Result<Raster, Diagnostic> {
+    let overridden = RefCell::new(None);
+    let companions = |name: &str| assets.read(name).ok();
+    let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
+    // What the file states is compared with what the scene does.
+    let stated = StatedElevation { vertical_datum: None, ..stated(document)? };
+    let hints = stated.hints(&note, &companions);
+    let (dem, mut tiles) = (&document.terrain.dem, Tiles::default());
+    for name in dem.iter() {
+        let mut tile = match assets.elevation(name).map_err(|error| document.error(dem, error))? {
+            Some(elevation) => elevation.clone(),
+            None => {
+                let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+                read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?
+            }
+        };
+        check_tile(name, &mut tile, overridden.take(), document, findings);
+        tiles.push(name, tile).map_err(|error| document.error(dem, error))?;
+    }
+    let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
+    find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
+    if 2 * mosaic.in_feet > mosaic.overlaps {
+        let message = format!(
+            "of {} samples that tiles share, {} have the ratio of feet to meters: some tiles are in feet, and are read as meters",
+            mosaic.overlaps, mosaic.in_feet
+        );
+        let help =
+            "convert those tiles, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
+        findings.add_with_help(FindingCode::HeightsInFeet, dem.span().unwrap_or_default(), message, help);
+    }
+    if dem.len() > 1 {
+        findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
+    }
+    Ok(mosaic.raster)
+}
+
+/// Finds what a tile states otherwise than the scene, which is believed. `overridden` is its own system, where the scene
+/// states one.
+fn check_tile(
+    name: &str,
+    tile: &mut Raster,
+    overridden: Option<Crs>,
+    document: &Document,
+    findings: &mut SceneFindings,
+) {
+    let (terrain, span) = (&document.terrain, document.terrain.dem.span().unwrap_or_default());
+    if let (Some(stated), Some(own)) = (&terrain.crs, overridden) {
+        let systems = OverriddenCrs { file: name, own: &own, stated };
+        let found = systems.finding(tile.center(), document, span.clone());
+        found.into_iter().for_each(|finding| findings.push(finding));
+    }
+    let Some(stated) = &terrain.vertical_datum else { return };
+    if let Some(own) = tile.vertical_datum.as_deref().filter(|own| !own.eq_ignore_ascii_case(stated)) {
+        let message = format!("'{}' counts heights from {own}, and the scene says {stated}", quoted(name));
+        findings.add(FindingCode::VerticalDatumsMixed, span, message);
+    }
+    tile.vertical_datum = Some(stated.clone());
+}
+
+/// Finds that some tiles state no vertical datum where others do.
+fn find_missing_datums(without: usize, tiles: usize, document: &Document, findings: &mut SceneFindings) {
+    if without > 0 {
+        let message = format!(
+            "{without} of {tiles} tiles state no vertical datum, beside others that do: they are taken to be the same"
+        );
+        let span = document.terrain.dem.span().unwrap_or_default();
+        findings.add(FindingCode::VerticalDatumsMixed, span, message);
+    }
+}
+
+fn raw_layout(document: &Document) -> Result<Option<RawLayout>, Diagnostic> {
+    let Some(stated) = &document.terrain.raw else { return Ok(None) };
+    stated.parse().map(Some).map_err(|_: RawLayoutError| {
+        let message = "this does not say how a RAW file is laid out";
+        document.error(stated, message).with_help(RawLayoutError::REMEDY)
+    })
+}
