@@ -14,11 +14,14 @@ use crate::cli::values::number;
 use crate::dem::formats::DemFormat;
 use crate::dem::warp::WarpError;
 use crate::dem::warp::reproject::Resampling;
+use crate::dem::windows::MOST_KEPT_SAMPLES;
 use crate::dem::write::WrittenDem;
 use crate::geom::crs::Crs;
 use crate::message::chain::error_text;
-use crate::pipeline::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert};
-use crate::pipeline::dem::{self, DemOptions};
+use crate::pipeline::convert::{
+    ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
+};
+use crate::pipeline::dem::{self, DemOptions, OpenedDem};
 use crate::pipeline::raster_file;
 
 #[derive(Debug, Args)]
@@ -64,27 +67,47 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
         refuse_elevation(out, &arguments.heights.dem_options())?;
     }
     let steps = StepTimer::default();
-    steps.begin("reading");
-    let options = DemOptions {
+    let dem_options = DemOptions {
         cell: arguments.cell,
         crs: arguments.source_crs.clone(),
         ..arguments.heights.dem_options()
     };
-    let source = match inputs {
-        [input] => dem::open(input, &options)?,
-        tiles => dem::open_tiles(tiles, &options)?,
-    };
-    steps.begin("resampling");
     let options = ConvertOptions {
         crs: arguments.crs.clone(),
         cell: arguments.cell,
         voids: if arguments.fill_voids { VoidHandling::Fill } else { VoidHandling::Keep },
     };
-    let converted = convert(source, &options).map_err(|error| with_remedy(&inputs[0], &error))?;
+    let converted = converted(inputs, &dem_options, &options, &steps)?;
     steps.begin("writing");
     let written = raster_file::write(&converted.raster, format, out, inputs)?;
     steps.finish();
     print_lines(&summary(out, format, &converted, &written))
+}
+
+fn converted(
+    inputs: &[PathBuf],
+    dem_options: &DemOptions,
+    options: &ConvertOptions,
+    steps: &StepTimer,
+) -> Result<Converted, CliError> {
+    let failed = |error| with_remedy(&inputs[0], &error);
+    steps.begin("reading");
+    let source = match inputs {
+        [input] => match dem::open_either(input, dem_options, MOST_KEPT_SAMPLES)? {
+            OpenedDem::Kept(mosaic) => *mosaic,
+            OpenedDem::Windows(mut windows) => {
+                steps.begin("resampling");
+                if let Some(converted) = convert_windows(&mut windows, options).map_err(failed)? {
+                    return Ok(converted);
+                }
+                steps.begin("reading");
+                dem::open(input, dem_options)?
+            }
+        },
+        tiles => dem::open_tiles(tiles, dem_options)?,
+    };
+    steps.begin("resampling");
+    convert(source, options).map_err(failed)
 }
 
 /// Refuses a file that may have been meant as one of those to read.
@@ -109,7 +132,7 @@ fn with_remedy(file: &Path, error: &ConvertError) -> CliError {
             format!("; for cells of {cell} m bring it to a projected system")
         }
         ConvertError::Warp(error) => return place_error(file, error, "--source-crs"),
-        ConvertError::Crs(_) => String::new(),
+        ConvertError::Crs(_) | ConvertError::Read(_) => String::new(),
     };
     CliError::input(format!("{}: {}{remedy}", file.display(), error_text(error)))
 }

@@ -2,11 +2,14 @@
 //!
 //! Without options the samples stay as they are, to the last bit.
 
+use crate::dem::error::DemErrorKind;
 use crate::dem::mosaic::Mosaic;
 use crate::dem::raster::Raster;
 use crate::dem::voids;
 use crate::dem::warp::WarpError;
-use crate::dem::warp::reproject::{Resampling, reproject};
+use crate::dem::warp::reproject::{Resampling, Warped, reproject, reproject_windows};
+use crate::dem::warp::valid_search::WarpWindowsError;
+use crate::dem::windows::Windows;
 use crate::geom::crs::{Crs, CrsError};
 
 /// A larger cell, in degrees, is taken for one in meters.
@@ -64,6 +67,17 @@ pub enum ConvertError {
     Warp(#[from] WarpError),
     #[error(transparent)]
     Crs(#[from] CrsError),
+    #[error(transparent)]
+    Read(#[from] DemErrorKind),
+}
+
+impl From<WarpWindowsError> for ConvertError {
+    fn from(error: WarpWindowsError) -> Self {
+        match error {
+            WarpWindowsError::Warp(error) => Self::Warp(error),
+            WarpWindowsError::Read(error) => Self::Read(error),
+        }
+    }
 }
 
 /// Converts opened elevation.
@@ -81,11 +95,38 @@ pub fn convert(source: Mosaic, options: &ConvertOptions) -> Result<Converted, Co
     }
     let own = source.crs.clone();
     let (raster, resampling) = resample(source, options)?;
-    let datum_shift = match (&own, &raster.crs) {
-        (Some(from), Some(to)) if from != to => Some(from.datum_shift_to(to)?.to_string()),
-        _ => None,
-    };
+    let datum_shift = datum_shift(own.as_ref(), raster.crs.as_ref())?;
     Ok(Converted { raster, resampling, datum_shift, notes })
+}
+
+/// What [`convert`] makes of elevation that stays on disk; `None` where as much would be held as of the whole: where no
+/// samples are computed, or voids are filled.
+///
+/// # Errors
+/// See [`ConvertError`].
+pub fn convert_windows(
+    source: &mut (impl Windows + ?Sized),
+    options: &ConvertOptions,
+) -> Result<Option<Converted>, ConvertError> {
+    let header = source.metadata().without_samples();
+    let is_kept = options.crs.is_none() && options.cell.is_none();
+    if is_kept || options.voids == VoidHandling::Fill {
+        return Ok(None);
+    }
+    check(&header, options)?;
+    let warped = reproject_windows(source, options.crs.as_ref(), options.cell)?;
+    let Some(Warped { raster, method }) = warped else { return Ok(None) };
+    let raster = raster.into_owned();
+    let datum_shift = datum_shift(header.crs.as_ref(), raster.crs.as_ref())?;
+    Ok(Some(Converted { raster, resampling: method, datum_shift, notes: Vec::new() }))
+}
+
+/// How positions are moved from a system to another; `None` where it stays.
+fn datum_shift(from: Option<&Crs>, to: Option<&Crs>) -> Result<Option<String>, CrsError> {
+    match (from, to) {
+        (Some(from), Some(to)) if from != to => Ok(Some(from.datum_shift_to(to)?.to_string())),
+        _ => Ok(None),
+    }
 }
 
 fn resample(source: Raster, options: &ConvertOptions) -> Result<(Raster, Resampling), ConvertError> {
@@ -93,15 +134,22 @@ fn resample(source: Raster, options: &ConvertOptions) -> Result<(Raster, Resampl
     if target.is_none() && cell.is_none() {
         return Ok((source, Resampling::Kept));
     }
+    check(&source, options)?;
+    let warped = reproject(&source, target, cell)?;
+    Ok((warped.raster.into_owned(), warped.method))
+}
+
+/// Checks that the options suit a raster; its samples are ignored.
+fn check(source: &Raster, options: &ConvertOptions) -> Result<(), ConvertError> {
+    let target = options.crs.as_ref();
     if let (Some(target), None, true) = (target, &source.crs, source.georeferenced) {
         return Err(ConvertError::NoCrs(target.name().to_owned()));
     }
     let is_in_degrees = target.or(source.crs.as_ref()).is_some_and(Crs::is_geographic);
-    if let Some(cell) = cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
-        return Err(ConvertError::CellInDegrees { cell, zone: zone(&source) });
+    match options.cell.filter(|&cell| is_in_degrees && cell > LARGEST_CELL_DEG) {
+        Some(cell) => Err(ConvertError::CellInDegrees { cell, zone: zone(source) }),
+        None => Ok(()),
     }
-    let warped = reproject(&source, target, cell)?;
-    Ok((warped.raster.into_owned(), warped.method))
 }
 
 /// The name of the UTM zone of the raster's center.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
-use crate::dem::warp::metric_windows::MetricWindowsError;
+use crate::dem::warp::valid_search::WarpWindowsError;
 use crate::dem::warp::{self, WarpError};
 use crate::geom::crs::Crs;
 use crate::limits::RASTER_SAMPLES;
@@ -65,11 +65,11 @@ pub enum GroundError {
     },
 }
 
-impl From<MetricWindowsError> for GroundError {
-    fn from(error: MetricWindowsError) -> Self {
+impl From<WarpWindowsError> for GroundError {
+    fn from(error: WarpWindowsError) -> Self {
         match error {
-            MetricWindowsError::Warp(error) => Self::Warp(error),
-            MetricWindowsError::Read(error) => Self::Read(error),
+            WarpWindowsError::Warp(error) => Self::Warp(error),
+            WarpWindowsError::Read(error) => Self::Read(error),
         }
     }
 }

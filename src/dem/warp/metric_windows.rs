@@ -7,46 +7,20 @@
 //! The cells of a resampled raster lie around its valid samples, so that these must be found first. Where each side of the
 //! raster holds data, a few samples tell; else all of it is read once, some rows at a time.
 
-use std::cell::{Cell, RefCell};
-
 use glam::DVec2;
-use rayon::prelude::*;
 
 use crate::dem::cell_grid::CellGrid;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::sample::bilinear_at_grid;
 use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::data_extent::with_valid;
 use crate::dem::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
 use crate::dem::warp::resample::Resampler;
+use crate::dem::warp::valid_search::{ValidSearch, WarpWindowsError, searched};
+use crate::dem::warp::windowed_resample::bilinear_window;
 use crate::dem::warp::{WarpError, with_crs};
-use crate::dem::windows::{RasterPart, RasterWindow, Windows};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-
-/// The side of the squares of cells that are computed at a time. Their positions take some megabytes; in a long row of cells,
-/// the source around them would be much larger where it is turned against them.
-const TILE: u32 = 512;
-
-/// Samples on each side of a position that bilinear heights need.
-const HALO: u32 = 2;
-
-/// Samples along a side of the raster that are read at a time in search of one with data.
-const PROBE: u32 = 256;
-
-/// Samples that are read at a time where all are.
-const SAMPLES_AT_ONCE: u32 = 1 << 22;
-
-/// A raster on disk that cannot be brought to meters.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages explain the variants")]
-pub enum MetricWindowsError {
-    #[error(transparent)]
-    Warp(#[from] WarpError),
-    #[error(transparent)]
-    Read(#[from] DemErrorKind),
-}
 
 /// What a raster becomes, but for its samples.
 #[derive(Clone, Debug)]
@@ -70,11 +44,8 @@ impl MetricSystem {
     /// That of a raster on disk, of which few samples are read in most cases.
     ///
     /// # Errors
-    /// [`MetricWindowsError`].
-    pub fn of(
-        source: &mut (impl Windows + ?Sized),
-        target: Option<&Crs>,
-    ) -> Result<Self, MetricWindowsError> {
+    /// [`WarpWindowsError`].
+    pub fn of(source: &mut (impl Windows + ?Sized), target: Option<&Crs>) -> Result<Self, WarpWindowsError> {
         searched(source, |raster, search| Self::found(raster, target, search))
     }
 
@@ -86,21 +57,6 @@ impl MetricSystem {
         let valid = || search.valid();
         let crs = metric_crs_around(raster, target, &valid)?;
         Ok(Self { crs, off_scale: off_scale_around(raster, target, &valid)? })
-    }
-}
-
-/// What `find` makes of a raster's header and of a search for its valid samples.
-fn searched<W: Windows + ?Sized, T>(
-    source: &mut W,
-    find: impl FnOnce(&Raster, &ValidSearch<'_, W>) -> Result<T, WarpError>,
-) -> Result<T, MetricWindowsError> {
-    let raster = source.metadata().without_samples();
-    let search = ValidSearch { source: RefCell::new(source), found: Cell::new(None), fault: Cell::new(None) };
-    let found = find(&raster, &search);
-    // A fault of reading comes before what follows from it.
-    match search.fault.into_inner() {
-        Some(fault) => Err(fault.into()),
-        None => Ok(found?),
     }
 }
 
@@ -123,8 +79,8 @@ impl MetricPlan {
     /// What [`to_metric`](crate::dem::warp::to_metric) makes of `source` without a target.
     ///
     /// # Errors
-    /// [`MetricWindowsError`].
-    pub fn new(source: &mut (impl Windows + ?Sized)) -> Result<Self, MetricWindowsError> {
+    /// [`WarpWindowsError`].
+    pub fn new(source: &mut (impl Windows + ?Sized)) -> Result<Self, WarpWindowsError> {
         searched(source, plan)
     }
 
@@ -159,29 +115,14 @@ impl<'a, W: Windows + ?Sized> MetricWindows<'a, W> {
         })
     }
 
-    /// The samples of a square of cells, in the source's vertical unit.
+    /// The samples of cells, in the source's vertical unit.
     fn resampled(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         let MetricMaking::Resampled { own, cells } = &self.plan.making else {
             return Ok(Samples::absent(0, false));
         };
         let whole = self.source.metadata().without_samples();
         let transform = CrsTransform::new(&whole, own.as_ref(), self.plan.header.crs.as_ref());
-        let resampler = Resampler::to_cells(&whole, &transform, *cells);
-        let columns = window.column..window.column + window.width;
-        let rows = (window.row..window.row + window.height).into_par_iter();
-        let positions: Vec<DVec2> =
-            rows.flat_map_iter(|row| resampler.row_positions(row, columns.clone())).collect();
-        let around = Rect::around(positions.iter().copied().filter(|at| at.is_finite()));
-        let needed = match around.is_empty() {
-            true => RasterWindow { column: 0, row: 0, width: 1, height: 1 },
-            false => RasterWindow::around(self.source.size(), around.min, around.max, HALO),
-        };
-        let part = RasterPart { whole: &whole, window: needed, samples: self.source.samples(needed)? };
-        let heights = positions.par_iter().map(|&at| bilinear_at_grid(&part, at).parts().0);
-        Ok(match part.samples {
-            Samples::F32(_) => Samples::F32(heights.map(|height| height as f32).collect()),
-            Samples::F64(_) => Samples::F64(heights.collect()),
-        })
+        bilinear_window(self.source, &Resampler::to_cells(&whole, &transform, *cells), window)
     }
 }
 
@@ -195,16 +136,7 @@ impl<W: Windows + ?Sized> Windows for MetricWindows<'_, W> {
         let meters_per_z = self.source.metadata().meters_per_z;
         let samples = match self.plan.making {
             MetricMaking::Kept { mirrors_x, mirrors_y } => self.kept(window, (mirrors_x, mirrors_y))?,
-            MetricMaking::Resampled { .. } => {
-                let mut all = Samples::absent(window.samples(), self.source.metadata().samples.is_wide());
-                for tile in window.tiles(TILE) {
-                    let samples = self.resampled(tile)?;
-                    for (from, to) in tile.shared_rows(window) {
-                        all.copy_from(to, &samples, from);
-                    }
-                }
-                all
-            }
+            MetricMaking::Resampled { .. } => self.resampled(window)?,
         };
         Ok(samples.scaled(meters_per_z, 0.0))
     }
@@ -256,64 +188,4 @@ fn turned(raster: &Raster) -> Raster {
     let Rect { min, max } = raster.extent();
     let map_from_grid = north_up(DVec2::new(min.x, max.y), raster.spacing());
     Raster { map_from_grid, ..raster.without_samples() }
-}
-
-/// The search for the valid samples of a raster on disk, done once.
-struct ValidSearch<'a, W: ?Sized> {
-    source: RefCell<&'a mut W>,
-    /// The outer `None` before the search.
-    found: Cell<Option<Option<Rect>>>,
-    fault: Cell<Option<DemErrorKind>>,
-}
-
-impl<W: Windows + ?Sized> ValidSearch<'_, W> {
-    /// The rectangle of the grid around the valid samples; `None` where there is none, or they cannot be read.
-    fn valid(&self) -> Option<Rect> {
-        if let Some(found) = self.found.get() {
-            return found;
-        }
-        let found = data_extent(&mut **self.source.borrow_mut()).unwrap_or_else(|fault| {
-            self.fault.set(Some(fault));
-            None
-        });
-        self.found.set(Some(found));
-        found
-    }
-}
-
-/// The smallest grid rectangle around the valid samples, out to their edges; `None` where there is none.
-fn data_extent(source: &mut (impl Windows + ?Sized)) -> Result<Option<Rect>, DemErrorKind> {
-    let (width, height) = source.size();
-    let row = |row: u32| RasterWindow { column: 0, row, width, height: 1 };
-    let column = |column: u32| RasterWindow { column, row: 0, width: 1, height };
-    let mut reaches_all_sides = true;
-    for side in [row(0), row(height - 1), column(0), column(width - 1)] {
-        reaches_all_sides = reaches_all_sides && has_data(source, side)?;
-    }
-    if reaches_all_sides {
-        return Ok(Some(Rect { min: DVec2::ZERO, max: DVec2::new(width.into(), height.into()) }));
-    }
-    let mut around = Rect::EMPTY;
-    for band in RasterWindow::all((width, height)).bands(SAMPLES_AT_ONCE) {
-        around = with_valid(around, &source.samples(band)?, band);
-    }
-    Ok((!around.is_empty()).then_some(around))
-}
-
-/// Whether a row or a column holds a sample with data.
-fn has_data(source: &mut (impl Windows + ?Sized), line: RasterWindow) -> Result<bool, DemErrorKind> {
-    for column in (0..line.width).step_by(PROBE as usize) {
-        for row in (0..line.height).step_by(PROBE as usize) {
-            let part = RasterWindow {
-                column: line.column + column,
-                row: line.row + row,
-                width: PROBE.min(line.width - column),
-                height: PROBE.min(line.height - row),
-            };
-            if source.samples(part)?.valid().next().is_some() {
-                return Ok(true);
-            }
-        }
-    }
-    Ok(false)
 }

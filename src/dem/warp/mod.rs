@@ -7,6 +7,8 @@ pub mod metric_windows;
 pub mod reproject;
 mod resample;
 pub(crate) mod row_positions;
+pub mod valid_search;
+mod windowed_resample;
 
 use std::borrow::Cow;
 

@@ -12,9 +12,14 @@ use glam::DVec2;
 
 use crate::dem::raster::Raster;
 use crate::dem::warp::crs_transform::CrsTransform;
+use crate::dem::warp::data_extent::data_extent;
 use crate::dem::warp::resample::{CellSize, Resampler};
+use crate::dem::warp::valid_search::{WarpWindowsError, searched};
+use crate::dem::warp::windowed_resample::{average, bilinear_window};
 use crate::dem::warp::{WarpError, check_source, with_crs};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
+use crate::geom::rect::Rect;
 
 /// From this many times the source's cells on, cells hold the average: only that keeps the mean height.
 const COARSER: f64 = 2.0;
@@ -71,19 +76,67 @@ pub fn reproject<'a>(
         return Ok(Warped { raster: Cow::Owned(warped), method: Resampling::Bilinear });
     };
     let transform = CrsTransform::new(&source, own, system);
-    let resampler = if stays {
-        Resampler::over(&source, &transform, cell)?
-    } else {
-        Resampler::around(&source, &transform, Some(cell))?
+    let (resampler, method) = coarser_or_finer(&source, &transform, stays, cell, &|| data_extent(&source))?;
+    let raster = if method == Resampling::Average { resampler.average() } else { resampler.bilinear() };
+    Ok(Warped { raster: Cow::Owned(raster), method })
+}
+
+/// What [`reproject`] makes of a raster that stays on disk, in memory; `None` where its samples are kept, or mirrored.
+///
+/// # Errors
+/// As [`reproject`], and samples that cannot be read.
+pub fn reproject_windows(
+    source: &mut (impl Windows + ?Sized),
+    target: Option<&Crs>,
+    cell: Option<f64>,
+) -> Result<Option<Warped<'static>>, WarpWindowsError> {
+    let whole = source.metadata().without_samples();
+    check_source(&whole)?;
+    let own = whole.crs.as_ref().or(target);
+    let system = target.or(own);
+    let stays = own == system && whole.is_axis_aligned();
+    let cell = cell.filter(|&cell| !stays || DVec2::splat(cell) != whole.spacing());
+    if stays && (cell.is_none() || !whole.is_north_up()) {
+        return Ok(None);
+    }
+    let transform = CrsTransform::new(&whole, own, system);
+    let (resampler, method) = searched(source, |_, search| {
+        let valid = || search.valid();
+        match cell {
+            Some(cell) => coarser_or_finer(&whole, &transform, stays, cell, &valid),
+            None => {
+                let valid = valid().ok_or(WarpError::Empty)?;
+                Ok((Resampler::around_valid(&whole, &transform, None, valid)?, Resampling::Bilinear))
+            }
+        }
+    })?;
+    let raster = match method {
+        Resampling::Average => average(source, &resampler)?,
+        Resampling::Kept | Resampling::Bilinear => {
+            let cells = resampler.cells();
+            let window = RasterWindow::all((cells.width(), cells.height()));
+            resampler.raster(bilinear_window(source, &resampler, window)?)
+        }
+    };
+    Ok(Some(Warped { raster: Cow::Owned(raster), method }))
+}
+
+/// How cells of a stated size are made.
+fn coarser_or_finer<'a>(
+    source: &'a Raster,
+    transform: &'a CrsTransform<'a>,
+    stays: bool,
+    cell: f64,
+    valid: &dyn Fn() -> Option<Rect>,
+) -> Result<(Resampler<'a>, Resampling), WarpError> {
+    let resampler = match stays {
+        true => Resampler::over(source, transform, cell)?,
+        false => Resampler::around_valid(source, transform, Some(cell), valid().ok_or(WarpError::Empty)?)?,
     };
     let center = source.grid_from_map(source.center());
     let at = |grid: DVec2| transform.forward(source.map_from_grid.transform_point2(grid));
-    let (raster, method) = if resampler.cell() >= COARSER * CellSize::new(center, &at)?.longest {
-        (resampler.average(), Resampling::Average)
-    } else {
-        (resampler.bilinear(), Resampling::Bilinear)
-    };
-    Ok(Warped { raster: Cow::Owned(raster), method })
+    let is_coarser = resampler.cell() >= COARSER * CellSize::new(center, &at)?.longest;
+    Ok((resampler, if is_coarser { Resampling::Average } else { Resampling::Bilinear }))
 }
 
 #[cfg(test)]
@@ -143,6 +196,36 @@ mod tests {
             .map_from_grid
             .transform_point2(DVec2::new(f64::from(middle.0) + 0.5, f64::from(middle.1) + 0.5));
         assert!((again.at(middle.0, middle.1) - value(center)).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_raster_on_disk_becomes_the_same_as_one_in_memory() {
+        let value = |index: u32| if index % 37 == 5 { f32::NAN } else { (index * 7919 % 1013) as f32 / 3.0 };
+        let values: Vec<f32> = (0..130 * 90).map(value).collect();
+        let metric = Raster { crs: utm(32612), ..small(130, 90, values.clone()) };
+        let place = crate::dem::raster::north_up(DVec2::new(-111.3, 37.2), DVec2::splat(1.0 / 1200.0));
+        let degrees = Raster { crs: utm(4326), map_from_grid: place, ..small(130, 90, values) };
+        for (mut source, target, cell, method) in [
+            (metric.clone(), None, Some(25.0), Resampling::Average),
+            (metric.clone(), None, Some(7.0), Resampling::Bilinear),
+            (metric.clone(), utm(32611), Some(60.0), Resampling::Average),
+            (degrees.clone(), utm(32612), None, Resampling::Bilinear),
+            (degrees, utm(32612), Some(400.0), Resampling::Average),
+        ] {
+            let whole = reproject(&source, target.as_ref(), cell).expect("one zone").raster.into_owned();
+            let warped = reproject_windows(&mut source, target.as_ref(), cell).expect("in memory");
+            let Warped { raster, method: found } = warped.expect("resampled");
+            assert_eq!(
+                (found, raster.geotransform(), &raster.crs),
+                (method, whole.geotransform(), &whole.crs)
+            );
+            let bits = |raster: &Raster| raster.samples.iter().map(f64::to_bits).collect::<Vec<_>>();
+            assert_eq!((raster.size(), bits(&raster)), (whole.size(), bits(&whole)), "{cell:?}");
+        }
+        assert!(
+            reproject_windows(&mut metric.clone(), None, Some(10.0)).expect("in memory").is_none(),
+            "kept"
+        );
     }
 
     #[test]

@@ -141,28 +141,9 @@ impl<'a> Resampler<'a> {
 
     /// The means of the source's samples in each cell.
     pub fn average(&self) -> Raster {
-        let cells = self.cells.width() as usize * self.cells.height() as usize;
-        let (mut sums, mut counts) = (vec![0f64; cells], vec![0u32; cells]);
-        let (width, height) = (self.source.width as usize, self.source.height as usize);
-        let rows_at_once = (POSITIONS_AT_ONCE / width).max(1);
-        for first in (0..height).step_by(rows_at_once) {
-            let rows: Range<usize> = first..height.min(first + rows_at_once);
-            let positions: Vec<Vec<DVec2>> =
-                rows.clone().into_par_iter().map(|row| self.cells_of_row(row)).collect();
-            // Summed in order: the same bits for every number of threads.
-            for (index, at) in (rows.start * width..).zip(positions.into_iter().flatten()) {
-                let value = self.source.samples.get(index);
-                if let Some(cell) = self.index(at).filter(|_| !value.is_nan()) {
-                    sums[cell] += value;
-                    counts[cell] += 1;
-                }
-            }
-        }
-        let means = sums.into_iter().zip(counts).map(|(sum, count)| sum / f64::from(count));
-        self.raster(match self.source.samples {
-            Samples::F32(_) => Samples::F32(means.map(|mean| mean as f32).collect()),
-            Samples::F64(_) => Samples::F64(means.collect()),
-        })
+        let mut means = CellMeans::new(self);
+        means.add_rows(0, &self.source.samples);
+        means.raster(self.source.samples.is_wide())
     }
 
     /// Where the centers of a row of the source lie, in cells from the lattice's corner.
@@ -180,7 +161,8 @@ impl<'a> Resampler<'a> {
         is_within.then(|| at.y as usize * width as usize + at.x as usize)
     }
 
-    fn raster(&self, samples: Samples) -> Raster {
+    /// The output with these samples.
+    pub fn raster(&self, samples: Samples) -> Raster {
         Raster {
             width: self.cells.width(),
             height: self.cells.height(),
@@ -190,6 +172,49 @@ impl<'a> Resampler<'a> {
             crs: self.transform.to.cloned(),
             ..self.source.without_samples()
         }
+    }
+}
+
+/// Sums of the source's samples in each cell, whose rows are added in order.
+pub(super) struct CellMeans<'a> {
+    resampler: &'a Resampler<'a>,
+    sums: Vec<f64>,
+    counts: Vec<u32>,
+}
+
+impl<'a> CellMeans<'a> {
+    /// No sample yet.
+    pub fn new(resampler: &'a Resampler<'a>) -> Self {
+        let cells = resampler.cells.width() as usize * resampler.cells.height() as usize;
+        Self { resampler, sums: vec![0.0; cells], counts: vec![0; cells] }
+    }
+
+    /// Adds whole rows of the source, from row `first` on.
+    pub fn add_rows(&mut self, first: usize, samples: &Samples) {
+        let width = self.resampler.source.width as usize;
+        let (rows, rows_at_once) = (samples.len() / width, (POSITIONS_AT_ONCE / width).max(1));
+        for start in (0..rows).step_by(rows_at_once) {
+            let at_once = start..rows.min(start + rows_at_once);
+            let positions: Vec<Vec<DVec2>> =
+                at_once.into_par_iter().map(|row| self.resampler.cells_of_row(first + row)).collect();
+            // Summed in order: the same bits for every number of threads.
+            for (index, at) in (start * width..).zip(positions.into_iter().flatten()) {
+                let value = samples.get(index);
+                if let Some(cell) = self.resampler.index(at).filter(|_| !value.is_nan()) {
+                    self.sums[cell] += value;
+                    self.counts[cell] += 1;
+                }
+            }
+        }
+    }
+
+    /// The raster of the means, of 64 bits where it is wide.
+    pub fn raster(self, is_wide: bool) -> Raster {
+        let means = self.sums.into_iter().zip(self.counts).map(|(sum, count)| sum / f64::from(count));
+        self.resampler.raster(match is_wide {
+            false => Samples::F32(means.map(|mean| mean as f32).collect()),
+            true => Samples::F64(means.collect()),
+        })
     }
 }
 
