@@ -32,6 +32,7 @@ pub mod units;
 pub mod vertical;
 pub mod void_counts;
 pub mod voids;
+pub mod vrt;
 pub mod warp;
 pub mod windows;
 pub mod write;

@@ -56,7 +56,6 @@ impl Filled {
 pub fn fill(raster: &mut Raster) -> Filled {
     let mut filled = Filled::default();
     let mut heights: Vec<(usize, f64)> = Vec::new();
-    let weights = weights(raster);
     each(raster, |void| {
         if void.count > MOST_CELLS {
             filled.voids_left += 1;
@@ -65,7 +64,7 @@ pub fn fill(raster: &mut Raster) -> Filled {
         }
         filled.voids += 1;
         filled.cells += void.count;
-        let solved = Membrane::new(raster, &void.cells, weights).solve();
+        let solved = Membrane::new(raster, &void.cells).solve();
         heights.extend(void.cells.iter().copied().zip(solved));
     });
     for (index, height) in heights {
@@ -114,10 +113,14 @@ fn each(raster: &Raster, mut visit: impl FnMut(Void)) {
 }
 
 /// The weights of a neighbor along a row and along a column: inverse squares of distances, of which four add up to 1.
-fn weights(raster: &Raster) -> DVec2 {
+/// In degrees they are those at the sample `at`, to a hundredth of a degree: a part of a raster is filled as in the whole.
+fn weights(raster: &Raster, at: usize) -> DVec2 {
     let mut spacing = raster.spacing();
     if raster.crs.as_ref().is_some_and(Crs::is_geographic) {
-        spacing.x *= libm::cos(raster.center().y.to_radians()).abs();
+        let width = raster.width as usize;
+        let center = DVec2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5);
+        let latitude_deg = (raster.map_from_grid.transform_point2(center).y * 100.0).round() / 100.0;
+        spacing.x *= libm::cos(latitude_deg.to_radians()).abs();
     }
     let weights = (spacing * spacing).recip();
     let weights = weights / (2.0 * (weights.x + weights.y));
@@ -139,7 +142,8 @@ struct Membrane {
 
 impl Membrane {
     /// A flat membrane at the rim's mean height. `cells` are in order, and none is on the raster's border.
-    fn new(raster: &Raster, cells: &[usize], weights: DVec2) -> Self {
+    fn new(raster: &Raster, cells: &[usize]) -> Self {
+        let weights = weights(raster, cells.first().copied().unwrap_or_default());
         let width = raster.width as usize;
         let mut rim: Vec<f64> = Vec::new();
         let mut index_of = |index: usize| match cells.binary_search(&index) {

@@ -73,6 +73,9 @@ limits! {
         COMPANION_BYTES = 64 << 20 => BYTES, "bytes",
             "of a packed companion: a mask of the largest raster, a bit a sample",
             "unpack it beside the file";
+        VRT_BYTES = 64 << 20 => COUNT, "bytes",
+            "of a virtual raster, which lists a hundred thousand tiles in so many",
+            "name fewer tiles";
         GRID_POINTS = 1 << 26 => To(1 << 29), "points",
             "of one file of scattered points: 1.5 GiB",
             "thin or cut the file";

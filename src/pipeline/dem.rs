@@ -1,4 +1,4 @@
-//! Opening elevation: one file, or the tiles in a folder.
+//! Opening elevation: one file, the tiles in a folder, or those that a virtual raster lists.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,7 @@ use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints};
+use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::windows::Windows;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
@@ -32,12 +33,43 @@ pub enum OpenDemError {
     Tiles(#[from] MosaicError),
 }
 
-/// Opens the elevation file at `path` with its sidecars, or joins the tiles in the folder at `path`.
+/// Opens the elevation file at `path` with its sidecars, or joins the tiles in the folder at `path`, or those that the virtual
+/// raster there lists.
 ///
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
-    if path.is_dir() { open_tiles(&tiles_in(path)?, options) } else { open_tiles(&[path], options) }
+    let Some((tiles, vrt)) = tiles_of(path, options)? else { return open_tiles(&[path], options) };
+    let mosaic = open_tiles(&tiles, &stated_by(vrt.as_ref(), options))?;
+    check_joined(path, vrt.as_ref(), &mosaic.raster)?;
+    Ok(mosaic)
+}
+
+/// The tiles of a folder or a virtual raster, and the latter; `None` of a file of its own.
+fn tiles_of(
+    path: &Path,
+    options: &DemOptions,
+) -> Result<Option<(Vec<PathBuf>, Option<VrtTiles>)>, OpenDemError> {
+    if path.is_dir() {
+        return Ok(Some((tiles_in(path)?, None)));
+    }
+    if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
+        return Ok(None);
+    }
+    let vrt = VrtTiles::read(&files::read(path)?).map_err(FileError::at(path))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let tiles = vrt.files.iter().map(|file| folder.join(file)).collect();
+    Ok(Some((tiles, Some(vrt))))
+}
+
+/// The options for the tiles of a virtual raster: what the caller states of missing data counts, else what that does.
+fn stated_by<'a>(vrt: Option<&VrtTiles>, options: &DemHints<'a>) -> DemHints<'a> {
+    let nodata = options.nodata.or(vrt.and_then(|vrt| vrt.nodata));
+    DemHints { nodata, ..options.clone() }
+}
+
+fn check_joined(path: &Path, vrt: Option<&VrtTiles>, joined: &Raster) -> Result<(), OpenDemError> {
+    Ok(vrt.map_or(Ok(()), |vrt| vrt.check(joined)).map_err(FileError::at(path))?)
 }
 
 /// The tiles in a folder, at least one, sorted by name.
@@ -61,7 +93,14 @@ pub enum OpenedDem {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
-    let windows = if path.is_dir() { open_folder(path, options) } else { open_windows(path, options) };
+    let windows = match tiles_of(path, options)? {
+        Some((tiles, vrt)) => open_mosaic(tiles, &stated_by(vrt.as_ref(), options)).and_then(|windows| {
+            let header = windows.as_ref().map(|windows| windows.metadata());
+            header.map_or(Ok(()), |header| check_joined(path, vrt.as_ref(), header))?;
+            Ok(windows)
+        }),
+        None => open_windows(path, options),
+    };
     let fault = match windows {
         Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
         windows => windows.err(),
@@ -82,9 +121,11 @@ fn samples(windows: &dyn Windows) -> u64 {
     u64::from(width) * u64::from(height)
 }
 
-/// The windows of the mosaic of the tiles in a folder, opened by their headers; `None` where a tile has none.
-fn open_folder(folder: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
-    let paths = tiles_in(folder)?;
+/// The windows of the mosaic of tiles, opened by their headers; `None` where one has none.
+fn open_mosaic(
+    paths: Vec<PathBuf>,
+    options: &DemHints,
+) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let mut headers = Vec::new();
     for path in &paths {
         let Some(tile) = open_windows(path, options)? else { return Ok(None) };

@@ -17,6 +17,7 @@ use crate::dem::mosaic::Tiles;
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, StatedElevation};
+use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::warp::metric_crs::{metric_crs, off_scale};
 use crate::dem::warp::metric_windows::MetricSystem;
 use crate::dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, Windows};
@@ -156,13 +157,10 @@ fn windows(
     if document.terrain.extent.is_none() {
         return Ok(None);
     }
-    let stated = stated(document)?;
-    let names: Vec<String> = dem.iter().cloned().collect();
+    let Some(elevation) = tile_list(document, assets)? else { return Ok(None) };
+    let (names, stated) = (elevation.names.clone(), elevation.stated.clone());
     let mut tiles = Vec::new();
     for name in &names {
-        if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
-            return Ok(None);
-        }
         // What the file states is compared with what the scene does.
         let own = StatedElevation { vertical_datum: None, ..stated.clone() };
         let overridden = RefCell::new(None);
@@ -180,13 +178,13 @@ fn windows(
         headers.push((name.clone(), tile));
     }
     let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
-    let (count, assets) = (headers.len(), assets.clone());
+    let (count, is_alone, assets) = (headers.len(), elevation.vrts.is_empty(), assets.clone());
     let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
         Ok(Some(windows)) => Ok(windows),
         Err(TileError::Dem(error)) => Err(error.kind),
         Ok(None) | Err(TileError::Asset(_)) => Err(DemErrorKind::Changed),
     };
-    if count == 1 {
+    if count == 1 && is_alone {
         return open(0).map(Some).map_err(|error| document.error(dem, error));
     }
     if stating > 0 {
@@ -195,7 +193,54 @@ fn windows(
     let message = format!("{count} tiles joined by their headers; what they share is not compared");
     findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
     let mosaic = MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
+    elevation.check(document, mosaic.metadata())?;
     Ok(Some(Box::new(mosaic)))
+}
+
+/// The elevation files that a document names: those that it lists, and those that a virtual raster of its list does.
+struct TileList {
+    names: Vec<String>,
+    vrts: Vec<VrtTiles>,
+    stated: StatedElevation,
+}
+
+impl TileList {
+    /// Checks what the tiles join to.
+    fn check(&self, document: &Document, joined: &Raster) -> Result<(), Diagnostic> {
+        // Several are joined to another raster than each states.
+        let [vrt] = &self.vrts[..] else { return Ok(()) };
+        let is_all = self.names.len() == vrt.files.len();
+        if is_all {
+            vrt.check(joined).map_err(|error| document.error(&document.terrain.dem, error))
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// The files of the document; `None` where other elevation takes their place.
+fn tile_list(document: &Document, assets: &Assets) -> Result<Option<TileList>, Diagnostic> {
+    let dem = &document.terrain.dem;
+    let mut list = TileList { names: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
+    for name in dem.iter() {
+        if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
+            return Ok(None);
+        }
+        if !vrt::is_vrt(name) {
+            list.names.push(name.clone());
+            continue;
+        }
+        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+        let vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
+        let slashed = name.replace('\\', "/");
+        let folder = slashed.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let place =
+            |file: &String| if file.starts_with('/') { file.clone() } else { format!("{folder}{file}") };
+        list.names.extend(vrt.files.iter().map(place));
+        list.stated.nodata = list.stated.nodata.or(vrt.nodata);
+        list.vrts.push(vrt);
+    }
+    Ok(Some(list))
 }
 
 /// An elevation file that has no windows.
@@ -240,25 +285,25 @@ fn stated(document: &Document) -> Result<StatedElevation, Diagnostic> {
 
 /// The document's elevation files as one raster in memory.
 fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) -> Result<Raster, Diagnostic> {
+    let dem = &document.terrain.dem;
+    let failed = |error| document.error(dem, error);
+    let Some(elevation) = tile_list(document, assets)? else {
+        return replaced(document, assets, findings);
+    };
     let overridden = RefCell::new(None);
     let companions = |name: &str| assets.read(name).ok();
     let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
     // What the file states is compared with what the scene does.
-    let stated = StatedElevation { vertical_datum: None, ..stated(document)? };
-    let hints = stated.hints(&note, &companions);
-    let (dem, mut tiles) = (&document.terrain.dem, Tiles::default());
-    for name in dem.iter() {
-        let mut tile = match assets.elevation(name).map_err(|error| document.error(dem, error))? {
-            Some(elevation) => elevation.clone(),
-            None => {
-                let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-                read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?
-            }
-        };
+    let stated = StatedElevation { vertical_datum: None, ..elevation.stated.clone() };
+    let (hints, mut tiles) = (stated.hints(&note, &companions), Tiles::default());
+    for name in &elevation.names {
+        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+        let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
         check_tile(name, &mut tile, overridden.take(), document, findings);
-        tiles.push(name, tile).map_err(|error| document.error(dem, error))?;
+        tiles.push(name, tile).map_err(failed)?;
     }
-    let mosaic = tiles.join().map_err(|error| document.error(dem, error))?;
+    let mosaic = tiles.join().map_err(failed)?;
+    elevation.check(document, &mosaic.raster)?;
     find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
     if 2 * mosaic.in_feet > mosaic.overlaps {
         let message = format!(
@@ -269,10 +314,26 @@ fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) ->
             "convert those tiles, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
         findings.add_with_help(FindingCode::HeightsInFeet, dem.span().unwrap_or_default(), message, help);
     }
-    if dem.len() > 1 {
+    if mosaic.tiles > 1 {
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
     }
     Ok(mosaic.raster)
+}
+
+/// The elevation that takes the place of the document's files.
+fn replaced(
+    document: &Document,
+    assets: &Assets,
+    findings: &mut SceneFindings,
+) -> Result<Raster, Diagnostic> {
+    let (dem, mut found) = (&document.terrain.dem, None);
+    for name in dem.iter() {
+        let elevation = assets.elevation(name).map_err(|error| document.error(dem, error))?;
+        found = found.or(elevation.map(|elevation| (name, elevation.clone())));
+    }
+    let (name, mut tile) = found.ok_or_else(|| document.error(dem, "no elevation is named"))?;
+    check_tile(name, &mut tile, None, document, findings);
+    Ok(tile)
 }
 
 /// Finds what a tile states otherwise than the scene, which is believed. `overridden` is its own system, where the scene

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine2, DMat2, DVec2};
 use sandtable::dem::formats::DemFormat;
 use sandtable::dem::raster::{Raster, Samples};
+use sandtable::dem::read::{DemHints, read as read_dem};
 use sandtable::dem::write::write;
 use sandtable::description::diagnostic::Diagnostic;
 use sandtable::description::parse::parse_bytes;
@@ -97,6 +98,8 @@ fn the_ground_within_an_extent_is_that_of_the_whole_model_bit_for_bit() {
         let scratch = Scratch::new();
         let whole = tile((0, 0), (SIDE, SIDE), corner, cell, crs);
         stored(&scratch, name, &whole);
+        let bytes = std::fs::read(scratch.at(name)).expect("stored");
+        let whole = read_dem(name, &bytes, &DemHints::default()).expect("sound");
         let points = if crs == 4326 { "points_crs = \"EPSG:4326\"\n" } else { "" };
         let text = format!("{points}[terrain]\ndem = \"{name}\"\nextent = {extent}\n");
         let read = ground(&scratch, &text, None).unwrap_or_else(|error| panic!("{error}"));

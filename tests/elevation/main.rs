@@ -11,3 +11,4 @@ mod mosaics;
 mod paging;
 mod raster_writers;
 mod straight_edges;
+mod virtual_rasters;

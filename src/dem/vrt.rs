@@ -1,0 +1,340 @@
+//! GDAL's virtual rasters (`.vrt`): a list of files that are tiles of one raster, as `gdalbuildvrt` writes it.
+//!
+//! ```text
+//! VRTDataset rasterXSize rasterYSize ── GeoTransform
+//!  └─ VRTRasterBand band=1 ── NoDataValue
+//!      └─ SimpleSource, ComplexSource … ── SourceFilename, SourceBand, SrcRect, DstRect, NODATA
+//! ```
+//!
+//! The tiles are joined as those of a folder are, and what they join to is compared with what the virtual raster states. One
+//! that crops, scales, warps or computes is refused: its samples are another program's to make.
+//!
+//! Source: GDAL, "VRT -- GDAL Virtual Format".
+
+use glam::{DAffine2, DVec2};
+use quick_xml::XmlVersion;
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::reader::Reader;
+
+use crate::dem::error::DemErrorKind;
+use crate::dem::georef::affine;
+use crate::dem::raster::Raster;
+use crate::dem::windows::Windows;
+use crate::limits::VRT_BYTES;
+
+/// How far, in cells, a virtual raster may lie from the tiles that it names.
+const PLACE: f64 = 1e-3;
+
+/// The tiles that a virtual raster names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VrtTiles {
+    /// Their files, `/` between folders, relative to the virtual raster's or absolute. Of samples that tiles share the first
+    /// tile's counts: GDAL draws them in the order of the file, one over the other, so this is the reverse.
+    pub files: Vec<String>,
+    /// The value that means no data.
+    pub nodata: Option<f64>,
+    size: (u32, u32),
+    map_from_grid: Option<DAffine2>,
+}
+
+/// Whether a file is a virtual raster, by its name.
+pub fn is_vrt(name: &str) -> bool {
+    name.rsplit_once('.').is_some_and(|(_, extension)| extension.eq_ignore_ascii_case("vrt"))
+}
+
+impl VrtTiles {
+    /// Reads the content of a virtual raster.
+    ///
+    /// # Errors
+    /// It is not one, is larger than [`VRT_BYTES`], names no files, or makes its samples in another way than by joining them.
+    pub fn read(bytes: &[u8]) -> Result<Self, DemErrorKind> {
+        if bytes.len() as u64 > VRT_BYTES.get() {
+            return Err(broken(format!("it has more than {VRT_BYTES} bytes; {VRT_BYTES:#}")));
+        }
+        let text = std::str::from_utf8(bytes).map_err(|error| broken(error.to_string()))?;
+        let mut reader = VrtReader::default();
+        let mut xml = Reader::from_str(text);
+        xml.config_mut().expand_empty_elements = true;
+        loop {
+            match xml.read_event().map_err(|error| broken(error.to_string()))? {
+                Event::Start(start) => reader.open(&start)?,
+                Event::End(_) => reader.close()?,
+                Event::Text(part) => reader.text.push_str(&part.xml10_content()),
+                Event::CData(part) => reader.text.push_str(&part.xml10_content()),
+                Event::GeneralRef(name) => reader.add_reference(&name)?,
+                Event::Eof => break,
+                _ => {}
+            }
+        }
+        reader.finish()
+    }
+
+    /// Checks that the tiles join to what the virtual raster states.
+    ///
+    /// # Errors
+    /// It has another size or place.
+    pub fn check(&self, joined: &Raster) -> Result<(), DemErrorKind> {
+        if self.size != joined.size() {
+            let ((width, height), (columns, rows)) = (self.size, joined.size());
+            let what = format!("{width} x {height} samples of tiles that span {columns} x {rows}");
+            return Err(unsupported(what));
+        }
+        let corners = [DVec2::ZERO, DVec2::new(f64::from(self.size.0), f64::from(self.size.1))];
+        let is_off = |stated: &DAffine2| {
+            let off = |at: DVec2| joined.grid_from_map(stated.transform_point2(at)) - at;
+            corners.into_iter().any(|at| !(off(at).length() < PLACE))
+        };
+        match self.map_from_grid.as_ref().is_some_and(is_off) {
+            true => Err(unsupported("another place than its tiles".to_owned())),
+            false => Ok(()),
+        }
+    }
+}
+
+/// What is read so far, and where the reader stands.
+#[derive(Default)]
+struct VrtReader {
+    /// The names of the open elements.
+    path: Vec<String>,
+    /// The text since the last tag.
+    text: String,
+    size: Option<(u32, u32)>,
+    map_from_grid: Option<DAffine2>,
+    files: Vec<String>,
+    nodata: Option<f64>,
+    bands: usize,
+    is_relative: bool,
+    source: [f64; 4],
+    /// Whether the bands after the first are being read.
+    is_later_band: bool,
+}
+
+impl VrtReader {
+    fn open(&mut self, start: &BytesStart<'_>) -> Result<(), DemErrorKind> {
+        self.text.clear();
+        let name = start.local_name().into_inner().to_owned();
+        if self.path.is_empty() && name != "VRTDataset" {
+            return Err(broken(format!("its first element is {}", shortened(&name))));
+        }
+        if self.path.len() >= 16 {
+            return Err(broken("its elements lie more than 16 deep".to_owned()));
+        }
+        match name.as_str() {
+            "VRTDataset" | "VRTRasterBand" => self.open_raster(&name, start)?,
+            "SourceFilename" => self.is_relative = attribute(start, "relativeToVRT").as_deref() == Some("1"),
+            "SrcRect" => self.source = rect(start)?,
+            "DstRect" if !self.is_later_band => {
+                let target = rect(start)?;
+                if (self.source[2] - target[2]).abs() > PLACE || (self.source[3] - target[3]).abs() > PLACE {
+                    return Err(unsupported("a tile in another resolution".to_owned()));
+                }
+                if self.source[0].abs() > PLACE || self.source[1].abs() > PLACE {
+                    return Err(unsupported("a part of a tile".to_owned()));
+                }
+            }
+            "KernelFilteredSource"
+            | "AveragedSource"
+            | "ArraySource"
+            | "ScaleRatio"
+            | "ScaleOffset"
+            | "Exponent"
+            | "LUT"
+            | "MaskBand"
+            | "PixelFunctionType"
+            | "GDALWarpOptions"
+            | "PansharpeningOptions"
+            | "Step"
+                if !self.is_later_band =>
+            {
+                return Err(unsupported(format!("{name}, which computes samples")));
+            }
+            _ => {}
+        }
+        self.path.push(name);
+        Ok(())
+    }
+
+    fn open_raster(&mut self, name: &str, start: &BytesStart<'_>) -> Result<(), DemErrorKind> {
+        if let Some(class) = attribute(start, "subClass").filter(|_| !self.is_later_band) {
+            return Err(unsupported(format!("a {}, which computes samples", shortened(&class))));
+        }
+        if name == "VRTRasterBand" {
+            self.bands += 1;
+            self.is_later_band = self.bands > 1;
+            return Ok(());
+        }
+        let side = |name: &str| attribute(start, name)?.trim().parse::<u32>().ok().filter(|side| *side > 0);
+        let size = (side("rasterXSize"), side("rasterYSize"));
+        let (Some(width), Some(height)) = size else {
+            return Err(broken("it states no rasterXSize and rasterYSize".to_owned()));
+        };
+        self.size = Some((width, height));
+        Ok(())
+    }
+
+    fn close(&mut self) -> Result<(), DemErrorKind> {
+        let text = std::mem::take(&mut self.text);
+        let text = text.trim();
+        match self.path.pop().unwrap_or_default().as_str() {
+            "GeoTransform" if self.path.len() == 1 => {
+                let numbers: Option<Vec<f64>> =
+                    text.split(',').map(|part| part.trim().parse().ok()).collect();
+                let numbers: Option<[f64; 6]> = numbers.and_then(|numbers| numbers.try_into().ok());
+                let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+                let numbers =
+                    numbers.ok_or_else(|| broken("its GeoTransform is not six numbers".to_owned()))?;
+                self.map_from_grid = Some(affine(numbers));
+            }
+            "SourceFilename" if !self.is_later_band => {
+                let file = text.replace('\\', "/");
+                if file.is_empty() {
+                    return Err(broken("a SourceFilename is empty".to_owned()));
+                }
+                if file.starts_with("/vsi") || file.contains("://") {
+                    return Err(unsupported(format!("'{}', which is no file", shortened(&file))));
+                }
+                if !self.is_relative && !file.starts_with('/') {
+                    return Err(unsupported(format!(
+                        "'{}' relative to the folder that a program runs in",
+                        shortened(&file)
+                    )));
+                }
+                self.files.push(file);
+            }
+            "SourceBand" if !self.is_later_band && text != "1" => {
+                return Err(unsupported(format!("band '{}' of a tile", shortened(text))));
+            }
+            "NoDataValue" | "NODATA" if !self.is_later_band => {
+                let value: f64 =
+                    text.parse().map_err(|_| broken("its no-data value is no number".to_owned()))?;
+                // Declared by every sample that is not a number.
+                if !value.is_nan() && self.nodata.replace(value).is_some_and(|known| known != value) {
+                    return Err(unsupported("several values for no data".to_owned()));
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add_reference(&mut self, name: &quick_xml::events::BytesRef<'_>) -> Result<(), DemErrorKind> {
+        if let Ok(Some(character)) = name.resolve_char_ref() {
+            self.text.push(character);
+            return Ok(());
+        }
+        let known = quick_xml::escape::resolve_predefined_entity(name);
+        self.text.push_str(known.ok_or_else(|| broken("it names an unknown entity".to_owned()))?);
+        Ok(())
+    }
+
+    fn finish(self) -> Result<VrtTiles, DemErrorKind> {
+        let size = self.size.ok_or_else(|| broken("it holds no VRTDataset".to_owned()))?;
+        if !self.path.is_empty() {
+            return Err(broken("it ends within an element".to_owned()));
+        }
+        if self.files.is_empty() {
+            return Err(broken("it names no files".to_owned()));
+        }
+        let files = self.files.into_iter().rev().collect();
+        Ok(VrtTiles { files, nodata: self.nodata, size, map_from_grid: self.map_from_grid })
+    }
+}
+
+fn attribute(start: &BytesStart<'_>, name: &str) -> Option<String> {
+    let mut attributes = start.attributes();
+    attributes.with_checks(false);
+    let found = attributes.flatten().find(|attribute| attribute.key.into_inner() == name)?;
+    Some(found.normalized_value(XmlVersion::Implicit1_0).ok()?.into_owned())
+}
+
+fn rect(start: &BytesStart<'_>) -> Result<[f64; 4], DemErrorKind> {
+    let mut numbers = [0.0; 4];
+    for (number, name) in numbers.iter_mut().zip(["xOff", "yOff", "xSize", "ySize"]) {
+        let value = attribute(start, name).and_then(|value| value.trim().parse::<f64>().ok());
+        *number = value
+            .filter(|value| value.is_finite())
+            .ok_or_else(|| broken(format!("a rectangle states no {name}")))?;
+    }
+    Ok(numbers)
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(80).collect()
+}
+
+fn broken(reason: String) -> DemErrorKind {
+    DemErrorKind::Broken { format: "VRT", reason }
+}
+
+fn unsupported(what: String) -> DemErrorKind {
+    DemErrorKind::Unsupported {
+        format: "VRT",
+        what: what.into(),
+        remedy: "make a file of it: gdal_translate -co TILED=YES IN.vrt OUT.tif",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::raster::tests::small;
+
+    fn vrt(band: &str) -> Result<VrtTiles, DemErrorKind> {
+        let text = format!(
+            "<VRTDataset rasterXSize=\"4\" rasterYSize=\"2\">\n<GeoTransform> 1000, 10, 0, 2020, 0, -10</GeoTransform>\n\
+             <VRTRasterBand dataType=\"Float32\" band=\"1\">{band}</VRTRasterBand></VRTDataset>"
+        );
+        VrtTiles::read(text.as_bytes())
+    }
+
+    fn source(name: &str, column: u32) -> String {
+        format!(
+            "<SimpleSource><SourceFilename relativeToVRT=\"1\">{name}</SourceFilename><SourceBand>1</SourceBand>\
+             <SrcRect xOff=\"0\" yOff=\"0\" xSize=\"2\" ySize=\"2\"/><DstRect xOff=\"{column}\" yOff=\"0\" xSize=\"2\" ySize=\"2\"/>\
+             </SimpleSource>"
+        )
+    }
+
+    #[test]
+    fn the_last_tile_of_the_file_counts_first() {
+        let two = format!(
+            "<NoDataValue>-9999</NoDataValue>{}{}",
+            source("w/a&amp;b.tif", 0),
+            source("e\\c.tif", 2)
+        );
+        let tiles = vrt(&two).expect("two tiles");
+        assert_eq!(tiles.files, ["e/c.tif", "w/a&b.tif"]);
+        assert_eq!(tiles.nodata, Some(-9999.0));
+        assert!(tiles.check(&small(4, 2, vec![0.0; 8])).is_ok());
+        let error = tiles.check(&small(3, 2, vec![0.0; 6])).expect_err("another size").to_string();
+        assert!(error.contains("VRT"), "{error}");
+        let mut moved = small(4, 2, vec![0.0; 8]);
+        moved.map_from_grid.translation.x += 1.0;
+        assert!(tiles.check(&moved).is_err());
+    }
+
+    #[test]
+    fn what_computes_samples_is_refused() {
+        let scaled =
+            source("a.tif", 0).replace("</SimpleSource>", "<ScaleRatio>2</ScaleRatio></SimpleSource>");
+        let cut = source("a.tif", 0).replacen("xOff=\"0\"", "xOff=\"1\"", 1);
+        let coarse = source("a.tif", 0).replacen("xSize=\"2\"", "xSize=\"4\"", 1);
+        let remote = source("/vsicurl/https://example.org/a.tif", 0);
+        let anywhere = source("a.tif", 0).replace("relativeToVRT=\"1\"", "relativeToVRT=\"0\"");
+        let second = source("a.tif", 0).replace("<SourceBand>1", "<SourceBand>2");
+        for band in [scaled, cut, coarse, remote, anywhere, second] {
+            let error = vrt(&band).expect_err(&band);
+            assert!(matches!(error, DemErrorKind::Unsupported { .. }), "{band}: {error}");
+        }
+        for text in [
+            "",
+            "<a/>",
+            "<VRTDataset/>",
+            "<VRTDataset rasterXSize=\"4\" rasterYSize=\"2\">",
+            "<VRTDataset rasterXSize=\"4\" rasterYSize=\"2\"/>",
+        ] {
+            let error = VrtTiles::read(text.as_bytes()).expect_err(text);
+            assert!(matches!(error, DemErrorKind::Broken { .. }), "{text}: {error}");
+        }
+    }
+}
