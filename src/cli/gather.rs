@@ -9,6 +9,7 @@ use crate::cli::error::CliError;
 use crate::cli::output::{print, print_lines};
 use crate::pipeline::shards::gather::{PlanProgress, gather};
 use crate::pipeline::shards::plan::ShardPlan;
+use crate::pipeline::shards::record::ShardState;
 
 /// Shards that a message names.
 const MOST_NAMED: usize = 20;
@@ -28,14 +29,11 @@ pub struct GatherArguments {
     json: bool,
 }
 
-/// Names the shards that are missing or stale, or writes the product.
+/// Writes the product, or names the shards that are missing or stale: an atlas has its page also then.
 pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
     let plan = ShardPlan::open(&arguments.plan)?;
     let progress = PlanProgress::read(&plan);
-    let written = match progress.is_complete() {
-        true => gather(&plan, arguments.output.as_deref())?,
-        false => Vec::new(),
-    };
+    let written = gather(&plan, &progress, arguments.output.as_deref())?;
     if arguments.json {
         print(&format!("{:#}\n", json(&plan, &progress, &written)))?;
     } else {
@@ -48,15 +46,16 @@ fn json(plan: &ShardPlan, progress: &PlanProgress, written: &[PathBuf]) -> serde
     json!({
         "product": plan.product.word(),
         "shards": plan.count(),
-        "done": progress.done,
-        "missing": progress.missing,
-        "stale": progress.stale,
+        "done": progress.with(ShardState::Done).len(),
+        "missing": progress.with(ShardState::Missing),
+        "stale": progress.with(ShardState::Stale),
         "output": written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
     })
 }
 
 fn incomplete(folder: &Path, plan: &ShardPlan, progress: &PlanProgress) -> CliError {
-    let lists = [("missing", &progress.missing), ("stale", &progress.stale)];
+    let with = |state| progress.with(state);
+    let lists = [("missing", with(ShardState::Missing)), ("stale", with(ShardState::Stale))];
     let found: Vec<String> = lists
         .iter()
         .filter(|(_, ids)| !ids.is_empty())

@@ -8,10 +8,16 @@ use serde_json::json;
 
 use crate::cli::error::CliError;
 use crate::cli::height::PointQueryArguments;
-use crate::cli::options::DatasetArguments;
+use crate::cli::options::{DatasetArguments, SceneArguments};
 use crate::cli::output::print;
+use crate::cli::values::{choice, number};
 use crate::cli::viewshed::SightConditions;
+use crate::description::document::PAPER_DPI;
+use crate::description::words::PaperName;
 use crate::pipeline::files;
+use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::plan::plan as plan_atlas;
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::plan as plan_heights;
 use crate::pipeline::shards::plan_path::written;
@@ -27,6 +33,8 @@ pub enum PlanCommand {
     Heights(PlanHeightsArguments),
     /// How many of many observers see each post of the ground
     Viewsheds(PlanViewshedsArguments),
+    /// Annotated sheets of a scene side by side, at a true scale
+    Atlas(PlanAtlasArguments),
 }
 
 #[derive(Debug, Args)]
@@ -59,6 +67,33 @@ pub struct PlanViewshedsArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "A sheet is a plan of the scene, with the scene's furniture; `layout = \"margin\"` of it names the neighbors."
+)]
+pub struct PlanAtlasArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The n of the map scale 1:n of the sheets
+    #[arg(long, value_name = "N", value_parser = number::<f64>(1.0..=1e9, "write the n of a scale 1:n, as in 25000"))]
+    scale: f64,
+    /// The paper of a sheet
+    #[arg(long, default_value = "A4", value_parser = choice::<PaperName>())]
+    paper: PaperName,
+    /// Turn the paper upright
+    #[arg(long)]
+    portrait: bool,
+    /// Pixels per inch
+    #[arg(long, value_name = "DPI", default_value_t = PAPER_DPI, value_parser = number::<f64>(10.0..=1e4, "write a number from 10 to 10000"))]
+    dpi: f64,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// The folder of the plan
+    #[arg(short, long, value_name = "PLAN")]
+    output: PathBuf,
+}
+
+#[derive(Debug, Args)]
 struct PlanOptions {
     /// About how many shards there are to be [default: as many as take some seconds each]
     #[arg(long, value_name = "N")]
@@ -72,6 +107,7 @@ pub fn run(command: &PlanCommand) -> Result<(), CliError> {
     match command {
         PlanCommand::Heights(arguments) => run_heights(arguments),
         PlanCommand::Viewsheds(arguments) => run_viewsheds(arguments),
+        PlanCommand::Atlas(arguments) => run_atlas(arguments),
     }
 }
 
@@ -107,6 +143,23 @@ fn run_viewsheds(arguments: &PlanViewshedsArguments) -> Result<(), CliError> {
     };
     let shards = plan_viewsheds(planned, &queried, plan.shards.map(NonZeroU64::get), folder)?;
     report(folder, "viewsheds", shards, dataset.json)
+}
+
+fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
+    let SceneArguments { scene, access } = &arguments.scene;
+    let opened = open_scene(scene, &access.allow, &|_| ())?;
+    let folder = &arguments.output;
+    files::make_folder(folder)?;
+    let planned = AtlasArguments {
+        scene: written(scene, folder),
+        allow: access.allow.iter().map(|allowed| written(allowed, folder)).collect(),
+        scale: arguments.scale,
+        paper: PlannedWord(arguments.paper),
+        portrait: arguments.portrait,
+        dpi: arguments.dpi,
+    };
+    let sheets = plan_atlas(planned, &opened, folder)?;
+    report(folder, "atlas", sheets, arguments.json)
 }
 
 /// Opens the dataset, and makes the folder of the plan.

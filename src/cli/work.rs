@@ -46,7 +46,7 @@ pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
             print(&format!("{id} skipped\n"))?;
             continue;
         }
-        let worker: &ShardWorker = match &mut worker {
+        let worker: &mut ShardWorker = match &mut worker {
             Some(worker) => worker,
             none => none.insert(ShardWorker::open(&plan)?),
         };

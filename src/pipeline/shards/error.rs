@@ -7,8 +7,10 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::files::{ReadFileError, WriteFileError};
 use crate::pipeline::ground::GroundError;
 use crate::pipeline::heights_above::HeightsAboveError;
+use crate::pipeline::picture::PictureError;
 use crate::pipeline::positions::PositionsError;
 use crate::pipeline::raster_file::WriteRasterError;
+use crate::pipeline::scene_file::OpenSceneError;
 
 /// A plan that cannot be made, a shard that cannot be done, or results that cannot be gathered.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +32,10 @@ pub enum ShardError {
     Query(#[from] QueryError),
     #[error(transparent)]
     Ground(#[from] GroundError),
+    #[error(transparent)]
+    Scene(#[from] OpenSceneError),
+    #[error(transparent)]
+    Picture(#[from] PictureError),
     #[error(transparent)]
     Points(#[from] PositionsError),
     #[error(transparent)]
@@ -61,6 +67,8 @@ pub enum PlanFault {
     NoShard { found: usize, last: usize },
     #[error("it holds no points")]
     NoPoints,
+    #[error("its ground has no elevation anywhere")]
+    NoGround,
     #[error("it holds more than the {PLAN_POINTS} points of a plan; cut it, or {PLAN_POINTS:#}")]
     TooManyPoints,
     #[error("{0} shards are more than the {PLAN_SHARDS} of a plan; plan fewer, or {PLAN_SHARDS:#}")]

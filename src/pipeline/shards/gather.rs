@@ -10,47 +10,54 @@ use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
 use crate::pipeline::shards::record::{self, ShardState};
 use crate::pipeline::shards::work::extension;
-use crate::pipeline::shards::{heights, viewsheds};
+use crate::pipeline::shards::{atlas, heights, viewsheds};
 
-/// How far the shards of a plan are.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct PlanProgress {
-    /// The number of those whose results are there, and are those of their records.
-    pub done: usize,
-    /// The numbers of those without a record.
-    pub missing: Vec<usize>,
-    /// The numbers of those whose record is of another plan, or whose results are not those of it.
-    pub stale: Vec<usize>,
-}
+/// How far the shards of a plan are, by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanProgress(Vec<ShardState>);
 
 impl PlanProgress {
-    /// Reads the records and results of all shards of a plan.
+    /// Reads the records and results of all shards of a plan; one whose results are not those of its record is stale.
     pub fn read(plan: &ShardPlan) -> Self {
         let extension = extension(plan);
         let state = |id: usize| match record::state(plan, id, extension) {
             ShardState::Done if record::verify_result(plan, id, extension).is_err() => ShardState::Stale,
             state => state,
         };
-        let states: Vec<ShardState> = (0..plan.count()).into_par_iter().map(state).collect();
-        let with =
-            |wanted: ShardState| (0..states.len()).filter(|&id| states[id] == wanted).collect::<Vec<usize>>();
-        let (missing, stale) = (with(ShardState::Missing), with(ShardState::Stale));
-        Self { done: with(ShardState::Done).len(), missing, stale }
+        Self((0..plan.count()).into_par_iter().map(state).collect())
+    }
+
+    /// The numbers of the shards in a state.
+    pub fn with(&self, state: ShardState) -> Vec<usize> {
+        (0..self.0.len()).filter(|&id| self.0[id] == state).collect()
     }
 
     /// Whether all shards are done.
     pub fn is_complete(&self) -> bool {
-        self.missing.is_empty() && self.stale.is_empty()
+        self.0.iter().all(|&state| state == ShardState::Done)
     }
 }
 
-/// Writes the product of a plan whose shards are all done, to `out` or into the plan's folder; returns the files.
+/// Writes the product of a plan, to `out` or into the plan's folder, and returns its files: where all shards are done, or an
+/// index of those that are.
 ///
 /// # Errors
 /// An input has changed, a file cannot be read or written, or `out` has no extension of the product.
-pub fn gather(plan: &ShardPlan, out: Option<&Path>) -> Result<Vec<PathBuf>, ShardError> {
+pub fn gather(
+    plan: &ShardPlan,
+    progress: &PlanProgress,
+    out: Option<&Path>,
+) -> Result<Vec<PathBuf>, ShardError> {
     let own = |name: &str| out.map_or_else(|| plan.folder.join(name), Path::to_owned);
     match &plan.product {
+        PlannedProduct::Atlas(arguments) => {
+            let page = checked(plan, own("index.html"))?;
+            let items = checked(plan, page.with_file_name("items.json"))?;
+            plan.verify_inputs()?;
+            atlas::gather::gather(plan, arguments, &progress.0, (&page, &items))?;
+            Ok(vec![page, items])
+        }
+        _ if !progress.is_complete() => Ok(Vec::new()),
         PlannedProduct::Heights(arguments) => {
             let out = checked(plan, own("heights.csv"))?;
             plan.verify_inputs()?;

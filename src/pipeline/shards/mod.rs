@@ -5,6 +5,7 @@
 //!
 #![doc = include_str!("../../SHARDS.md")]
 
+pub mod atlas;
 pub mod error;
 pub mod gather;
 pub mod heights;

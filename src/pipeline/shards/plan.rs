@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::limits::PLAN_SHARDS;
 use crate::pipeline::files;
 use crate::pipeline::output_files::OutputFiles;
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::input::{PlanInput, sha256};
@@ -29,6 +30,8 @@ pub enum PlannedProduct {
     Heights(HeightsArguments),
     /// Counts of the observers that see each post.
     Viewsheds(ViewshedsArguments),
+    /// Sheets of a scene.
+    Atlas(AtlasArguments),
 }
 
 impl PlannedProduct {
@@ -37,6 +40,7 @@ impl PlannedProduct {
         match self {
             Self::Heights(_) => "heights",
             Self::Viewsheds(_) => "viewsheds",
+            Self::Atlas(_) => "atlas",
         }
     }
 }

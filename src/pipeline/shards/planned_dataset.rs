@@ -107,17 +107,29 @@ impl PlannedDataset {
     /// # Errors
     /// One cannot be read.
     pub fn inputs(&self, dataset: &Dataset, folder: &Path) -> Result<Vec<PlanInput>, ShardError> {
-        let path = self.path(folder);
-        let files = match dataset.scene_files() {
-            Some(files) => [path].into_iter().chain(files.iter().cloned()).collect(),
-            None => elevation_files(&path)?,
-        };
-        let input = |file: &PathBuf| {
-            let stated = if self.file.is_absolute() { file.clone() } else { relative(file, folder) };
-            PlanInput::new(file, stated)
-        };
-        Ok(files.iter().map(input).collect::<Result<_, _>>()?)
+        match dataset.scene_files() {
+            Some(files) => scene_inputs(&self.file, files, folder),
+            None => inputs(&self.file, &elevation_files(&self.path(folder))?, folder),
+        }
     }
+}
+
+/// A scene file, which a plan in `folder` calls `stated`, and the files that it was made of.
+///
+/// # Errors
+/// One cannot be read.
+pub fn scene_inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<Vec<PlanInput>, ShardError> {
+    let files: Vec<PathBuf> = [folder.join(stated)].into_iter().chain(files.iter().cloned()).collect();
+    inputs(stated, &files, folder)
+}
+
+/// Files as inputs of a plan in `folder`, stated relative to it where `stated` is.
+fn inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<Vec<PlanInput>, ShardError> {
+    let input = |file: &PathBuf| {
+        let path = if stated.is_absolute() { file.clone() } else { relative(file, folder) };
+        PlanInput::new(file, path)
+    };
+    Ok(files.iter().map(input).collect::<Result<_, _>>()?)
 }
 
 /// A value that a plan states by its word.

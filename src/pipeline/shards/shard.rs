@@ -23,6 +23,53 @@ pub struct Shard {
     /// The observers of viewsheds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub observers: Option<Vec<[f64; 2]>>,
+    /// The row of a sheet, from the north, and its column, from the west, from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sheet: Option<[u64; 2]>,
+    /// The sheets beside it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neighbors: Option<SheetNeighbors>,
+}
+
+impl Shard {
+    /// A shard with a number, a cost and a window, and without all that a product needs besides.
+    pub fn new(id: usize, name: String, cost: f64, window: ShardWindow) -> Self {
+        Self {
+            id,
+            name,
+            cost,
+            window,
+            halo: None,
+            points: None,
+            observers: None,
+            sheet: None,
+            neighbors: None,
+        }
+    }
+}
+
+/// The numbers of the sheets beside a sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[allow(missing_docs, reason = "the names are directions")]
+pub struct SheetNeighbors {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub north: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub east: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub south: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub west: Option<usize>,
+}
+
+impl SheetNeighbors {
+    /// Those that are there, with the names of their sides.
+    pub fn sides(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let Self { north, east, south, west } = *self;
+        let all = [("north", north), ("east", east), ("south", south), ("west", west)];
+        all.into_iter().filter_map(|(side, id)| Some((side, id?)))
+    }
 }
 
 /// What a shard reads.

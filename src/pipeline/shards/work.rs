@@ -1,12 +1,14 @@
 //! Doing shards: each once, however often a worker is started.
 
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::work::AtlasScene;
 use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
 use crate::pipeline::shards::record::{self, ShardState};
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
-use crate::pipeline::shards::{heights, viewsheds};
+use crate::pipeline::shards::{atlas, heights, viewsheds};
 
 /// What all shards of a plan share, opened once.
 pub struct ShardWorker<'a> {
@@ -17,6 +19,7 @@ pub struct ShardWorker<'a> {
 enum OpenedProduct<'a> {
     Heights(&'a HeightsArguments, QueriedDataset),
     Viewsheds(&'a ViewshedsArguments, QueriedDataset),
+    Atlas(&'a AtlasArguments, Box<AtlasScene>),
 }
 
 /// The extension of the results of a plan's shards.
@@ -24,6 +27,7 @@ pub fn extension(plan: &ShardPlan) -> &'static str {
     match plan.product {
         PlannedProduct::Heights(_) => heights::work::EXTENSION,
         PlannedProduct::Viewsheds(_) => viewsheds::work::EXTENSION,
+        PlannedProduct::Atlas(_) => atlas::work::EXTENSION,
     }
 }
 
@@ -47,6 +51,11 @@ impl<'a> ShardWorker<'a> {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
                 OpenedProduct::Viewsheds(arguments, arguments.dataset.open(&plan.folder)?)
             }
+            PlannedProduct::Atlas(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                let scene = AtlasScene::new(arguments.open(&plan.folder)?);
+                OpenedProduct::Atlas(arguments, Box::new(scene))
+            }
         };
         Ok(Self { plan, opened })
     }
@@ -55,15 +64,16 @@ impl<'a> ShardWorker<'a> {
     ///
     /// # Errors
     /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
-    pub fn work(&self, id: usize) -> Result<(), ShardError> {
+    pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
         let (plan, shard) = (self.plan, self.plan.shard(id)?);
-        let bytes = match &self.opened {
+        let bytes = match &mut self.opened {
             OpenedProduct::Heights(arguments, queried) => {
                 heights::work::result(plan, arguments, queried, &shard)?
             }
             OpenedProduct::Viewsheds(arguments, queried) => {
                 viewsheds::work::result(plan, arguments, queried, &shard)?
             }
+            OpenedProduct::Atlas(arguments, scene) => scene.result(plan, arguments, &shard)?,
         };
         record::publish(plan, id, extension(plan), &bytes)
     }

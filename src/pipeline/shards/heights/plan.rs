@@ -88,15 +88,10 @@ fn shard(id: usize, part: &PointShard, size: (u32, u32), points: PointRange) -> 
     let first = DVec2::new(f64::from(part.window.column), f64::from(part.window.row));
     let last = first + DVec2::new(f64::from(part.window.width - 1), f64::from(part.window.height - 1));
     let RasterWindow { column, row, width, height } = RasterWindow::around(size, first, last, HALO);
-    Shard {
-        id,
-        name: format!("column {} row {}", part.window.column, part.window.row),
-        cost: part.count as f64 + f64::from(width) * f64::from(height) / SAMPLES_A_POINT,
-        window: ShardWindow::Grid([column, row, width, height]),
-        halo: Some(HALO),
-        points: Some(points),
-        observers: None,
-    }
+    let name = format!("column {} row {}", part.window.column, part.window.row);
+    let cost = part.count as f64 + f64::from(width) * f64::from(height) / SAMPLES_A_POINT;
+    let window = ShardWindow::Grid([column, row, width, height]);
+    Shard { halo: Some(HALO), points: Some(points), ..Shard::new(id, name, cost, window) }
 }
 
 /// Where positions lie in the grid of a raster.

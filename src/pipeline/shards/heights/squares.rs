@@ -63,7 +63,7 @@ impl PointSquares {
         self.counts[square(self.size, self.across, grid)] += 1;
     }
 
-    /// Parts the points into shards of about `each`, of neighboring squares, and none of more than twice that.
+    /// Parts the points into shards of about `each`, of neighboring squares, and none of more than half as many again.
     pub fn part(self, each: u64) -> (PointRoutes, Vec<PointShard>) {
         let (size, across) = (self.size, self.across);
         let used: Vec<usize> = (0..self.counts.len()).filter(|&index| self.counts[index] > 0).collect();
@@ -76,7 +76,8 @@ impl PointSquares {
         let mut shards: Vec<PointShard> = Vec::new();
         for index in along_curve(&used, across) {
             let count = self.counts[index];
-            let (parts, window) = (count.div_ceil(each.saturating_mul(2)), window(index));
+            // As many as come nearest to `each`.
+            let (parts, window) = (count.saturating_add(each / 2) / each, window(index));
             if parts > 1 {
                 let share = count.div_ceil(parts);
                 routes[index] = SquareRoute { first: shards.len() as u32, each: share, seen: 0 };
@@ -149,7 +150,10 @@ mod tests {
             let mut counts = vec![0; shards.len()];
             points.iter().for_each(|&point| counts[routes.shard(point) as usize] += 1);
             assert_eq!(counts, shards.iter().map(|shard| shard.count).collect::<Vec<u64>>(), "{each}");
-            assert!(counts.iter().all(|&count| count > 0 && count <= 2 * each), "{each}: {counts:?}");
+            assert!(
+                counts.iter().all(|&count| count > 0 && count <= each + each.div_ceil(2)),
+                "{each}: {counts:?}"
+            );
         }
     }
 

@@ -159,20 +159,11 @@ fn shard(id: usize, group: &[PlannedObserver]) -> Shard {
     let around = region(group);
     let looked_at: u64 = group.iter().map(|observer| posts(observer.posts)).sum();
     let noun = if group.len() == 1 { "observer" } else { "observers" };
-    Shard {
-        id,
-        name: format!("{} {noun} at {}, {}", group.len(), group[0].at.x, group[0].at.y),
-        cost: looked_at as f64,
-        window: ShardWindow::Grid([
-            around.first.column,
-            around.first.row,
-            around.width() as u32,
-            around.height() as u32,
-        ]),
-        halo: None,
-        points: None,
-        observers: Some(group.iter().map(|observer| observer.at.to_array()).collect()),
-    }
+    let name = format!("{} {noun} at {}, {}", group.len(), group[0].at.x, group[0].at.y);
+    let Post { column, row } = around.first;
+    let window = ShardWindow::Grid([column, row, around.width() as u32, around.height() as u32]);
+    let observers = group.iter().map(|observer| observer.at.to_array()).collect();
+    Shard { observers: Some(observers), ..Shard::new(id, name, looked_at as f64, window) }
 }
 
 #[cfg(test)]
