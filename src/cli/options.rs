@@ -29,7 +29,7 @@ pub struct SceneArguments {
 }
 
 /// The folders that a scene may read.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct AccessArguments {
     /// Also let the scene read files under DIR; without it, only under the parent of the scene's folder
     #[arg(long, value_name = "DIR")]
