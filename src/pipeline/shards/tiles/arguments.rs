@@ -21,8 +21,6 @@ pub struct TilesArguments {
     pub dataset: PlannedDataset,
     /// The finest level, 0 to 22.
     pub max_zoom: u32,
-    /// The level of the tiles whose shards hold all below them.
-    pub shard_zoom: u32,
     /// West, south, east and north of the elevation in degrees.
     pub bounds: [f64; 4],
     /// The least and the greatest height that tiles can state, meters.
@@ -38,7 +36,6 @@ impl TilesArguments {
         let [low, high] = self.height_range;
         match self {
             _ if self.max_zoom > MOST_LEVEL => Some("`max_zoom` is not 0 to 22"),
-            _ if self.shard_zoom > self.max_zoom => Some("`shard_zoom` is above `max_zoom`"),
             _ if !(-180.0 <= west && west < east && east <= 180.0) => Some("`bounds` are none"),
             _ if !(-90.0 <= south && south < north && north <= 90.0) => Some("`bounds` are none"),
             _ if !(low.is_finite() && high.is_finite() && low < high) => Some("`height_range` is none"),

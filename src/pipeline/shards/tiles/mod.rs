@@ -3,7 +3,7 @@
 //! ```text
 //! level 0   ┌───┬───┐   posts of a tile: 65 x 65, those of a level are every second one of the next
 //!           └───┴───┘
-//! level 1   ┌─┬─┬─┬─┐   a shard: a tile and all below it, or all tiles above those (the top)
+//! level 1   ┌─┬─┬─┬─┐   a shard: a tile and those below it, five levels; or the tiles above all of these
 //!           ├─┼─┼─┼─┤
 //!           └─┴─┴─┴─┘
 //! ```

@@ -13,10 +13,10 @@ use crate::pipeline::shards::plan::{self, PlannedProduct};
 use crate::pipeline::shards::planned_dataset::{PlannedDataset, QueriedDataset};
 use crate::pipeline::shards::shard::{Shard, ShardWindow};
 use crate::pipeline::shards::tiles::arguments::TilesArguments;
-use crate::pipeline::shards::tiles::tiling::{MOST_LEVEL, TileAddress, TileRange, pyramid, top};
+use crate::pipeline::shards::tiles::tiling::{
+    MOST_LEVEL, SHARD_LEVELS, TileAddress, TileRange, group_starts, pyramid, top,
+};
 
-/// Levels of a shard: 341 tiles and 1.4 million posts, some seconds' work.
-const SHARD_LEVELS: u32 = 5;
 /// Points along each side of the elevation that are brought to longitude and latitude for its bounds.
 const SIDE_POINTS: u32 = 64;
 /// Meters between the ellipsoid and the geoid, at most: it lies 107 m below it south of India.
@@ -49,37 +49,47 @@ pub fn plan(
     let beyond = if from_geoid { MOST_UNDULATION_M } else { 0.0 };
     let height_range =
         [(low.min(0.0) - beyond).floor() as f32, (high.max(0.0) + beyond).ceil().max(1.0) as f32];
-    let shard_zoom = max_zoom.saturating_sub(SHARD_LEVELS - 1);
-    let arguments = TilesArguments { dataset, max_zoom, shard_zoom, bounds, height_range, from_geoid };
-    let roots = TileRange::meeting(shard_zoom, bounds);
-    if roots.count() >= PLAN_SHARDS.get() {
-        return Err(PlanError::new(&queried.path, PlanFault::TooManyShards(roots.count())).into());
+    let arguments = TilesArguments { dataset, max_zoom, bounds, height_range, from_geoid };
+    // No level has more than the finest of those with roots.
+    let roots = TileRange::meeting(group_starts(max_zoom)[0], bounds).count();
+    if roots.saturating_mul(2) > PLAN_SHARDS.get() {
+        return Err(PlanError::new(&queried.path, PlanFault::TooManyShards(roots)).into());
     }
     let shards: Vec<Shard> =
-        shard_roots(&arguments).enumerate().map(|(id, root)| shard(id, root, &arguments)).collect();
+        (0..).zip(shard_roots(&arguments)).map(|(id, root)| shard(id, root, &arguments)).collect();
     let inputs = arguments.dataset.inputs(&queried.dataset, folder)?;
     plan::write(folder, PlannedProduct::Tiles(arguments), inputs, &shards)?;
     Ok(shards.len())
 }
 
-/// The roots of the shards, in their order; `None` is the top.
-pub fn shard_roots(arguments: &TilesArguments) -> impl Iterator<Item = Option<TileAddress>> {
-    let top = (arguments.shard_zoom > 0).then_some(None);
-    top.into_iter().chain(TileRange::meeting(arguments.shard_zoom, arguments.bounds).tiles().map(Some))
+/// The roots of the shards of a plan, in their order; `None` is the top.
+pub fn shard_roots(arguments: &TilesArguments) -> Vec<Option<TileAddress>> {
+    let starts = group_starts(arguments.max_zoom);
+    let top = starts.last().filter(|&&start| start > 0).map(|_| None);
+    let roots = |&start: &u32| TileRange::meeting(start, arguments.bounds).tiles().map(Some);
+    top.into_iter().chain(starts.iter().rev().flat_map(roots)).collect()
 }
 
 /// The tiles of a shard.
 pub fn tiles_of(root: Option<TileAddress>, arguments: &TilesArguments) -> Vec<TileAddress> {
     match root {
-        None => top(arguments.shard_zoom, arguments.bounds),
-        Some(root) => pyramid(root, arguments.max_zoom, arguments.bounds),
+        None => top(top_levels(arguments), arguments.bounds),
+        Some(root) => {
+            let last = (root.level + SHARD_LEVELS - 1).min(arguments.max_zoom);
+            pyramid(root, last, arguments.bounds)
+        }
     }
+}
+
+/// The number of levels of the top.
+fn top_levels(arguments: &TilesArguments) -> u32 {
+    group_starts(arguments.max_zoom).last().copied().unwrap_or_default()
 }
 
 fn shard(id: usize, root: Option<TileAddress>, arguments: &TilesArguments) -> Shard {
     let tiles = tiles_of(root, arguments).len();
     let (name, [west, south, east, north]) = match root {
-        None => (format!("levels 0 to {}", arguments.shard_zoom - 1), arguments.bounds),
+        None => (format!("levels 0 to {}", top_levels(arguments) - 1), arguments.bounds),
         Some(root) => {
             let (min, max) = root.corners();
             (root.path(), [min.x, min.y, max.x, max.y])

@@ -83,6 +83,11 @@ impl TileRange {
         }
     }
 
+    /// Whether it has a tile.
+    pub fn contains(&self, x: u64, y: u64) -> bool {
+        self.x.contains(&x) && self.y.contains(&y)
+    }
+
     /// The number of its tiles.
     pub fn count(&self) -> u64 {
         (self.x.end() - self.x.start() + 1).saturating_mul(self.y.end() - self.y.start() + 1)
@@ -100,6 +105,16 @@ impl TileRange {
         };
         Self { level: self.level, x: both(&self.x, &other.x), y: both(&self.y, &other.y) }
     }
+}
+
+/// Levels of a shard: 341 tiles and 1.4 million posts, some seconds' work.
+pub const SHARD_LEVELS: u32 = 5;
+
+/// The levels of the roots of shards, from the finest: each has as many levels as a shard below it. Those above the last, fewer
+/// than of a shard, are the top.
+pub fn group_starts(max_level: u32) -> Vec<u32> {
+    let finest = max_level.saturating_sub(SHARD_LEVELS - 1);
+    (0..=finest).rev().step_by(SHARD_LEVELS as usize).collect()
 }
 
 /// A tile and all below it down to a level that meet `bounds`.
@@ -133,10 +148,15 @@ mod tests {
     #[test]
     fn every_tile_that_meets_the_bounds_is_in_one_shard() {
         let bounds = [7.1, 46.2, 9.9, 47.7];
-        let (shard_level, max_level) = (5, 9);
-        let mut tiles = top(shard_level, bounds);
-        for root in TileRange::meeting(shard_level, bounds).tiles() {
-            tiles.extend(pyramid(root, max_level, bounds));
+        let max_level = 12;
+        assert_eq!(group_starts(max_level), [8, 3]);
+        let mut tiles = top(3, bounds);
+        for start in [3, 8] {
+            for root in TileRange::meeting(start, bounds).tiles() {
+                let shard = pyramid(root, start + SHARD_LEVELS - 1, bounds);
+                assert!((1..=341).contains(&shard.len()));
+                tiles.extend(shard);
+            }
         }
         let count: u64 = (0..=max_level).map(|level| TileRange::meeting(level, bounds).count()).sum();
         assert_eq!(tiles.len() as u64, count);

@@ -9,9 +9,9 @@ use crate::pipeline::shards::planned_dataset::QueriedDataset;
 use crate::pipeline::shards::record::ShardFile;
 use crate::pipeline::shards::shard::Shard;
 use crate::pipeline::shards::tiles::arguments::TilesArguments;
-use crate::pipeline::shards::tiles::plan::{shard_roots, tiles_of};
+use crate::pipeline::shards::tiles::plan::tiles_of;
 use crate::pipeline::shards::tiles::quantized_mesh::tile_bytes;
-use crate::pipeline::shards::tiles::tiling::TileAddress;
+use crate::pipeline::shards::tiles::tiling::{TileAddress, TileRange, group_starts};
 
 /// Tiles whose posts are asked about together.
 const TILES_AT_ONCE: usize = 64;
@@ -26,11 +26,8 @@ pub fn result(
     queried: &QueriedDataset,
     shard: &Shard,
 ) -> Result<Vec<ShardFile>, ShardError> {
-    let wrong = || plan.wrong_shard(shard.id, "its `tile` is not the one of its number");
-    let root = shard_roots(arguments).nth(shard.id).ok_or_else(wrong)?;
-    if root.map(|TileAddress { level, x, y }| [u64::from(level), x, y]) != shard.tile {
-        return Err(wrong());
-    }
+    let wrong = || plan.wrong_shard(shard.id, "its `tile` is not one of the plan");
+    let root = shard.tile.map(|tile| root_of(arguments, tile).ok_or_else(wrong)).transpose()?;
     let mut files = Vec::new();
     for tiles in tiles_of(root, arguments).chunks(TILES_AT_ONCE) {
         let posts: Vec<_> = tiles.iter().flat_map(|tile| tile.posts()).collect();
@@ -44,6 +41,14 @@ pub fn result(
         files.par_extend(tiles.par_iter().zip(heights.par_chunks(each)).map(file));
     }
     Ok(files)
+}
+
+/// The tile with an address, where it is the root of a shard.
+fn root_of(arguments: &TilesArguments, [level, x, y]: [u64; 3]) -> Option<TileAddress> {
+    let level = u32::try_from(level).ok()?;
+    let is_root = group_starts(arguments.max_zoom).contains(&level)
+        && TileRange::meeting(level, arguments.bounds).contains(x, y);
+    is_root.then_some(TileAddress { level, x, y })
 }
 
 /// The height of a post; one without is on the ellipsoid, so that the globe is whole.
