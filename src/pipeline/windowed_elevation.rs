@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::dem::answer::Answer;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
+use crate::dem::stats::Stats;
 use crate::dem::warp::metric_windows::{MetricPlan, MetricWindows};
 use crate::dem::windows::Windows;
 use crate::geom::crs::Crs;
@@ -55,6 +56,14 @@ impl WindowedElevation {
     /// The raster without its samples.
     pub fn header(&self) -> &Arc<Raster> {
         &self.header
+    }
+
+    /// The lowest and the highest sample of the raster, which is read for them; NaN where none is valid.
+    ///
+    /// # Errors
+    /// Samples cannot be read.
+    pub fn range(&self) -> Result<(f64, f64), DemErrorKind> {
+        Stats::range_of_windows(&mut **self.source())
     }
 
     /// How the ground in meters is made.

@@ -1,0 +1,83 @@
+//! Doing shards: each once, however often a worker is started.
+
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::work::AtlasScene;
+use crate::pipeline::shards::error::ShardError;
+use crate::pipeline::shards::heights::arguments::HeightsArguments;
+use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
+use crate::pipeline::shards::planned_dataset::QueriedDataset;
+use crate::pipeline::shards::record::{self, ShardFile, ShardState};
+use crate::pipeline::shards::tiles::arguments::TilesArguments;
+use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
+use crate::pipeline::shards::{atlas, heights, tiles, viewsheds};
+
+/// What all shards of a plan share, opened once.
+pub struct ShardWorker<'a> {
+    plan: &'a ShardPlan,
+    opened: OpenedProduct<'a>,
+}
+
+enum OpenedProduct<'a> {
+    Heights(&'a HeightsArguments, QueriedDataset),
+    Viewsheds(&'a ViewshedsArguments, QueriedDataset),
+    Atlas(&'a AtlasArguments, Box<AtlasScene>),
+    Tiles(&'a TilesArguments, QueriedDataset),
+}
+
+/// Whether a shard is done: nothing is opened or compared for that but its record.
+pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
+    record::state(plan, id) == ShardState::Done
+}
+
+impl<'a> ShardWorker<'a> {
+    /// Checks that the inputs of a plan are those that were planned with, and opens them.
+    ///
+    /// # Errors
+    /// An input has changed or cannot be opened, or an argument is wrong.
+    pub fn open(plan: &'a ShardPlan) -> Result<Self, ShardError> {
+        plan.verify_inputs()?;
+        let opened = match &plan.product {
+            PlannedProduct::Heights(arguments) => {
+                OpenedProduct::Heights(arguments, arguments.dataset.open(&plan.folder)?)
+            }
+            PlannedProduct::Viewsheds(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                OpenedProduct::Viewsheds(arguments, arguments.dataset.open(&plan.folder)?)
+            }
+            PlannedProduct::Atlas(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                let scene = AtlasScene::new(arguments.open(&plan.folder)?);
+                OpenedProduct::Atlas(arguments, Box::new(scene))
+            }
+            PlannedProduct::Tiles(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                OpenedProduct::Tiles(arguments, arguments.dataset.open(&plan.folder)?)
+            }
+        };
+        Ok(Self { plan, opened })
+    }
+
+    /// Does a shard and writes its results and its record.
+    ///
+    /// # Errors
+    /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
+    pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
+        let (plan, shard) = (self.plan, self.plan.shard(id)?);
+        let only = |extension: &str, bytes: Vec<u8>| ShardFile::only(id, extension, bytes);
+        let files = match &mut self.opened {
+            OpenedProduct::Heights(arguments, queried) => {
+                only(heights::work::EXTENSION, heights::work::result(plan, arguments, queried, &shard)?)
+            }
+            OpenedProduct::Viewsheds(arguments, queried) => {
+                only(viewsheds::work::EXTENSION, viewsheds::work::result(plan, arguments, queried, &shard)?)
+            }
+            OpenedProduct::Atlas(arguments, scene) => {
+                only(atlas::work::EXTENSION, scene.result(plan, arguments, &shard)?)
+            }
+            OpenedProduct::Tiles(arguments, queried) => {
+                tiles::work::result(plan, arguments, queried, &shard)?
+            }
+        };
+        record::publish(plan, id, &files)
+    }
+}
