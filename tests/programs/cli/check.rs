@@ -105,7 +105,8 @@ fn web(count: u32) -> String {
         let [near, far, at] = [0, 10 * (count + 1), 10 * (index / 2 + 1)];
         let ends = if index.is_multiple_of(2) { [[near, at], [far, at]] } else { [[at, near], [at, far]] };
         let [from, to] = ends.map(|[east, north]| [750_400 + east, 4_018_800 + north]);
-        format!("[[road]]\nprofile = \"conform\"\npoints = [{from:?}, {to:?}]\n")
+        // As wide as it takes for the ground to need no more posts.
+        format!("[[road]]\nprofile = \"conform\"\npoints = [{from:?}, {to:?}]\nwidth = 400\n")
     };
     (0..2 * count).map(line).collect()
 }
