@@ -1,6 +1,7 @@
 //! The command line: one file a command, which turns arguments into the options of a [pipeline](crate::pipeline), runs
 //! it and prints the result.
 
+mod address_space;
 mod arguments;
 mod check;
 mod convert;
@@ -78,9 +79,10 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
     // Before anything is read: what reads a limit holds it.
     limit::set(&arguments.limit)?;
+    let threads = address_space::threads_for(&arguments.command)?;
     // A picture has threads of its own.
     if !matches!(arguments.command, Command::Render(_)) {
-        threads::start()?;
+        threads::start(threads)?;
     }
     // The service ends by itself, when its last answers are read, and writes no files.
     #[cfg(unix)]
@@ -88,7 +90,7 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         signals::handle();
     }
     match &arguments.command {
-        Command::Render(arguments) => render::run(arguments),
+        Command::Render(arguments) => render::run(arguments, threads),
         Command::Pick(arguments) => pick::run(arguments),
         Command::Fly(arguments) => fly::run(arguments),
         Command::Check(arguments) => check::run(arguments),

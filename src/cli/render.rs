@@ -77,8 +77,9 @@ impl RenderArguments {
     }
 }
 
-pub fn run(arguments: &RenderArguments) -> Result<(), CliError> {
-    let pool = threads::pool(arguments.threads.map_or(0, usize::from))?;
+/// Renders with `threads` threads.
+pub fn run(arguments: &RenderArguments, threads: usize) -> Result<(), CliError> {
+    let pool = threads::pool(threads)?;
     let outputs = outputs(arguments)?;
     let is_batch = outputs.len() > 1;
     let (mut failures, mut values) = (Vec::new(), Vec::new());

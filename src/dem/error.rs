@@ -1,13 +1,13 @@
 //! Errors of reading elevation files.
 
-use glam::U64Vec2;
+use glam::{U64Vec2, UVec2};
 
 use crate::archive::ArchiveError;
 use crate::dem::formats;
 use crate::geom::crs::CrsError;
-use crate::limits::UNPACKED_RASTER_BYTES;
 use crate::limits::memory::MemoryRefused;
 use crate::limits::work_limit::WorkLimit;
+use crate::limits::{BLOCK_SAMPLES, COMPANION_BYTES, SPARSE_BYTES, UNPACKED_RASTER_BYTES};
 
 /// Why an elevation file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -69,6 +69,24 @@ pub enum DemErrorKind {
         size: U64Vec2,
         file_bytes: usize,
     },
+    /// A packed file may hold more than its bytes, but not so much.
+    #[error(
+        "{} x {} samples are more than a file of {file_bytes} bytes is taken to hold, packed as it is; it is cut short or its header is broken; if it is whole, {SPARSE_BYTES:#}",
+        .size.x, .size.y
+    )]
+    Sparse {
+        /// Samples per row and rows, as stated.
+        size: U64Vec2,
+        file_bytes: usize,
+    },
+    #[error(
+        "this GeoTIFF has blocks of {} x {} samples, more than the {BLOCK_SAMPLES} that are read at once; rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif, or {BLOCK_SAMPLES:#}",
+        .0.x, .0.y
+    )]
+    LargeBlocks(UVec2),
+    /// A file that belongs to it unpacks to more than is unpacked of any such file.
+    #[error("{name}: {source}, or {COMPANION_BYTES:#}")]
+    Companion { name: String, source: ArchiveError },
     #[error("its georeference cannot be used: {reason}; {remedy}")]
     Georeference { reason: String, remedy: &'static str },
     #[error("its coordinate system cannot be used: {0}; or state the right one as crs under [terrain]")]

@@ -45,7 +45,10 @@ impl SizeClaim {
         let sparse = if self.expansion > 1 { SPARSE_BYTES.get() } else { 0 };
         let possible = (file_bytes as u64).saturating_mul(self.expansion).saturating_add(sparse);
         if samples.saturating_sub(self.absent).saturating_mul(self.bytes_per_sample) > possible {
-            return Err(DemErrorKind::Truncated { size, file_bytes });
+            return Err(match self.expansion {
+                1 => DemErrorKind::Truncated { size, file_bytes },
+                _ => DemErrorKind::Sparse { size, file_bytes },
+            });
         }
         // Others are read in windows.
         if std::ptr::eq(most_samples, &RASTER_SAMPLES) {
@@ -67,6 +70,8 @@ mod tests {
         let packed = |side, bytes| SizeClaim { expansion: 4000, ..SizeClaim::new(side, side, bytes) };
         assert!(packed(u64::MAX, 2).check(200).is_err());
         assert!(packed(1 << 14, 4).check(1000).is_err());
+        let said = packed(1 << 14, 4).check(1000).map_err(|error| error.to_string());
+        assert!(said.is_err_and(|said| said.ends_with("raise it with `--limit sparse-bytes=…`")));
         let absent = |absent| SizeClaim { absent, ..SizeClaim::new(10, 10, 2) };
         assert!(absent(60).check(80).is_ok() && absent(60).check(79).is_err());
     }

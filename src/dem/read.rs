@@ -1,5 +1,7 @@
 //! Reads rasters from bytes. The format follows from the content, else from the extension.
 
+use std::cell::OnceCell;
+
 use crate::archive::{self, ArchiveError, ZipReader};
 use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::height_encoding::HeightEncoding;
@@ -318,12 +320,21 @@ fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
         .names()
         .find(|name| is_tile_name(name))
         .ok_or_else(|| unknown("it is a zip archive without an .hgt tile or another elevation file in it"))?;
-    let companions = |wanted: &str| zip.read(wanted, COMPANION_BYTES.get()).ok();
+    let too_large: OnceCell<DemErrorKind> = OnceCell::new();
+    let companions = |wanted: &str| match zip.read(wanted, COMPANION_BYTES.get()) {
+        Err(source @ ArchiveError::TooLarge { .. }) => {
+            // The reader takes it for absent; the first of these is what it lacks.
+            let _ = too_large.set(DemErrorKind::Companion { name: wanted.to_owned(), source });
+            None
+        }
+        companion => companion.ok(),
+    };
     let hints = DemHints { companions: &companions, ..file.hints.clone() };
     let head = zip.read_head(name, HEAD_BYTES)?;
     let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
     let content = zip.read(name, limit).map_err(of_unpacking)?;
-    read_unpacked(&DemFile { name, bytes: &content, hints: &hints })
+    let raster = read_unpacked(&DemFile { name, bytes: &content, hints: &hints });
+    too_large.into_inner().map_or(raster, Err)
 }
 
 /// The error of unpacking a file, with what raises the limit where that is the one for all files.

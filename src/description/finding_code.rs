@@ -226,7 +226,7 @@ finding_codes! {
          `profile = \"conform\"`, or mend the line.";
     BridgeSteep = "bridge-steep", Warning,
         "The deck of a bridge for vehicles is steeper than 15 % over 30 m, or over two cells of the elevation model where these are \
-         wider: bridges are built with up to about 6 %. A deck runs from the ground at one end to the ground at the other, so that most often one end lies \
+         wider, or than its road states as `max_grade`: bridges are built with up to about 6 %. A deck runs from the ground at one end to the ground at the other, so that most often one end lies \
          beside its bank, or in the valley. Move it, or state the level of a `[[bridge]]` with `deck`.";
     DeepEarthwork = "deep-earthwork", Warning,
         "A road that the ground follows stands on more than 15 m of fill, or lies in a cutting deeper than 25 m. Beyond about \
@@ -245,8 +245,8 @@ finding_codes! {
          water stands above its lowest shore, lies below all of it, or half of the shore is higher. The ground is cut and \
          filled to meet it, so that no gap shows; the scene is not what the model has. Mend `level`, or the outline.";
     TightCurve = "tight-curve", Warning,
-        "A road or a river turns with a radius smaller than half its width, so that its inner edge folds over itself. Draw the \
-         curve with a greater radius, or state a smaller width.";
+        "A road or a river turns with a radius smaller than half its width, so that its inner edge folds over itself; a bend with a \
+         radius below 0.25 m is called a corner. Draw the curve with a greater radius, or state a smaller width.";
     NarrowWidth = "narrow-width", Warning,
         "A road is narrower than 0.3 m, or a river than 0.1 m: most often a width in another unit. Widths are meters.";
     CrossesItself = "crosses-itself", Warning,

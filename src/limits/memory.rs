@@ -4,6 +4,9 @@
 //! once as a whole and given back: where the system refuses that, as under `ulimit -v`, the error says how much is needed.
 //! A system that promises more than it has, as Linux does by default, refuses nothing here.
 
+/// Memory in bytes that is left beside what is asked for: what is made of it takes small lists too, and nobody asks for those.
+const BESIDE: u64 = 16 << 20;
+
 /// Memory that is not to be had.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -15,12 +18,14 @@ pub struct MemoryRefused {
     remedy: &'static str,
 }
 
-/// Checks that `bytes` of memory can be had for `what`.
+/// Checks that `bytes` of memory can be had for `what`, and some beside.
 ///
 /// # Errors
 /// They cannot; the message has `remedy`.
 pub fn check_memory(bytes: u64, what: &'static str, remedy: &'static str) -> Result<(), MemoryRefused> {
-    let asked = usize::try_from(bytes).ok().and_then(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).ok());
+    let asked = usize::try_from(bytes.saturating_add(BESIDE))
+        .ok()
+        .and_then(|bytes| Vec::<u8>::new().try_reserve_exact(bytes).ok());
     asked.ok_or(MemoryRefused { what, megabytes: bytes.div_ceil(1_000_000), remedy })
 }
 

@@ -10,9 +10,13 @@ use crate::draw::material::TextureId;
 use crate::draw::pixels::Pixels;
 use crate::limits::TEXTURE_PIXELS;
 use crate::limits::TEXTURE_SIDE;
+use crate::limits::memory::{MemoryRefused, check_memory};
 use crate::message::chain::error_text;
 use crate::model::error::CompanionError;
 use crate::model::{Companions, Model};
+
+/// Bytes of a pixel while a picture is decoded: as the file has it, at most four numbers of 16 bits; as eight bits; and as ours.
+const BYTES_PER_PIXEL: u64 = 16;
 
 /// Collects the textures of a model, each file once.
 pub(super) struct Textures<'a> {
@@ -40,6 +44,8 @@ enum TextureError {
         "the model's textures would have more than {TEXTURE_PIXELS} pixels; shrink them, or {TEXTURE_PIXELS:#}"
     )]
     TooManyPixels,
+    #[error(transparent)]
+    Memory(#[from] MemoryRefused),
 }
 
 impl<'a> Textures<'a> {
@@ -190,6 +196,7 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureE
     if u64::from(width) * u64::from(height) > pixels_left {
         return Err(TextureError::TooManyPixels);
     }
+    check_memory(u64::from(width) * u64::from(height) * BYTES_PER_PIXEL, "the texture", "shrink it")?;
     let data = reader().decode()?.into_rgba8().pixels().map(|pixel| Srgba(pixel.0)).collect();
     Pixels::from_data(width, height, data).ok_or(TextureError::Size { width, height })
 }

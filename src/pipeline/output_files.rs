@@ -2,7 +2,8 @@
 //!
 //! Each is written as a [part](crate::pipeline::part_file) beside its place. When all are whole and on the disk, they get
 //! their names, one right after the other. An error or a signal before that leaves what was there before; so does
-//! `kill -9`, but for the moment between the first name and the last.
+//! `kill -9`. Between the first name and the last it leaves a [record](crate::pipeline::set_record), by which the next program
+//! that writes into the folder gives the remaining names.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};

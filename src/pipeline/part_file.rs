@@ -9,20 +9,20 @@
 //! kill -9, or power lost ─► the next program that writes into the folder
 //! ```
 //!
+//! Parts that belong together are completed there rather than removed where their [record](crate::pipeline::set_record) is.
+//!
 //! The last is safe because a writer holds a lock on its part (`flock` on Unix), which the system releases with the
 //! process: a part whose lock is free has no writer. The number of a process is no proof, since it comes back, and is
 //! another one in a container that shares the folder.
 
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The names of parts: `PREFIX`, the process, a hyphen, a number, `SUFFIX`.
-const PREFIX: &str = "sandtable-";
-const SUFFIX: &str = ".part";
+use crate::pipeline::part_name::{PartName, PartRole};
+use crate::pipeline::set_record::{self, SetRecords};
 
 /// How often another name is tried where one is taken, mostly by a program in another container with the same process
 /// number.
@@ -53,15 +53,12 @@ pub struct PartFile {
 }
 
 impl PartFile {
-    /// An empty part in `folder`, from which stale parts are removed first.
+    /// An empty part in `folder`, whose stale sets are completed and whose stale parts are removed at the first.
     ///
     /// # Errors
     /// The system refuses.
     pub fn create(folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        if live.swept.insert(folder.to_owned()) {
-            remove_stale(folder, &live.paths);
-        }
         for _ in 0..MOST_TRIES {
             let path = live.next_path(folder);
             let file = match File::options().read(true).write(true).create_new(true).open(&path) {
@@ -74,6 +71,10 @@ impl PartFile {
             let part = Self { path, file };
             // A program that found it before it was locked has removed it.
             if part.path.exists() {
+                if live.swept.insert(folder.to_owned()) {
+                    set_record::complete(folder, &live.paths, &part.file);
+                    remove_stale(folder, &live.paths);
+                }
                 return Ok(part);
             }
             live.paths.remove(&part.path);
@@ -98,9 +99,9 @@ impl Drop for PartFile {
 
 impl LiveParts {
     fn next_path(&mut self, folder: &Path) -> PathBuf {
-        let name = format!("{PREFIX}{}-{}{SUFFIX}", std::process::id(), self.next);
+        let name = PartName { process: std::process::id(), number: self.next, role: PartRole::Part };
         self.next += 1;
-        folder.join(name)
+        folder.join(name.to_string())
     }
 
     /// Another name of the file at `path` in the same folder, under which it outlives being replaced; `None` where there
@@ -126,7 +127,7 @@ struct ReplacedFile<'a> {
 }
 
 /// Gives parts the names of the files that they are to be, in order, and replaces what has these names: all of them or,
-/// where one fails, none. No signal comes between.
+/// where one fails, none. No signal comes between; after `kill -9` the next program completes it.
 ///
 /// # Errors
 /// The path that the system refuses, and why.
@@ -135,6 +136,12 @@ pub fn publish(parts: Vec<(PartFile, PathBuf)>) -> Result<(), (PathBuf, io::Erro
     let mut replaced: Vec<ReplacedFile> = Vec::new();
     let is_one = parts.len() == 1;
     let mut failure = None;
+    let records = if is_one {
+        None
+    } else {
+        let paths = parts.iter().map(|(part, path)| (part.path.as_path(), path.as_path()));
+        Some(SetRecords::write(paths, &mut live.next)?)
+    };
     for (part, path) in &parts {
         let kept = if is_one { None } else { live.keep(path) };
         match fs::rename(&part.path, path) {
@@ -149,6 +156,8 @@ pub fn publish(parts: Vec<(PartFile, PathBuf)>) -> Result<(), (PathBuf, io::Erro
             }
         }
     }
+    // From here on the set is whole: all of its files are there, or none will be.
+    drop(records);
     for ReplacedFile { path, kept } in replaced.iter().rev() {
         match (&failure, kept) {
             (None, Some(kept)) => live.remove(kept),
@@ -178,40 +187,23 @@ fn remove_stale(folder: &Path, own: &BTreeSet<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let path = entry.path();
-        let is_part = is_part_name(&entry.file_name()) && entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_part && !own.contains(&path) {
-            let _ = remove_if_stale(&path);
+        let name = PartName::parse(&entry.file_name()).filter(|name| name.role == PartRole::Part);
+        if let Some(name) = name
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && !own.contains(&path)
+        {
+            let _ = remove_if_stale(&path, name);
         }
     }
 }
 
-fn remove_if_stale(path: &Path) -> Result<(), TryLockError> {
+fn remove_if_stale(path: &Path, name: PartName) -> Result<(), TryLockError> {
     let file = File::open(path).map_err(TryLockError::Error)?;
     file.try_lock()?;
+    // Its writer may have died since the folder was listed, with the record of a set that another program completes now.
+    if set_record::has_record(path, name) {
+        return Ok(());
+    }
     // Under the lock: a writer that is about to lock it sees afterwards that it is gone.
     fs::remove_file(path).map_err(TryLockError::Error)
-}
-
-fn is_part_name(name: &OsStr) -> bool {
-    let numbers = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
-    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    numbers
-        .and_then(|numbers| numbers.split_once('-'))
-        .is_some_and(|(process, number)| is_number(process) && is_number(number))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_names_of_parts_are_taken_for_parts() {
-        for name in ["sandtable-1-1.part", "sandtable-4194304-77.part"] {
-            assert!(is_part_name(OsStr::new(name)), "{name}");
-        }
-        for name in ["film.001.part", "sandtable-1.part", "sandtable--1.part", "sandtable-1-x.part", "a.png"]
-        {
-            assert!(!is_part_name(OsStr::new(name)), "{name}");
-        }
-    }
 }

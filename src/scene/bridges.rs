@@ -172,7 +172,13 @@ impl PlannedBridge<'_> {
         let level = self.chain.level(self.link);
         self.chain.report(self.link, Some(built.piers), None, level.steepest(0.0), collected);
         let (line, surface) = (street.alignment.line.clone(), street.surface);
-        collected.bridge_profiles.push(BridgeProfile { feature, line, level, surface });
+        collected.bridge_profiles.push(BridgeProfile {
+            feature,
+            line,
+            level,
+            surface,
+            max_grade: span.max_grade,
+        });
     }
 }
 

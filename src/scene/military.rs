@@ -57,18 +57,23 @@ pub fn symbols(
     lattice: &Lattice,
     findings: &mut SceneFindings,
 ) -> Result<Vec<SceneSymbol>, Diagnostic> {
-    let mut symbols = Vec::new();
+    let (mut symbols, mut first_beyond) = (Vec::new(), None);
     for table in &sources.frame.document.symbols {
         match &table.at {
             Some(at) => symbols.push(symbol_at(table, at, sources.frame, lattice, findings)?),
             None => read_features(table, sources, lattice, &mut symbols, findings)?,
         }
+        if symbols.len() > SCENE_SYMBOLS.count() {
+            first_beyond = first_beyond.or(Some(table));
+        }
     }
-    if symbols.len() > SCENE_SYMBOLS.count() {
+    if let Some(table) = first_beyond {
         let more = symbols.len() - SCENE_SYMBOLS.count();
         let message =
             format!("{more} symbols beyond the first {SCENE_SYMBOLS} are left out; {SCENE_SYMBOLS:#}");
-        findings.add(FindingCode::TooMany, 0..0, message);
+        let of_file = table.file.as_ref().and_then(Stated::span);
+        let place = of_file.or_else(|| table.at.as_ref().and_then(Stated::span));
+        findings.add(FindingCode::TooMany, place.unwrap_or_default(), message);
         symbols.truncate(SCENE_SYMBOLS.count());
     }
     Ok(symbols)

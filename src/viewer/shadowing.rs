@@ -52,7 +52,7 @@ impl ShadowedView {
     /// The shadows of a list.
     ///
     /// # Errors
-    /// [`GpuError::List`] where the list is unsound.
+    /// [`GpuError::List`] where the list is unsound, [`GpuError::Memory`] where there is not the memory for them.
     pub fn shadows(&self, list: &DrawList) -> Result<LiveShadows, GpuError> {
         LiveShadows::new(&self.ground.with_list(list), &self.camera)
     }

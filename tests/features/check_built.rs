@@ -102,6 +102,11 @@ const SEEDED: &[(&str, &str, &[&str])] = &[
         &["bridge 'B' is ", "% steep over the 30 m from station", "to 180.0 m", "less than 15 %"],
     ),
     (
+        "bridge-steep",
+        "[[road]]\nname = \"R\"\nprofile = \"conform\"\nmax_grade = 4\nbridge = \"true\"\npoints = [[500, 700], [600, 700]] # here\n",
+        &["bridge 'R' is ", "its road states at most 4.0 %"],
+    ),
+    (
         "deep-earthwork",
         "[[road]]\nprofile = \"conform\"\npoints = [[400, 700], [990, 700]] # here\nmax_grade = 4\n",
         &["in a cutting of", "m at station", "(700, 700)"],
@@ -150,6 +155,14 @@ const SEEDED: &[(&str, &str, &[&str])] = &[
         "tight-curve",
         "[[road]]\npoints = [[300, 500], [340, 500], [340, 501], [300, 501]] # here\n",
         &["turns by 180°", "station 40.0 to 41.0 m at (340, 500)", "radius of 0.5 m", "3.0 m"],
+    ),
+    (
+        "tight-curve",
+        "[[road]]\npoints = [[300, 500], [340, 500], [340.02, 500.02], [340.02, 540]] # here\n",
+        &[
+            "has a corner at station 40.0 m at (340, 500): it turns by 90° within 0.03 m",
+            "half its width is 3.0 m",
+        ],
     ),
     ("narrow-width", "[[road]]\nwidth = 0.05\npoints = [[300, 500], [400, 500]] # here\n", &["0.05 m wide"]),
     (
@@ -386,6 +399,8 @@ fn what_is_as_it_should_be_is_not_found() {
         "[[river]]\nwidth = 12\npoints = [[250, 300], [900, 300]]\n[[road]]\npoints = [[500, 200], [500, 280]]\n\
          [[bridge]]\npoints = [[500, 270], [500, 330]]\n[[road]]\npoints = [[500, 320], [500, 400]]\n",
         "[[river]]\nwidth = 2\npoints = [[250, 300], [900, 300]]\n[[road]]\npoints = [[500, 200], [500, 400]]\n",
+        // A bridge as steep as its road may be.
+        "[[road]]\nprofile = \"conform\"\nmax_grade = 45\nbridge = \"true\"\npoints = [[500, 700], [600, 700]]\n",
         // A bridge from bank to bank, and one of planks for walkers up a slope.
         "[[bridge]]\npoints = [[300, 300], [360, 300]]\n",
         "[[bridge]]\nsurface = \"track\"\nwidth = 2\npoints = [[600, 700], [660, 700]]\n",

@@ -136,6 +136,9 @@ fn of_files() -> Vec<Seed> {
         seed("texture-missing", NEXT + 1, "[[model]]\nfile = \"box.obj\"\nat = [750110, 4018283]\n")
             .with("box.obj", "mtllib box.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nf 1/1 2/1 3/1\nf 1/1 2/1 4/1\nf 2/1 3/1 4/1\nf 1/1 3/1 4/1\n")
             .with("box.mtl", "newmtl a\nmap_Kd bricks.png\n"),
+        seed("model-read", NEXT + 1, "[[model]]\nfile = \"box.obj\"\nat = [750110, 4018283]\n")
+            .with("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\nf 1 2\n"),
+        seed("symbol-incomplete", NEXT + 2, "[[symbol]]\nat = [750110, 4018283]\nsidc = \"10031500001205000000\"\n"),
     ]
 }
 

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod cubic;
 mod heights;
 mod sight;
 mod viewshed;

@@ -9,6 +9,7 @@ mod faults;
 mod fly;
 mod grid;
 mod heights;
+mod hostile_data;
 mod info;
 #[cfg(unix)]
 mod interrupts;
@@ -17,6 +18,8 @@ mod limits;
 mod lod;
 mod los;
 mod manners;
+#[cfg(target_os = "linux")]
+mod memory;
 mod meshes;
 mod new;
 mod pages;
@@ -27,6 +30,8 @@ mod report;
 mod schema;
 mod series;
 mod serve;
+#[cfg(unix)]
+mod sets;
 mod shards;
 mod shards_atlas;
 #[cfg(unix)]

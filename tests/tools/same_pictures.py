@@ -3,8 +3,15 @@
     python3 tests/tools/same_pictures.py PROGRAM PROGRAM...
 
 Builds of two optimization levels, for processors with and without AVX2, with any number of threads: all must give the
-same files. Each scene is drawn with every camera, on 1, 2 and 16 threads by the first program, on all cores by the others.
-Prints the number of pictures, and each that differs; exits with 1 where one does.
+same files. The builds, each in a folder of its own:
+
+    cargo build --release
+    cargo build
+    RUSTFLAGS=-Ctarget-cpu=x86-64-v3 cargo build --release --target-dir target/avx2
+
+The last is for processors with AVX2 and FMA, which the compiler then uses wherever it likes. Each scene is drawn with every
+camera, on 1, 2 and 16 threads by the first program, on all cores by the others. Prints the number of pictures, and each that
+differs; exits with 1 where one does.
 """
 
 import subprocess

@@ -3,10 +3,11 @@
 that client saw: requests, refusals, the time of answers at the median, at the 99th percentile and at worst, and the memory
 of the service.
 
-usage: python3 tests/tools/service_attacks.py SANDTABLE ELEVATION LAT,LNG [SECONDS]
+usage: python3 tests/tools/service_attacks.py SANDTABLE ELEVATION LAT,LNG [SECONDS [ATTACK...]]
 
-ELEVATION is an elevation file that covers the position; SECONDS are those of each attack, 10 unless stated. Needs Linux,
-where all of 127.0.0.0/8 are addresses of this machine.
+ELEVATION is an elevation file that covers the position; SECONDS are those of each attack, 10 unless stated; of all attacks
+those are made whose names hold an ATTACK, such as `trickle`. Needs Linux, where all of 127.0.0.0/8 are addresses of this
+machine.
 """
 import http.client
 import socket
@@ -111,6 +112,8 @@ def measure(process, port, place, until):
 def main():
     program, elevation, place = sys.argv[1:4]
     seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 10.0
+    wanted = sys.argv[5:] or [""]
+    attacks = {name: plan for name, plan in ATTACKS.items() if any(word in name for word in wanted)}
     command = [program, "serve", f"d={elevation}", "--listen", "127.0.0.1:0"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
@@ -118,7 +121,7 @@ def main():
         port = int(line.split("http://")[1].split(": ")[0].rsplit(":", 1)[1])
         time.sleep(1)
         print(f"{'attack':<36} {'requests':>8} {'refused':>8} {'p50 ms':>8} {'p99 ms':>8} {'worst ms':>9} {'memory MB':>10}")
-        for name, plan in ATTACKS.items():
+        for name, plan in attacks.items():
             count, first, more = plan(place)
             until = time.time() + seconds
             attacker = threading.Thread(target=attack, args=(port, count, first, more, until))

@@ -4,7 +4,7 @@
 //! cell, since lines run along rows or columns; the second sets every point on its node. Points in any order and nodes
 //! without a point (no data) are taken; points off the nodes are scattered and must be interpolated instead.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, U64Vec2};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::formats::{DemFormat, Recognition, any_size};
@@ -113,14 +113,16 @@ impl XyzLattice {
         }
         let sides = ((max - min) / step).round();
         let nodes = (sides.x + 1.0) * (sides.y + 1.0);
-        let most = (RASTER_SAMPLES.get() as f64).min(count.saturating_mul(SPARSEST) as f64);
         // Far apart, their distance may be infinite and the number of nodes no number.
-        if nodes.is_nan() || nodes > most {
+        if nodes.is_nan() || nodes > count.saturating_mul(SPARSEST) as f64 {
             let [columns, rows] = [sides.x + 1.0, sides.y + 1.0];
             let apart = format!("{} by {} apart", step.x, step.y);
             return Err(scattered(format!("{count} points on {columns} x {rows} nodes, {apart}")));
         }
         let (columns, rows) = (sides.x as u64 + 1, sides.y as u64 + 1);
+        if columns.saturating_mul(rows) > RASTER_SAMPLES.get() {
+            return Err(DemErrorKind::TooLarge { size: U64Vec2::new(columns, rows), most: &RASTER_SAMPLES });
+        }
         Ok(Self { columns, rows, min, max, cell: (max - min) / sides })
     }
 }

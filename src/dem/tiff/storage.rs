@@ -22,6 +22,7 @@ use crate::dem::limits::SizeClaim;
 use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::tiff::geotiff::FORMAT;
 use crate::dem::windows::RasterWindow;
+use crate::limits::TIFF_TAG_BYTES;
 use crate::limits::work_limit::WorkLimit;
 
 /// The remedy for an unsupported compression.
@@ -290,7 +291,9 @@ fn expansion(packing: Packing) -> u64 {
 pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
     match error {
         TiffError::UnsupportedError(what) => FORMAT.unsupported(what, TO_DEFLATE),
-        TiffError::LimitsExceeded => FORMAT.broken("a tag claims more than the file holds"),
+        TiffError::LimitsExceeded => FORMAT.broken(format!(
+            "a tag claims more than the file holds, or than the {TIFF_TAG_BYTES} bytes that are read of one: {TIFF_TAG_BYTES:#}"
+        )),
         other => FORMAT.undecodable(other),
     }
 }

@@ -21,7 +21,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::{DAffine2, DVec2};
+use glam::{DAffine2, DVec2, UVec2};
 use rayon::prelude::*;
 use tiff::decoder::Decoder;
 
@@ -300,7 +300,10 @@ impl<R: Read + Seek> SharedFile<R> {
         let across = storage.block_width.clamp(1, storage.width);
         let down = storage.block_height.clamp(1, storage.height);
         let samples = u64::from(across) * u64::from(down);
-        if samples > BLOCK_SAMPLES.get() || storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
+        if samples > BLOCK_SAMPLES.get() {
+            return Err(DemErrorKind::LargeBlocks(UVec2::new(across, down)));
+        }
+        if storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
             return Err(FORMAT.unsupported(
                 format!("blocks of {across} x {down} samples"),
                 "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",

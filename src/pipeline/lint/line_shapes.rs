@@ -4,7 +4,7 @@
 use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::Width;
 use crate::geom::own_crossing::own_crossing;
-use crate::geom::tight_bend::{REVERSAL_RAD, tight_bends, turns};
+use crate::geom::tight_bend::{REVERSAL_RAD, TightBend, tight_bends, turns};
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::ground_line::place;
 use crate::pipeline::lint::sink::FindingSink;
@@ -17,6 +17,10 @@ const NARROWEST_ROAD_M: f64 = 0.3;
 
 /// The narrowest river in meters: a ditch that a spade digs.
 const NARROWEST_RIVER_M: f64 = 0.1;
+
+/// A bend that is shorter is called a corner, in meters: nothing as wide as a path can follow it, and its radius would be
+/// written as 0.0 m.
+const CORNER_M: f64 = 0.5;
 
 /// Finds the lines of roads and rivers that have such a shape.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
@@ -70,18 +74,26 @@ fn add_tight(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTa
     for bend in tight_bends(&alignment.line, |station_m| alignment.width.at(station_m) / 2.0) {
         let half_m = alignment.width.at(bend.from) / 2.0;
         worst.add(context.origin(line.feature), half_m / bend.radius, || {
-            format!(
-                "{} turns by {:.0}° from station {:.1} to {:.1} m at {}, with a radius of {:.1} m; half its width is \
-                 {half_m:.1} m",
-                context.name(line.feature),
-                bend.turn_rad.to_degrees(),
-                bend.from,
-                bend.to,
-                place(context.scene, alignment.line.at(bend.from)),
-                bend.radius
-            )
+            let at = place(context.scene, alignment.line.at(bend.from));
+            format!("{} {}; half its width is {half_m:.1} m", context.name(line.feature), shape(&bend, &at))
         });
     }
+}
+
+/// What a bend that begins at the place `at` is: a curve with its radius, or a corner.
+fn shape(bend: &TightBend, at: &str) -> String {
+    let TightBend { from, to, turn_rad, radius } = *bend;
+    let (turn_deg, length_m) = (turn_rad.to_degrees(), to - from);
+    if length_m < CORNER_M {
+        let length_m = (length_m * 100.0).ceil() / 100.0;
+        return format!(
+            "has a corner at station {from:.1} m at {at}: it turns by {turn_deg:.0}° within {length_m:.2} m"
+        );
+    }
+    let decimals = if radius < 0.1 { 3 } else { 1 };
+    format!(
+        "turns by {turn_deg:.0}° from station {from:.1} to {to:.1} m at {at}, with a radius of {radius:.decimals$} m"
+    )
 }
 
 fn add_crossed(context: &LintContext<'_>, line: &LineSymbol, worst: &mut WorstOfTables) {

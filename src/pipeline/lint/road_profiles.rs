@@ -2,7 +2,8 @@
 //!
 //! A road that lies on the ground is as steep as that; it is measured on the scene's ground, after all earthworks. A road
 //! that the ground follows keeps its grade, and pays for it in earth: its design is compared with the ground before. A bridge
-//! runs from the ground at one end to the ground at the other, unless its level is stated.
+//! runs from the ground at one end to the ground at the other, unless its level is stated; it is held to what its road
+//! states as `max_grade`, else to what bridges have.
 
 use crate::description::finding_code::FindingCode;
 use crate::earthworks::alignment::Support;
@@ -26,6 +27,9 @@ const GRADE_OVER_CELLS: f64 = 2.0;
 /// The steepest deck, meters a meter: bridges for vehicles have up to 6 %, such as Eshima Ohashi in Japan, and ramps that
 /// are climbed in the wet up to about 15 %.
 const STEEPEST_DECK: f64 = 0.15;
+
+/// How much steeper than its road states a deck may be, meters a meter: stations are rounded.
+const GRADE_SLACK: f64 = 0.005;
 
 /// The highest embankment in meters: where more fill is needed, a viaduct costs less.
 const HIGHEST_FILL_M: f64 = 15.0;
@@ -78,23 +82,28 @@ fn steep_decks(context: &LintContext<'_>, sink: &mut FindingSink) {
     for bridge in context.scene.bridge_profiles.iter().filter(|bridge| is_for_wheels(bridge.surface)) {
         let [first, last] = bridge.level.span();
         // Of shorter ones the ground at both ends says too little.
+        let (most, whose) = match bridge.max_grade {
+            Some(stated) => {
+                (stated + GRADE_SLACK, format!("its road states at most {:.1} %", stated * 100.0))
+            }
+            None => (STEEPEST_DECK, format!("bridges have less than {:.0} %", STEEPEST_DECK * 100.0)),
+        };
         let steepest = bridge.level.steepest_over(base_m);
-        let Some((grade, from_m)) = steepest.filter(|(grade, _)| *grade > STEEPEST_DECK) else { continue };
-        worst.add(context.origin(bridge.feature), grade, || {
+        let Some((grade, from_m)) = steepest.filter(|(grade, _)| *grade > most) else { continue };
+        worst.add(context.origin(bridge.feature), grade - most, || {
             format!(
                 "{} is {:.0} % steep over the {base_m:.0} m from station {from_m:.0} m at {}: its deck runs from {:.1} m to \
-                 {:.1} m; bridges have less than {:.0} %",
+                 {:.1} m; {whose}",
                 context.name(bridge.feature),
                 grade * 100.0,
                 place(context.scene, bridge.line.at(from_m)),
                 bridge.level.at(first),
-                bridge.level.at(last),
-                STEEPEST_DECK * 100.0
+                bridge.level.at(last)
             )
         });
     }
-    let help =
-        "let it begin and end where the ground is as high, or state the level of a [[bridge]] with `deck`";
+    let help = "let it begin and end where the ground is as high, state the level of a [[bridge]] with `deck`, or allow its \
+                road a higher `max_grade`";
     worst.report(context, FindingCode::BridgeSteep, help, sink);
 }
 

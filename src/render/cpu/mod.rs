@@ -120,7 +120,7 @@ pub fn render(
     check_memory(bytes_of(list, camera), "the picture", "draw a smaller one")?;
     let screen = Screen::new(camera);
     let geometry = geometry(list, &screen)?;
-    let shadows = Shadows::new(list, camera);
+    let shadows = Shadows::new(list, camera)?;
     let shader = Shader::new(list, &screen, &shadows, quality.anisotropy.clamp(1, 16));
     Ok(match quality.samples {
         SampleCount::One => draw(&screen, &geometry, &shader, &ONE, true),
@@ -129,12 +129,16 @@ pub fn render(
     })
 }
 
-/// About how much memory the picture of a list takes: see the module.
+/// About how much memory the picture of a list takes but for its shadow maps, which ask for their own: see the module.
 fn bytes_of(list: &DrawList, camera: &Camera) -> u64 {
     const PER_PIXEL: u64 = 12;
     const PER_TRIANGLE: u64 = 150;
     let (width, height) = camera.size();
-    u64::from(width) * u64::from(height) * PER_PIXEL + list.triangle_count() as u64 * PER_TRIANGLE
+    // Coarser levels of a texture are a third of its four bytes a pixel.
+    let texels: usize = list.textures.iter().map(|texture| texture.data().len()).sum();
+    u64::from(width) * u64::from(height) * PER_PIXEL
+        + list.triangle_count() as u64 * PER_TRIANGLE
+        + texels as u64 * 4 / 3
 }
 
 /// The depths and features of [`render`], to the bit, without light, shadows and colors: the pixels are white.

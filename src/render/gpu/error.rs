@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::draw::list::DrawListError;
+use crate::limits::memory::MemoryRefused;
 use crate::render::gpu::adapter::GpuApi;
 
 /// Why the GPU renderer gives no picture. In every case but an unsound list, the CPU renderer can draw it.
@@ -16,6 +17,9 @@ pub enum GpuError {
     NoAdapter(Vec<(GpuApi, DriverError)>),
     #[error("the draw list is unsound: {0}")]
     List(#[from] DrawListError),
+    /// There is not the memory for the shadow maps, which the processor makes.
+    #[error(transparent)]
+    Memory(#[from] MemoryRefused),
     #[error("{what} exceed the {limit} {unit} that {adapter} holds; use less detail or --backend cpu")]
     TooLarge {
         what: String,

@@ -68,7 +68,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
     list.check()?;
     let places = TexturePlaces::new(list, TextureScope::Items, &gpu.limits);
     let plan = Plan::new(list, &places, |_| true);
-    let shadows = Shadows::new(list, camera);
+    let shadows = Shadows::new(list, camera)?;
     let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
     let parts = ShaderParts::of_picture(list.ground.as_deref(), &list.lighting, has_shadows);
     let (layouts, color, feature) = gpu.guarded("building its shaders", || {

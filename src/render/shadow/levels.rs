@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::draw::list::DrawList;
+use crate::limits::memory::{MemoryRefused, check_memory};
 use crate::render::shadow::casters::{LightBox, LightTriangles, ListTriangles};
 use crate::render::shadow::fill::Filling;
 use crate::render::shadow::{
@@ -19,6 +20,12 @@ const MOST_DOUBLINGS: u32 = 24;
 
 /// Pages are stored for what lies this many texels from a solid, as far as filters read.
 const PAGE_MARGIN: f32 = MOST_RADIUS + 1.0;
+
+/// Bytes of a texel while its level is drawn: twice what is kept, in rows and joined, and the height of an underside.
+const BYTES_PER_TEXEL: u64 = 28;
+
+/// Bytes of a triangle of the ground along the light.
+const BYTES_PER_TRIANGLE: u64 = 60;
 
 /// A range of pages in both directions, its end excluded.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +46,10 @@ pub struct MapSource<'a> {
 
 impl ShadowMap {
     /// The map with texels of up to `texel_px` pixels; `None` where no shadow is seen.
-    pub fn new(source: &MapSource, texel_px: f32) -> Option<Self> {
+    ///
+    /// # Errors
+    /// There is not the memory for it.
+    pub fn new(source: &MapSource, texel_px: f32) -> Result<Option<Self>, MemoryRefused> {
         let (camera, axes) = (source.camera, &source.axes);
         let solids = LightTriangles::new(&source.triangles.solids, axes, None);
         // By meter of depth; with parallel rays at any depth, and there is one level.
@@ -49,11 +59,14 @@ impl ShadowMap {
                 LevelScale { texel_per_depth: pixel * texel_px * (1u32 << doubling) as f32, least: 0 };
             plan(source, &solids, scale)
         });
-        let (scale, levels, pages) = planned?;
+        let Some((scale, levels, pages)) = planned else { return Ok(None) };
         let stored = pages.iter().filter(|page| page.number > 0).count();
         if stored == 0 {
-            return None;
+            return Ok(None);
         }
+        let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL
+            + source.triangles.ground.len() as u64 * BYTES_PER_TRIANGLE;
+        check_memory(bytes, "the shadow map", "draw a smaller picture, or fewer solids")?;
         let mut map = Self {
             eye: camera.eye(),
             forward: camera.forward(),
@@ -71,7 +84,7 @@ impl ShadowMap {
             map.texels.extend(filling.texels(&mut map.pages[range.clone()]));
             level.spread_highest(&mut map.pages[range]);
         }
-        Some(map)
+        Ok(Some(map))
     }
 }
 

@@ -29,7 +29,8 @@
 //!
 //! # Cost
 //! Nothing where a list has no solids. Else, for the time of drawing, 44 bytes per triangle of a solid or of the ground
-//! and 60 for each map; 8 bytes per stored texel, of which there are at most [`MOST_PAGES`] pages per map. A pixel costs
+//! and 60 for each map; 8 bytes per stored texel, and up to 20 more while it is drawn, of which there are at most
+//! [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
 mod casters;
@@ -42,6 +43,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::list::DrawList;
+use crate::limits::memory::MemoryRefused;
 use crate::render::shadow::casters::ListTriangles;
 use crate::render::shadow::levels::MapSource;
 use crate::view::camera::Camera;
@@ -155,16 +157,22 @@ pub struct Shadows {
 
 impl Shadows {
     /// The maps of a checked list for what `camera` sees.
-    pub fn new(list: &DrawList, camera: &Camera) -> Self {
+    ///
+    /// # Errors
+    /// There is not the memory for them.
+    pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
-        let Some(triangles) = ListTriangles::new(list, camera) else { return Self::default() };
+        let Some(triangles) = ListTriangles::new(list, camera) else { return Ok(Self::default()) };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);
             ShadowMap::new(&MapSource { list, camera, triangles: &triangles, axes, purpose }, texel_px)
         };
-        let sun = || (to_sun.z > 0.0).then(|| map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun)).flatten();
+        let sun = || match to_sun.z > 0.0 {
+            true => map(to_sun, SUN_TEXEL_PX, ShadowPurpose::Sun),
+            false => Ok(None),
+        };
         let (sun, sky) = rayon::join(sun, || map(Vec3::Z, SKY_TEXEL_PX, ShadowPurpose::Contact));
-        Self { sun, sky }
+        Ok(Self { sun: sun?, sky: sky? })
     }
 }
 
@@ -242,9 +250,13 @@ mod tests {
         Camera::new(eye, Vec3::ZERO, 0.8, (1920, 1080), (1.0, 200_000.0)).expect("sound")
     }
 
+    fn of(list: &DrawList, camera: &Camera) -> Shadows {
+        Shadows::new(list, camera).expect("memory")
+    }
+
     #[test]
     fn without_solids_there_is_no_map() {
-        let shadows = Shadows::new(&village(0), &looking(Vec3::new(0.0, -400.0, 200.0)));
+        let shadows = of(&village(0), &looking(Vec3::new(0.0, -400.0, 200.0)));
         assert!(shadows.sun.is_none() && shadows.sky.is_none());
     }
 
@@ -252,7 +264,7 @@ mod tests {
     fn a_village_in_a_wide_land_takes_a_few_pages_with_texels_fine_as_pixels() {
         for distance_m in [100.0, 1_000.0, 15_000.0] {
             let camera = looking(Vec3::new(0.0, -0.8, 0.6) * distance_m);
-            let sun = Shadows::new(&village(12), &camera).sun.expect("solids");
+            let sun = of(&village(12), &camera).sun.expect("solids");
             let depth_m = (Vec3::ZERO - camera.eye()).dot(camera.forward());
             let level = sun.levels[(sun.scale.exponent(depth_m) - sun.scale.least).max(0) as usize];
             let pixel_m = 1.0 / camera.pixels_per_meter(depth_m);
@@ -267,7 +279,7 @@ mod tests {
     fn a_roof_shades_what_lies_behind_it_from_the_sun_and_nothing_else() {
         let list = village(1);
         let camera = looking(Vec3::new(0.0, -80.0, 60.0));
-        let sun = Shadows::new(&list, &camera).sun.expect("a solid");
+        let sun = of(&list, &camera).sun.expect("a solid");
         let to_sun = list.lighting.to_sun;
         let under = Vec3::new(6.0, 6.0, 8.0) - to_sun * (8.0 / to_sun.z);
         let share = |at: Vec3| sun.sun(at, Vec3::Z, ShadowReceiver::Ground);
@@ -283,7 +295,7 @@ mod tests {
         for far in [1e9, 1e30, f32::MAX, f32::INFINITY, f32::NAN] {
             let mut list = village(1);
             add(&mut list, rectangle(Vec2::splat(-far), Vec2::splat(far), 500.0), DepthLayer::Solid);
-            let shadows = Shadows::new(&list, &looking(Vec3::new(0.0, -80.0, 60.0)));
+            let shadows = of(&list, &looking(Vec3::new(0.0, -80.0, 60.0)));
             let stored = shadows.sun.map_or(0, |map| map.texels.len()) / (PAGE * PAGE) as usize;
             assert!(stored <= MOST_PAGES, "{stored} pages at {far}");
         }

@@ -6,6 +6,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
@@ -60,13 +61,15 @@ pub fn conform(
         return Ok(());
     }
     let is_on_ground = |road: &Centerline| road.street.alignment.is_on_ground();
-    let meetings = meetings(roads, |road| is_on_ground(road) && conforms(&document.roads[road.table]));
+    let crosses = |road: &Centerline| is_on_ground(road) && conforms(&document.roads[road.table]);
+    let meetings = meetings(roads, crosses);
     if meetings.is_tangled {
         let note = format!(
             "conforming roads cross each other too often to find every place: they meet at their vertices only; for more \
              crossings {ROAD_CROSSINGS:#}, for more comparisons {ROAD_PAIRS:#}"
         );
-        collected.findings.add(FindingCode::Tangled, 0..0, note);
+        let place = longest_table(document, roads.iter().filter(|road| crosses(road)));
+        collected.findings.add(FindingCode::Tangled, place, note);
     }
     let survey = NetworkSurvey::of(document, lattice, roads, &rules, &meetings)?;
     let curve_m = CURVE_M.max(CURVE_CELLS * lattice.measured_cell().max_element());
@@ -81,6 +84,16 @@ pub fn conform(
     note_totals(document, roads, &routes, &volumes, collected);
     replace(roads, &routes);
     Ok(())
+}
+
+/// Where the table is stated that has the most vertices of `roads`; the first of equal ones.
+fn longest_table<'a>(document: &Document, roads: impl Iterator<Item = &'a Centerline>) -> Range<usize> {
+    let mut vertices: BTreeMap<usize, usize> = BTreeMap::new();
+    for road in roads {
+        *vertices.entry(road.table).or_default() += road.street.alignment.line.points().len();
+    }
+    let longest = vertices.into_iter().rev().max_by_key(|&(_, count)| count);
+    longest.map(|(table, _)| document.roads[table].source.span()).unwrap_or_default()
 }
 
 struct Earthworks<'a> {

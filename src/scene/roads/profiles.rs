@@ -36,6 +36,8 @@ pub struct BridgeProfile {
     pub level: Profile,
     /// What it carries.
     pub surface: RibbonSurface,
+    /// The steepest rise that its road states, meters per meter; `None` where it states none.
+    pub max_grade: Option<f64>,
 }
 
 impl RoadProfile {

@@ -57,6 +57,8 @@ pub struct RoadSpan {
     pub beyond: Continuations,
     /// The widest distance between piers that is stated, in meters, at least 1.
     pub pier_spacing_m: Option<f64>,
+    /// The steepest rise that its road states, meters per meter.
+    pub max_grade: Option<f64>,
     /// The road's name, or the one stated; may be empty.
     pub name: String,
     /// Why it is one.
@@ -104,6 +106,7 @@ fn road_span(
         road: None,
         beyond: Continuations::default(),
         pier_spacing_m: None,
+        max_grade: road.attributes.value(table.max_grade.stated()).map(|percent| percent / 100.0),
         name: collected.name(road.feature).to_owned(),
         origin: if is_tagged { SpanOrigin::Tag } else { SpanOrigin::Rule },
         place: road.attributes.origin(&table.source),
@@ -139,6 +142,7 @@ fn table_spans(
                 road: None,
                 beyond: Continuations::default(),
                 pier_spacing_m: bridge.pier_spacing.stated().copied(),
+                max_grade: None,
                 name: attributes.name(name),
                 origin: SpanOrigin::Table,
                 place: attributes.origin(&bridge.source),

@@ -35,7 +35,9 @@
 //!
 //! At a post all five answer that post's own height. None but the cubic overshoots: but for rounding, an answer lies between
 //! the lowest and the highest corner with a weight. The cubic may lie beyond its sixteen posts by 9/32 of what they differ,
-//! and runs through the posts of the ground: where that was made finer for narrow works, through the finer ones.
+//! and runs through the posts of the ground: where that was made finer for narrow works, through the finer ones. The cubic
+//! source is GDAL's (`gdalwarp -r cubic` to a finer grid, version 3.6.2): at 3,000 random places each of the elevation of the
+//! demo, in degrees, and of a model in UTM the two differ by at most 1.5e-9 m.
 //!
 //! **Where the model ends.** The ground, and the source's planar and distance-weighted surfaces, end at the outer posts,
 //! which belong to them. The source's nearest, bilinear and cubic reach half a sample further, to the outer edge of the outer

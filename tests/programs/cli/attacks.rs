@@ -9,9 +9,12 @@ use sandtable::archive;
 
 use crate::common::scratch::Scratch;
 
+/// An elevation file of nine samples a kilometer apart.
+const HILL: &str = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3 4 5 6 7 8 9\n";
+
 /// Runs the program where no more than `megabytes` of address space may be had, and returns its exit code and what it says.
 #[cfg(target_os = "linux")]
-fn run_within(megabytes: u32, scratch: &Scratch, arguments: &[&str]) -> (Option<i32>, String) {
+pub(super) fn run_within(megabytes: u32, scratch: &Scratch, arguments: &[&str]) -> (Option<i32>, String) {
     let limited = format!("ulimit -v {} && exec \"$0\" \"$@\"", megabytes * 1024);
     let output = Command::new("sh")
         .args(["-c", &limited, env!("CARGO_BIN_EXE_sandtable")])
@@ -42,6 +45,20 @@ fn a_packed_file_is_unpacked_no_further_than_its_head_promises() {
     member.resize(200 << 20, b' ');
     scratch.write("bomb.zip", archive::zip(&[("a.asc", &member)]).expect("memory"));
     scratch.write("bomb.hgt.gz", gzipped(b"", 600 << 20));
+    let mut document = b"<?xml version=\"1.0\"?><kml><Document>".to_vec();
+    document.resize(200 << 20, b' ');
+    scratch.write("bomb.kmz", archive::zip(&[("doc.kml", &document)]).expect("memory"));
+    scratch.write("hill.asc", HILL);
+    scratch.write(
+        "bomb.toml",
+        "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\n[[road]]\nfile = \"bomb.kmz\"\n",
+    );
+    let (code, text) = run_within(400, &scratch, &["check", "bomb.toml"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains("bomb.toml:5:8: error[unreadable-file]") && text.contains("unpacks to more than"),
+        "{text}"
+    );
     for (name, said) in [
         ("bomb.bt.gz", "it does not start with 'binterr1.'"),
         ("bomb.asc.gz", "unpacks to more than"),
@@ -71,7 +88,7 @@ fn tiff_of(data: &[u8], entries: &[(u16, u16, u32, u32)]) -> Vec<u8> {
 }
 
 /// A TIFF of so many 32-bit floats a side in tiles of 512, none of which was ever written.
-fn sparse_tiff(side: u32) -> Vec<u8> {
+pub(super) fn sparse_tiff(side: u32) -> Vec<u8> {
     let tiles = side.div_ceil(512).pow(2);
     let after = 8 + 11 * 12 + 6;
     let entries = [
@@ -90,39 +107,6 @@ fn sparse_tiff(side: u32) -> Vec<u8> {
     let mut file = tiff_of(b"", &entries);
     file.resize(after as usize + 4 * tiles as usize, 0);
     file
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn what_memory_does_not_hold_is_refused_with_its_size() {
-    let scratch = Scratch::new();
-    scratch.write("large.tif", sparse_tiff(16_000));
-    let (code, text) =
-        run_within(1000, &scratch, &["mesh", "large.tif", "--max-error", "1", "-o", "large.obj"]);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("the raster needs about 2048 MB") && text.contains("cut or coarsen it"), "{text}");
-    let scene = crate::cli::project("scenes/road.toml");
-    let large = ["render", scene.as_str(), "--size", "16384x16384", "-o", "large.png"];
-    let (code, text) = run_within(1000, &scratch, &large);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(
-        text.contains("the picture needs about 3")
-            && text.contains(" MB of memory")
-            && text.contains("draw a smaller one"),
-        "{text}"
-    );
-    assert_eq!(scratch.names(), ["large.tif"]);
-}
-
-#[test]
-#[cfg(target_os = "linux")]
-fn small_questions_are_answered_in_little_memory() {
-    let scratch = Scratch::new();
-    let dem = crate::cli::project("assets/jacksboro/dem.tif");
-    for arguments in [&["dem", "info", &dem][..], &["height", &dem, "--at", "750000,4018000"]] {
-        let (code, text) = run_within(100, &scratch, arguments);
-        assert_eq!((code, text.as_str()), (Some(0), ""), "{arguments:?}");
-    }
 }
 
 /// A TIFF of two by two bytes whose GeoKey directory claims `count` numbers.
@@ -156,8 +140,7 @@ fn a_tag_that_claims_more_than_the_file_reserves_nothing() {
 #[test]
 fn a_road_thinner_than_any_is_refused_at_its_place() {
     let scratch = Scratch::new();
-    let hill = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3 4 5 6 7 8 9\n";
-    scratch.write("hill.asc", hill);
+    scratch.write("hill.asc", HILL);
     let scene = "[terrain]\ndem = \"hill.asc\"\ncrs = \"EPSG:32616\"\n[[road]]\nwidth = 1e-9\nprofile = \"conform\"\n\
                  points = [[100, 1500], [2900, 1500]]\n";
     scratch.write("thin.toml", scene);
@@ -169,8 +152,7 @@ fn a_road_thinner_than_any_is_refused_at_its_place() {
 #[cfg(target_os = "linux")]
 fn a_ring_that_crosses_itself_a_million_times_is_refused_by_name() {
     let scratch = Scratch::new();
-    let hill = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1000\n1 2 3 4 5 6 7 8 9\n";
-    scratch.write("hill.asc", hill);
+    scratch.write("hill.asc", HILL);
     let count = 2001;
     let vertex = |index: usize| {
         let angle = (index * 1000 % count) as f64 / count as f64 * std::f64::consts::TAU;

@@ -98,3 +98,46 @@ fn every_code_is_explained_and_an_unknown_one_is_refused_with_what_was_meant() {
     }
     assert!(run(&["explain", "axis-swaped"]).failed(2).contains("did you mean 'axes-swapped'?"));
 }
+
+/// Lines that cross each other `count` × `count` times, as points of the scene file.
+fn web(count: u32) -> String {
+    let line = |index: u32| {
+        let [near, far, at] = [0, 10 * (count + 1), 10 * (index / 2 + 1)];
+        let ends = if index.is_multiple_of(2) { [[near, at], [far, at]] } else { [[at, near], [at, far]] };
+        let [from, to] = ends.map(|[east, north]| [750_400 + east, 4_018_800 + north]);
+        // As wide as it takes for the ground to need no more posts.
+        format!("[[road]]\nprofile = \"conform\"\npoints = [{from:?}, {to:?}]\nwidth = 400\n")
+    };
+    (0..2 * count).map(line).collect()
+}
+
+#[test]
+fn what_exceeds_a_limit_is_found_on_the_line_of_its_table() {
+    let at = |east: u32| {
+        format!("[[symbol]]\nsidc = \"10031000001211000000\"\nat = [{}, 4018900]\n", 750_400 + east)
+    };
+    for (limit, features, code, line, wanted) in [
+        (
+            "scene-symbols=2",
+            (0..5).map(|index| at(40 * index)).collect(),
+            "too-many",
+            12,
+            "3 symbols beyond the first 2",
+        ),
+        ("road-crossings=5", web(3), "tangled", 6, "--limit road-crossings=…"),
+        ("road-pairs=5", format!("{UNUSED}{}", web(3)), "tangled", 8, "--limit road-pairs=…"),
+    ] {
+        let scratch = scene(&features);
+        let ran = run_in(&scratch.at("project"), &["check", "scenes/a.toml", "--json", "--limit", limit]);
+        assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{ran:?}");
+        let found: Value = serde_json::from_str(&ran.out).expect("JSON");
+        let findings = found["findings"].as_array().expect("a list");
+        let finding = findings.iter().find(|finding| finding["code"] == code);
+        let finding = finding.unwrap_or_else(|| panic!("{code}: {}", ran.out));
+        assert_eq!(finding["line"], line, "{}", ran.out);
+        assert!(finding["message"].as_str().expect("text").contains(wanted), "{}", ran.out);
+        // Within the limits as they are, there is no such finding.
+        let whole = json(&scratch, 0);
+        assert_eq!(whole["codes"][code], Value::Null, "{whole}");
+    }
+}

@@ -2,8 +2,10 @@
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use sandtable::archive;
 use std::io::Write;
 
+use crate::cli::attacks::sparse_tiff;
 use crate::cli::{Ran, project, run, run_in};
 use crate::common::scratch::Scratch;
 
@@ -123,6 +125,28 @@ fn a_packed_file_is_unpacked_as_far_as_its_limit_says() {
         "{said}"
     );
     assert_eq!(with_limit(&scratch, info, "unpacked-raster-bytes=1k").code, 0);
+}
+
+#[test]
+fn files_that_exceed_a_limit_of_their_format_name_it() {
+    let scratch = Scratch::new();
+    let points = |count: u32| (0..count).flat_map(move |y| (0..count).map(move |x| format!("{x} {y} 7\n")));
+    scratch.write("grid.xyz", points(4).collect::<String>());
+    scratch.write("large.tif", sparse_tiff(2048));
+    let header = "ncols 2\nnrows 2\nnbits 16\nbyteorder I\nulxmap 0\nulymap 9\nxdim 1\nydim 1\n";
+    scratch
+        .write("a.zip", archive::zip(&[("a.bil", &[1; 8]), ("a.hdr", header.as_bytes())]).expect("memory"));
+    for (limit, command) in [
+        ("raster-samples=15", &["dem", "info", "grid.xyz"][..]),
+        // Too large to be read whole, it is read in blocks.
+        ("block-samples=1000", &["height", "large.tif", "--at", "10,10", "--limit", "raster-samples=2M"]),
+        ("companion-bytes=20", &["dem", "info", "a.zip"]),
+    ] {
+        let name = limit.split('=').next().expect("a name");
+        let said = with_limit(&scratch, command, limit).failed(1);
+        assert!(said.contains(&format!("raise it with `--limit {name}=…`")), "{limit}: {said}");
+        run_in(scratch.folder(), command).ok();
+    }
 }
 
 #[test]

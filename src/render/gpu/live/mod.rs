@@ -173,10 +173,10 @@ impl LiveShadows {
     /// The maps for what `camera` sees of a list with its ground; takes some ten milliseconds, on any thread.
     ///
     /// # Errors
-    /// [`GpuError::List`] where the list is unsound.
+    /// [`GpuError::List`] where the list is unsound, [`GpuError::Memory`] where there is not the memory for them.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
         list.check()?;
-        Ok(Self(Shadows::new(list, camera)))
+        Ok(Self(Shadows::new(list, camera)?))
     }
 }
 

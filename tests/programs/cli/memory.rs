@@ -1,0 +1,94 @@
+//! Little memory: a command ends well or says what it lacks, and no signal ends it.
+
+use crate::cli::attacks::{run_within, sparse_tiff};
+use crate::common::scratch::Scratch;
+
+#[test]
+fn what_memory_does_not_hold_is_refused_with_its_size() {
+    let scratch = Scratch::new();
+    scratch.write("large.tif", sparse_tiff(16_000));
+    let (code, text) =
+        run_within(1000, &scratch, &["mesh", "large.tif", "--max-error", "1", "-o", "large.obj"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("the raster needs about 2048 MB") && text.contains("cut or coarsen it"), "{text}");
+    let scene = crate::cli::project("scenes/road.toml");
+    let large = ["render", scene.as_str(), "--size", "16384x16384", "-o", "large.png"];
+    let (code, text) = run_within(1000, &scratch, &large);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(
+        text.contains("the picture needs about 3")
+            && text.contains(" MB of memory")
+            && text.contains("draw a smaller one"),
+        "{text}"
+    );
+    assert_eq!(scratch.names(), ["large.tif"]);
+}
+
+#[test]
+fn small_questions_are_answered_in_little_memory() {
+    let scratch = Scratch::new();
+    let dem = crate::cli::project("assets/jacksboro/dem.tif");
+    for arguments in [&["dem", "info", &dem][..], &["height", &dem, "--at", "750000,4018000"]] {
+        let (code, text) = run_within(100, &scratch, arguments);
+        assert_eq!((code, text.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+}
+
+/// Limits in megabytes: close together where a program only just starts, and far apart where everything fits.
+fn ladder() -> impl Iterator<Item = u32> {
+    (60..180).step_by(10).chain([200, 230, 260, 300, 400, 600])
+}
+
+#[test]
+fn under_any_limit_a_command_succeeds_or_says_how_much_it_needs() {
+    let scratch = Scratch::new();
+    let [dem, scene, road] =
+        ["assets/jacksboro/dem.tif", "scenes/jacksboro.toml", "scenes/road.toml"].map(crate::cli::project);
+    let commands = [
+        &["check", &scene][..],
+        &["render", &scene, "--size", "320x180", "-o", "out.png"],
+        &["render", &road, "--size", "320x180", "--threads", "64", "-o", "out.png"],
+        &["height", &dem, "--at", "750000,4018000"],
+        &["dem", "info", &dem],
+    ];
+    // The system itself ends a program that it cannot load.
+    let starts = |megabytes: &u32| run_within(*megabytes, &scratch, &["--version"]).0 == Some(0);
+    let limits: Vec<u32> = ladder().filter(starts).collect();
+    assert!(limits.first().is_some_and(|&least| least <= 150), "{limits:?}");
+    for command in commands {
+        let mut least = None;
+        for &megabytes in &limits {
+            let (code, said) = run_within(megabytes, &scratch, command);
+            match code {
+                Some(0) => least = least.or(Some(megabytes)),
+                _ => {
+                    assert_eq!(code, Some(1), "{megabytes} MB: {command:?}: {said}");
+                    assert!(
+                        said.contains(" MB of ") || said.contains("no thread can be started"),
+                        "{megabytes} MB: {said}"
+                    );
+                    assert_eq!(least, None, "{megabytes} MB: {command:?} succeeds with less: {said}");
+                }
+            }
+        }
+        assert!(least.is_some_and(|least| least <= 350), "{command:?}: {least:?}");
+    }
+    assert_eq!(scratch.names(), ["out.png"]);
+}
+
+#[test]
+fn few_threads_under_a_limit_draw_the_same_picture() {
+    let scratch = Scratch::new();
+    let scene = crate::cli::project("scenes/labels.toml");
+    let draw = |name: &str| {
+        let line = ["render", &scene, "--size", "320x180", "--threads", "64", "-o", name];
+        line.map(str::to_owned)
+    };
+    crate::cli::run_in(scratch.folder(), &draw("free.png")).ok();
+    let limited = draw("limited.png");
+    let (code, said) = run_within(300, &scratch, &limited.each_ref().map(String::as_str));
+    assert_eq!(code, Some(0), "{said}");
+    let [free, limited] =
+        ["free.png", "limited.png"].map(|name| std::fs::read(scratch.at(name)).expect("written"));
+    assert!(free == limited);
+}
