@@ -33,8 +33,15 @@ fn floor_of(command: &Command) -> Option<u64> {
     match command {
         Command::Explain(_) | Command::Schema | Command::Licenses => None,
         Command::Export(_) => Some(125),
-        Command::Render(_) | Command::View(_) | Command::Pick(_) | Command::Fly(_) => Some(75),
-        Command::Check(_) | Command::Report(_) | Command::New(_) | Command::Serve(_) => Some(50),
+        Command::Render(_) | Command::View(_) | Command::Pick(_) | Command::Fly(_) | Command::Work(_) => {
+            Some(75)
+        }
+        Command::Check(_)
+        | Command::Report(_)
+        | Command::New(_)
+        | Command::Serve(_)
+        | Command::Plan { .. }
+        | Command::Gather(_) => Some(50),
         Command::Dem { command: DemCommand::Info(_) | DemCommand::Convert(_) | DemCommand::Grid(_) }
         | Command::Model { .. }
         | Command::Height(_)
