@@ -26,28 +26,29 @@ const ARENA: u64 = 128 * MIB;
 /// The threads besides those that compute: the first one, and one that waits for signals.
 const OTHER_THREADS: u64 = 2;
 
-/// What a command needs beside the program itself and its threads, in MiB. Measured with the demo, as the least limit under
-/// which a command succeeds, less that of `--version`: 4 to ask for heights, 42 to check its scene, 62 to draw 320 × 180 pixels
-/// of it, 104 to export it. Rounded up by a fifth: other scenes have other small lists. A service has threads of its own.
+/// What a command needs beside the program itself and its threads, in MiB; `None` where it needs hardly anything.
+///
+/// Measured as the least limit under which a command succeeds, less that of `--version`, with the demo: 4 for heights, 16 for a
+/// chart, 39 for a viewshed, 42 to check the scene, 62 to draw 320 × 180 pixels, 98 to draw frames of a flight, 104 to 124 to
+/// export it, 222 as a page. Rounded up by a tenth or more: other scenes have other small lists. A service has threads of its own.
 fn floor_of(command: &Command) -> Option<u64> {
     match command {
         Command::Explain(_) | Command::Schema | Command::Licenses => None,
-        Command::Export(_) => Some(125),
-        Command::Render(_) | Command::View(_) | Command::Pick(_) | Command::Fly(_) | Command::Work(_) => {
-            Some(75)
-        }
+        Command::Export(arguments) if arguments.is_page() => Some(245),
+        Command::Export(_) => Some(140),
+        Command::Fly(_) => Some(110),
+        Command::Render(_) | Command::View(_) | Command::Pick(_) | Command::Work(_) => Some(75),
         Command::Check(_)
         | Command::Report(_)
         | Command::New(_)
         | Command::Serve(_)
+        | Command::Viewshed(_)
         | Command::Plan { .. }
         | Command::Gather(_) => Some(50),
+        Command::Profile(_) | Command::Los(_) => Some(25),
         Command::Dem { command: DemCommand::Info(_) | DemCommand::Convert(_) | DemCommand::Grid(_) }
         | Command::Model { .. }
         | Command::Height(_)
-        | Command::Profile(_)
-        | Command::Los(_)
-        | Command::Viewshed(_)
         | Command::Mesh(_)
         | Command::Lod(_) => Some(12),
     }

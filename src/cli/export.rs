@@ -52,6 +52,13 @@ pub struct ExportArguments {
     pub bed: Option<f64>,
 }
 
+impl ExportArguments {
+    /// Whether the scene is written as a page for browsers.
+    pub fn is_page(&self) -> bool {
+        self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html"))
+    }
+}
+
 /// What a file is exported as.
 #[derive(Clone, Copy, Debug)]
 enum ExportKind {

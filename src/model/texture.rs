@@ -122,8 +122,7 @@ impl<'a> Textures<'a> {
         let colors = color.and_then(|id| self.pixels.get(id.0 as usize));
         let size = colors.unwrap_or(mask);
         let (width, height) = (size.width(), size.height());
-        if u64::from(width) * u64::from(height) > self.pixels_left {
-            let error = TextureError::TooManyPixels;
+        if let Err(error) = check_pixels(width, height, self.pixels_left) {
             self.notes.push(format!("an opacity map of {width} × {height} pixels is not drawn: {error}"));
             return color;
         }
@@ -172,6 +171,15 @@ fn lower_extension(file: &str) -> String {
     }
 }
 
+/// Checks that a texture of this size may be made and can be held.
+fn check_pixels(width: u32, height: u32, pixels_left: u64) -> Result<(), TextureError> {
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > pixels_left {
+        return Err(TextureError::TooManyPixels);
+    }
+    Ok(check_memory(pixels * BYTES_PER_PIXEL, "the texture", "shrink it")?)
+}
+
 fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureError> {
     // A TGA file has no signature.
     let is_tga = || ImageFormat::from_path(name).is_ok_and(|format| format == ImageFormat::Tga);
@@ -193,10 +201,7 @@ fn decode(name: &str, bytes: &[u8], pixels_left: u64) -> Result<Pixels, TextureE
     if !(1..=side).contains(&width) || !(1..=side).contains(&height) {
         return Err(TextureError::Size { width, height });
     }
-    if u64::from(width) * u64::from(height) > pixels_left {
-        return Err(TextureError::TooManyPixels);
-    }
-    check_memory(u64::from(width) * u64::from(height) * BYTES_PER_PIXEL, "the texture", "shrink it")?;
+    check_pixels(width, height, pixels_left)?;
     let data = reader().decode()?.into_rgba8().pixels().map(|pixel| Srgba(pixel.0)).collect();
     Pixels::from_data(width, height, data).ok_or(TextureError::Size { width, height })
 }

@@ -83,12 +83,21 @@ impl LightBox {
 }
 
 impl ListTriangles {
+    /// The memory that the triangles of a checked list take, with those along the lights of two maps; 0 where no solid casts.
+    pub fn bytes_of(list: &DrawList) -> u64 {
+        const COLLECTED: u64 = 2;
+        const BYTES: u64 = COLLECTED * (size_of::<CasterTriangle>() + 2 * LightTriangles::BYTES) as u64;
+        if !list.items.iter().any(|item| is_caster(list, item)) {
+            return 0;
+        }
+        let counted =
+            list.items.iter().filter(|item| item.layer == DepthLayer::Ground || is_caster(list, item));
+        counted.map(|item| item.triangles.len() as u64).sum::<u64>() * BYTES
+    }
+
     /// What casts in a checked list; `None` where no solid does or nothing is seen.
     pub fn new(list: &DrawList, camera: &Camera) -> Option<Self> {
-        let is_caster = |item: &DrawItem| {
-            let alpha = list.materials[item.material.0 as usize].alpha;
-            item.layer == DepthLayer::Solid && alpha != AlphaMode::Blend && !item.triangles.is_empty()
-        };
+        let is_caster = |item: &DrawItem| is_caster(list, item);
         let first = list.items.partition_point(|item| item.layer < DepthLayer::Solid);
         if !list.items[first..].iter().any(is_caster) {
             return None;
@@ -108,7 +117,16 @@ impl ListTriangles {
     }
 }
 
+/// Whether an item of a checked list casts a shadow.
+fn is_caster(list: &DrawList, item: &DrawItem) -> bool {
+    let alpha = list.materials[item.material.0 as usize].alpha;
+    item.layer == DepthLayer::Solid && alpha != AlphaMode::Blend && !item.triangles.is_empty()
+}
+
 impl LightTriangles {
+    /// The bytes of a triangle.
+    const BYTES: usize = size_of::<(CasterTriangle, LightBox)>();
+
     /// `triangles` along `axes`, those of them whose box meets `within`.
     pub fn new(triangles: &[CasterTriangle], axes: &LightAxes, within: Option<LightBox>) -> Self {
         let turned = |triangle: &CasterTriangle| {

@@ -24,9 +24,6 @@ const PAGE_MARGIN: f32 = MOST_RADIUS + 1.0;
 /// Bytes of a texel while its level is drawn: twice what is kept, in rows and joined, and the height of an underside.
 const BYTES_PER_TEXEL: u64 = 28;
 
-/// Bytes of a triangle of the ground along the light.
-const BYTES_PER_TRIANGLE: u64 = 60;
-
 /// A range of pages in both directions, its end excluded.
 #[derive(Clone, Copy, Debug)]
 pub struct PageRange {
@@ -64,9 +61,9 @@ impl ShadowMap {
         if stored == 0 {
             return Ok(None);
         }
-        let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL
-            + source.triangles.ground.len() as u64 * BYTES_PER_TRIANGLE;
-        check_memory(bytes, "the shadow map", "draw a smaller picture, or fewer solids")?;
+        let bytes = stored as u64 * u64::from(PAGE * PAGE) * BYTES_PER_TEXEL;
+        // The other map is made at the same time.
+        check_memory(2 * bytes, "the shadow maps", "draw a smaller picture, or fewer solids")?;
         let mut map = Self {
             eye: camera.eye(),
             forward: camera.forward(),

@@ -29,7 +29,7 @@
 //!
 //! # Cost
 //! Nothing where a list has no solids. Else, for the time of drawing, 44 bytes per triangle of a solid or of the ground
-//! and 60 for each map; 8 bytes per stored texel, and up to 20 more while it is drawn, of which there are at most
+//! and 60 for each map, twice that while they are collected; 8 bytes per stored texel, and up to 20 more while it is drawn, of which there are at most
 //! [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
@@ -43,7 +43,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 use crate::draw::list::DrawList;
-use crate::limits::memory::MemoryRefused;
+use crate::limits::memory::{MemoryRefused, check_memory};
 use crate::render::shadow::casters::ListTriangles;
 use crate::render::shadow::levels::MapSource;
 use crate::view::camera::Camera;
@@ -162,6 +162,7 @@ impl Shadows {
     /// There is not the memory for them.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
+        check_memory(ListTriangles::bytes_of(list), "the shadows", "draw fewer or coarser solids")?;
         let Some(triangles) = ListTriangles::new(list, camera) else { return Ok(Self::default()) };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);

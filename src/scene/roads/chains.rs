@@ -138,6 +138,7 @@ mod tests {
             road: None,
             beyond: Continuations::default(),
             pier_spacing_m: None,
+            max_grade: None,
             name: String::new(),
             origin: SpanOrigin::Tag,
             place: FeatureOrigin::default(),
