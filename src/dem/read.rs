@@ -263,14 +263,14 @@ fn with_stated_datum(raster: Raster, hints: &DemHints) -> Raster {
 }
 
 /// Windows of a file of which the caller states more than the file does.
-struct StatedWindows {
-    windows: Box<dyn Windows + Send>,
+struct StatedWindows<W> {
+    windows: W,
     header: Raster,
     /// A value for no data, besides the file's.
     nodata: Option<f64>,
 }
 
-impl Windows for StatedWindows {
+impl<W: Windows + Send> Windows for StatedWindows<W> {
     fn metadata(&self) -> &Raster {
         &self.header
     }
@@ -281,6 +281,13 @@ impl Windows for StatedWindows {
             samples.clear(nodata);
         }
         Ok(samples)
+    }
+
+    fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
+        let (held, windows) = self.windows.overview(step)?;
+        let vertical_datum = self.header.vertical_datum.clone();
+        let header = Raster { vertical_datum, ..windows.metadata().without_samples() };
+        Some((held, Box::new(StatedWindows { windows, header, nodata: self.nodata })))
     }
 
     fn announce(&mut self, windows: &[RasterWindow]) {

@@ -157,6 +157,12 @@ pub trait Windows {
         Ok(())
     }
 
+    /// The same ground with samples further apart, where the file holds it so: the coarsest of which one sample stands for no
+    /// more than `step` by `step` of these, and how many a side it stands for, a power of two.
+    fn overview(&self, _step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
+        None
+    }
+
     /// Announces windows that are read next, so that they can be read together: on all threads, what they share once.
     /// Has no effect on what they hold; errors wait for the reading.
     fn announce(&mut self, _windows: &[RasterWindow]) {}
@@ -189,6 +195,10 @@ impl<W: Windows + ?Sized> Windows for Box<W> {
 
     fn read(&mut self, window: RasterWindow, out: &mut Vec<f32>) -> Result<(), DemErrorKind> {
         (**self).read(window, out)
+    }
+
+    fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
+        (**self).overview(step)
     }
 
     fn announce(&mut self, windows: &[RasterWindow]) {

@@ -127,6 +127,9 @@ finding_codes! {
     BorderCut = "border-cut", Note,
         "The elevation model was warped to the scene's system, and the wedges without data along its border were cut off. \
          `extent` under `[terrain]` names another part.";
+    ElevationReduced = "elevation-reduced", Warning,
+        "The elevation model has more samples than a scene holds, so that each of its heights is the mean of several, and the \
+         picture is that of a coarser model. `extent` under `[terrain]` names a part, which is taken in full.";
     PostsAdded = "posts-added", Note,
         "More posts were put between those of the elevation model, for what is finer than its cells. The ground stays as it was.";
     TooFine = "too-fine", Note,

@@ -46,6 +46,9 @@ limits! {
         RASTER_SAMPLES = 16_385 * 16_385 => POSTS, "samples",
             "of a raster in memory, 16,385 a side: a gigabyte of 32-bit floats, larger than any terrain that fits a scene",
             "cut or coarsen it, or name an `extent`";
+        REDUCED_SAMPLES = 1 << 24 => POSTS, "samples",
+            "that pictures show of an elevation model with more than a raster in memory has: means of squares of its samples",
+            "name an `extent`";
         TILE_SAMPLES = 2 * 16_385 * 16_385 => To(1 << 31), "samples",
             "of all tiles that are joined, which overlap",
             "join fewer tiles";

@@ -176,6 +176,24 @@ impl Assets {
         Ok((bytes, file))
     }
 
+    /// The names of the files in the folder that the scene calls `name`, after that name, in alphabetical order; `None` where
+    /// that is no folder.
+    ///
+    /// # Errors
+    /// [`AssetError`], also where the folder holds more than 10,000 names.
+    pub fn folder(&self, name: &str) -> Result<Option<Vec<String>>, AssetError> {
+        let path = self.resolve(name)?;
+        if !path.is_dir() {
+            return Ok(None);
+        }
+        let names = names_in(&path);
+        if names.len() >= MAX_NAMES {
+            return Err(AssetError::NotAFile { resolved: path, kind: "a folder of 10,000 names or more" });
+        }
+        let inside = name.trim_end_matches(['/', '\\']);
+        Ok(Some(names.into_iter().map(|file| format!("{inside}/{file}")).collect()))
+    }
+
     /// The files read so far, links followed, in alphabetical order: what no output may be written over.
     pub fn files_read(&self) -> Vec<PathBuf> {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()

@@ -55,7 +55,7 @@ use crate::terrain::triangle_surface::SurfaceTriangle;
 /// # Errors
 /// The first file that cannot be read or table that does not fit, at its place in the scene file.
 pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
-    let loaded = ground::load(document, assets)?;
+    let loaded = ground::load(document, assets, false)?;
     let mut lattice = loaded.lattice;
     let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, lattice.origin());
     let sources = Sources::new(&frame, assets);
@@ -78,7 +78,7 @@ pub fn build(
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, Diagnostic> {
     progress("reading elevation");
-    let loaded = ground::load(document, assets)?;
+    let loaded = ground::load(document, assets, true)?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
     let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.origin());
 

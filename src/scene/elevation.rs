@@ -3,6 +3,7 @@
 //! ```text
 //! files without an extent, or small ──► read whole, tiles joined
 //! large files with an extent        ──► opened by their headers ──► the system of the ground ──► the window around the extent
+//! files too large for the memory    ──► opened by their headers ──► means of squares of samples, for pictures
 //! ```
 
 use std::cell::RefCell;
@@ -17,6 +18,7 @@ use crate::dem::mosaic::Tiles;
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, StatedElevation};
+use crate::dem::reduced::reduced;
 use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::warp::metric_crs::{metric_crs, off_scale};
 use crate::dem::warp::metric_windows::MetricSystem;
@@ -27,7 +29,7 @@ use crate::description::finding_code::FindingCode;
 use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-use crate::limits::RASTER_SAMPLES;
+use crate::limits::{RASTER_SAMPLES, REDUCED_SAMPLES};
 use crate::message::suggest::quoted;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::overridden_crs::OverriddenCrs;
@@ -35,6 +37,9 @@ use crate::scene::scene_findings::SceneFindings;
 
 /// Samples beside an extent that are read of large files, so that voids on its border are known to end.
 const MARGIN: u32 = 512;
+
+/// Samples beside an extent that warping reads.
+pub(super) const BESIDE: u32 = 4;
 
 /// Bytes of decoded samples that are kept of a file that is read in windows.
 const CACHE_BYTES: usize = 64 << 20;
@@ -63,20 +68,25 @@ pub(super) struct ExtentRects {
 }
 
 impl ReadElevation {
-    /// Reads the document's elevation files.
+    /// Reads the document's elevation files. One that is larger than a raster in memory is reduced, where it can be and the
+    /// document states no extent.
     ///
     /// # Errors
     /// They cannot be read, are not of one raster, or have no place in a system in meters; the extent has none on them.
     pub fn new(
         document: &Document,
         assets: &Assets,
+        can_be_reduced: bool,
         findings: &mut SceneFindings,
     ) -> Result<Self, Diagnostic> {
         let dem = &document.terrain.dem;
-        if let Some(windows) = windows(document, assets, findings)? {
-            return Self::around_extent(document, windows);
-        }
-        let held = joined(document, assets, findings)?;
+        let held = match windows(document, assets, can_be_reduced, findings)? {
+            Some(windows) if document.terrain.extent.is_some() => {
+                return Self::around_extent(document, windows);
+            }
+            Some(windows) => reduced_to_fit(document, windows, findings)?,
+            None => joined(document, assets, findings)?,
+        };
         let (whole, window) = (held.without_samples(), RasterWindow::all(held.size()));
         let failed = |error| document.error(dem, error);
         let system = MetricSystem {
@@ -94,9 +104,14 @@ impl ReadElevation {
         let system = MetricSystem::of(&mut windows, document.crs.as_ref())
             .map_err(|error| document.error(&terrain.dem, error))?;
         let extent = extent_rects(document, &whole, &system)?;
-        let window = extent.as_ref().and_then(|rects| crop_window(&whole, &rects.source, MARGIN));
-        let window = window.ok_or_else(|| nothing_within(document))?;
-        if window.samples() as u64 > RASTER_SAMPLES.get() {
+        let window = |margin: u32| {
+            let window = extent.as_ref().and_then(|rects| crop_window(&whole, &rects.source, margin));
+            window.ok_or_else(|| nothing_within(document))
+        };
+        let is_small = |window: &RasterWindow| window.samples() as u64 <= RASTER_SAMPLES.get();
+        // The margin is given up where there is no room for it.
+        let window = Some(window(MARGIN)?).filter(is_small).map_or_else(|| window(BESIDE), Ok)?;
+        if !is_small(&window) {
             let message = format!(
                 "the extent holds {} x {} samples of the elevation model, more than the {RASTER_SAMPLES} of a scene; name a \
                  smaller one, or {RASTER_SAMPLES:#}",
@@ -146,17 +161,45 @@ fn extent_rects(
     Ok(Some(ExtentRects { ground, source }))
 }
 
-/// The document's elevation files as one raster on disk, where it states an extent, their formats allow that, and they are
-/// large. What is wrong with a file is left to be told by who reads it whole.
+/// The smaller raster of one that is too large for the memory.
+fn reduced_to_fit(
+    document: &Document,
+    mut windows: Box<dyn Windows + Send>,
+    findings: &mut SceneFindings,
+) -> Result<Raster, Diagnostic> {
+    let dem = &document.terrain.dem;
+    let (width, height) = windows.size();
+    let samples = |step: u32| u64::from(width / step) * u64::from(height / step);
+    let step = (1..31)
+        .map(|power| 1 << power)
+        .find(|step| samples(*step) <= REDUCED_SAMPLES.get())
+        .unwrap_or(1 << 31);
+    let of_overview = windows.overview(step).map(|(held, mut overview)| reduced(&mut overview, step / held));
+    let raster = of_overview.unwrap_or_else(|| reduced(&mut windows, step));
+    let raster = raster.map_err(|error| document.error(dem, error))?;
+    let message = format!(
+        "the elevation model has {width} x {height} samples, more than the {RASTER_SAMPLES} of a scene: each height is that of \
+         {step} x {step} of them"
+    );
+    let help = "name a part with `extent`, which is taken in full";
+    findings.add_with_help(FindingCode::ElevationReduced, dem.span().unwrap_or_default(), message, help);
+    Ok(raster)
+}
+
+/// The document's elevation files as one raster on disk, where their formats allow that, and they are large: for the part
+/// within an extent, or to be reduced. What is wrong with a file is left to be told by who reads it whole.
 fn windows(
     document: &Document,
     assets: &Assets,
+    can_be_reduced: bool,
     findings: &mut SceneFindings,
 ) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
     let dem = &document.terrain.dem;
-    if document.terrain.extent.is_none() {
-        return Ok(None);
-    }
+    let most_kept = match (&document.terrain.extent, can_be_reduced) {
+        (Some(_), _) => MOST_KEPT_SAMPLES.min(RASTER_SAMPLES.get()),
+        (None, true) => RASTER_SAMPLES.get(),
+        (None, false) => return Ok(None),
+    };
     let Some(elevation) = tile_list(document, assets)? else { return Ok(None) };
     let (names, stated) = (elevation.names.clone(), elevation.stated.clone());
     let mut tiles = Vec::new();
@@ -169,7 +212,7 @@ fn windows(
         tiles.push((windows.metadata().without_samples(), overridden.into_inner()));
     }
     let samples = tiles.iter().map(|(tile, _)| u64::from(tile.width) * u64::from(tile.height)).sum::<u64>();
-    if samples <= MOST_KEPT_SAMPLES {
+    if samples <= most_kept {
         return Ok(None);
     }
     let mut headers = Vec::new();
@@ -197,7 +240,7 @@ fn windows(
     Ok(Some(Box::new(mosaic)))
 }
 
-/// The elevation files that a document names: those that it lists, and those that a virtual raster of its list does.
+/// The elevation files that a document names: those that it lists, those in a folder, and those that a virtual raster lists.
 struct TileList {
     names: Vec<String>,
     vrts: Vec<VrtTiles>,
@@ -225,6 +268,14 @@ fn tile_list(document: &Document, assets: &Assets) -> Result<Option<TileList>, D
     for name in dem.iter() {
         if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
             return Ok(None);
+        }
+        if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
+            let before = list.names.len();
+            list.names.extend(files.into_iter().filter(|file| read::is_tile_name(file)));
+            if list.names.len() == before {
+                return Err(document.error(dem, format!("'{}' is a folder without elevation", quoted(name))));
+            }
+            continue;
         }
         if !vrt::is_vrt(name) {
             list.names.push(name.clone());

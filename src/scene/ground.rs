@@ -18,7 +18,7 @@ use crate::description::finding_code::FindingCode;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::scene::assets::Assets;
-use crate::scene::elevation::{ReadElevation, nothing_within};
+use crate::scene::elevation::{BESIDE, ReadElevation, nothing_within};
 use crate::scene::scene_findings::SceneFindings;
 use crate::terrain::lattice::Lattice;
 
@@ -38,15 +38,16 @@ pub struct LoadedGround {
     pub findings: SceneFindings,
 }
 
-/// Reads the document's elevation files and brings them to a metric system.
+/// Reads the document's elevation files and brings them to a metric system. `can_be_reduced` says whether means of samples
+/// will do where there are more of these than fit into memory: for pictures, not for heights.
 ///
 /// # Errors
 /// A file cannot be read, several are not tiles of one raster, or they cannot be brought to the scene's
 /// system.
-pub fn load(document: &Document, assets: &Assets) -> Result<LoadedGround, Diagnostic> {
+pub fn load(document: &Document, assets: &Assets, can_be_reduced: bool) -> Result<LoadedGround, Diagnostic> {
     let dem = &document.terrain.dem;
     let (mut findings, span) = (SceneFindings::new(document), dem.span().unwrap_or_default());
-    let mut read = ReadElevation::new(document, assets, &mut findings)?;
+    let mut read = ReadElevation::new(document, assets, can_be_reduced, &mut findings)?;
     for found in undeclared_nodata(&read.held) {
         let (evidence, value) = (&found.evidence, found.written());
         let message = format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]");
@@ -87,8 +88,6 @@ fn metric<'a>(
     source: &'a Raster,
     findings: &mut SceneFindings,
 ) -> Result<Cow<'a, Raster>, Diagnostic> {
-    /// Samples beside the extent that warping reads.
-    const BESIDE: u32 = 4;
     let failed = |error| document.error(&document.terrain.dem, error);
     let Some(extent) = &read.extent else {
         let metric = warp::to_metric(source, document.crs.as_ref()).map_err(failed)?;

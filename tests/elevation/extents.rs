@@ -60,8 +60,8 @@ fn ground(scratch: &Scratch, text: &str, whole: Option<&Raster>) -> Result<Loade
     let document = parse_bytes("a.toml", text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
     let assets = Assets::new(&scratch.at("a.toml"), &[]).expect("the folder is there");
     match whole {
-        Some(whole) => load(&document, &assets.with_elevation(Arc::new(whole.clone()))),
-        None => load(&document, &assets),
+        Some(whole) => load(&document, &assets.with_elevation(Arc::new(whole.clone())), false),
+        None => load(&document, &assets, false),
     }
 }
 

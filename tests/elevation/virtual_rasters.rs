@@ -82,6 +82,11 @@ fn a_scene_names_a_virtual_raster_and_may_read_its_tiles_alone() {
     let built = scene("a.vrt").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((built.lattice.columns(), built.lattice.rows()), (110, 40));
     assert!(built.notes().iter().any(|note| note.contains("2 tiles joined")), "{:?}", built.notes());
+    let built = scene("tiles/").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((built.lattice.columns(), built.lattice.rows()), (110, 40), "a folder is its tiles");
+    scratch.write("vrt/empty/a.txt", "");
+    let refused = scene("empty").err().expect("no tiles");
+    assert!(refused.contains("a folder without elevation"), "{refused}");
     let vrt = std::fs::read_to_string(scratch.at("vrt/a.vrt")).expect("written");
     scratch.write("vrt/out.vrt", vrt.replace("tiles/w.tif", "../../../../../etc/passwd"));
     let refused = scene("out.vrt").err().expect("outside");

@@ -243,6 +243,18 @@ impl<R: Read + Seek + Send> Windows for GeoTiffWindows<R> {
     }
 
     /// Decodes the blocks under the windows as far as they fit the cache.
+    fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
+        let (width, height) = self.size();
+        let times = |image: &Overview| {
+            let times =
+                width.div_ceil(image.width).checked_next_power_of_two().filter(|times| *times <= step)?;
+            (width.div_ceil(times) == image.width && height.div_ceil(times) == image.height).then_some(times)
+        };
+        let found = self.images.overviews.iter().filter_map(|image| Some((times(image)?, image)));
+        let (times, image) = found.max_by_key(|(times, _)| *times)?;
+        Some((times, Box::new(self.open_overview(image).ok()?)))
+    }
+
     fn announce(&mut self, windows: &[RasterWindow]) {
         let blocks: BTreeMap<u32, TiffBlock> = windows
             .iter()

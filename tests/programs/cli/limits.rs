@@ -58,7 +58,7 @@ fn every_name_on_the_page_is_a_limit_and_fixed_ones_stay() {
 fn a_wrong_name_or_value_is_wrong_usage_and_the_nearest_name_is_told() {
     for (limit, said) in [
         ("raster-sample=10", "did you mean `raster-samples`?"),
-        ("elephants=10", "there are raster-samples, tile-samples,"),
+        ("elephants=10", "there are raster-samples, reduced-samples,"),
         ("raster-samples", "raster-samples=1G"),
         ("raster-samples=many", "k, M or G"),
         ("raster-samples=0", "it may be 1 to 1073741824"),
@@ -162,4 +162,30 @@ fn a_higher_limit_lets_pass_what_was_refused() {
     let [usual, raised] =
         [&["schema"][..], &["schema", "--limit", "scene-text=6k"]].map(|line| run(line).ok());
     assert!(!usual.contains("6000") && raised.contains("6000"), "editors accept what the program does");
+}
+
+#[test]
+fn pictures_reduce_elevation_that_is_too_large_and_heights_do_not() {
+    let scratch = Scratch::new();
+    let row =
+        |row: u32| (0..700).map(|column| (column * 7 + row * 3).to_string()).collect::<Vec<_>>().join(" ");
+    let rows: Vec<String> = (0..600).map(row).collect();
+    let head = "ncols 700\nnrows 600\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n";
+    scratch.write("hill.asc", head.to_owned() + &rows.join("\n"));
+    run_in(scratch.folder(), &["dem", "convert", "hill.asc", "hill.tif", "--source-crs", "EPSG:32616"]).ok();
+    scratch.write("s.toml", "[terrain]\ndem = \"hill.tif\"\n");
+    let limits = ["--limit", "raster-samples=100k", "--limit", "reduced-samples=50k"];
+    let checked = run_in(scratch.folder(), &[&["check", "s.toml", "--json"][..], &limits].concat()).ok();
+    assert!(
+        checked.contains("elevation-reduced") && checked.contains("each height is that of 4 x 4 of them"),
+        "{checked}"
+    );
+    let refused =
+        run_in(scratch.folder(), &[&["height", "s.toml", "--at", "500100,4000100"][..], &limits].concat());
+    let said = refused.failed(1);
+    assert!(said.contains("raster-samples"), "{said}");
+    scratch
+        .write("s.toml", "[terrain]\ndem = \"hill.tif\"\nextent = [[500300, 4000300], [500900, 4000900]]\n");
+    let checked = run_in(scratch.folder(), &[&["check", "s.toml", "--json"][..], &limits].concat());
+    assert!(!checked.ok().contains("elevation-reduced"), "an extent is taken in full");
 }
