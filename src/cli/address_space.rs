@@ -120,16 +120,17 @@ impl AddressSpace {
         Some(Self { most: after(limits, "Max address space")?, used: after(status, "VmSize:")? * 1024 })
     }
 
-    /// How many of the wanted threads fit beside `floor` bytes, with an arena of so many bytes each.
+    /// How many of the wanted threads fit beside `floor` bytes, with an arena of so many bytes each. They take half of what is
+    /// left at the most, so that a larger scene has the other half.
     ///
     /// # Errors
     /// Not even one does.
     fn threads(&self, wanted: usize, floor: u64, arena: u64) -> Result<usize, CliError> {
         let each = PER_THREAD + arena;
         let fixed = floor + OTHER_THREADS * each;
-        let left = self.most.saturating_sub(self.used);
-        let fitting = usize::try_from(left.saturating_sub(fixed) / each).unwrap_or(usize::MAX);
-        if fitting > 0 {
+        let left = self.most.saturating_sub(self.used).saturating_sub(fixed);
+        if left >= each {
+            let fitting = usize::try_from(left / 2 / each).unwrap_or(usize::MAX).max(1);
             return Ok(wanted.min(fitting));
         }
         let needed = self.used + fixed + each;
@@ -167,10 +168,10 @@ mod tests {
         let threads = |megabytes, arena| of(megabytes).threads(16, 75 * MIB, arena).ok();
         // 50 of the program, 75 of the command, 6 of two threads, 3 of each further one.
         assert_eq!(
-            [133, 134, 137, 179, 5000].map(|most| threads(most, 0)),
-            [None, Some(1), Some(2), Some(16), Some(16)]
+            [133, 134, 142, 143, 5000].map(|most| threads(most, 0)),
+            [None, Some(1), Some(1), Some(2), Some(16)]
         );
-        assert_eq!([517, 518, 2500].map(|most| threads(most, ARENA)), [None, Some(1), Some(16)]);
+        assert_eq!([517, 518, 5000].map(|most| threads(most, ARENA)), [None, Some(1), Some(16)]);
         let refused = of(100).threads(4, 75 * MIB, 0).err();
         let Some(CliError::Input { error, .. }) = refused else { panic!("an error of the input") };
         let said = error.to_string();

@@ -337,10 +337,13 @@ fn read_zip(file: &DemFile) -> Result<Raster, DemErrorKind> {
         companion => companion.ok(),
     };
     let hints = DemHints { companions: &companions, ..file.hints.clone() };
-    let head = zip.read_head(name, HEAD_BYTES)?;
-    let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
-    let content = zip.read(name, limit).map_err(of_unpacking)?;
-    let raster = read_unpacked(&DemFile { name, bytes: &content, hints: &hints });
+    let read = || {
+        let head = zip.read_head(name, HEAD_BYTES)?;
+        let limit = most_bytes(&DemFile { name, bytes: &head, hints: &hints })?;
+        let content = zip.read(name, limit).map_err(of_unpacking)?;
+        read_unpacked(&DemFile { name, bytes: &content, hints: &hints })
+    };
+    let raster = read();
     too_large.into_inner().map_or(raster, Err)
 }
 

@@ -162,7 +162,7 @@ impl Shadows {
     /// There is not the memory for them.
     pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, MemoryRefused> {
         let to_sun = list.lighting.to_sun;
-        check_memory(ListTriangles::bytes_of(list), "the shadows", "draw fewer or coarser solids")?;
+        check_memory(ListTriangles::bytes_of(list), "drawing shadows", "draw fewer or coarser solids")?;
         let Some(triangles) = ListTriangles::new(list, camera) else { return Ok(Self::default()) };
         let map = |toward: Vec3, texel_px: f32, purpose: ShadowPurpose| {
             let axes = LightAxes::new(toward, camera);
