@@ -101,7 +101,7 @@ fn a_cumulative_viewshed_is_the_sum_of_all_viewsheds() {
     for looking in [&["--range", "4000", "--observer-height", "10"][..], &["--target-height", "5", "--flat"]]
     {
         let scratch = surveyed();
-        scratch.write("towers.csv", &observers.join("\n"));
+        scratch.write("towers.csv", observers.join("\n"));
         let query = [&["viewsheds", "dem.tif", "--points", "towers.csv", "--shards", "3"], looking].concat();
         let count = plan(&scratch, &query);
         assert!((2..=5).contains(&count), "{count}");
@@ -218,7 +218,7 @@ fn an_input_that_changed_is_named_and_nothing_is_done() {
     plan(&scratch, &HEIGHTS);
     run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).ok();
     let points = fs::read_to_string(scratch.at("points.csv")).expect("written");
-    scratch.write("points.csv", &points.replace("p7;", "p8;"));
+    scratch.write("points.csv", points.replace("p7;", "p8;"));
     let message = run_in(scratch.folder(), &["work", "plan", "--shard", "1"]).failed(1);
     assert!(message.contains("points.csv: stale: its content is not"), "{message}");
     scratch.write("points.csv", &(points + "1,2,3\n"));
@@ -326,7 +326,7 @@ fn plans_that_nobody_wrote_are_refused_without_a_panic() {
         let changed = lines.replacen(from, to, 1);
         assert_ne!(changed, lines);
         scratch.write("plan/shards.jsonl", &changed);
-        scratch.write("plan/plan.json", &restated(&head, &changed));
+        scratch.write("plan/plan.json", restated(&head, &changed));
         let message = run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).failed(1);
         assert!(message.contains(expected), "{expected}: {message}");
     }
