@@ -1,16 +1,22 @@
 //! The one error of the library's operations.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use crate::dem::answer::Status;
 use crate::dem::formats::WRITTEN_EXTENSIONS;
+use crate::description::finding::Finding;
+use crate::message::chain::error_text;
+use crate::pipeline::api::dem::SamplesError;
 use crate::pipeline::bounded_mesh::MeshError;
+use crate::pipeline::dataset::{OpenError, QueryError};
 use crate::pipeline::dem::OpenDemError;
+use crate::pipeline::error::diagnostics_text;
 use crate::pipeline::files::WriteFileError;
 use crate::pipeline::ground::GroundError;
 use crate::pipeline::picture::PictureError;
+use crate::pipeline::profile::ProfileError;
 use crate::pipeline::raster_file::WriteRasterError;
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::view::camera::CameraError;
@@ -22,6 +28,15 @@ pub enum Error {
     /// An elevation file cannot be opened.
     #[error(transparent)]
     OpenDem(#[from] OpenDemError),
+    /// Samples make no elevation model.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
+    /// A query has no answer.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// A line gives no profile.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// Elevation cannot be brought to a ground in meters.
     #[error(transparent)]
     Ground(#[from] GroundError),
@@ -55,4 +70,41 @@ pub enum Error {
     /// A file cannot be written.
     #[error(transparent)]
     WriteFile(#[from] WriteFileError),
+}
+
+impl From<OpenError> for Error {
+    fn from(error: OpenError) -> Self {
+        match error {
+            OpenError::Dem(error) => Self::OpenDem(error),
+            OpenError::Scene(error) => Self::OpenScene(error),
+        }
+    }
+}
+
+impl Error {
+    /// The message with its causes, as the program prints it: that of a scene file shows each wrong line.
+    pub fn text(&self) -> String {
+        diagnostics_text(self).unwrap_or_else(|| error_text(self))
+    }
+
+    /// The file that the error is about, where it is about one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::OpenDem(error) => error.file(),
+            Self::OpenScene(error) => error.file(),
+            Self::Query(error) | Self::Profile(ProfileError::Query(error)) => error.dataset().map(Path::new),
+            Self::NoFormat(path) => Some(path),
+            Self::WriteFile(error) => Some(&error.path),
+            _ => None,
+        }
+    }
+
+    /// The errors in a scene file that keep it from being built, each with its place; none where the error is about
+    /// something else.
+    pub fn findings(&self) -> Vec<Finding> {
+        match self {
+            Self::OpenScene(error) => error.findings(),
+            _ => Vec::new(),
+        }
+    }
 }
