@@ -8,6 +8,7 @@ use crate::cli::dem_info::DemInfoArguments;
 use crate::cli::explain::ExplainArguments;
 use crate::cli::export::ExportArguments;
 use crate::cli::fly::FlyArguments;
+use crate::cli::gather::GatherArguments;
 use crate::cli::grid::GridArguments;
 use crate::cli::height::HeightQueryArguments;
 use crate::cli::limit::{StatedLimit, stated_limit};
@@ -17,12 +18,14 @@ use crate::cli::mesh::MeshArguments;
 use crate::cli::model::ModelArguments;
 use crate::cli::new::NewArguments;
 use crate::cli::pick::PickArguments;
+use crate::cli::plan::PlanCommand;
 use crate::cli::profile::ProfileArguments;
 use crate::cli::render::RenderArguments;
 use crate::cli::report::ReportArguments;
 use crate::cli::serve::ServeArguments;
 use crate::cli::view::ViewArguments;
 use crate::cli::viewshed::ViewshedArguments;
+use crate::cli::work::WorkArguments;
 
 /// Builds digital terrain models from scene files and renders annotated pictures of them.
 #[derive(Debug, Parser)]
@@ -74,6 +77,15 @@ pub enum Command {
     Los(LosArguments),
     /// Print, map or write as a raster what can be seen from a point
     Viewshed(ViewshedArguments),
+    /// Cut work that is too long for one machine into shards
+    Plan {
+        #[command(subcommand)]
+        command: PlanCommand,
+    },
+    /// Do shards of a plan, those that are not done
+    Work(WorkArguments),
+    /// Check the shards of a plan, and join them where all are done
+    Gather(GatherArguments),
     /// Answer height queries over HTTP
     Serve(ServeArguments),
     /// Print what building a scene found about single features: earth moved, gaps left, water levels

@@ -18,6 +18,7 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::files;
 use crate::pipeline::heights_above::bring_heights;
 use crate::pipeline::positions::{WrittenPosition, parse_positions};
+use crate::pipeline::shards::heights::csv::{HEADER, write_row};
 use crate::terrain::query::{Interpolation, Surface};
 
 #[derive(Debug, Args)]
@@ -34,13 +35,20 @@ pub struct HeightQueryArguments {
     /// A CSV file of x,y, with or without a header; - reads standard input
     #[arg(long, value_name = "CSV", conflicts_with = "at")]
     pub points: Option<PathBuf>,
+    #[command(flatten)]
+    pub query: PointQueryArguments,
+}
+
+/// What is asked about each point.
+#[derive(Debug, Args)]
+pub struct PointQueryArguments {
     /// The surface to query [default: source of a file, ground of a scene]
     #[arg(long, value_parser = choice::<Surface>())]
     pub surface: Option<Surface>,
     /// How heights between posts are found
     #[arg(long, default_value = "bilinear", value_parser = choice::<Interpolation>())]
     pub interpolation: Interpolation,
-    /// Print heights above the WGS 84 ellipsoid or the EGM96 geoid [default: what the model counts from]
+    /// Heights above the WGS 84 ellipsoid or the EGM96 geoid [default: what the model counts from]
     #[arg(long, value_parser = choice::<HeightDatum>())]
     pub above: Option<HeightDatum>,
 }
@@ -54,14 +62,14 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
         _ => arguments.at.clone(),
     };
     let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();
-    let surface = arguments.surface.unwrap_or_else(|| dataset.default_surface());
+    let surface = arguments.query.surface.unwrap_or_else(|| dataset.default_surface());
     let crs = arguments.dataset.crs(&dataset);
     if surface != Surface::Source {
         arguments.dataset.note_ground(&dataset)?;
     }
-    let mut answers = dataset.heights(surface, arguments.interpolation, &crs, &at)?;
+    let mut answers = dataset.heights(surface, arguments.query.interpolation, &crs, &at)?;
     let mut datum = dataset.header().vertical_datum.clone();
-    if let Some(above) = arguments.above {
+    if let Some(above) = arguments.query.above {
         let brought = bring_heights(&mut answers, (datum.as_deref(), above), (&crs, &at), &Geoid::default());
         brought.map_err(FileError::at(&arguments.dataset.file))?;
         datum = Some(above.name().to_owned());
@@ -73,15 +81,8 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
 }
 
 fn write_csv(out: &mut dyn Write, points: &[WrittenPosition<'_>], answers: &[Answer]) -> io::Result<()> {
-    writeln!(out, "x,y,height,status")?;
-    for (point, answer) in points.iter().zip(answers) {
-        let [x, y] = &point.written;
-        match answer.height_m() {
-            Some(height) => writeln!(out, "{x},{y},{height},{}", answer.status())?,
-            None => writeln!(out, "{x},{y},,{}", answer.status())?,
-        }
-    }
-    Ok(())
+    writeln!(out, "{HEADER}")?;
+    points.iter().zip(answers).try_for_each(|(point, &answer)| write_row(out, point, answer))
 }
 
 /// Writes one object a line; a missing height is null. What heights are counted from is there where it is known.

@@ -9,6 +9,7 @@ mod error;
 mod explain;
 mod export;
 mod fly;
+mod gather;
 mod grid;
 mod height;
 mod licenses;
@@ -23,6 +24,7 @@ mod options;
 mod output;
 mod output_format;
 mod pick;
+mod plan;
 mod profile;
 mod progress;
 mod render;
@@ -36,6 +38,7 @@ mod threads;
 mod values;
 mod view;
 mod viewshed;
+mod work;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -101,6 +104,9 @@ fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError>
         Command::Profile(arguments) => profile::run(arguments),
         Command::Los(arguments) => los::run(arguments),
         Command::Viewshed(arguments) => viewshed::run(arguments),
+        Command::Plan { command } => plan::run(command),
+        Command::Work(arguments) => work::run(arguments),
+        Command::Gather(arguments) => gather::run(arguments),
         Command::Serve(arguments) => serve::run(arguments, programs.serve),
         Command::View(arguments) => view::run(arguments, programs.view),
         Command::Report(arguments) => report::run(arguments),

@@ -107,11 +107,15 @@ fn full_datum_name(stated: &str) -> String {
 }
 
 impl DatasetArguments {
+    /// How the dataset is opened.
+    pub fn options(&self) -> DatasetOptions {
+        let (dem, allowed) = (self.heights.dem_options(), self.access.allow.clone());
+        DatasetOptions { dem, allowed, ..DatasetOptions::default() }
+    }
+
     /// Opens the dataset; prints its warning.
     pub fn open(&self) -> Result<Dataset, CliError> {
-        let (dem, allowed) = (self.heights.dem_options(), self.access.allow.clone());
-        let options = DatasetOptions { dem, allowed, ..DatasetOptions::default() };
-        let dataset = Dataset::open(&self.file, &options)?;
+        let dataset = Dataset::open(&self.file, &self.options())?;
         dataset.warning().into_iter().for_each(|warning| warn(&format!("warning: {warning}")));
         Ok(dataset)
     }

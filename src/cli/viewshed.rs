@@ -39,6 +39,19 @@ pub struct ViewshedArguments {
     /// The position of the observer
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = number_pair)]
     pub at: [f64; 2],
+    #[command(flatten)]
+    pub conditions: SightConditions,
+    /// Look only between two azimuths, in degrees clockwise from north
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = number_pair)]
+    pub sector: Option<[f64; 2]>,
+    /// Write the answer to this file: a map as .png, or a raster as .tif, .asc or .bt
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// How an observer looks.
+#[derive(Debug, Args)]
+pub struct SightConditions {
     /// Meters of the eye above the ground
     #[arg(long, value_name = "METERS", default_value = "2", value_parser = number::<f64>(0.0..=1e5, HEIGHT_ADVICE))]
     pub observer_height: f64,
@@ -48,18 +61,12 @@ pub struct ViewshedArguments {
     /// How far to look, in meters [default: without limit]
     #[arg(long, value_name = "METERS", value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write meters as a number above 0"))]
     pub range: Option<f64>,
-    /// Look only between two azimuths, in degrees clockwise from north
-    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = number_pair)]
-    pub sector: Option<[f64; 2]>,
     /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for
     #[arg(long, value_name = "K", default_value_t = 1.0 / 7.0, value_parser = number::<f64>(-1.0..1.0, "write a number from -1 to below 1; 0.13 to 0.17 is usual"))]
     pub refraction: f64,
     /// Assume a flat Earth without air
     #[arg(long, conflicts_with = "refraction")]
     pub flat: bool,
-    /// Write the answer to this file: a map as .png, or a raster as .tif, .asc or .bt
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
 }
 
 /// A file to write.
@@ -74,7 +81,7 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
     steps.begin("reading the ground");
     let dataset = arguments.dataset.open()?;
     let crs = arguments.dataset.crs(&dataset);
-    let around_m = arguments.range.unwrap_or(f64::INFINITY);
+    let around_m = arguments.conditions.range.unwrap_or(f64::INFINITY);
     let reach = GroundReach { crs: &crs, at: &[arguments.at.into()], around_m };
     let ground = arguments.dataset.ground(&dataset, &reach)?;
     let options = options(arguments, &crs, &ground.crs)?;
@@ -108,11 +115,11 @@ fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, Cli
 fn options(arguments: &ViewshedArguments, crs: &Crs, ground: &Crs) -> Result<ViewshedOptions, QueryError> {
     let at = transform("the observer at", crs, ground, arguments.at.into())?;
     Ok(ViewshedOptions {
-        observer: SightEnd { at, above_m: arguments.observer_height },
-        target_above_m: arguments.target_height,
-        range_m: arguments.range.unwrap_or(f64::INFINITY),
+        observer: SightEnd { at, above_m: arguments.conditions.observer_height },
+        target_above_m: arguments.conditions.target_height,
+        range_m: arguments.conditions.range.unwrap_or(f64::INFINITY),
         sector: arguments.sector.map_or(Sector::ALL, |[from, to]| Sector::between(from, to)),
-        curvature: curvature(arguments.flat, Some(arguments.refraction)),
+        curvature: curvature(arguments.conditions.flat, Some(arguments.conditions.refraction)),
     })
 }
 
@@ -143,18 +150,18 @@ fn write(
 }
 
 fn subtitle(arguments: &ViewshedArguments, summary: &ViewshedSummary) -> String {
-    let mut subtitle = format!("Eye {} m above ground", arguments.observer_height);
-    if arguments.target_height > 0.0 {
-        let _ = write!(subtitle, ", target {} m", arguments.target_height);
+    let mut subtitle = format!("Eye {} m above ground", arguments.conditions.observer_height);
+    if arguments.conditions.target_height > 0.0 {
+        let _ = write!(subtitle, ", target {} m", arguments.conditions.target_height);
     }
-    if let Some(range) = arguments.range {
+    if let Some(range) = arguments.conditions.range {
         let _ = write!(subtitle, ", within {range} m");
     }
     if let Some([from, to]) = arguments.sector {
         let _ = write!(subtitle, ", azimuth {from}° to {to}°");
     }
     let _ = write!(subtitle, "; {:.1} % in sight", summary.visible_share * 100.0);
-    subtitle + if arguments.flat { "; flat Earth" } else { "; curvature and refraction applied" }
+    subtitle + if arguments.conditions.flat { "; flat Earth" } else { "; curvature and refraction applied" }
 }
 
 fn json(
@@ -167,9 +174,9 @@ fn json(
     json!({
         "observer": { "x": observer.at.x, "y": observer.at.y, "above_m": observer.above_m },
         "target_above_m": options.target_above_m,
-        "range_m": arguments.range,
+        "range_m": arguments.conditions.range,
         "sector_deg": arguments.sector,
-        "refraction": (!arguments.flat).then_some(arguments.refraction),
+        "refraction": (!arguments.conditions.flat).then_some(arguments.conditions.refraction),
         "posts": { "visible": visible, "hidden": hidden, "no_data": no_data, "beyond": beyond },
         "visible_m2": summary.visible_m2,
         "visible_share": summary.visible_share,

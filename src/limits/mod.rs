@@ -221,6 +221,17 @@ limits! {
             "of a flight: an hour",
             "state fewer --seconds or a smaller --fps";
     }
+    "Plans" {
+        PLAN_SHARDS = 1_000_000 => COUNT, "shards",
+            "of a plan: folders of two million files",
+            "plan larger shards, or parts of the work";
+        PLAN_POINTS = 1 << 30 => To(1 << 40), "points",
+            "of a plan, whose positions take 20 bytes of disk each",
+            "plan parts of the file";
+        PLAN_OBSERVERS = 1_000_000 => COUNT, "observers",
+            "of a plan of viewsheds, each some milliseconds to minutes of work",
+            "plan parts of the file";
+    }
 }
 
 /// All limits, in the order of the page.

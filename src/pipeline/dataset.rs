@@ -204,6 +204,14 @@ impl Dataset {
         }
     }
 
+    /// The files that a scene was made of, besides the scene file itself; `None` for an elevation file.
+    pub fn scene_files(&self) -> Option<&[PathBuf]> {
+        match &self.content {
+            DatasetContent::Scene(ground) => Some(&ground.files),
+            DatasetContent::Raster { .. } | DatasetContent::Windows(_) => None,
+        }
+    }
+
     /// Whether queries read from disk.
     pub fn reads_windows(&self) -> bool {
         matches!(self.content, DatasetContent::Windows(_))

@@ -56,6 +56,7 @@ pub mod raster_file;
 pub mod rim;
 pub mod scene_file;
 pub mod service;
+pub mod shards;
 pub mod sheet_file;
 pub mod sidecar;
 pub mod sight;

@@ -84,6 +84,42 @@ impl<'a> WrittenPosition<'a> {
     }
 }
 
+/// The columns of a CSV table that hold positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PositionColumns {
+    x: usize,
+    y: usize,
+    /// Whether the first line names them.
+    pub has_header: bool,
+}
+
+impl PositionColumns {
+    /// Those that the first line of a table names, or the first two where it names none.
+    ///
+    /// # Errors
+    /// [`PositionFault::Header`].
+    pub fn of_first_line(line: &str) -> Result<Self, PositionFault> {
+        if !is_header(line) {
+            return Ok(Self { x: 0, y: 1, has_header: false });
+        }
+        let names: Vec<String> = fields(line).map(str::to_lowercase).collect();
+        let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
+        let x = find(&["x", "lon", "long", "longitude", "easting", "east"]);
+        let y = find(&["y", "lat", "latitude", "northing", "north"]);
+        let columns = x.zip(y).map(|(x, y)| Self { x, y, has_header: true });
+        columns.ok_or_else(|| PositionFault::Header(line.into()))
+    }
+
+    /// The position in a line.
+    ///
+    /// # Errors
+    /// [`PositionFault::Line`].
+    pub fn position<'a>(&self, line: &'a str) -> Result<WrittenPosition<'a>, PositionFault> {
+        let [x, y] = [self.x, self.y].map(|column| fields(line).nth(column).unwrap_or_default());
+        WrittenPosition::parse(x, y).ok_or_else(|| PositionFault::Line(line.into()))
+    }
+}
+
 /// The positions of a CSV table. A header names columns `x` and `y` (or `lon` and `lat`); without one, x and y come
 /// first. `name` is the file's name in messages.
 ///
@@ -91,28 +127,13 @@ impl<'a> WrittenPosition<'a> {
 /// A line is not a position, or the header does not name the columns.
 pub fn parse_positions<'a>(name: &str, text: &'a str) -> Result<Vec<WrittenPosition<'a>>, PositionsError> {
     let mut lines = numbered_lines(text).peekable();
-    let at_line = |line, fault| LineError { name: name.to_owned(), line, fault };
-    let columns = match lines.next_if(|(_, line)| is_header(line)) {
-        Some((line, header)) => {
-            columns(header).ok_or_else(|| at_line(line, PositionFault::Header(header.into())))?
-        }
-        None => [0, 1],
-    };
-    let position = |(line, text): (usize, &'a str)| {
-        let fields: Vec<&str> = fields(text).collect();
-        let [x, y] = columns.map(|column| fields.get(column).copied().unwrap_or_default());
-        WrittenPosition::parse(x, y).ok_or_else(|| at_line(line, PositionFault::Line(text.into())))
-    };
-    lines.map(position).collect()
-}
-
-/// The columns of x and y that a header names.
-fn columns(header: &str) -> Option<[usize; 2]> {
-    let names: Vec<String> = fields(header).map(str::to_lowercase).collect();
-    let find = |accepted: &[&str]| names.iter().position(|name| accepted.contains(&name.as_str()));
-    let x = find(&["x", "lon", "long", "longitude", "easting", "east"])?;
-    let y = find(&["y", "lat", "latitude", "northing", "north"])?;
-    Some([x, y])
+    let at_line = |line| move |fault| LineError { name: name.to_owned(), line, fault };
+    let Some(&(first, line)) = lines.peek() else { return Ok(Vec::new()) };
+    let columns = PositionColumns::of_first_line(line).map_err(at_line(first))?;
+    lines
+        .skip(usize::from(columns.has_header))
+        .map(|(line, text)| columns.position(text).map_err(at_line(line)))
+        .collect()
 }
 
 /// The line in the file at `path` (`-` for standard input): all vertices of a CSV table, or the first line of a vector

@@ -45,12 +45,19 @@ pub fn write_sheet(
     let bytes = match extension.as_str() {
         "pdf" => sheet.pdf(print_dpi, title).map_err(FileError::at(path))?,
         "svg" => sheet.svg(print_dpi, &encode_png(&sheet.pixels)).into_bytes(),
-        _ => {
-            let mut texts = vec![("Software", concat!("sandtable ", env!("CARGO_PKG_VERSION")).to_owned())];
-            texts.extend(title.map(|title| ("Title", title.to_owned())));
-            texts.push(("Description", description.to_owned()));
-            encode_png_with(&sheet.painted(), &PngNotes { dpi, texts })
-        }
+        _ => sheet_png(sheet, dpi, (title, description)),
     };
     Ok(files.write(path, &bytes)?)
+}
+
+/// A sheet as PNG, with its title, what it shows and, where its print is known, the size of that.
+pub fn sheet_png(
+    sheet: ComposedSheet,
+    dpi: Option<f64>,
+    (title, description): (Option<&str>, &str),
+) -> Vec<u8> {
+    let mut texts = vec![("Software", concat!("sandtable ", env!("CARGO_PKG_VERSION")).to_owned())];
+    texts.extend(title.map(|title| ("Title", title.to_owned())));
+    texts.push(("Description", description.to_owned()));
+    encode_png_with(&sheet.painted(), &PngNotes { dpi, texts })
 }

@@ -59,7 +59,7 @@ pub mod world_frame;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 
 use crate::description::document::FurnitureTable;
 use crate::description::finding::Finding;
@@ -478,6 +478,8 @@ pub struct ParallelView {
     pub dpi: f64,
     /// The ground that it shows, world X and Y; `None` for all of it.
     pub shown: Option<Rect>,
+    /// The ground in the middle of the picture, world X and Y; `None` for the middle of what it shows.
+    pub middle: Option<DVec2>,
 }
 
 impl SceneModel {

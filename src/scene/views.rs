@@ -162,6 +162,7 @@ fn parallel(
         scale: table.scale,
         dpi: table.dpi.unwrap_or(if table.paper.is_some() { PAPER_DPI } else { SCREEN_DPI }),
         shown: shown(table, frame, lattice)?,
+        middle: None,
     })
 }
 

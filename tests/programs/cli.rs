@@ -27,6 +27,10 @@ mod report;
 mod schema;
 mod series;
 mod serve;
+mod shards;
+mod shards_atlas;
+#[cfg(unix)]
+mod shards_killed;
 mod sheets;
 mod viewshed;
 mod web_mercator;

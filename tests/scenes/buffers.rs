@@ -28,7 +28,15 @@ fn open(name: &str) -> SceneModel {
 /// All of the ground from straight above.
 fn plan(azimuth_rad: f32) -> SceneView {
     let pitch_rad = std::f32::consts::FRAC_PI_2;
-    let aim = ParallelView { azimuth_rad, pitch_rad, stretch: 1.0, scale: None, dpi: 96.0, shown: None };
+    let aim = ParallelView {
+        azimuth_rad,
+        pitch_rad,
+        stretch: 1.0,
+        scale: None,
+        dpi: 96.0,
+        shown: None,
+        middle: None,
+    };
     SceneView { name: "plan".into(), aim: ViewAim::Parallel(aim), fov_y_rad: 0.5, paper: None }
 }
 

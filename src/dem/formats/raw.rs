@@ -3,6 +3,7 @@
 //! The statement is one text, the same on the command line and in a scene: `1201x1201:i16be`, where needed followed
 //! by `:skip=512` (bytes before the first sample) and `:nodata=-9999`.
 
+use std::fmt;
 use std::str::FromStr;
 
 use crate::bytes::ByteOrder;
@@ -69,6 +70,26 @@ impl FromStr for RawLayout {
     }
 }
 
+impl fmt::Display for RawLayout {
+    /// The text that [`FromStr`] reads.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self.sample.kind() {
+            NumberKind::Unsigned => 'u',
+            NumberKind::Signed => 'i',
+            NumberKind::Float => 'f',
+        };
+        let order = match self.order {
+            ByteOrder::Little => "le",
+            ByteOrder::Big => "be",
+        };
+        write!(out, "{}x{}:{kind}{}{order}", self.width, self.height, self.sample.bytes() * 8)?;
+        if self.skip > 0 {
+            write!(out, ":skip={}", self.skip)?;
+        }
+        self.nodata.map_or(Ok(()), |nodata| write!(out, ":nodata={nodata}"))
+    }
+}
+
 /// `i16be` as a type and its byte order; single bytes need no order.
 fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
     let lower = text.to_ascii_lowercase();
@@ -108,6 +129,9 @@ mod tests {
         let stated: RawLayout = "3x2:i16be:skip=4:nodata=-1".parse().expect("sound");
         assert_eq!((stated.width, stated.height, stated.skip, stated.nodata), (3, 2, 4, Some(-1.0)));
         assert_eq!((stated.sample, stated.order), (SampleType::I16, ByteOrder::Big));
+        for text in ["3x2:i16be:skip=4:nodata=-1", "1x1:f64le", "70000x2:u8le:nodata=255"] {
+            assert_eq!(text.parse::<RawLayout>().expect("sound").to_string(), text);
+        }
         assert!("3x2:u8".parse::<RawLayout>().is_ok());
         for wrong in [
             "",

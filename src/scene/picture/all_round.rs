@@ -123,6 +123,7 @@ fn overview(scene: &SceneModel, fineness: u32) -> Result<Camera, CameraError> {
         scale: None,
         dpi: 96.0,
         shown: None,
+        middle: None,
     };
     parallel_camera(scene, &view, (OVERVIEW_SIZE.0 * fineness, OVERVIEW_SIZE.1 * fineness))
 }

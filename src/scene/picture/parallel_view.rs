@@ -35,7 +35,9 @@ pub(super) fn parallel_camera(
     });
     let px_per_m = view.dpi / (INCH_M * scale) * stretch;
     let half_m = (picture / (2.0 * px_per_m)).as_vec2();
-    let middle = (shown.min + shown.max).truncate() / 2.0;
+    let middle = view.middle.map_or((shown.min + shown.max).truncate() / 2.0, |at| {
+        ParallelSpan::new([at.as_vec2().extend(0.0)], &axes).min.truncate()
+    });
     let lowered = if view.scale.is_none() { Vec2::Y * (ABOVE - BELOW) * half_m.y } else { Vec2::ZERO };
     let (min, max) = scene.bounds;
     let margin_m = (max - min).max_element() * MARGIN + 100.0;

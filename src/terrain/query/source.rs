@@ -97,7 +97,7 @@ pub(in crate::terrain::query) fn source_task(
 }
 
 /// The transform from one system's positions to a raster's own.
-pub(in crate::terrain::query) struct SourceTransform<'a> {
+pub(crate) struct SourceTransform<'a> {
     from: &'a Crs,
     /// The raster's system, where it is another.
     to: Option<&'a Crs>,

@@ -1,0 +1,74 @@
+//! `sandtable gather`: the product of a plan.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::output::{print, print_lines};
+use crate::pipeline::shards::gather::{PlanProgress, gather};
+use crate::pipeline::shards::plan::ShardPlan;
+use crate::pipeline::shards::record::ShardState;
+
+/// Shards that a message names.
+const MOST_NAMED: usize = 20;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Exit codes: 0 the product is written, 1 shards are missing or stale, or an input has changed, 2 wrong usage."
+)]
+pub struct GatherArguments {
+    /// The folder of the plan
+    plan: PathBuf,
+    /// Write the product to this file [default: one in the folder of the plan]
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Writes the product, or names the shards that are missing or stale: an atlas has its page also then.
+pub fn run(arguments: &GatherArguments) -> Result<(), CliError> {
+    let plan = ShardPlan::open(&arguments.plan)?;
+    let progress = PlanProgress::read(&plan);
+    let written = gather(&plan, &progress, arguments.output.as_deref())?;
+    if arguments.json {
+        print(&format!("{:#}\n", json(&plan, &progress, &written)))?;
+    } else {
+        print_lines(&written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())?;
+    }
+    if progress.is_complete() { Ok(()) } else { Err(incomplete(&arguments.plan, &plan, &progress)) }
+}
+
+fn json(plan: &ShardPlan, progress: &PlanProgress, written: &[PathBuf]) -> serde_json::Value {
+    json!({
+        "product": plan.product.word(),
+        "shards": plan.count(),
+        "done": progress.with(ShardState::Done).len(),
+        "missing": progress.with(ShardState::Missing),
+        "stale": progress.with(ShardState::Stale),
+        "output": written.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+    })
+}
+
+fn incomplete(folder: &Path, plan: &ShardPlan, progress: &PlanProgress) -> CliError {
+    let with = |state| progress.with(state);
+    let lists = [("missing", with(ShardState::Missing)), ("stale", with(ShardState::Stale))];
+    let found: Vec<String> = lists
+        .iter()
+        .filter(|(_, ids)| !ids.is_empty())
+        .map(|(word, ids)| format!("{} {word} ({})", ids.len(), named(ids)))
+        .collect();
+    let (folder, count) = (folder.display(), plan.count());
+    CliError::input(format!(
+        "{folder}: of {count} shards {}; do them with `sandtable work {folder} --shards 0..{count}`",
+        found.join(" and ")
+    ))
+}
+
+fn named(ids: &[usize]) -> String {
+    let named: Vec<String> = ids.iter().take(MOST_NAMED).map(usize::to_string).collect();
+    named.join(", ") + if ids.len() > MOST_NAMED { ", …" } else { "" }
+}

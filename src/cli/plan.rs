@@ -1,0 +1,193 @@
+//! `sandtable plan`: work in shards.
+
+use std::num::NonZeroU64;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde_json::json;
+
+use crate::cli::error::CliError;
+use crate::cli::height::PointQueryArguments;
+use crate::cli::options::{DatasetArguments, SceneArguments};
+use crate::cli::output::print;
+use crate::cli::values::{choice, number};
+use crate::cli::viewshed::SightConditions;
+use crate::description::document::PAPER_DPI;
+use crate::description::words::PaperName;
+use crate::pipeline::files;
+use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::plan::plan as plan_atlas;
+use crate::pipeline::shards::heights::arguments::HeightsArguments;
+use crate::pipeline::shards::heights::plan::plan as plan_heights;
+use crate::pipeline::shards::plan_path::written;
+use crate::pipeline::shards::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
+use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
+use crate::pipeline::shards::viewsheds::plan::plan as plan_viewsheds;
+use crate::terrain::query::Surface;
+
+/// What is planned.
+#[derive(Debug, Subcommand)]
+pub enum PlanCommand {
+    /// Heights of many points, as `height` prints them
+    Heights(PlanHeightsArguments),
+    /// How many of many observers see each post of the ground
+    Viewsheds(PlanViewshedsArguments),
+    /// Annotated sheets of a scene side by side, at a true scale
+    Atlas(PlanAtlasArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct PlanHeightsArguments {
+    #[command(flatten)]
+    dataset: DatasetArguments,
+    /// A CSV file of x,y, with or without a header
+    #[arg(long, value_name = "CSV")]
+    points: PathBuf,
+    #[command(flatten)]
+    query: PointQueryArguments,
+    #[command(flatten)]
+    plan: PlanOptions,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A raster holds how many observers see each post, and no data where none looks or there is no elevation."
+)]
+pub struct PlanViewshedsArguments {
+    #[command(flatten)]
+    dataset: DatasetArguments,
+    /// A CSV file of the observers' x,y, with or without a header
+    #[arg(long, value_name = "CSV")]
+    points: PathBuf,
+    #[command(flatten)]
+    conditions: SightConditions,
+    #[command(flatten)]
+    plan: PlanOptions,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A sheet is a plan of the scene, with the scene's furniture; `layout = \"margin\"` of it names the neighbors."
+)]
+pub struct PlanAtlasArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The n of the map scale 1:n of the sheets
+    #[arg(long, value_name = "N", value_parser = number::<f64>(1.0..=1e9, "write the n of a scale 1:n, as in 25000"))]
+    scale: f64,
+    /// The paper of a sheet
+    #[arg(long, default_value = "A4", value_parser = choice::<PaperName>())]
+    paper: PaperName,
+    /// Turn the paper upright
+    #[arg(long)]
+    portrait: bool,
+    /// Pixels per inch
+    #[arg(long, value_name = "DPI", default_value_t = PAPER_DPI, value_parser = number::<f64>(10.0..=1e4, "write a number from 10 to 10000"))]
+    dpi: f64,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// The folder of the plan
+    #[arg(short, long, value_name = "PLAN")]
+    output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+struct PlanOptions {
+    /// About how many shards there are to be [default: as many as take some seconds each]
+    #[arg(long, value_name = "N")]
+    shards: Option<NonZeroU64>,
+    /// The folder of the plan
+    #[arg(short, long, value_name = "PLAN")]
+    output: PathBuf,
+}
+
+pub fn run(command: &PlanCommand) -> Result<(), CliError> {
+    match command {
+        PlanCommand::Heights(arguments) => run_heights(arguments),
+        PlanCommand::Viewsheds(arguments) => run_viewsheds(arguments),
+        PlanCommand::Atlas(arguments) => run_atlas(arguments),
+    }
+}
+
+fn run_heights(arguments: &PlanHeightsArguments) -> Result<(), CliError> {
+    let PlanHeightsArguments { dataset, points, query, plan } = arguments;
+    let (queried, folder) = open(dataset, points, plan)?;
+    let surface = query.surface.unwrap_or_else(|| queried.dataset.default_surface());
+    if surface != Surface::Source {
+        dataset.note_ground(&queried.dataset)?;
+    }
+    let planned = HeightsArguments {
+        dataset: planned(dataset, folder),
+        points: written(points, folder),
+        surface: PlannedWord(surface),
+        interpolation: PlannedWord(query.interpolation),
+        above: query.above.map(PlannedWord),
+    };
+    let shards = plan_heights(planned, &queried, plan.shards.map(NonZeroU64::get), folder)?;
+    report(folder, "heights", shards, dataset.json)
+}
+
+fn run_viewsheds(arguments: &PlanViewshedsArguments) -> Result<(), CliError> {
+    let PlanViewshedsArguments { dataset, points, conditions, plan } = arguments;
+    let (queried, folder) = open(dataset, points, plan)?;
+    dataset.note_ground(&queried.dataset)?;
+    let planned = ViewshedsArguments {
+        dataset: planned(dataset, folder),
+        points: written(points, folder),
+        observer_height: conditions.observer_height,
+        target_height: conditions.target_height,
+        range: conditions.range,
+        refraction: (!conditions.flat).then_some(conditions.refraction),
+    };
+    let shards = plan_viewsheds(planned, &queried, plan.shards.map(NonZeroU64::get), folder)?;
+    report(folder, "viewsheds", shards, dataset.json)
+}
+
+fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
+    let SceneArguments { scene, access } = &arguments.scene;
+    let opened = open_scene(scene, &access.allow, &|_| ())?;
+    let folder = &arguments.output;
+    files::make_folder(folder)?;
+    let planned = AtlasArguments {
+        scene: written(scene, folder),
+        allow: access.allow.iter().map(|allowed| written(allowed, folder)).collect(),
+        scale: arguments.scale,
+        paper: PlannedWord(arguments.paper),
+        portrait: arguments.portrait,
+        dpi: arguments.dpi,
+    };
+    let sheets = plan_atlas(planned, &opened, folder)?;
+    report(folder, "atlas", sheets, arguments.json)
+}
+
+/// Opens the dataset, and makes the folder of the plan.
+fn open<'a>(
+    dataset: &DatasetArguments,
+    points: &Path,
+    plan: &'a PlanOptions,
+) -> Result<(QueriedDataset, &'a Path), CliError> {
+    if points == Path::new("-") {
+        return Err(CliError::usage(
+            "standard input is read once, and a plan reads its points twice; name a file",
+        ));
+    }
+    let opened = dataset.open()?;
+    let crs = dataset.crs(&opened);
+    files::make_folder(&plan.output)?;
+    Ok((QueriedDataset { path: dataset.file.clone(), dataset: opened, crs }, &plan.output))
+}
+
+fn planned(dataset: &DatasetArguments, folder: &Path) -> PlannedDataset {
+    PlannedDataset::new(&dataset.file, &dataset.options(), dataset.crs.as_ref(), folder)
+}
+
+fn report(folder: &Path, product: &str, shards: usize, is_json: bool) -> Result<(), CliError> {
+    let plan = folder.display().to_string();
+    if is_json {
+        return print(&format!("{:#}\n", json!({ "plan": plan, "product": product, "shards": shards })));
+    }
+    let noun = if shards == 1 { "shard" } else { "shards" };
+    print(&format!("{plan}: {shards} {noun} of {product}, 0 to {}\n", shards - 1))
+}

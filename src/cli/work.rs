@@ -1,0 +1,79 @@
+//! `sandtable work`: shards of a plan.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::error::CliError;
+use crate::cli::output::{print, warn};
+use crate::message::chain::error_text;
+use crate::pipeline::shards::plan::ShardPlan;
+use crate::pipeline::shards::work::{ShardWorker, is_done};
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A shard that is done is skipped. Exit codes: 0 all are done, 1 one failed or an input has changed, 2 wrong usage."
+)]
+pub struct WorkArguments {
+    /// The folder of the plan
+    plan: PathBuf,
+    /// The number of a shard, from 0
+    #[arg(long, value_name = "I", required_unless_present = "shards")]
+    shard: Option<usize>,
+    /// The shards from A to B, without B
+    #[arg(long, value_name = "A..B", conflicts_with = "shard", value_parser = shard_range)]
+    shards: Option<Range<usize>>,
+}
+
+/// Parses `A..B`.
+fn shard_range(text: &str) -> Result<Range<usize>, &'static str> {
+    let ends = text.split_once("..").and_then(|(from, to)| Some(from.parse().ok()?..to.parse().ok()?));
+    let ends = ends.filter(|ends: &Range<usize>| !ends.is_empty());
+    ends.ok_or("write the first shard and the one after the last, as in 0..100")
+}
+
+/// Does the shards that are not done, and prints a line for each; goes on past one that fails.
+pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
+    let plan = ShardPlan::open(&arguments.plan)?;
+    let one = arguments.shard.map(|shard| shard..shard.saturating_add(1));
+    let ids = one.or_else(|| arguments.shards.clone()).unwrap_or_default();
+    plan.check_shards(&ids)?;
+    let mut worker = None;
+    let (mut failed, count) = (0, ids.len());
+    for id in ids {
+        if is_done(&plan, id) {
+            print(&format!("{id} skipped\n"))?;
+            continue;
+        }
+        let worker: &mut ShardWorker = match &mut worker {
+            Some(worker) => worker,
+            none => none.insert(ShardWorker::open(&plan)?),
+        };
+        match worker.work(id) {
+            Ok(()) => print(&format!("{id} done\n"))?,
+            Err(error) => {
+                warn(&format!("error: shard {id}: {}", error_text(&error)));
+                failed += 1;
+            }
+        }
+    }
+    match failed {
+        0 => Ok(()),
+        _ if count == 1 => Err(CliError::Reported),
+        _ => Err(CliError::input(format!("{failed} of {count} shards failed"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_shards_has_two_ends_and_is_not_empty() {
+        assert_eq!(shard_range("0..1000"), Ok(0..1000));
+        for wrong in ["", "5", "5..", "..5", "3..3", "4..3", "-1..2", "0...3", "0..1e3"] {
+            assert!(shard_range(wrong).is_err(), "{wrong}");
+        }
+    }
+}

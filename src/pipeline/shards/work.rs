@@ -1,0 +1,80 @@
+//! Doing shards: each once, however often a worker is started.
+
+use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::work::AtlasScene;
+use crate::pipeline::shards::error::ShardError;
+use crate::pipeline::shards::heights::arguments::HeightsArguments;
+use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
+use crate::pipeline::shards::planned_dataset::QueriedDataset;
+use crate::pipeline::shards::record::{self, ShardState};
+use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
+use crate::pipeline::shards::{atlas, heights, viewsheds};
+
+/// What all shards of a plan share, opened once.
+pub struct ShardWorker<'a> {
+    plan: &'a ShardPlan,
+    opened: OpenedProduct<'a>,
+}
+
+enum OpenedProduct<'a> {
+    Heights(&'a HeightsArguments, QueriedDataset),
+    Viewsheds(&'a ViewshedsArguments, QueriedDataset),
+    Atlas(&'a AtlasArguments, Box<AtlasScene>),
+}
+
+/// The extension of the results of a plan's shards.
+pub fn extension(plan: &ShardPlan) -> &'static str {
+    match plan.product {
+        PlannedProduct::Heights(_) => heights::work::EXTENSION,
+        PlannedProduct::Viewsheds(_) => viewsheds::work::EXTENSION,
+        PlannedProduct::Atlas(_) => atlas::work::EXTENSION,
+    }
+}
+
+/// Whether a shard is done: nothing is opened or compared for that but its record.
+pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
+    record::state(plan, id, extension(plan)) == ShardState::Done
+}
+
+impl<'a> ShardWorker<'a> {
+    /// Checks that the inputs of a plan are those that were planned with, and opens them.
+    ///
+    /// # Errors
+    /// An input has changed or cannot be opened, or an argument is wrong.
+    pub fn open(plan: &'a ShardPlan) -> Result<Self, ShardError> {
+        plan.verify_inputs()?;
+        let opened = match &plan.product {
+            PlannedProduct::Heights(arguments) => {
+                OpenedProduct::Heights(arguments, arguments.dataset.open(&plan.folder)?)
+            }
+            PlannedProduct::Viewsheds(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                OpenedProduct::Viewsheds(arguments, arguments.dataset.open(&plan.folder)?)
+            }
+            PlannedProduct::Atlas(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                let scene = AtlasScene::new(arguments.open(&plan.folder)?);
+                OpenedProduct::Atlas(arguments, Box::new(scene))
+            }
+        };
+        Ok(Self { plan, opened })
+    }
+
+    /// Does a shard and writes its results and its record.
+    ///
+    /// # Errors
+    /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
+    pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
+        let (plan, shard) = (self.plan, self.plan.shard(id)?);
+        let bytes = match &mut self.opened {
+            OpenedProduct::Heights(arguments, queried) => {
+                heights::work::result(plan, arguments, queried, &shard)?
+            }
+            OpenedProduct::Viewsheds(arguments, queried) => {
+                viewsheds::work::result(plan, arguments, queried, &shard)?
+            }
+            OpenedProduct::Atlas(arguments, scene) => scene.result(plan, arguments, &shard)?,
+        };
+        record::publish(plan, id, extension(plan), &bytes)
+    }
+}
