@@ -130,6 +130,7 @@ pub use crate::description::finding::{Finding, Severity};
 pub use crate::geom::crs::Crs;
 pub use crate::limits::{set_limit::set_limit, work_limit::LimitError};
 pub use crate::mesh::trimesh::TriMesh;
+pub use crate::pipeline::api::plan::{GatheredPlan, WorkPlan};
 pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::pipeline::api::{dem::Dem, elevation::Elevation, error::Error, terrain::Terrain};
 pub use crate::pipeline::sight::{SightQuery, SightReport};

@@ -19,6 +19,7 @@ use crate::pipeline::picture::PictureError;
 use crate::pipeline::profile::ProfileError;
 use crate::pipeline::raster_file::WriteRasterError;
 use crate::pipeline::scene_file::OpenSceneError;
+use crate::pipeline::shards::error::ShardError;
 use crate::view::camera::CameraError;
 
 /// Why an operation failed. The operation's own error is the source, or the error itself where nothing is to add.
@@ -61,6 +62,9 @@ pub enum Error {
     /// A picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
+    #[error(transparent)]
+    Plan(#[from] ShardError),
     /// No raster format has this extension.
     #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
@@ -93,6 +97,7 @@ impl Error {
             Self::OpenDem(error) => error.file(),
             Self::OpenScene(error) => error.file(),
             Self::Query(error) | Self::Profile(ProfileError::Query(error)) => error.dataset().map(Path::new),
+            Self::Plan(error) => error.file(),
             Self::NoFormat(path) => Some(path),
             Self::WriteFile(error) => Some(&error.path),
             _ => None,

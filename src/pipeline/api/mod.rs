@@ -3,5 +3,6 @@
 pub mod dem;
 pub mod elevation;
 pub mod error;
+pub mod plan;
 pub mod scene;
 pub mod terrain;

@@ -1,5 +1,7 @@
 //! Doing shards: each once, however often a worker is started.
 
+use std::sync::Arc;
+
 use crate::pipeline::shards::atlas::arguments::AtlasArguments;
 use crate::pipeline::shards::atlas::work::AtlasScene;
 use crate::pipeline::shards::error::ShardError;
@@ -11,15 +13,15 @@ use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
 use crate::pipeline::shards::{atlas, heights, viewsheds};
 
 /// What all shards of a plan share, opened once.
-pub struct ShardWorker<'a> {
-    plan: &'a ShardPlan,
-    opened: OpenedProduct<'a>,
+pub struct ShardWorker {
+    plan: Arc<ShardPlan>,
+    opened: OpenedProduct,
 }
 
-enum OpenedProduct<'a> {
-    Heights(&'a HeightsArguments, QueriedDataset),
-    Viewsheds(&'a ViewshedsArguments, QueriedDataset),
-    Atlas(&'a AtlasArguments, Box<AtlasScene>),
+enum OpenedProduct {
+    Heights(HeightsArguments, QueriedDataset),
+    Viewsheds(ViewshedsArguments, QueriedDataset),
+    Atlas(AtlasArguments, Box<AtlasScene>),
 }
 
 /// The extension of the results of a plan's shards.
@@ -36,28 +38,30 @@ pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
     record::state(plan, id, extension(plan)) == ShardState::Done
 }
 
-impl<'a> ShardWorker<'a> {
+impl ShardWorker {
     /// Checks that the inputs of a plan are those that were planned with, and opens them.
     ///
     /// # Errors
     /// An input has changed or cannot be opened, or an argument is wrong.
-    pub fn open(plan: &'a ShardPlan) -> Result<Self, ShardError> {
+    pub fn open(plan: &Arc<ShardPlan>) -> Result<Self, ShardError> {
         plan.verify_inputs()?;
         let opened = match &plan.product {
             PlannedProduct::Heights(arguments) => {
-                OpenedProduct::Heights(arguments, arguments.dataset.open(&plan.folder)?)
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Heights(arguments.clone(), dataset)
             }
             PlannedProduct::Viewsheds(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
-                OpenedProduct::Viewsheds(arguments, arguments.dataset.open(&plan.folder)?)
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Viewsheds(arguments.clone(), dataset)
             }
             PlannedProduct::Atlas(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
                 let scene = AtlasScene::new(arguments.open(&plan.folder)?);
-                OpenedProduct::Atlas(arguments, Box::new(scene))
+                OpenedProduct::Atlas(arguments.clone(), Box::new(scene))
             }
         };
-        Ok(Self { plan, opened })
+        Ok(Self { plan: Arc::clone(plan), opened })
     }
 
     /// Does a shard and writes its results and its record.
@@ -65,7 +69,7 @@ impl<'a> ShardWorker<'a> {
     /// # Errors
     /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
     pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
-        let (plan, shard) = (self.plan, self.plan.shard(id)?);
+        let (plan, shard) = (&*self.plan, self.plan.shard(id)?);
         let bytes = match &mut self.opened {
             OpenedProduct::Heights(arguments, queried) => {
                 heights::work::result(plan, arguments, queried, &shard)?

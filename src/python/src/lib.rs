@@ -14,6 +14,7 @@ mod arguments;
 mod dem;
 mod error;
 mod findings;
+mod plan;
 mod rasters;
 mod results;
 mod scene;
@@ -27,6 +28,8 @@ mod _sandtable {
     use crate::dem::{PyDem, open_dem};
     #[pymodule_export]
     use crate::findings::PyFinding;
+    #[pymodule_export]
+    use crate::plan::PyPlan;
     #[pymodule_export]
     use crate::rasters::{PyMesh, PyRaster};
     #[pymodule_export]

@@ -11,13 +11,19 @@ from conftest import ROOT
 
 
 @pytest.mark.parametrize("page", ["README.md", "src/python/README.md"])
-def test_the_examples_of_the_pages_run(page, tmp_path, capsys):
+def test_the_examples_of_the_pages_run(program, page, tmp_path):
     for folder in ["assets", "scenes"]:
         (tmp_path / folder).symlink_to(ROOT / folder)
-    examples = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.S)
+    text = (ROOT / page).read_text()
+    # What the examples go on with.
+    for command in re.findall(r"^(?:cargo run --release --|sandtable) (plan .*)$", text, re.M):
+        program(*command.split(), cwd=tmp_path)
+    examples = re.findall(r"```python\n(.*?)```", text, re.S)
     assert examples
-    for example in examples:
-        ended = subprocess.run([sys.executable, "-c", example], cwd=tmp_path, capture_output=True, text=True)
+    for number, example in enumerate(examples):
+        (tmp_path / f"example{number}.py").write_text(example)
+        command = [sys.executable, f"example{number}.py"]
+        ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
         assert ended.returncode == 0, ended.stderr
 
 
