@@ -36,7 +36,7 @@ use crate::terrain::sight::viewshed::{ViewshedOptions, viewshed};
 /// let out = HeightSlices { heights_m: &mut heights_m, statuses: &mut statuses };
 /// elevation.heights(Surface::Source, Interpolation::Bilinear, (&Crs::wgs84(), &at), out)?;
 /// assert_eq!(statuses, [Status::Ok, Status::Outside]);
-/// assert_eq!(heights_m[0].round(), 0.0);
+/// assert_eq!(heights_m[0].round(), 375.0);
 /// # Ok::<(), sandtable::Error>(())
 /// ```
 pub struct Elevation {

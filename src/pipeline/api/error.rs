@@ -64,7 +64,7 @@ pub enum Error {
     Picture(#[from] PictureError),
     /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
     #[error(transparent)]
-    Plan(#[from] ShardError),
+    Plan(Box<ShardError>),
     /// No raster format has this extension.
     #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
@@ -74,6 +74,12 @@ pub enum Error {
     /// A file cannot be written.
     #[error(transparent)]
     WriteFile(#[from] WriteFileError),
+}
+
+impl From<ShardError> for Error {
+    fn from(error: ShardError) -> Self {
+        Self::Plan(Box::new(error))
+    }
 }
 
 impl From<OpenError> for Error {
