@@ -29,9 +29,9 @@ pub struct SceneArguments {
 }
 
 /// The folders that a scene may read.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct AccessArguments {
-    /// Also let the scene read files under DIR; without it, only under the parent of the scene's folder
+    /// Also let the scene read files under DIR; without it, only under the parent of its folder
     #[arg(long, value_name = "DIR")]
     pub allow: Vec<PathBuf>,
 }
@@ -64,8 +64,7 @@ pub struct HeightArguments {
 pub struct DatasetArguments {
     /// The elevation file or scene
     pub file: PathBuf,
-    /// The coordinate system of positions, for example EPSG:4326 for longitude,latitude [default: the file's or
-    /// scene's]
+    /// The system of positions, such as EPSG:4326 for longitude,latitude [default: the file's or scene's]
     #[arg(long, value_name = "CRS", value_parser = Crs::parse)]
     pub crs: Option<Crs>,
     /// Print JSON

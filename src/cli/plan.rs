@@ -8,12 +8,13 @@ use serde_json::json;
 
 use crate::cli::error::CliError;
 use crate::cli::height::PointQueryArguments;
-use crate::cli::options::{DatasetArguments, SceneArguments};
+use crate::cli::options::{AccessArguments, DatasetArguments, HeightArguments, SceneArguments};
 use crate::cli::output::print;
 use crate::cli::values::{choice, number};
 use crate::cli::viewshed::SightConditions;
 use crate::description::document::PAPER_DPI;
 use crate::description::words::PaperName;
+use crate::geom::crs::Crs;
 use crate::pipeline::files;
 use crate::pipeline::scene_file::open_scene;
 use crate::pipeline::shards::atlas::arguments::AtlasArguments;
@@ -22,6 +23,7 @@ use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::plan as plan_heights;
 use crate::pipeline::shards::plan_path::written;
 use crate::pipeline::shards::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
+use crate::pipeline::shards::tiles::plan::plan as plan_tiles;
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
 use crate::pipeline::shards::viewsheds::plan::plan as plan_viewsheds;
 use crate::terrain::query::Surface;
@@ -35,6 +37,8 @@ pub enum PlanCommand {
     Viewsheds(PlanViewshedsArguments),
     /// Annotated sheets of a scene side by side, at a true scale
     Atlas(PlanAtlasArguments),
+    /// Terrain tiles for globes in browsers: quantized-mesh
+    Tiles(PlanTilesArguments),
 }
 
 #[derive(Debug, Args)]
@@ -94,6 +98,28 @@ pub struct PlanAtlasArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Heights above EGM96 are brought to the ellipsoid; others are taken as they are. Without elevation, tiles lie at 0."
+)]
+pub struct PlanTilesArguments {
+    /// The elevation file or scene
+    file: PathBuf,
+    /// The finest level [default: as fine as the elevation]
+    #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u32).range(0..=22))]
+    max_zoom: Option<u32>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    heights: HeightArguments,
+    #[command(flatten)]
+    access: AccessArguments,
+    /// The folder of the plan
+    #[arg(short, long, value_name = "PLAN")]
+    output: PathBuf,
+}
+
+#[derive(Debug, Args)]
 struct PlanOptions {
     /// About how many shards there are to be [default: as many as take some seconds each]
     #[arg(long, value_name = "N")]
@@ -108,6 +134,7 @@ pub fn run(command: &PlanCommand) -> Result<(), CliError> {
         PlanCommand::Heights(arguments) => run_heights(arguments),
         PlanCommand::Viewsheds(arguments) => run_viewsheds(arguments),
         PlanCommand::Atlas(arguments) => run_atlas(arguments),
+        PlanCommand::Tiles(arguments) => run_tiles(arguments),
     }
 }
 
@@ -160,6 +187,18 @@ fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
     };
     let sheets = plan_atlas(planned, &opened, folder)?;
     report(folder, "atlas", sheets, arguments.json)
+}
+
+fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
+    let PlanTilesArguments { file, max_zoom, heights, access, output, .. } = arguments;
+    let (heights, access) = (heights.clone(), access.clone());
+    let crs = Some(Crs::wgs84());
+    let dataset = DatasetArguments { file: file.clone(), crs, json: arguments.json, heights, access };
+    let opened = dataset.open()?;
+    files::make_folder(output)?;
+    let queried = QueriedDataset { path: file.clone(), crs: dataset.crs(&opened), dataset: opened };
+    let shards = plan_tiles(planned(&dataset, output), &queried, *max_zoom, output)?;
+    report(output, "tiles", shards, arguments.json)
 }
 
 /// Opens the dataset, and makes the folder of the plan.

@@ -61,7 +61,7 @@ pub struct SightConditions {
     /// How far to look, in meters [default: without limit]
     #[arg(long, value_name = "METERS", value_parser = number::<f64>((Bound::Excluded(0.0), Bound::Unbounded), "write meters as a number above 0"))]
     pub range: Option<f64>,
-    /// The refraction coefficient: the share of the Earth's curvature that bent light makes up for
+    /// The share of the Earth's curvature that refraction cancels
     #[arg(long, value_name = "K", default_value_t = 1.0 / 7.0, value_parser = number::<f64>(-1.0..1.0, "write a number from -1 to below 1; 0.13 to 0.17 is usual"))]
     pub refraction: f64,
     /// Assume a flat Earth without air

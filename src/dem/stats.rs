@@ -50,6 +50,20 @@ impl Stats {
         }
         Ok((sums.finish(sum), voids.finish()))
     }
+
+    /// The lowest and the highest valid sample of a raster that is read in windows, once, some rows at a time; NaN where none
+    /// is valid.
+    ///
+    /// # Errors
+    /// Samples cannot be read.
+    pub fn range_of_windows(windows: &mut (impl Windows + ?Sized)) -> Result<(f64, f64), DemErrorKind> {
+        let mut sums = StatsSums::default();
+        for rows in RasterWindow::all(windows.size()).bands(ROWS_SAMPLES) {
+            sums.add(&windows.samples(rows)?);
+        }
+        let Self { min, max, .. } = sums.finish(0.0);
+        Ok((min, max))
+    }
 }
 
 /// Samples of the rows that are read at a time.

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use crate::dem::answer::{Answer, Status};
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
+use crate::dem::stats::Stats;
 use crate::dem::warp::metric_crs::off_scale;
 use crate::geom::crs::{Crs, CrsError};
 use crate::pipeline::dem::{self, DemOptions, OpenDemError, OpenedDem};
@@ -212,6 +213,29 @@ impl Dataset {
         }
     }
 
+    /// The least and the greatest height of the surface that is queried by default, meters; all of the elevation is read for it
+    /// where it is not kept. Zeros where there is none.
+    ///
+    /// # Errors
+    /// [`QueryError::Read`].
+    pub fn height_range(&self) -> Result<(f64, f64), QueryError> {
+        let (low, high) = match &self.content {
+            DatasetContent::Raster { raster, .. } => {
+                let Stats { min, max, .. } = Stats::new(raster);
+                in_meters(raster, (min, max))
+            }
+            DatasetContent::Windows(elevation) => {
+                let fault = |fault| QueryError::Read { dataset: self.name.clone(), source: Arc::new(fault) };
+                in_meters(elevation.header(), elevation.range().map_err(fault)?)
+            }
+            DatasetContent::Scene(ground) => {
+                let (low, high) = ground.heights.snapshot().lattice().height_range();
+                (f64::from(low), f64::from(high))
+            }
+        };
+        Ok(if low <= high { (low, high) } else { (0.0, 0.0) })
+    }
+
     /// Whether queries read from disk.
     pub fn reads_windows(&self) -> bool {
         matches!(self.content, DatasetContent::Windows(_))
@@ -349,6 +373,11 @@ impl Dataset {
     fn check_datums(&self, from: &Crs, to: &Crs) -> Result<(), QueryError> {
         check_datums(from, to).map_err(|source| QueryError::Datum { dataset: self.name.clone(), source })
     }
+}
+
+/// The least and the greatest sample of a raster in meters.
+fn in_meters(raster: &Raster, (low, high): (f64, f64)) -> (f64, f64) {
+    (low * raster.meters_per_z, high * raster.meters_per_z)
 }
 
 /// Checks that the shift between the datums of two systems is known, which does not depend on the position.

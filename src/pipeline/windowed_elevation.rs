@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::dem::answer::Answer;
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
+use crate::dem::stats::Stats;
 use crate::dem::warp::metric_windows::{MetricPlan, MetricWindows};
 use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
@@ -72,6 +73,14 @@ impl WindowedElevation {
         let bytes = if self.header.samples.is_wide() { size_of::<f64>() } else { size_of::<f32>() };
         check_memory((window.samples() * bytes) as u64, "the raster", "read a part of it")?;
         Ok(Raster { samples: self.source().samples(window)?, ..self.header.without_samples() })
+    }
+
+    /// The lowest and the highest sample of the raster, which is read for them; NaN where none is valid.
+    ///
+    /// # Errors
+    /// Samples cannot be read.
+    pub fn range(&self) -> Result<(f64, f64), DemErrorKind> {
+        Stats::range_of_windows(&mut **self.source())
     }
 
     /// How the ground in meters is made.

@@ -31,6 +31,7 @@ mod shards;
 mod shards_atlas;
 #[cfg(unix)]
 mod shards_killed;
+mod shards_tiles;
 mod sheets;
 mod viewshed;
 mod web_mercator;

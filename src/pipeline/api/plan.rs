@@ -39,7 +39,7 @@ impl WorkPlan {
         Ok(Self { plan: Arc::new(ShardPlan::open(folder.as_ref())?), idle: Mutex::default() })
     }
 
-    /// What is made: `heights`, `viewsheds` or `atlas`.
+    /// What is made: `heights`, `viewsheds`, `atlas` or `tiles`.
     pub fn product(&self) -> &'static str {
         self.plan.product.word()
     }

@@ -85,6 +85,8 @@ pub enum PlanFault {
     NoShard { found: usize, last: usize },
     #[error("it holds no points")]
     NoPoints,
+    #[error("it names no coordinate system, or lies nowhere on the globe; tiles need longitude and latitude")]
+    NoPlace,
     #[error("its ground has no elevation anywhere")]
     NoGround,
     #[error("it holds more than the {PLAN_POINTS} points of a plan; cut it, or {PLAN_POINTS:#}")]

@@ -9,8 +9,7 @@ use crate::pipeline::files;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
 use crate::pipeline::shards::record::{self, ShardState};
-use crate::pipeline::shards::work::extension;
-use crate::pipeline::shards::{atlas, heights, viewsheds};
+use crate::pipeline::shards::{atlas, heights, tiles, viewsheds};
 
 /// How far the shards of a plan are, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,11 +18,7 @@ pub struct PlanProgress(Vec<ShardState>);
 impl PlanProgress {
     /// Reads the records and results of all shards of a plan; one whose results are not those of its record is stale.
     pub fn read(plan: &ShardPlan) -> Self {
-        let extension = extension(plan);
-        let state = |id: usize| match record::state(plan, id, extension) {
-            ShardState::Done if record::verify_result(plan, id, extension).is_err() => ShardState::Stale,
-            state => state,
-        };
+        let state = |id: usize| record::verified_state(plan, id);
         Self((0..plan.count()).into_par_iter().map(state).collect())
     }
 
@@ -62,6 +57,17 @@ pub fn gather(
             let out = checked(plan, own("heights.csv"))?;
             plan.verify_inputs()?;
             heights::gather::gather(plan, arguments, &out)?;
+            Ok(vec![out])
+        }
+        PlannedProduct::Tiles(arguments) => {
+            if out.is_some() {
+                let message =
+                    "tiles stay where they are, and `layer.json` with them; leave out -o".to_owned();
+                return Err(PlanError::new(&plan.folder, PlanFault::Output(message)).into());
+            }
+            let out = plan.folder.join("tiles/layer.json");
+            plan.verify_inputs()?;
+            tiles::gather::gather(arguments, &out)?;
             Ok(vec![out])
         }
         PlannedProduct::Viewsheds(arguments) => {

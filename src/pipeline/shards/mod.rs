@@ -16,5 +16,6 @@ pub mod planned_dataset;
 mod point_stream;
 pub mod record;
 pub mod shard;
+pub mod tiles;
 pub mod viewsheds;
 pub mod work;

@@ -13,6 +13,7 @@ use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::input::{PlanInput, sha256};
 use crate::pipeline::shards::shard::Shard;
+use crate::pipeline::shards::tiles::arguments::TilesArguments;
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
 
 /// The value of `format` in `plan.json`.
@@ -32,6 +33,8 @@ pub enum PlannedProduct {
     Viewsheds(ViewshedsArguments),
     /// Sheets of a scene.
     Atlas(AtlasArguments),
+    /// Terrain tiles of a globe.
+    Tiles(TilesArguments),
 }
 
 impl PlannedProduct {
@@ -41,6 +44,7 @@ impl PlannedProduct {
             Self::Heights(_) => "heights",
             Self::Viewsheds(_) => "viewsheds",
             Self::Atlas(_) => "atlas",
+            Self::Tiles(_) => "tiles",
         }
     }
 }

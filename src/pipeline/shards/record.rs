@@ -1,11 +1,14 @@
 //! The record of a shard that is done: of which plan, and which files it made.
 
-use std::fs::File;
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::path::{Component, Path, PathBuf};
+
+use rayon::prelude::*;
 
 use serde::{Deserialize, Serialize};
 
-use crate::pipeline::files::{self, ReadFileError, SystemError};
+use crate::pipeline::files;
 use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::input::{has_size, hash, sha256};
@@ -16,7 +19,7 @@ use crate::pipeline::shards::shard::stem;
 const FORMAT: &str = "sandtable-shard";
 /// The version of records.
 const VERSION: u32 = 1;
-/// A record is a few lines; nothing longer is read.
+/// A record has a hundred bytes for each file; nothing longer is read.
 const MOST_BYTES: u64 = 1 << 20;
 
 /// How far a shard is.
@@ -60,61 +63,91 @@ pub fn result_path(plan: &ShardPlan, id: usize, extension: &str) -> PathBuf {
     plan.folder.join(result_name(id, extension))
 }
 
-/// Writes the result of a shard and its record.
+/// A result of a shard.
+pub struct ShardFile {
+    /// Where it goes, in the folder of the plan.
+    pub path: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
+impl ShardFile {
+    /// The one file of a shard.
+    pub fn only(id: usize, extension: &str, bytes: Vec<u8>) -> Vec<Self> {
+        vec![Self { path: result_name(id, extension), bytes }]
+    }
+}
+
+/// Writes the results of a shard and, last, its record.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn publish(plan: &ShardPlan, id: usize, extension: &str, bytes: &[u8]) -> Result<(), ShardError> {
-    let path = result_name(id, extension);
-    let file = ResultFile { path, bytes: bytes.len() as u64, sha256: sha256(bytes) };
+pub fn publish(plan: &ShardPlan, id: usize, results: &[ShardFile]) -> Result<(), ShardError> {
+    let described = |file: &ShardFile| ResultFile {
+        path: file.path.clone(),
+        bytes: file.bytes.len() as u64,
+        sha256: sha256(&file.bytes),
+    };
     let (format, plan_hash) = (FORMAT.to_owned(), plan.identity.clone());
-    let record = ShardRecord { format, version: VERSION, shard: id, plan: plan_hash, files: vec![file] };
+    let described = results.par_iter().map(described).collect();
+    let record = ShardRecord { format, version: VERSION, shard: id, plan: plan_hash, files: described };
     let place = result_path(plan, id, "json");
     let text =
         serde_json::to_string(&record).map_err(|error| PlanError::new(&place, PlanFault::from(error)))?;
-    files::make_folder(&plan.folder.join("shards"))?;
+    let places: Vec<PathBuf> = results.iter().map(|file| plan.folder.join(&file.path)).collect();
+    let folders: BTreeSet<&Path> = places.iter().chain([&place]).filter_map(|place| place.parent()).collect();
+    folders.into_iter().try_for_each(files::make_folder)?;
     let mut files = OutputFiles::default();
-    files.write(&result_path(plan, id, extension), bytes)?;
+    for (place, file) in places.iter().zip(results) {
+        files.write(place, &file.bytes)?;
+    }
     files.write(&place, (text + "\n").as_bytes())?;
     Ok(files.publish()?)
 }
 
 /// How far a shard is: by its record, and by the sizes of its files.
-pub fn state(plan: &ShardPlan, id: usize, extension: &str) -> ShardState {
-    let path = result_path(plan, id, "json");
-    if !path.exists() {
+pub fn state(plan: &ShardPlan, id: usize) -> ShardState {
+    if !result_path(plan, id, "json").exists() {
         return ShardState::Missing;
     }
-    match read(plan, id, extension) {
-        Some(file) if has_size(&plan.folder.join(&file.path), file.bytes) => ShardState::Done,
+    let is_there = |file: &ResultFile| has_size(&plan.folder.join(&file.path), file.bytes);
+    match read(plan, id) {
+        Some(files) if files.iter().all(is_there) => ShardState::Done,
         _ => ShardState::Stale,
     }
 }
 
-/// The result file of a shard's record; `None` where there is no record of this plan, or one that is wrong.
-fn read(plan: &ShardPlan, id: usize, extension: &str) -> Option<ResultFile> {
+/// [`state`], where files count that have the hashes of the record.
+pub fn verified_state(plan: &ShardPlan, id: usize) -> ShardState {
+    let is_own = |file: &ResultFile| {
+        let content = files::open(&plan.folder.join(&file.path)).ok();
+        content
+            .is_some_and(|mut content| hash(&mut content, file.bytes).is_ok_and(|hash| hash == file.sha256))
+    };
+    match state(plan, id) {
+        ShardState::Done if !read(plan, id).is_some_and(|files| files.iter().all(is_own)) => {
+            ShardState::Stale
+        }
+        state => state,
+    }
+}
+
+/// The files of a shard's record; `None` where there is no record of this plan, or one that is wrong.
+fn read(plan: &ShardPlan, id: usize) -> Option<Vec<ResultFile>> {
     let text = files::read_head(&result_path(plan, id, "json"), MOST_BYTES).ok()?;
     let record: ShardRecord = serde_json::from_slice(&text).ok()?;
     let is_own = record.format == FORMAT
         && record.version == VERSION
         && record.shard == id
-        && record.plan == plan.identity;
-    let [file] = <[ResultFile; 1]>::try_from(record.files).ok()?;
-    (is_own && file.path == result_name(id, extension)).then_some(file)
-}
-
-/// Checks that the result of a shard has the hash of its record.
-///
-/// # Errors
-/// It has not, or cannot be read.
-pub fn verify_result(plan: &ShardPlan, id: usize, extension: &str) -> Result<(), ShardError> {
-    let path = result_path(plan, id, extension);
-    let wrong = || ShardError::from(PlanError::new(&path, PlanFault::Result));
-    let file = read(plan, id, extension).ok_or_else(wrong)?;
-    let failed = |error| ReadFileError::new(&path, SystemError::from(error));
-    let mut content: File = files::open(&path)?;
-    match hash(&mut content, file.bytes).map_err(failed)? == file.sha256 && has_size(&path, file.bytes) {
-        true => Ok(()),
-        false => Err(wrong()),
-    }
+        && record.plan == plan.identity
+        && !record.files.is_empty();
+    // A record names files of the plan's own folders, whoever wrote it.
+    let is_inside = |file: &ResultFile| {
+        let mut parts = Path::new(&file.path).components();
+        let is_folder = parts
+            .next()
+            .is_some_and(|first| ["shards", "tiles"].map(OsStr::new).contains(&first.as_os_str()));
+        is_folder && parts.all(|part| matches!(part, Component::Normal(_)))
+    };
+    (is_own && record.files.iter().all(is_inside)).then_some(record.files)
 }

@@ -23,6 +23,9 @@ pub struct Shard {
     /// The observers of viewsheds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub observers: Option<Vec<[f64; 2]>>,
+    /// Level, x and y of the tile that a shard holds with all below it; none of the top.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tile: Option<[u64; 3]>,
     /// The row of a sheet, from the north, and its column, from the west, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sheet: Option<[u64; 2]>,
@@ -42,6 +45,7 @@ impl Shard {
             halo: None,
             points: None,
             observers: None,
+            tile: None,
             sheet: None,
             neighbors: None,
         }
@@ -79,7 +83,7 @@ pub enum ShardWindow {
     /// Column, row, width and height: in samples of an elevation file, from the north-west, or in posts of the ground in
     /// meters, from the south-west.
     Grid([u32; 4]),
-    /// Least x and y, greatest x and y in the system of a scene.
+    /// Least x and y, greatest x and y: in the system of a scene, or in degrees.
     Map([f64; 4]),
 }
 

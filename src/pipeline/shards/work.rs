@@ -8,9 +8,10 @@ use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::plan::{PlannedProduct, ShardPlan};
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
-use crate::pipeline::shards::record::{self, ShardState};
+use crate::pipeline::shards::record::{self, ShardFile, ShardState};
+use crate::pipeline::shards::tiles::arguments::TilesArguments;
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
-use crate::pipeline::shards::{atlas, heights, viewsheds};
+use crate::pipeline::shards::{atlas, heights, tiles, viewsheds};
 
 /// What all shards of a plan share, opened once.
 pub struct ShardWorker {
@@ -22,20 +23,12 @@ enum OpenedProduct {
     Heights(HeightsArguments, QueriedDataset),
     Viewsheds(ViewshedsArguments, QueriedDataset),
     Atlas(AtlasArguments, Box<AtlasScene>),
-}
-
-/// The extension of the results of a plan's shards.
-pub fn extension(plan: &ShardPlan) -> &'static str {
-    match plan.product {
-        PlannedProduct::Heights(_) => heights::work::EXTENSION,
-        PlannedProduct::Viewsheds(_) => viewsheds::work::EXTENSION,
-        PlannedProduct::Atlas(_) => atlas::work::EXTENSION,
-    }
+    Tiles(TilesArguments, QueriedDataset),
 }
 
 /// Whether a shard is done: nothing is opened or compared for that but its record.
 pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
-    record::state(plan, id, extension(plan)) == ShardState::Done
+    record::state(plan, id) == ShardState::Done
 }
 
 impl ShardWorker {
@@ -60,6 +53,11 @@ impl ShardWorker {
                 let scene = AtlasScene::new(arguments.open(&plan.folder)?);
                 OpenedProduct::Atlas(arguments.clone(), Box::new(scene))
             }
+            PlannedProduct::Tiles(arguments) => {
+                arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Tiles(arguments.clone(), dataset)
+            }
         };
         Ok(Self { plan: Arc::clone(plan), opened })
     }
@@ -70,15 +68,21 @@ impl ShardWorker {
     /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
     pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
         let (plan, shard) = (&*self.plan, self.plan.shard(id)?);
-        let bytes = match &mut self.opened {
+        let only = |extension: &str, bytes: Vec<u8>| ShardFile::only(id, extension, bytes);
+        let files = match &mut self.opened {
             OpenedProduct::Heights(arguments, queried) => {
-                heights::work::result(plan, arguments, queried, &shard)?
+                only(heights::work::EXTENSION, heights::work::result(plan, arguments, queried, &shard)?)
             }
             OpenedProduct::Viewsheds(arguments, queried) => {
-                viewsheds::work::result(plan, arguments, queried, &shard)?
+                only(viewsheds::work::EXTENSION, viewsheds::work::result(plan, arguments, queried, &shard)?)
             }
-            OpenedProduct::Atlas(arguments, scene) => scene.result(plan, arguments, &shard)?,
+            OpenedProduct::Atlas(arguments, scene) => {
+                only(atlas::work::EXTENSION, scene.result(plan, arguments, &shard)?)
+            }
+            OpenedProduct::Tiles(arguments, queried) => {
+                tiles::work::result(plan, arguments, queried, &shard)?
+            }
         };
-        record::publish(plan, id, extension(plan), &bytes)
+        record::publish(plan, id, &files)
     }
 }

@@ -40,6 +40,13 @@ fn every_command_has_help_to_read() {
                 "--height-offset",
             ],
         ),
+        (&["plan"], &["heights", "viewsheds", "atlas", "tiles"]),
+        (&["plan", "heights"], &["--points", "--above", "--shards", "<FILE>", "--output <PLAN>"]),
+        (&["plan", "viewsheds"], &["--points", "--range", "--observer-height", "--flat"]),
+        (&["plan", "atlas"], &["--scale", "--paper", "--portrait", "--dpi", "<SCENE>"]),
+        (&["plan", "tiles"], &["--max-zoom", "ellipsoid"]),
+        (&["work"], &["--shard", "--shards <A..B>", "Exit codes"]),
+        (&["gather"], &["--output", "--json", "Exit codes"]),
     ] {
         let help = run(&[command, &["--help"]].concat()).ok();
         for word in wanted {

@@ -270,7 +270,8 @@ fn plans_that_nobody_wrote_are_refused_without_a_panic() {
     }
     // Lines whose hash is right.
     for (from, to, expected) in [
-        ("\"first\":0", "\"first\":18446744073709551615", "not those that were planned"),
+        ("\"first\":0", "\"first\":18446744073709551615", "no points, or too many"),
+        ("\"first\":0", "\"first\":1", "not those that were planned"),
         ("\"id\":0", "\"id\":1", "`id` is 1"),
         ("\"count\":", "\"count\":9999999", "no points, or too many"),
         ("\"count\":", "\"count\":-", "not a shard"),

@@ -44,7 +44,7 @@ fn difference(a: (&RgbImage, u32), b: (&RgbImage, u32)) -> f64 {
 #[test]
 fn sheets_meet_without_a_seam_and_any_worker_draws_the_same() {
     let scratch = scene("none");
-    let shards = planned(&scratch, &["--scale", "150000", "--dpi", "60"]);
+    let shards = planned(&scratch, &["--scale", "120000", "--dpi", "60"]);
     let names: Vec<&str> = shards.iter().map(|shard| shard["name"].as_str().expect("a name")).collect();
     assert_eq!(names, ["A1", "B1"], "the landscape sheets lie one below the other");
     let upright = scene("none");

@@ -56,7 +56,8 @@ impl AtlasScene {
     fn name(&mut self, plan: &ShardPlan, shard: &Shard) -> Result<(), ShardError> {
         let mut beside = Vec::new();
         for (side, id) in shard.neighbors.iter().flat_map(SheetNeighbors::sides) {
-            beside.push(format!("{side} {}", plan.shard(id)?.name));
+            let initial = side[..1].to_uppercase();
+            beside.push(format!("{initial} {}", plan.shard(id)?.name));
         }
         let name = format!("Sheet {}", shard.name);
         self.scene.subtitle = Some(match &self.subtitle {
@@ -65,7 +66,7 @@ impl AtlasScene {
         });
         let mut notes = self.furniture.notes.clone().unwrap_or_default();
         if !beside.is_empty() {
-            notes.push(format!("Adjoining sheets: {}", beside.join(", ")));
+            notes.push(format!("Adjoining: {}", beside.join(", ")));
         }
         self.scene.furniture.notes = Some(notes);
         Ok(())

@@ -20,8 +20,10 @@ use crate::pipeline::shards::plan::ShardPlan;
 use crate::pipeline::shards::point_stream::PointStream;
 use crate::pipeline::shards::record::result_path;
 
-/// Answers of a shard that are read at once, and rows that one thread writes.
+/// Rows that one thread writes.
 const PIECE: usize = 4096;
+/// Bytes of answers that are read and not yet written, of all shards together.
+const HELD: usize = 64 << 20;
 
 /// Writes the heights of a plan whose shards are all done.
 ///
@@ -30,8 +32,9 @@ const PIECE: usize = 4096;
 pub fn gather(plan: &ShardPlan, arguments: &HeightsArguments, path: &Path) -> Result<(), ShardError> {
     let order_path = plan.folder.join("order.bin");
     let mut order = BufReader::with_capacity(1 << 20, files::open(&order_path)?);
+    let most = (HELD / ANSWER_BYTES / plan.count()).clamp(64, PIECE);
     let shard =
-        |id| AnswerStream { path: result_path(plan, id, EXTENSION), next: 0, piece: Vec::new(), at: 0 };
+        |id| AnswerStream { path: result_path(plan, id, EXTENSION), next: 0, piece: Vec::new(), at: 0, most };
     let mut shards: Vec<AnswerStream> = (0..plan.count()).map(shard).collect();
     let wrong_order = || {
         let what = "it is not the order of the points that were planned".to_owned();
@@ -84,6 +87,8 @@ struct AnswerStream {
     next: u64,
     piece: Vec<u8>,
     at: usize,
+    /// The answers of a piece.
+    most: usize,
 }
 
 impl AnswerStream {
@@ -103,7 +108,7 @@ impl AnswerStream {
         file.seek(SeekFrom::Start(self.next)).map_err(failed)?;
         self.piece.clear();
         self.at = 0;
-        file.take((PIECE * ANSWER_BYTES) as u64).read_to_end(&mut self.piece).map_err(failed)?;
+        file.take((self.most * ANSWER_BYTES) as u64).read_to_end(&mut self.piece).map_err(failed)?;
         self.next += self.piece.len() as u64;
         Ok(())
     }

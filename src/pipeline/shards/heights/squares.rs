@@ -80,6 +80,7 @@ impl PointSquares {
             let (parts, window) = (count.saturating_add(each / 2) / each, window(index));
             if parts > 1 {
                 let share = count.div_ceil(parts);
+                let parts = count.div_ceil(share);
                 routes[index] = SquareRoute { first: shards.len() as u32, each: share, seen: 0 };
                 let rest = |part: u64| share.min(count - part * share);
                 shards.extend((0..parts).map(|part| PointShard { count: rest(part), window }));
@@ -143,7 +144,7 @@ mod tests {
     #[test]
     fn every_shard_gets_as_many_points_as_were_counted_for_it() {
         let points = points();
-        for each in [1, 100, 700, 100_000] {
+        for each in [1, 2, 3, 13, 30, 100, 700, 100_000] {
             let mut squares = PointSquares::new((1000, 800));
             points.iter().for_each(|&point| squares.add(point));
             let (mut routes, shards) = squares.part(each);

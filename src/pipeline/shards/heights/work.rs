@@ -5,6 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
+use crate::limits::PLAN_POINTS;
 use crate::pipeline::files::{self, ReadFileError, SystemError};
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
@@ -12,7 +13,7 @@ use crate::pipeline::shards::heights::plan::{MOST_POINTS, POINT_BYTES};
 use crate::pipeline::shards::input::sha256;
 use crate::pipeline::shards::plan::ShardPlan;
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
-use crate::pipeline::shards::shard::Shard;
+use crate::pipeline::shards::shard::{PointRange, Shard};
 
 /// The extension of a shard's results.
 pub const EXTENSION: &str = "heights";
@@ -35,13 +36,13 @@ pub fn result(
 
 /// The positions of a shard.
 fn points(plan: &ShardPlan, shard: &Shard) -> Result<Vec<DVec2>, ShardError> {
-    let range = shard.points.as_ref().filter(|range| range.count <= MOST_POINTS);
+    let is_sound = |range: &&PointRange| range.count <= MOST_POINTS && range.first <= PLAN_POINTS.get();
+    let range = shard.points.as_ref().filter(is_sound);
     let range = range.ok_or_else(|| plan.wrong_shard(shard.id, "it has no points, or too many"))?;
     let path = plan.folder.join("points.bin");
     let failed = |error| ReadFileError::new(&path, SystemError::from(error));
     let mut file = files::open(&path)?;
-    let start = range.first.saturating_mul(POINT_BYTES);
-    file.seek(SeekFrom::Start(start)).map_err(failed)?;
+    file.seek(SeekFrom::Start(range.first * POINT_BYTES)).map_err(failed)?;
     let mut bytes = Vec::new();
     file.take(range.count * POINT_BYTES).read_to_end(&mut bytes).map_err(failed)?;
     if sha256(&bytes) != range.sha256 {

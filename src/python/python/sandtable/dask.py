@@ -33,7 +33,7 @@ class PlanStatus:
     Attributes
     ----------
     product : str
-        What is made: "heights", "viewsheds" or "atlas".
+        What is made: "heights", "viewsheds", "atlas" or "tiles".
     shards, done : int
         How many there are, and how many are done.
     missing, stale : list of int
