@@ -46,17 +46,6 @@
 //! # Ok::<(), sandtable::Error>(())
 //! ```
 //!
-//! Follow the steps of opening a scene:
-//!
-//! ```
-//! use sandtable::{Scene, SceneOptions};
-//! let steps = std::cell::RefCell::new(Vec::new());
-//! let progress = |step| steps.borrow_mut().push(step);
-//! Scene::open_with("scenes/road.toml", &SceneOptions { progress: &progress, ..Default::default() })?;
-//! assert_eq!(steps.borrow().first(), Some(&"reading the scene file"));
-//! # Ok::<(), sandtable::Error>(())
-//! ```
-//!
 //! World space is right-handed: X east, Y north, Z up, meters from the south-west post. Map coordinates are those of
 //! the terrain's or scene's coordinate system. [`architecture`] draws the modules below.
 
@@ -136,15 +125,20 @@ cfg_if::cfg_if! {
 pub use glam::{DVec2, DVec3};
 
 pub use crate::dem::answer::{Answer, Status};
+pub use crate::dem::raster::Samples;
+pub use crate::description::finding::{Finding, Severity};
 pub use crate::geom::crs::Crs;
 pub use crate::limits::{set_limit::set_limit, work_limit::LimitError};
 pub use crate::mesh::trimesh::TriMesh;
-pub use crate::pipeline::api::dem::Dem;
-pub use crate::pipeline::api::error::Error;
+pub use crate::pipeline::api::plan::{GatheredPlan, WorkPlan};
 pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
-pub use crate::pipeline::api::terrain::Terrain;
+pub use crate::pipeline::api::{dem::Dem, elevation::Elevation, error::Error, terrain::Terrain};
+pub use crate::pipeline::sight::{SightQuery, SightReport};
+pub use crate::pipeline::{choice::WordError, dem::DemOptions, profile::GroundProfile};
+pub use crate::terrain::hillshade::HillshadeOptions;
+pub use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling};
 pub use crate::terrain::query::service::{HeightService, Snapshot};
-pub use crate::terrain::query::{Interpolation, Surface};
+pub use crate::terrain::query::{Interpolation, Surface, batch::HeightSlices};
 pub use crate::terrain::sight::viewshed::{Sector, ViewshedOptions};
-pub use crate::terrain::sight::{Curvature, line::SightEnd};
+pub use crate::terrain::sight::{Curvature, line::Blocker, line::SightEnd, rise::Rise};
 pub use crate::view::camera::Camera;

@@ -13,7 +13,7 @@ use crate::cli::values::choice;
 use crate::description::finding::{Finding, Severity};
 use crate::description::source_place::SourcePlace;
 use crate::message::choice::{Choice, ChoiceWord, word};
-use crate::pipeline::scene_file::{OpenSceneError, open_linted};
+use crate::pipeline::scene_file::open_linted;
 use crate::scene::SceneModel;
 use crate::scene::views::whole_meters;
 
@@ -51,7 +51,7 @@ pub fn run(arguments: &CheckArguments) -> Result<(), CliError> {
     steps.finish();
     let (scene, findings) = match opened {
         Ok((scene, findings)) => (Some(scene), findings),
-        Err(error) if arguments.json => (None, findings_of(&error)),
+        Err(error) if arguments.json => (None, error.findings()),
         Err(error) => return Err(error.into()),
     };
     let name = path.display().to_string();
@@ -66,15 +66,6 @@ pub fn run(arguments: &CheckArguments) -> Result<(), CliError> {
         Severity::Note => false,
     };
     if findings.iter().any(is_denied) { Err(CliError::Reported) } else { Ok(()) }
-}
-
-/// The errors that keep a scene from being built, as findings.
-fn findings_of(error: &OpenSceneError) -> Vec<Finding> {
-    match error {
-        OpenSceneError::Parse(errors) => errors.as_slice().iter().map(Finding::from).collect(),
-        OpenSceneError::Build(error) => vec![Finding::from(error)],
-        other => vec![other.finding()],
-    }
 }
 
 /// The findings that somebody should look at, each with its line, then the contents of the scene.

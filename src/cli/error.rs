@@ -2,12 +2,11 @@
 
 use std::error::Error;
 use std::fmt::Display;
-use std::iter::successors;
 use std::process::ExitCode;
 
 use crate::cli::output::warn;
-use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::message::chain::error_text;
+use crate::pipeline::error::diagnostics_text;
 
 /// Why a command stopped.
 #[derive(Debug)]
@@ -58,9 +57,5 @@ impl CliError {
 
 /// The text of an error. Diagnostics of a scene file stand alone: they begin with the place in the file.
 fn message(error: &(dyn Error + 'static)) -> String {
-    let mut causes = successors(Some(error), |&error| error.source());
-    match causes.find(|cause| cause.is::<Diagnostic>() || cause.is::<Diagnostics>()) {
-        Some(diagnostic) => diagnostic.to_string(),
-        None => format!("error: {}", error_text(error)),
-    }
+    diagnostics_text(error).unwrap_or_else(|| format!("error: {}", error_text(error)))
 }

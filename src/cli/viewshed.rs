@@ -18,7 +18,7 @@ use crate::cli::values::{number, number_pair};
 use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{QueryError, transform};
-use crate::pipeline::ground::{GroundError, QueriedGround};
+use crate::pipeline::ground::QueriedGround;
 use crate::pipeline::viewshed::{ViewshedSummary, raster};
 use crate::pipeline::viewshed_map::{SheetText, viewshed_map};
 use crate::pipeline::windowed_elevation::GroundReach;
@@ -131,9 +131,7 @@ fn write(
     viewshed: &Viewshed,
 ) -> Result<(), CliError> {
     // What is held is the square around the range, where that is not all.
-    let cut = (!ground.lattice.holds_all()).then(|| ground.lattice.cut_to_held()).transpose();
-    let cut = cut.map_err(GroundError::from)?;
-    let lattice = cut.as_ref().unwrap_or(&ground.lattice);
+    let lattice = &*ground.held_lattice()?;
     match output {
         ViewshedOutput::Raster(path, format) => {
             let raster = raster(lattice, viewshed, &ground.crs);

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -35,7 +36,7 @@ fn shard_range(text: &str) -> Result<Range<usize>, &'static str> {
 
 /// Does the shards that are not done, and prints a line for each; goes on past one that fails.
 pub fn run(arguments: &WorkArguments) -> Result<(), CliError> {
-    let plan = ShardPlan::open(&arguments.plan)?;
+    let plan = Arc::new(ShardPlan::open(&arguments.plan)?);
     let one = arguments.shard.map(|shard| shard..shard.saturating_add(1));
     let ids = one.or_else(|| arguments.shards.clone()).unwrap_or_default();
     plan.check_shards(&ids)?;

@@ -7,7 +7,7 @@ pub mod cell_grid;
 pub mod crop;
 pub mod error;
 pub mod formats;
-mod georef;
+pub mod georef;
 pub mod gridding;
 pub mod height_datum;
 pub mod imagery;

@@ -1,7 +1,10 @@
 //! The words of choices that the command line and HTTP requests share.
 
+use std::str::FromStr;
+
 use crate::dem::gridding::BeyondHull;
 use crate::message::choice::{Choice, ChoiceWord, word};
+use crate::message::suggest::{quoted, remedy};
 use crate::terrain::query::{Interpolation, Surface};
 
 impl Choice for Interpolation {
@@ -27,4 +30,49 @@ impl Choice for BeyondHull {
         word(Self::NoData, "nodata", "No data"),
         word(Self::Nearest, "nearest", "The height of the nearest point"),
     ];
+}
+
+/// A word that names no value of a choice.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no {noun} '{word}'; {remedy}")]
+pub struct WordError {
+    noun: &'static str,
+    word: String,
+    remedy: String,
+}
+
+impl FromStr for Interpolation {
+    type Err = WordError;
+
+    fn from_str(word: &str) -> Result<Self, WordError> {
+        from_word("interpolation", word)
+    }
+}
+
+impl FromStr for Surface {
+    type Err = WordError;
+
+    fn from_str(word: &str) -> Result<Self, WordError> {
+        from_word("surface", word)
+    }
+}
+
+fn from_word<T: Choice>(noun: &'static str, word: &str) -> Result<T, WordError> {
+    T::from_word(word).ok_or_else(|| {
+        let words: Vec<&str> = T::CHOICES.iter().map(|choice| choice.word).collect();
+        WordError { noun, word: quoted(word), remedy: remedy(word, &words, "it is") }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_is_its_value_and_another_is_answered_with_the_nearest() {
+        assert_eq!("distance-weighted".parse(), Ok(Interpolation::DistanceWeighted4));
+        assert_eq!("ground".parse(), Ok(Surface::Ground));
+        let wrong = "bilinaer".parse::<Interpolation>().map_err(|error| error.to_string());
+        assert_eq!(wrong, Err("there is no interpolation 'bilinaer'; did you mean `bilinear`?".to_owned()));
+    }
 }

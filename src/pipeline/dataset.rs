@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::answer::Answer;
+use crate::dem::answer::{Answer, Status};
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::stats::Stats;
@@ -22,8 +22,9 @@ use crate::pipeline::ground::{self, GroundError, QueriedGround};
 use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
 use crate::pipeline::windowed_elevation::{GroundReach, WindowedElevation};
 use crate::scene::SceneGround;
+use crate::terrain::query::batch::HeightSlices;
 use crate::terrain::query::service::HeightService;
-use crate::terrain::query::source::source_heights;
+use crate::terrain::query::source::source_heights_apart;
 use crate::terrain::query::{Interpolation, Surface};
 
 /// Options for opening a dataset.
@@ -99,6 +100,18 @@ pub enum QueryError {
     },
 }
 
+impl QueryError {
+    /// The name of the dataset that is at fault; `None` where the query is.
+    pub fn dataset(&self) -> Option<&str> {
+        match self {
+            Self::Ground { dataset, .. } | Self::Read { dataset, .. } | Self::Datum { dataset, .. } => {
+                Some(dataset)
+            }
+            Self::Position { .. } | Self::NoGround { .. } => None,
+        }
+    }
+}
+
 fn absence(answer: Answer) -> &'static str {
     match answer {
         Answer::NoData => "the elevation model has no data there",
@@ -126,6 +139,12 @@ impl Dataset {
             OpenedDem::Windows(windows) => DatasetContent::Windows(Box::new(WindowedElevation::new(windows))),
         };
         Ok(Self { name, content })
+    }
+
+    /// The dataset of a raster in memory, which messages call `name`.
+    pub fn from_raster(name: &str, raster: Arc<Raster>) -> Self {
+        let content = DatasetContent::Raster { raster, ground: OnceLock::new(), warning: None };
+        Self { name: name.to_owned(), content }
     }
 
     /// A warning for the user about the files, where there is one.
@@ -173,6 +192,17 @@ impl Dataset {
             DatasetContent::Raster { raster, .. } => Arc::clone(raster),
             DatasetContent::Windows(elevation) => Arc::clone(elevation.header()),
             DatasetContent::Scene(ground) => Arc::clone(ground.heights.snapshot().source()),
+        }
+    }
+
+    /// The raster as read, with all its samples.
+    ///
+    /// # Errors
+    /// [`QueryError::Read`]: samples on disk cannot be read, or are too many.
+    pub fn raster(&self) -> Result<Arc<Raster>, QueryError> {
+        match &self.content {
+            DatasetContent::Windows(elevation) => elevation.read().map(Arc::new).map_err(self.unreadable()),
+            _ => Ok(self.header()),
         }
     }
 
@@ -244,6 +274,14 @@ impl Dataset {
         is_prepared.then(|| self.prepare_ground())
     }
 
+    /// The height service on the ground in meters; `None` of a dataset that is not kept in memory.
+    ///
+    /// # Errors
+    /// [`QueryError::Ground`].
+    pub fn kept_service(&self) -> Result<Option<&HeightService>, QueryError> {
+        if self.reads_windows() { Ok(None) } else { self.service().map(Some) }
+    }
+
     /// The height service on the ground in meters, of a dataset that is kept in memory.
     fn service(&self) -> Result<&HeightService, QueryError> {
         match &self.content {
@@ -260,6 +298,10 @@ impl Dataset {
         |source| QueryError::Ground { dataset: self.name.clone(), source }
     }
 
+    fn unreadable(&self) -> impl Fn(DemErrorKind) -> QueryError + '_ {
+        |fault| QueryError::Read { dataset: self.name.clone(), source: Arc::new(fault) }
+    }
+
     /// The heights at positions in coordinates of `from`, in order.
     ///
     /// The source of a file without a coordinate system is taken to lie in `from`. A position that cannot be brought to
@@ -274,27 +316,49 @@ impl Dataset {
         from: &Crs,
         at: &[DVec2],
     ) -> Result<Vec<Answer>, QueryError> {
+        let (mut heights_m, mut statuses) = (vec![f64::NAN; at.len()], vec![Status::Outside; at.len()]);
+        let out = HeightSlices { heights_m: &mut heights_m, statuses: &mut statuses };
+        self.heights_apart(surface, interpolation, from, at, out)?;
+        Ok(statuses.iter().zip(heights_m).map(|(status, height_m)| status.with_height(height_m)).collect())
+    }
+
+    /// [`Dataset::heights`] as heights and statuses in slices of their own.
+    ///
+    /// # Errors
+    /// As [`Dataset::heights`]; `out` then means nothing.
+    ///
+    /// # Panics
+    /// Where the slices are not as long as `at`.
+    pub fn heights_apart(
+        &self,
+        surface: Surface,
+        interpolation: Interpolation,
+        from: &Crs,
+        at: &[DVec2],
+        mut out: HeightSlices<'_>,
+    ) -> Result<(), QueryError> {
         if surface == Surface::Source {
             let source = self.header();
             self.check_datums(from, source.crs.as_ref().unwrap_or(from))?;
-            if let DatasetContent::Windows(elevation) = &self.content {
-                let fault = |fault| QueryError::Read { dataset: self.name.clone(), source: Arc::new(fault) };
-                return elevation.source_heights(from, interpolation, at).map_err(fault);
+            match &self.content {
+                DatasetContent::Windows(elevation) => {
+                    let answers = elevation.source_heights(from, interpolation, at);
+                    out.put(&answers.map_err(self.unreadable())?);
+                }
+                _ => source_heights_apart(&source, from, interpolation, at, out),
             }
-            let mut answers = vec![Answer::Outside; at.len()];
-            source_heights(&source, from, interpolation, at, &mut answers);
-            return Ok(answers);
+            return Ok(());
         }
         if let DatasetContent::Windows(elevation) = &self.content {
             let crs = elevation.ground_crs().map_err(self.no_ground())?;
             let at = self.on_ground(from, &crs, at)?;
-            return elevation.ground_heights(surface, interpolation, &at).map_err(self.no_ground());
+            out.put(&elevation.ground_heights(surface, interpolation, &at).map_err(self.no_ground())?);
+            return Ok(());
         }
         let snapshot = self.service()?.snapshot();
         let at = self.on_ground(from, snapshot.crs(), at)?;
-        let mut answers = vec![Answer::Outside; at.len()];
-        snapshot.heights(surface, interpolation, &at, &mut answers);
-        Ok(answers)
+        snapshot.heights_apart(surface, interpolation, &at, out);
+        Ok(())
     }
 
     /// Positions in the ground's system; NaN where they have no place in it.

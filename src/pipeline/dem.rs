@@ -33,6 +33,18 @@ pub enum OpenDemError {
     Tiles(#[from] MosaicError),
 }
 
+impl OpenDemError {
+    /// The file or folder that cannot be opened; `None` where tiles do not fit together.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(error) => Some(&error.path),
+            Self::Format(error) => Some(&error.path),
+            Self::NoTiles(path) => Some(path),
+            Self::Tiles(_) => None,
+        }
+    }
+}
+
 /// Opens the elevation file at `path` with its sidecars, or joins the tiles in the folder at `path`, or those that the virtual
 /// raster there lists.
 ///

@@ -1,8 +1,10 @@
 //! Errors about files.
 
 use std::error::Error;
+use std::iter::successors;
 use std::path::{Path, PathBuf};
 
+use crate::description::diagnostic::{Diagnostic, Diagnostics};
 use crate::pipeline::files::display_name;
 
 /// An error about a file.
@@ -26,4 +28,11 @@ impl<E: Error + 'static> FileError<E> {
     pub fn at(path: &Path) -> impl Fn(E) -> Self + '_ {
         |cause| Self { path: path.to_owned(), cause }
     }
+}
+
+/// The errors in a scene file that `error` is about, as they are shown: each begins with its place, so that they stand alone.
+/// `None` where it is about something else.
+pub fn diagnostics_text(error: &(dyn Error + 'static)) -> Option<String> {
+    let mut causes = successors(Some(error), |&error| error.source());
+    causes.find(|cause| cause.is::<Diagnostic>() || cause.is::<Diagnostics>()).map(ToString::to_string)
 }

@@ -41,6 +41,19 @@ impl From<&Snapshot> for QueriedGround {
     }
 }
 
+impl QueriedGround {
+    /// The posts that are held as a lattice of their own, which holds all of its posts.
+    ///
+    /// # Errors
+    /// Fewer than two columns or rows are held.
+    pub fn held_lattice(&self) -> Result<Arc<Lattice>, GroundError> {
+        match self.lattice.holds_all() {
+            true => Ok(Arc::clone(&self.lattice)),
+            false => Ok(Arc::new(self.lattice.cut_to_held()?)),
+        }
+    }
+}
+
 /// Elevation that has no ground in meters.
 #[derive(Debug, thiserror::Error)]
 pub enum GroundError {

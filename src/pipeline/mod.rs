@@ -49,6 +49,7 @@ pub mod picture;
 pub mod picture_buffers;
 pub mod picture_statistics;
 pub mod positions;
+pub mod post_raster;
 pub mod print_ink;
 pub mod print_model;
 pub mod profile;

@@ -43,6 +43,25 @@ impl From<Diagnostic> for OpenSceneError {
 }
 
 impl OpenSceneError {
+    /// The errors that keep the scene from being built, as findings.
+    pub fn findings(&self) -> Vec<Finding> {
+        match self {
+            Self::Parse(errors) => errors.as_slice().iter().map(Finding::from).collect(),
+            Self::Build(error) => vec![Finding::from(error)],
+            other => vec![other.finding()],
+        }
+    }
+
+    /// The file that is wrong; `None` where the error is about no file in particular.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(error) => Some(&error.path),
+            Self::Parse(errors) => errors.as_slice().first().map(|error| Path::new(error.place().file())),
+            Self::Build(error) => Some(Path::new(error.place().file())),
+            Self::Assets(_) | Self::NoPhase { .. } | Self::NoFlight { .. } => None,
+        }
+    }
+
     /// The error as a finding without a place.
     pub fn finding(&self) -> Finding {
         let code = match self {

@@ -1,8 +1,9 @@
 //! The results of a viewshed: figures, and a raster.
 
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
+use crate::dem::raster::Raster;
 use crate::geom::crs::Crs;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::pipeline::post_raster::PostBytes;
+use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCounts};
 
 /// The value of posts that were not looked at or have no data.
@@ -41,15 +42,6 @@ pub fn raster(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> Raster {
         PostVisibility::Hidden => 0.0,
         PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
-    let rows = viewshed.posts.chunks_exact(viewshed.columns as usize).rev();
-    let samples = Samples::F32(rows.flatten().map(value).collect());
-    let north_west = lattice.map_position(Post { column: 0, row: lattice.rows() - 1 });
-    let place = north_up_nodes(north_west, lattice.cell());
-    Raster {
-        driver: "viewshed",
-        data_type: "Byte",
-        crs: (*crs != Crs::local()).then(|| crs.clone()),
-        nodata: Some(NO_DATA),
-        ..Raster::new(viewshed.columns, samples).placed(place)
-    }
+    let values = viewshed.posts.iter().map(value).collect();
+    PostBytes { name: "viewshed", values, nodata: NO_DATA }.raster(lattice, crs)
 }

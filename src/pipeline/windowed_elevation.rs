@@ -5,7 +5,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use glam::DVec2;
+use glam::{DVec2, U64Vec2};
 use rayon::prelude::*;
 
 use crate::dem::answer::Answer;
@@ -13,10 +13,11 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::stats::Stats;
 use crate::dem::warp::metric_windows::{MetricPlan, MetricWindows};
-use crate::dem::windows::Windows;
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
+use crate::limits::memory::check_memory;
 use crate::pipeline::ground::{GroundError, QueriedGround};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
@@ -56,6 +57,22 @@ impl WindowedElevation {
     /// The raster without its samples.
     pub fn header(&self) -> &Arc<Raster> {
         &self.header
+    }
+
+    /// The raster with all its samples.
+    ///
+    /// # Errors
+    /// They cannot be read, or are more than a raster in memory has.
+    pub fn read(&self) -> Result<Raster, DemErrorKind> {
+        let (width, height) = (self.header.width, self.header.height);
+        let window = RasterWindow::all((width, height));
+        if window.samples() as u64 > RASTER_SAMPLES.get() {
+            let size = U64Vec2::new(width.into(), height.into());
+            return Err(DemErrorKind::TooLarge { size, most: &RASTER_SAMPLES });
+        }
+        let bytes = if self.header.samples.is_wide() { size_of::<f64>() } else { size_of::<f32>() };
+        check_memory((window.samples() * bytes) as u64, "the raster", "read a part of it")?;
+        Ok(Raster { samples: self.source().samples(window)?, ..self.header.without_samples() })
     }
 
     /// The lowest and the highest sample of the raster, which is read for them; NaN where none is valid.

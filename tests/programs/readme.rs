@@ -22,13 +22,14 @@ use crate::serve::client::Server;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The pages whose links are followed.
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 9] = [
     "README.md",
     "CHANGELOG.md",
     "assets/README.md",
     "scenes/FINDINGS.md",
     "scenes/README.md",
     "src/ARCHITECTURE.md",
+    "src/python/README.md",
     "src/SHARDS.md",
     "tests/bench/README.md",
 ];

@@ -1,18 +1,25 @@
 //! The one error of the library's operations.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
 use crate::dem::answer::Status;
 use crate::dem::formats::WRITTEN_EXTENSIONS;
+use crate::description::finding::Finding;
+use crate::message::chain::error_text;
+use crate::pipeline::api::dem::SamplesError;
 use crate::pipeline::bounded_mesh::MeshError;
+use crate::pipeline::dataset::{OpenError, QueryError};
 use crate::pipeline::dem::OpenDemError;
+use crate::pipeline::error::diagnostics_text;
 use crate::pipeline::files::WriteFileError;
 use crate::pipeline::ground::GroundError;
 use crate::pipeline::picture::PictureError;
+use crate::pipeline::profile::ProfileError;
 use crate::pipeline::raster_file::WriteRasterError;
 use crate::pipeline::scene_file::OpenSceneError;
+use crate::pipeline::shards::error::ShardError;
 use crate::view::camera::CameraError;
 
 /// Why an operation failed. The operation's own error is the source, or the error itself where nothing is to add.
@@ -22,6 +29,15 @@ pub enum Error {
     /// An elevation file cannot be opened.
     #[error(transparent)]
     OpenDem(#[from] OpenDemError),
+    /// Samples make no elevation model.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
+    /// A query has no answer.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// A line gives no profile.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
     /// Elevation cannot be brought to a ground in meters.
     #[error(transparent)]
     Ground(#[from] GroundError),
@@ -46,6 +62,9 @@ pub enum Error {
     /// A picture cannot be made.
     #[error(transparent)]
     Picture(#[from] PictureError),
+    /// A plan cannot be read, a shard cannot be done, or the product cannot be written.
+    #[error(transparent)]
+    Plan(Box<ShardError>),
     /// No raster format has this extension.
     #[error("{}: rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so", .0.display())]
     NoFormat(PathBuf),
@@ -55,4 +74,48 @@ pub enum Error {
     /// A file cannot be written.
     #[error(transparent)]
     WriteFile(#[from] WriteFileError),
+}
+
+impl From<ShardError> for Error {
+    fn from(error: ShardError) -> Self {
+        Self::Plan(Box::new(error))
+    }
+}
+
+impl From<OpenError> for Error {
+    fn from(error: OpenError) -> Self {
+        match error {
+            OpenError::Dem(error) => Self::OpenDem(error),
+            OpenError::Scene(error) => Self::OpenScene(error),
+        }
+    }
+}
+
+impl Error {
+    /// The message with its causes, as the program prints it: that of a scene file shows each wrong line.
+    pub fn text(&self) -> String {
+        diagnostics_text(self).unwrap_or_else(|| error_text(self))
+    }
+
+    /// The file that the error is about, where it is about one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::OpenDem(error) => error.file(),
+            Self::OpenScene(error) => error.file(),
+            Self::Query(error) | Self::Profile(ProfileError::Query(error)) => error.dataset().map(Path::new),
+            Self::Plan(error) => error.file(),
+            Self::NoFormat(path) => Some(path),
+            Self::WriteFile(error) => Some(&error.path),
+            _ => None,
+        }
+    }
+
+    /// The errors in a scene file that keep it from being built, each with its place; none where the error is about
+    /// something else.
+    pub fn findings(&self) -> Vec<Finding> {
+        match self {
+            Self::OpenScene(error) => error.findings(),
+            _ => Vec::new(),
+        }
+    }
 }

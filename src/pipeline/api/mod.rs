@@ -1,6 +1,8 @@
 //! The types that `lib.rs` re-exports, for programs that use this crate as a library.
 
 pub mod dem;
+pub mod elevation;
 pub mod error;
+pub mod plan;
 pub mod scene;
 pub mod terrain;

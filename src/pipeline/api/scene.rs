@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::description::finding::Finding;
 use crate::draw::pixels::Pixels;
 use crate::pipeline::api::error::Error;
 use crate::pipeline::files;
 use crate::pipeline::picture::{PictureSize, render_view};
-use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::scene_file::{open_linted, open_scene};
 use crate::render::RenderBackend;
 use crate::scene;
 use crate::terrain::query::service::HeightService;
@@ -17,6 +18,17 @@ pub struct Scene {
 }
 
 /// How a scene is opened.
+///
+/// The steps of opening one:
+///
+/// ```
+/// use sandtable::{Scene, SceneOptions};
+/// let steps = std::cell::RefCell::new(Vec::new());
+/// let progress = |step| steps.borrow_mut().push(step);
+/// Scene::open_with("scenes/road.toml", &SceneOptions { progress: &progress, ..Default::default() })?;
+/// assert_eq!(steps.borrow().first(), Some(&"reading the scene file"));
+/// # Ok::<(), sandtable::Error>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct SceneOptions<'a> {
     /// Folders that the scene may read besides the parent of its own. Default none.
@@ -59,6 +71,18 @@ impl Scene {
     /// [`Error::OpenScene`].
     pub fn open_with(path: impl AsRef<Path>, options: &SceneOptions<'_>) -> Result<Self, Error> {
         Ok(Self { model: open_scene(path.as_ref(), options.allowed, options.progress)? })
+    }
+
+    /// [`Scene::open_with`] and what is wrong with the scene or looks wrong, as the command `check` finds it.
+    ///
+    /// # Errors
+    /// [`Error::OpenScene`].
+    pub fn open_checked(
+        path: impl AsRef<Path>,
+        options: &SceneOptions<'_>,
+    ) -> Result<(Self, Vec<Finding>), Error> {
+        let (model, findings) = open_linted(path.as_ref(), options.allowed, options.progress)?;
+        Ok((Self { model }, findings))
     }
 
     /// What was done that a user should know: features off the model, missing textures, earth moved.

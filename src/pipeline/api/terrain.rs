@@ -12,10 +12,12 @@ use crate::pipeline::api::dem::Dem;
 use crate::pipeline::api::error::Error;
 use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
 use crate::pipeline::ground;
+use crate::pipeline::post_raster::hillshade_raster;
 use crate::pipeline::viewshed::raster;
 use crate::roam::layout::DEFAULT_PATCH;
 use crate::roam::measured_ground::MeasuredGround;
 use crate::scene::vertical_scale::VerticalScale;
+use crate::terrain::hillshade::HillshadeOptions;
 use crate::terrain::query::service::{HeightService, Snapshot};
 use crate::terrain::query::{Interpolation, Surface};
 use crate::terrain::sight::viewshed::{ViewshedOptions, viewshed};
@@ -51,7 +53,11 @@ impl Terrain {
     /// # Errors
     /// [`Error::Ground`], [`Error::Mesh`] where there are too many posts.
     pub fn new(dem: &Dem) -> Result<Self, Error> {
-        let heights = ground::height_service(&dem.raster)?;
+        Self::from_heights(ground::height_service(&dem.raster)?)
+    }
+
+    /// The ground of a height service.
+    pub(in crate::pipeline::api) fn from_heights(heights: HeightService) -> Result<Self, Error> {
         let ground = heights.snapshot();
         let lattice = Arc::clone(ground.lattice());
         let (columns, rows) = (lattice.columns(), lattice.rows());
@@ -118,6 +124,13 @@ impl Terrain {
     /// [`Error::Mesh`].
     pub fn mesh_within(&self, max_error_m: f64) -> Result<TriMesh, Error> {
         Ok(BoundedMesh::new(self.ground.lattice(), max_error_m)?.mesh)
+    }
+
+    /// How directly the ground faces the sun, a gray for each post: 1 facing away, 255 facing it, no data (0 in a file) where
+    /// there is none. Equal to `gdaldem hillshade` within one gray level.
+    pub fn hillshade(&self, options: &HillshadeOptions) -> Dem {
+        let lattice = self.ground.lattice();
+        Dem { raster: Arc::new(hillshade_raster(lattice, options, self.crs())) }
     }
 
     /// What an observer sees, as a raster: 1 in sight, 0 hidden, no data (255 in a file) where it was not looked at.

@@ -1,5 +1,7 @@
 //! What goes wrong with plans and shards.
 
+use std::path::Path;
+
 use crate::limits::{PLAN_OBSERVERS, PLAN_POINTS, PLAN_SHARDS, RASTER_SAMPLES};
 use crate::pipeline::dataset::{OpenError, QueryError};
 use crate::pipeline::dem::OpenDemError;
@@ -40,6 +42,22 @@ pub enum ShardError {
     Points(#[from] PositionsError),
     #[error(transparent)]
     Above(#[from] FileError<HeightsAboveError>),
+}
+
+impl ShardError {
+    /// The file that is at fault; `None` where the error is about none in particular.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Read(error) => Some(&error.path),
+            Self::Write(error) => Some(&error.path),
+            Self::Plan(error) => Some(&error.path),
+            Self::OpenResult(error) | Self::Open(OpenError::Dem(error)) => error.file(),
+            Self::Open(OpenError::Scene(error)) => error.file(),
+            Self::Query(error) => error.dataset().map(Path::new),
+            Self::Above(error) => Some(&error.path),
+            _ => None,
+        }
+    }
 }
 
 /// A file of a plan, an input or a result that is refused.

@@ -1,5 +1,7 @@
 //! Doing shards: each once, however often a worker is started.
 
+use std::sync::Arc;
+
 use crate::pipeline::shards::atlas::arguments::AtlasArguments;
 use crate::pipeline::shards::atlas::work::AtlasScene;
 use crate::pipeline::shards::error::ShardError;
@@ -12,16 +14,16 @@ use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
 use crate::pipeline::shards::{atlas, heights, tiles, viewsheds};
 
 /// What all shards of a plan share, opened once.
-pub struct ShardWorker<'a> {
-    plan: &'a ShardPlan,
-    opened: OpenedProduct<'a>,
+pub struct ShardWorker {
+    plan: Arc<ShardPlan>,
+    opened: OpenedProduct,
 }
 
-enum OpenedProduct<'a> {
-    Heights(&'a HeightsArguments, QueriedDataset),
-    Viewsheds(&'a ViewshedsArguments, QueriedDataset),
-    Atlas(&'a AtlasArguments, Box<AtlasScene>),
-    Tiles(&'a TilesArguments, QueriedDataset),
+enum OpenedProduct {
+    Heights(HeightsArguments, QueriedDataset),
+    Viewsheds(ViewshedsArguments, QueriedDataset),
+    Atlas(AtlasArguments, Box<AtlasScene>),
+    Tiles(TilesArguments, QueriedDataset),
 }
 
 /// Whether a shard is done: nothing is opened or compared for that but its record.
@@ -29,32 +31,35 @@ pub fn is_done(plan: &ShardPlan, id: usize) -> bool {
     record::state(plan, id) == ShardState::Done
 }
 
-impl<'a> ShardWorker<'a> {
+impl ShardWorker {
     /// Checks that the inputs of a plan are those that were planned with, and opens them.
     ///
     /// # Errors
     /// An input has changed or cannot be opened, or an argument is wrong.
-    pub fn open(plan: &'a ShardPlan) -> Result<Self, ShardError> {
+    pub fn open(plan: &Arc<ShardPlan>) -> Result<Self, ShardError> {
         plan.verify_inputs()?;
         let opened = match &plan.product {
             PlannedProduct::Heights(arguments) => {
-                OpenedProduct::Heights(arguments, arguments.dataset.open(&plan.folder)?)
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Heights(arguments.clone(), dataset)
             }
             PlannedProduct::Viewsheds(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
-                OpenedProduct::Viewsheds(arguments, arguments.dataset.open(&plan.folder)?)
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Viewsheds(arguments.clone(), dataset)
             }
             PlannedProduct::Atlas(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
                 let scene = AtlasScene::new(arguments.open(&plan.folder)?);
-                OpenedProduct::Atlas(arguments, Box::new(scene))
+                OpenedProduct::Atlas(arguments.clone(), Box::new(scene))
             }
             PlannedProduct::Tiles(arguments) => {
                 arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
-                OpenedProduct::Tiles(arguments, arguments.dataset.open(&plan.folder)?)
+                let dataset = arguments.dataset.open(&plan.folder)?;
+                OpenedProduct::Tiles(arguments.clone(), dataset)
             }
         };
-        Ok(Self { plan, opened })
+        Ok(Self { plan: Arc::clone(plan), opened })
     }
 
     /// Does a shard and writes its results and its record.
@@ -62,7 +67,7 @@ impl<'a> ShardWorker<'a> {
     /// # Errors
     /// The shard is wrong, its inputs cannot be read, or its results cannot be written. Others may still be done.
     pub fn work(&mut self, id: usize) -> Result<(), ShardError> {
-        let (plan, shard) = (self.plan, self.plan.shard(id)?);
+        let (plan, shard) = (&*self.plan, self.plan.shard(id)?);
         let only = |extension: &str, bytes: Vec<u8>| ShardFile::only(id, extension, bytes);
         let files = match &mut self.opened {
             OpenedProduct::Heights(arguments, queried) => {

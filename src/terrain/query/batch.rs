@@ -60,6 +60,18 @@ impl HeightSlices<'_> {
         assert_eq!((count, count), (self.heights_m.len(), self.statuses.len()), "one answer per position");
     }
 
+    /// Writes answers.
+    ///
+    /// # Panics
+    /// Where there are not as many.
+    pub fn put(&mut self, answers: &[Answer]) {
+        self.check_len(answers.len());
+        for ((answer, height_m), status) in answers.iter().zip(&mut *self.heights_m).zip(&mut *self.statuses)
+        {
+            (*height_m, *status) = answer.parts();
+        }
+    }
+
     /// In chunks of `size`, the last one shorter where `size` does not divide the length.
     pub(in crate::terrain::query) fn chunks_mut(
         &mut self,

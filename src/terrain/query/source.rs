@@ -58,6 +58,21 @@ pub fn source_heights(
     batch::answers(at, out, |at, out| source_task(source, from, interpolation, at, out));
 }
 
+/// [`source_heights`] as heights and statuses in slices of their own.
+///
+/// # Panics
+/// Where the slices are not as long as `at`.
+pub fn source_heights_apart(
+    source: &Raster,
+    from: &Crs,
+    interpolation: Interpolation,
+    at: &[DVec2],
+    out: HeightSlices<'_>,
+) {
+    out.check_len(at.len());
+    batch::spread(at, out, |at, out| source_task(source, from, interpolation, at, out));
+}
+
 /// [`source_height`] at many positions, on this thread.
 pub(in crate::terrain::query) fn source_task(
     source: &Raster,

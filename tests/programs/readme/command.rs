@@ -2,7 +2,7 @@
 
 /// Lines that begin with one of these words are for the reader's own machine: they fetch, build or test the
 /// project, which is what is under way here already.
-const LEFT_ALONE: [&[&str]; 8] = [
+const LEFT_ALONE: [&[&str]; 9] = [
     &["git", "clone"],
     &["cd"],
     &["cargo", "build"],
@@ -10,6 +10,7 @@ const LEFT_ALONE: [&[&str]; 8] = [
     &["cargo", "test"],
     &["cargo", "bench"],
     &["cargo", "doc"],
+    &["pip", "install"],
     &["SANDTABLE_BLESS=1", "cargo", "test"],
 ];
 

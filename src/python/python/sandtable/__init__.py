@@ -1,0 +1,30 @@
+"""Elevation models and scenes: heights, profiles, lines of sight, viewsheds, meshes and pictures.
+
+>>> import sandtable
+>>> dem = sandtable.Dem.open("assets/jacksboro/dem.tif")
+>>> dem.shape
+(344, 403)
+
+Answers are those of the program ``sandtable``, to the last bit. Everything computes on all cores and without the
+interpreter's lock; arrays are NumPy's. ``import sandtable.xarray`` adds the accessor ``.sandtable`` to arrays of xarray,
+and ``sandtable.dask`` does plans on a Dask cluster.
+"""
+
+from ._errors import SandtableError
+from ._sandtable import Dem, Finding, LineOfSight, Mesh, Plan, Profile, Raster, Scene, licenses, set_limit
+from ._sandtable import __VERSION__ as __version__
+
+__all__ = [
+    "Dem",
+    "Finding",
+    "LineOfSight",
+    "Mesh",
+    "Plan",
+    "Profile",
+    "Raster",
+    "SandtableError",
+    "Scene",
+    "__version__",
+    "licenses",
+    "set_limit",
+]

@@ -1,0 +1,102 @@
+//! Scenes and their pictures.
+
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use sandtable::{Finding, Scene, SceneOptions};
+
+use crate::error::{failed, wrong_value};
+use crate::findings::PyFinding;
+
+/// Pixels on a side of a picture, least and most.
+const SIDES: std::ops::RangeInclusive<u32> = 16..=16384;
+
+/// A scene: the ground, what lies and stands on it, and its cameras. Made by `Scene.open`.
+#[pyclass(name = "Scene", module = "sandtable", frozen)]
+pub struct PyScene {
+    scene: Scene,
+    path: PathBuf,
+    allowed: Vec<PathBuf>,
+    findings: OnceLock<Vec<Finding>>,
+}
+
+#[pymethods]
+impl PyScene {
+    /// Opens a scene file and the files that it names under the parent of its folder, or under the folders `allow`.
+    ///
+    /// Raises SandtableError with file, line and column where the scene is wrong; `findings` of the exception are all errors.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, allow = Vec::new()), text_signature = "(path, *, allow=())")]
+    fn open(py: Python<'_>, path: PathBuf, allow: Vec<PathBuf>) -> PyResult<Self> {
+        let scene = py.detach(|| Scene::open_with(&path, &options(&allow))).map_err(failed)?;
+        Ok(Self { scene, path, allowed: allow, findings: OnceLock::new() })
+    }
+
+    /// The names of the cameras, the first one that of the default.
+    #[getter]
+    fn cameras<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.scene.view_names().collect::<Vec<_>>())
+    }
+
+    /// What was done that a user should know, each in a sentence.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.scene.notes())
+    }
+
+    /// What is wrong with the scene or looks wrong, as `sandtable check` finds it: the file is read and checked when this is
+    /// first asked for.
+    #[getter]
+    fn findings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        if self.findings.get().is_none() {
+            let checked = py.detach(|| Scene::open_checked(&self.path, &options(&self.allowed)));
+            let (_, found) = checked.map_err(failed)?;
+            // Another thread that was first found the same.
+            let _ = self.findings.set(found);
+        }
+        let found = self.findings.get().map_or(&[][..], Vec::as_slice);
+        PyTuple::new(py, found.iter().map(PyFinding::new).collect::<Vec<_>>())
+    }
+
+    /// Renders the view of a camera, with its annotations: uint8 of shape (H, W, 3), red, green and blue.
+    ///
+    /// `camera` is one of `cameras`, the first by default; `size` is (width, height), 16 to 16384 pixels each, by default that
+    /// of the camera's paper or (1920, 1080). The pixels are those of `sandtable render`.
+    #[pyo3(signature = (camera = None, size = None))]
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        camera: Option<&str>,
+        size: Option<(u32, u32)>,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let first = || self.scene.view_names().next().unwrap_or_default();
+        let mut view = self.scene.view(camera.unwrap_or_else(first)).map_err(failed)?;
+        if let Some((width, height)) = size {
+            if !SIDES.contains(&width) || !SIDES.contains(&height) {
+                return Err(wrong_value(format!(
+                    "size is ({width}, {height}); give (width, height) of 16 to 16384 pixels each"
+                )));
+            }
+            view = view.with_size(width, height);
+        }
+        let rendered = py.detach(|| {
+            let picture = self.scene.render(&view)?;
+            let rgb: Vec<u8> =
+                picture.rgba().as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+            Ok((rgb, picture.size()))
+        });
+        let (rgb, (width, height)) = rendered.map_err(failed)?;
+        PyArray1::from_vec(py, rgb).reshape([height as usize, width as usize, 3])
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Scene {}>", self.path.display())
+    }
+}
+
+fn options(allowed: &[PathBuf]) -> SceneOptions<'_> {
+    SceneOptions { allowed, ..SceneOptions::default() }
+}
