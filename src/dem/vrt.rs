@@ -80,11 +80,12 @@ impl VrtTiles {
             return Err(unsupported(what));
         }
         let corners = [DVec2::ZERO, DVec2::new(f64::from(self.size.0), f64::from(self.size.1))];
-        let is_off = |stated: &DAffine2| {
-            let off = |at: DVec2| joined.grid_from_map(stated.transform_point2(at)) - at;
-            corners.into_iter().any(|at| !(off(at).length() < PLACE))
+        let lies_off = |stated: &DAffine2| {
+            let off = |at: DVec2| (joined.grid_from_map(stated.transform_point2(at)) - at).length();
+            // What is not a number lies off.
+            !corners.into_iter().all(|at| off(at) < PLACE)
         };
-        match self.map_from_grid.as_ref().is_some_and(is_off) {
+        match self.map_from_grid.as_ref().is_some_and(lies_off) {
             true => Err(unsupported("another place than its tiles".to_owned())),
             false => Ok(()),
         }

@@ -51,37 +51,44 @@ impl OpenDemError {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
-    let Some((tiles, vrt)) = tiles_of(path, options)? else { return open_tiles(&[path], options) };
-    let mosaic = open_tiles(&tiles, &stated_by(vrt.as_ref(), options))?;
-    check_joined(path, vrt.as_ref(), &mosaic.raster)?;
+    let Some(tiles) = TileFiles::of(path, options)? else { return open_tiles(&[path], options) };
+    let mosaic = open_tiles(&tiles.paths, &tiles.hints(options))?;
+    tiles.check(path, &mosaic.raster)?;
     Ok(mosaic)
 }
 
-/// The tiles of a folder or a virtual raster, and the latter; `None` of a file of its own.
-fn tiles_of(
-    path: &Path,
-    options: &DemOptions,
-) -> Result<Option<(Vec<PathBuf>, Option<VrtTiles>)>, OpenDemError> {
-    if path.is_dir() {
-        return Ok(Some((tiles_in(path)?, None)));
-    }
-    if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
-        return Ok(None);
-    }
-    let vrt = VrtTiles::read(&files::read(path)?).map_err(FileError::at(path))?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let tiles = vrt.files.iter().map(|file| folder.join(file)).collect();
-    Ok(Some((tiles, Some(vrt))))
+/// The tiles that a path stands for.
+struct TileFiles {
+    paths: Vec<PathBuf>,
+    /// The virtual raster that lists them, where one does.
+    vrt: Option<VrtTiles>,
 }
 
-/// The options for the tiles of a virtual raster: what the caller states of missing data counts, else what that does.
-fn stated_by<'a>(vrt: Option<&VrtTiles>, options: &DemHints<'a>) -> DemHints<'a> {
-    let nodata = options.nodata.or(vrt.and_then(|vrt| vrt.nodata));
-    DemHints { nodata, ..options.clone() }
-}
+impl TileFiles {
+    /// The tiles of a folder or a virtual raster; `None` of a file of its own.
+    fn of(path: &Path, options: &DemOptions) -> Result<Option<Self>, OpenDemError> {
+        if path.is_dir() {
+            return Ok(Some(Self { paths: tiles_in(path)?, vrt: None }));
+        }
+        if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
+            return Ok(None);
+        }
+        let vrt = VrtTiles::read(&files::read(path)?).map_err(FileError::at(path))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let paths = vrt.files.iter().map(|file| folder.join(file)).collect();
+        Ok(Some(Self { paths, vrt: Some(vrt) }))
+    }
 
-fn check_joined(path: &Path, vrt: Option<&VrtTiles>, joined: &Raster) -> Result<(), OpenDemError> {
-    Ok(vrt.map_or(Ok(()), |vrt| vrt.check(joined)).map_err(FileError::at(path))?)
+    /// The options for the tiles: what the caller states of missing data counts, else what the virtual raster does.
+    fn hints<'a>(&self, options: &DemHints<'a>) -> DemHints<'a> {
+        let nodata = options.nodata.or(self.vrt.as_ref().and_then(|vrt| vrt.nodata));
+        DemHints { nodata, ..options.clone() }
+    }
+
+    /// Checks what the tiles of the virtual raster at `path` join to.
+    fn check(&self, path: &Path, joined: &Raster) -> Result<(), OpenDemError> {
+        Ok(self.vrt.as_ref().map_or(Ok(()), |vrt| vrt.check(joined)).map_err(FileError::at(path))?)
+    }
 }
 
 /// The tiles in a folder, at least one, sorted by name.
@@ -105,10 +112,10 @@ pub enum OpenedDem {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
-    let windows = match tiles_of(path, options)? {
-        Some((tiles, vrt)) => open_mosaic(tiles, &stated_by(vrt.as_ref(), options)).and_then(|windows| {
+    let windows = match TileFiles::of(path, options)? {
+        Some(tiles) => open_mosaic(&tiles.paths, &tiles.hints(options)).and_then(|windows| {
             let header = windows.as_ref().map(|windows| windows.metadata());
-            header.map_or(Ok(()), |header| check_joined(path, vrt.as_ref(), header))?;
+            header.map_or(Ok(()), |header| tiles.check(path, header))?;
             Ok(windows)
         }),
         None => open_windows(path, options),
@@ -135,16 +142,16 @@ fn samples(windows: &dyn Windows) -> u64 {
 
 /// The windows of the mosaic of tiles, opened by their headers; `None` where one has none.
 fn open_mosaic(
-    paths: Vec<PathBuf>,
+    paths: &[PathBuf],
     options: &DemHints,
 ) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let mut headers = Vec::new();
-    for path in &paths {
+    for path in paths {
         let Some(tile) = open_windows(path, options)? else { return Ok(None) };
         headers.push((files::file_name(path), tile.metadata().without_samples()));
     }
     // The tiles' own files beside them are looked for anew.
-    let stated = options.stated();
+    let (paths, stated) = (paths.to_vec(), options.stated());
     let opener = move |index: usize| match open_windows(&paths[index], &stated.hints(&|_| (), &|_| None)) {
         Ok(Some(tile)) => Ok(tile),
         Err(OpenDemError::Format(error)) => Err(error.cause),
