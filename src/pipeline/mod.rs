@@ -57,7 +57,6 @@ pub mod raster_file;
 pub mod rim;
 pub mod scene_file;
 pub mod service;
-mod set_record;
 pub mod set_record;
 pub mod shards;
 pub mod sheet_file;
