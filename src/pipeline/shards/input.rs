@@ -1,14 +1,15 @@
 //! The inputs of a plan: which files they are, and whether they still are what was planned with.
 //!
-//! A small file is compared by its content. Of a large one, which every worker would have to read for that, the size, the
-//! time of its last change and both ends are compared: what a program writes anew differs in one of them, and what it changes
-//! in place in the second.
+//! Files that are not large together are compared by their content. Of others, which every worker would have to read for that,
+//! the size, the time of the last change and both ends are compared: what a program writes anew differs in one of them, and
+//! what it changes in place in the second.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -16,10 +17,10 @@ use crate::dem::read::is_tile_name;
 use crate::pipeline::files::{self, ReadFileCause, ReadFileError, SystemError};
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 
-/// The most bytes of a file that is compared by its content: a tenth of a second.
+/// The most bytes of files that are compared by their content: a tenth of a second.
 const MOST_CONTENT: u64 = 64 << 20;
-/// Bytes at each end of a larger file.
-const END: u64 = 1 << 20;
+/// Bytes at each end of a file: so few that ten thousand tiles are compared in seconds.
+const END: u64 = 64 << 10;
 /// Bytes that are read at once.
 const CHUNK: usize = 1 << 20;
 
@@ -49,21 +50,28 @@ pub struct PlanInput {
 pub enum InputCheck {
     /// All.
     Content,
-    /// The first and the last mebibyte.
+    /// The first and the last 64 KiB.
     Ends,
 }
 
 impl PlanInput {
-    /// The file at `path`, which a plan calls `stated`.
+    /// Files that a plan reads, each with the path by which it calls it.
     ///
     /// # Errors
-    /// It cannot be read.
-    pub fn new(path: &Path, stated: PathBuf) -> Result<Self, ReadFileError> {
+    /// One cannot be read.
+    pub fn all(files: &[(PathBuf, PathBuf)]) -> Result<Vec<Self>, ReadFileError> {
+        let bytes =
+            files.iter().filter_map(|(path, _)| fs::metadata(path).ok()).map(|metadata| metadata.len());
+        let check = if bytes.sum::<u64>() <= MOST_CONTENT { InputCheck::Content } else { InputCheck::Ends };
+        files.par_iter().map(|(path, stated)| Self::new(path, stated.clone(), check)).collect()
+    }
+
+    fn new(path: &Path, stated: PathBuf, check: InputCheck) -> Result<Self, ReadFileError> {
         let failed = |error: io::Error| ReadFileError::new(path, SystemError::from(error));
         let mut file = files::open(path)?;
         let metadata = file.metadata().map_err(failed)?;
         let bytes = metadata.len();
-        if bytes <= MOST_CONTENT {
+        if check == InputCheck::Content || bytes <= 2 * END {
             let sha256 = hash(&mut file, bytes).map_err(failed)?;
             return Ok(Self { path: stated, bytes, check: InputCheck::Content, sha256, modified: None });
         }
@@ -80,7 +88,14 @@ impl PlanInput {
     pub fn verify(&self, folder: &Path) -> Result<(), ShardError> {
         let path = folder.join(&self.path);
         let stale = |what: String| ShardError::from(PlanError::new(&path, PlanFault::Stale(what)));
-        let now = Self::new(&path, self.path.clone()).map_err(|error| match error.cause {
+        let bytes = fs::metadata(&path).map_or(0, |metadata| metadata.len());
+        if path.is_file() && bytes != self.bytes {
+            return Err(stale(format!(
+                "it had {} bytes when it was planned with, and has {bytes}",
+                self.bytes
+            )));
+        }
+        let now = Self::new(&path, self.path.clone(), self.check).map_err(|error| match error.cause {
             ReadFileCause::System(SystemError::NotFound) | ReadFileCause::NotAFile => {
                 stale("this input of the plan is not there".into())
             }
@@ -89,10 +104,9 @@ impl PlanInput {
         if now == *self {
             return Ok(());
         }
-        Err(stale(match (now.bytes == self.bytes, now.sha256 == self.sha256) {
-            (false, _) => format!("it had {} bytes when it was planned with, and has {}", self.bytes, now.bytes),
-            (true, false) => "its content is not the one that was planned with".into(),
-            (true, true) => {
+        Err(stale(match now.sha256 == self.sha256 {
+            false => "its content is not the one that was planned with".into(),
+            true => {
                 "its time of change is not the one that was planned with (`cp -p` and `rsync -t` keep that of a copy)"
                     .into()
             }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::limits::PLAN_SHARDS;
@@ -214,7 +215,9 @@ impl ShardPlan {
     /// # Errors
     /// The first that is not is named.
     pub fn verify_inputs(&self) -> Result<(), ShardError> {
-        self.inputs.iter().try_for_each(|input| input.verify(&self.folder))
+        let verified: Vec<Result<(), ShardError>> =
+            self.inputs.par_iter().map(|input| input.verify(&self.folder)).collect();
+        verified.into_iter().collect()
     }
 }
 

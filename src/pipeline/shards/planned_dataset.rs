@@ -127,9 +127,9 @@ pub fn scene_inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<V
 fn inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<Vec<PlanInput>, ShardError> {
     let input = |file: &PathBuf| {
         let path = if stated.is_absolute() { file.clone() } else { relative(file, folder) };
-        PlanInput::new(file, path)
+        (file.clone(), path)
     };
-    Ok(files.iter().map(input).collect::<Result<_, _>>()?)
+    Ok(PlanInput::all(&files.iter().map(input).collect::<Vec<_>>())?)
 }
 
 /// A value that a plan states by its word.

@@ -1,8 +1,9 @@
 //! `plan`, `work` and `gather`: what shards make together is what one command makes.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt::Write as _;
 use std::fs;
+use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
 use serde_json::Value;
@@ -100,25 +101,50 @@ fn a_cumulative_viewshed_is_the_sum_of_all_viewsheds() {
     for looking in [&["--range", "4000", "--observer-height", "10"][..], &["--target-height", "5", "--flat"]]
     {
         let scratch = surveyed();
-        scratch.write("towers.csv", &observers.join("\n"));
+        scratch.write("towers.csv", observers.join("\n"));
         let query = [&["viewsheds", "dem.tif", "--points", "towers.csv", "--shards", "3"], looking].concat();
         let count = plan(&scratch, &query);
         assert!((2..=5).contains(&count), "{count}");
         let work = ["work", "plan", "--shards", &format!("0..{count}")];
         assert_eq!(run_in(scratch.folder(), &work).code, 0);
         run_in(scratch.folder(), &["gather", "plan", "-o", "sum.asc"]).ok();
-        let mut sums: BTreeMap<(i64, i64), i64> = BTreeMap::new();
-        for at in observers {
-            let one = [&["viewshed", "dem.tif", "--at", at, "-o", "one.asc"], looking].concat();
-            assert_eq!(run_in(scratch.folder(), &one).code, 0);
-            for (place, seen) in posts(&scratch.at("one.asc"), 255) {
-                *sums.entry(place).or_default() += seen;
-            }
-        }
+        let sums = summed(&scratch, "dem.tif", &observers, looking);
         let gathered = posts(&scratch.at("sum.asc"), -1);
         assert!(gathered.values().any(|&count| count >= 2) && gathered.len() > 1000);
         assert!(gathered == sums, "{looking:?}: {} and {} posts", gathered.len(), sums.len());
     }
+}
+
+#[test]
+fn viewsheds_of_elevation_on_disk_are_added_post_by_post() {
+    let scratch = surveyed();
+    let convert = ["dem", "convert", "dem.tif", "large.tif", "--crs", "EPSG:32616", "--cell", "25"];
+    assert_eq!(run_in(scratch.folder(), &convert).code, 0);
+    let observers = ["-84.2,36.3", "-84.21,36.3", "-84.15,36.25"];
+    scratch.write("towers.csv", observers.join("\n"));
+    let looking = ["--crs", "EPSG:4326", "--range", "1500", "--observer-height", "20"];
+    let query =
+        [&["viewsheds", "large.tif", "--points", "towers.csv", "--shards", "2"], &looking[..]].concat();
+    let count = plan(&scratch, &query);
+    run_in(scratch.folder(), &["work", "plan", "--shards", &format!("0..{count}")]).ok();
+    run_in(scratch.folder(), &["gather", "plan", "-o", "sum.asc"]).ok();
+    let sums = summed(&scratch, "large.tif", &observers, &looking);
+    let gathered = posts(&scratch.at("sum.asc"), -1);
+    assert!(gathered.values().any(|&count| count == 2) && gathered.len() > 10_000, "{}", gathered.len());
+    assert!(gathered == sums, "{} and {} posts", gathered.len(), sums.len());
+}
+
+/// How many observers see each post, by a viewshed of each.
+fn summed(scratch: &Scratch, dem: &str, observers: &[&str], looking: &[&str]) -> BTreeMap<(i64, i64), i64> {
+    let mut sums = BTreeMap::new();
+    for at in observers {
+        let one = [&["viewshed", dem, "--at", at, "-o", "one.asc"], looking].concat();
+        assert_eq!(run_in(scratch.folder(), &one).code, 0);
+        for (place, seen) in posts(&scratch.at("one.asc"), 255) {
+            *sums.entry(place).or_default() += seen;
+        }
+    }
+    sums
 }
 
 /// The values of an ESRI ASCII grid that are not `nodata`, by their places to the meter.
@@ -192,7 +218,7 @@ fn an_input_that_changed_is_named_and_nothing_is_done() {
     plan(&scratch, &HEIGHTS);
     run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).ok();
     let points = fs::read_to_string(scratch.at("points.csv")).expect("written");
-    scratch.write("points.csv", &points.replace("p7;", "p8;"));
+    scratch.write("points.csv", points.replace("p7;", "p8;"));
     let message = run_in(scratch.folder(), &["work", "plan", "--shard", "1"]).failed(1);
     assert!(message.contains("points.csv: stale: its content is not"), "{message}");
     scratch.write("points.csv", &(points + "1,2,3\n"));
@@ -206,6 +232,26 @@ fn an_input_that_changed_is_named_and_nothing_is_done() {
     fs::remove_file(scratch.at("points.csv")).expect("it is there");
     let message = run_in(scratch.folder(), &["work", "plan", "--shard", "1"]).failed(1);
     assert!(message.contains("this input of the plan is not there"), "{message}");
+}
+
+#[test]
+fn a_large_input_is_compared_by_its_ends_its_size_and_its_time() {
+    let scratch = surveyed();
+    // 72 MB without a block on the disk.
+    let large = fs::File::create(scratch.at("large.raw")).expect("made");
+    large.set_len(6000 * 6000 * 2).expect("a sparse file");
+    scratch.write("few.csv", "10,10\n5000,10\n10,5000\n5000,5000\n");
+    let query = ["heights", "large.raw", "--raw", "6000x6000:i16le", "--points", "few.csv", "--shards", "4"];
+    assert_eq!(plan(&scratch, &query), 4);
+    let input = &plan_of(&scratch)["inputs"][0];
+    assert_eq!((&input["check"], input["modified"].is_u64()), (&Value::from("ends"), true));
+    run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).ok();
+    let mut in_place = fs::OpenOptions::new().write(true).open(scratch.at("large.raw")).expect("there");
+    in_place.seek(SeekFrom::Start(30_000_000)).expect("inside");
+    in_place.write_all(&[1]).expect("written");
+    drop(in_place);
+    let message = run_in(scratch.folder(), &["work", "plan", "--shard", "1"]).failed(1);
+    assert!(message.contains("large.raw: stale: its time of change"), "{message}");
 }
 
 #[test]
@@ -280,7 +326,7 @@ fn plans_that_nobody_wrote_are_refused_without_a_panic() {
         let changed = lines.replacen(from, to, 1);
         assert_ne!(changed, lines);
         scratch.write("plan/shards.jsonl", &changed);
-        scratch.write("plan/plan.json", &restated(&head, &changed));
+        scratch.write("plan/plan.json", restated(&head, &changed));
         let message = run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).failed(1);
         assert!(message.contains(expected), "{expected}: {message}");
     }

@@ -79,7 +79,7 @@ pub fn plan(
         })
         .collect();
     let mut inputs = arguments.dataset.inputs(&queried.dataset, folder)?;
-    inputs.push(PlanInput::new(&table, arguments.points.clone())?);
+    inputs.extend(PlanInput::all(&[(table, arguments.points.clone())])?);
     plan::write(folder, PlannedProduct::Heights(arguments), inputs, &lines)?;
     Ok(lines.len())
 }

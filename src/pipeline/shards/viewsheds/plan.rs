@@ -134,21 +134,20 @@ fn check_region(observers: &[PlannedObserver], table: &Path) -> Result<(), Shard
 /// Observers in a row that together look at no more than `most` posts, or one.
 fn grouped(observers: &[PlannedObserver], most: u64) -> Vec<Vec<PlannedObserver>> {
     let mut groups: Vec<Vec<PlannedObserver>> = Vec::new();
-    let mut looked_at = 0;
+    // Of the last group: the posts that its observers look at, and the rectangle that holds them.
+    let (mut looked_at, mut around) = (u64::MAX, observers[0].posts);
     for &observer in observers {
-        let own = posts(observer.posts);
-        let fits = groups.last().is_some_and(|group| {
-            let around = region(group).with(observer.posts.first).with(observer.posts.last);
-            looked_at + own <= most && posts(around) <= (looked_at + own).saturating_mul(MOST_SPREAD)
-        });
-        match groups.last_mut().filter(|_| fits) {
-            Some(group) => {
+        let PostRect { first, last } = observer.posts;
+        let all = looked_at.saturating_add(posts(observer.posts));
+        let grown = around.with(first).with(last);
+        match groups.last_mut() {
+            Some(group) if all <= most && posts(grown) <= all.saturating_mul(MOST_SPREAD) => {
                 group.push(observer);
-                looked_at += own;
+                (looked_at, around) = (all, grown);
             }
-            None => {
+            _ => {
                 groups.push(vec![observer]);
-                looked_at = own;
+                (looked_at, around) = (posts(observer.posts), observer.posts);
             }
         }
     }
