@@ -86,7 +86,7 @@ pub fn end(name: &str, at: [f64; 2], above_m: f64) -> PyResult<SightEnd> {
     if !at[0].is_finite() || !at[1].is_finite() {
         return Err(wrong_value(format!("{name} is at {}, {}; give two finite numbers", at[0], at[1])));
     }
-    if !(above_m.abs() <= HIGHEST_M) {
+    if above_m.is_nan() || above_m.abs() > HIGHEST_M {
         return Err(wrong_value(format!("{name}_height is {above_m} m; give meters from -100000 to 100000")));
     }
     Ok(SightEnd { at: DVec2::from(at), above_m })

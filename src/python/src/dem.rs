@@ -263,7 +263,7 @@ impl PyDem {
     ) -> PyResult<PyRaster> {
         let observer = end("observer", observer, observer_height)?;
         let range_m = range.unwrap_or(f64::INFINITY);
-        if !(range_m > 0.0) {
+        if range_m.is_nan() || range_m <= 0.0 {
             return Err(wrong_value(format!("range is {range_m} m; give meters above 0")));
         }
         let sector = match sector {
@@ -283,7 +283,7 @@ impl PyDem {
 
     /// The mesh of the ground with few triangles that is nowhere off by more than `max_error` meters, verified at every post.
     fn mesh(&self, py: Python<'_>, max_error: f64) -> PyResult<PyMesh> {
-        if !(max_error >= 0.0) {
+        if max_error.is_nan() || max_error < 0.0 {
             return Err(wrong_value(format!("max_error is {max_error} m; give meters from 0 on")));
         }
         let made = py.detach(|| {
