@@ -42,10 +42,11 @@ pub fn is_within(edges: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> b
 
 /// Cuts the polygon with `exterior` and `holes` into counter-clockwise triangles (ear clipping).
 ///
-/// Rings that cross themselves give some triangulation of their vertices, never a panic.
+/// Rings that cross themselves give some triangulation of their vertices, never a panic; those of less than three vertices
+/// none.
 pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> {
-    let polygon =
-        geo::Polygon::new(line_string(exterior), holes.iter().map(|hole| line_string(hole)).collect());
+    let Some(exterior) = closed(exterior) else { return Vec::new() };
+    let polygon = geo::Polygon::new(exterior, holes.iter().filter_map(|hole| closed(hole)).collect());
     let corner = |at: geo::Coord| DVec2::new(at.x, at.y);
     polygon
         .earcut_triangles()
@@ -59,7 +60,8 @@ pub fn triangulate(exterior: &[DVec2], holes: &[Vec<DVec2>]) -> Vec<[DVec2; 3]> 
 ///
 /// Triangles without area are kept, so that every vertex of a folded ring may be used. Empty where no ear is found.
 pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
-    let polygon = geo::Polygon::new(line_string(ring), Vec::new());
+    let Some(exterior) = closed(ring) else { return Vec::new() };
+    let polygon = geo::Polygon::new(exterior, Vec::new());
     // The ring is closed by `geo`, so its last vertex is the first again.
     let corner = |index: usize| index % ring.len();
     polygon
@@ -79,8 +81,12 @@ pub fn triangulate_ring(ring: &[DVec2]) -> Vec<[usize; 3]> {
         .collect()
 }
 
-fn line_string(ring: &[DVec2]) -> geo::LineString {
-    ring.iter().map(|at| (at.x, at.y)).collect()
+/// The ring with its first vertex at the end as well; `None` where it has less than three, which `geo` takes for a mistake of
+/// its caller.
+fn closed(ring: &[DVec2]) -> Option<geo::LineString> {
+    let mut line: geo::LineString = ring.iter().map(|at| (at.x, at.y)).collect();
+    line.close();
+    (line.0.len() > 3).then_some(line)
 }
 
 fn counter_clockwise([a, b, c]: [DVec2; 3]) -> Option<[DVec2; 3]> {
@@ -220,6 +226,15 @@ mod tests {
         let area: f64 = triangles.iter().map(|triangle| doubled_area(triangle) / 2.0).sum();
         assert!((area - 96.0).abs() < 1e-9);
         assert!(triangles.iter().all(|triangle| doubled_area(triangle) > 0.0));
+    }
+
+    #[test]
+    fn rings_of_less_than_three_vertices_have_no_triangles() {
+        let (a, b) = (DVec2::new(1.0, 2.0), DVec2::new(3.0, 4.0));
+        for ring in [&[][..], &[a], &[a, a], &[a, b], &[a, b, a]] {
+            assert!(triangulate(ring, &[]).is_empty() && triangulate_ring(ring).is_empty(), "{ring:?}");
+            assert_eq!(triangulate(&square(0.0, 10.0), &[ring.to_vec()]).len(), 2, "{ring:?}");
+        }
     }
 
     #[test]

@@ -130,7 +130,9 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "scene_shapes" | "scene_picture" | "walk" => {
             // Choices, not a text: whatever bytes they are, they choose something.
             let mut numbers = Numbers(0x5851_F42D_4C95_7F2D);
-            (0..12).map(|seed| (0..60 + 20 * seed).map(|_| numbers.below(256) as u8).collect()).collect()
+            let any = (0..12).map(|seed| (0..60 + 20 * seed).map(|_| numbers.below(256) as u8).collect());
+            // A lake all of whose points are one.
+            any.chain([b"\xf8\xff\xff\x9a\x9a\x90\xff\xff".to_vec()]).collect()
         }
         "http_request" => {
             const UTM: &str = "crs=EPSG:32616";
