@@ -4,6 +4,7 @@
 //! the size, the time of the last change and both ends are compared: what a program writes anew differs in one of them, and
 //! what it changes in place in the second.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::dem::read::is_tile_name;
+use crate::dem::vrt::{VrtTiles, is_vrt};
 use crate::pipeline::files::{self, ReadFileCause, ReadFileError, SystemError};
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 
@@ -114,31 +116,49 @@ impl PlanInput {
     }
 }
 
-/// The files that the elevation at `path` is read of: the tiles of a folder, or one, and those that may belong to them.
+/// The files that the elevation at `path` is read of: one, the tiles of a folder or of a virtual raster, and those that may
+/// belong to them.
 ///
 /// # Errors
-/// The folder cannot be read.
+/// A file or a folder cannot be read.
 pub fn elevation_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
     if path.is_dir() {
         let all = files::list_folder(path)?;
-        let stems: Vec<String> =
+        let tiles: BTreeSet<String> =
             all.iter().map(|file| files::file_name(file)).filter(|name| is_tile_name(name)).collect();
-        let belongs = |file: &PathBuf| {
-            let name = files::file_name(file);
-            is_tile_name(&name) || is_companion_name(&name, |stem| stems.iter().any(|tile| is_of(tile, stem)))
-        };
-        return Ok(all.into_iter().filter(belongs).collect());
+        return Ok(with_companions(all, &tiles));
     }
+    let mut folders: BTreeMap<PathBuf, BTreeSet<String>> = BTreeMap::new();
+    let mut add = |file: &Path| {
+        let folder = file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        folders.entry(folder.to_owned()).or_default().insert(files::file_name(file));
+    };
     let own = files::file_name(path);
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = files::list_folder(folder)?.into_iter().map(|file| folder.join(files::file_name(&file)));
-    let belongs = |file: &PathBuf| is_companion_name(&files::file_name(file), |stem| is_of(&own, stem));
-    Ok([path.to_owned()].into_iter().chain(beside.filter(belongs).filter(|file| file != path)).collect())
+    if is_vrt(&own) {
+        // What it says wrong was an error of opening it.
+        let tiles = VrtTiles::read(&files::read(path)?).map(|vrt| vrt.files).unwrap_or_default();
+        tiles.iter().for_each(|tile| add(&path.with_file_name(tile)));
+    } else {
+        add(path);
+    }
+    let mut found = vec![path.to_owned()];
+    for (folder, tiles) in &folders {
+        let all = files::list_folder(folder)?.into_iter().map(|file| folder.join(files::file_name(&file)));
+        let others = with_companions(all.collect(), tiles).into_iter();
+        found.extend(others.filter(|file| files::file_name(file) != own));
+    }
+    Ok(found)
 }
 
-/// Whether `stem` is a file's name, or that without its extension.
-fn is_of(name: &str, stem: &str) -> bool {
-    name == stem || Path::new(name).file_stem().is_some_and(|own| own == stem)
+/// Those of the files in a folder that are the tiles, or may belong to them.
+fn with_companions(files: Vec<PathBuf>, tiles: &BTreeSet<String>) -> Vec<PathBuf> {
+    let stem = |tile: &String| Some(Path::new(tile).file_stem()?.to_str()?.to_owned());
+    let stems: BTreeSet<String> = tiles.iter().cloned().chain(tiles.iter().filter_map(stem)).collect();
+    let belongs = |file: &PathBuf| {
+        let name = files::file_name(file);
+        tiles.contains(&name) || is_companion_name(&name, |stem| stems.contains(stem))
+    };
+    files.into_iter().filter(belongs).collect()
 }
 
 fn is_companion_name(name: &str, is_stem: impl Fn(&str) -> bool) -> bool {
@@ -199,13 +219,30 @@ mod tests {
 
     #[test]
     fn an_elevation_file_has_its_system_and_place_beside_it() {
-        let is_mine = |name: &str| is_companion_name(name, |stem| is_of("dem.tif", stem));
+        let is_mine = |name: &str| is_companion_name(name, |stem| ["dem.tif", "dem"].contains(&stem));
         for name in ["dem.prj", "dem.tfw", "dem.tif.msk", "dem.PRJ", "dem.wld", "dem.tif.hdr"] {
             assert!(is_mine(name), "{name}");
         }
         for name in ["dem.tif", "dem.txt", "other.prj", "dem", "dem.png", "dem.raw", "dem2.tfw"] {
             assert!(!is_mine(name), "{name}");
         }
+    }
+
+    #[test]
+    fn the_files_of_a_virtual_raster_are_those_that_it_lists_and_theirs() {
+        let folder = std::env::temp_dir().join(format!("sandtable-inputs-{}", std::process::id()));
+        fs::create_dir_all(folder.join("tiles")).expect("a folder");
+        let vrt = "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"><VRTRasterBand><SimpleSource>\
+                   <SourceFilename relativeToVRT=\"1\">tiles/a.bil</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>";
+        for name in ["a.vrt", "a.prj", "tiles/a.bil", "tiles/a.hdr", "tiles/b.bil"] {
+            fs::write(folder.join(name), if name == "a.vrt" { vrt } else { "" }).expect("a file");
+        }
+        let found = elevation_files(&folder.join("a.vrt")).expect("readable");
+        let found: Vec<&Path> = found.iter().map(|file| file.strip_prefix(&folder).expect("there")).collect();
+        assert_eq!(found, ["a.vrt", "tiles/a.bil", "tiles/a.hdr"].map(Path::new));
+        let found = elevation_files(&folder.join("tiles/a.bil")).expect("readable");
+        assert_eq!(found, ["tiles/a.bil", "tiles/a.hdr"].map(|name| folder.join(name)));
+        fs::remove_dir_all(folder).expect("its own folder");
     }
 
     #[test]
