@@ -126,6 +126,7 @@ pub use glam::{DVec2, DVec3};
 
 pub use crate::dem::answer::{Answer, Status};
 pub use crate::dem::raster::Samples;
+pub use crate::dem::read::DemOptions;
 pub use crate::description::finding::{Finding, Severity};
 pub use crate::geom::crs::Crs;
 pub use crate::limits::{set_limit::set_limit, work_limit::LimitError};
@@ -134,7 +135,7 @@ pub use crate::pipeline::api::plan::{GatheredPlan, WorkPlan};
 pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::pipeline::api::{dem::Dem, elevation::Elevation, error::Error, terrain::Terrain};
 pub use crate::pipeline::sight::{SightQuery, SightReport};
-pub use crate::pipeline::{choice::WordError, dem::DemOptions, profile::GroundProfile};
+pub use crate::pipeline::{choice::WordError, profile::GroundProfile};
 pub use crate::terrain::hillshade::HillshadeOptions;
 pub use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling};
 pub use crate::terrain::query::service::{HeightService, Snapshot};

@@ -12,6 +12,7 @@ use crate::cli::output_format::raster_format;
 use crate::cli::progress::StepTimer;
 use crate::cli::values::number;
 use crate::dem::formats::DemFormat;
+use crate::dem::read::DemOptions;
 use crate::dem::warp::WarpError;
 use crate::dem::warp::reproject::Resampling;
 use crate::dem::windows::MOST_KEPT_SAMPLES;
@@ -21,7 +22,7 @@ use crate::message::chain::error_text;
 use crate::pipeline::convert::{
     ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
 };
-use crate::pipeline::dem::{self, DemOptions, OpenedDem};
+use crate::pipeline::dem::{self, OpenedDem};
 use crate::pipeline::raster_file;
 
 #[derive(Debug, Args)]

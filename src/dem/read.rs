@@ -16,9 +16,9 @@ use crate::limits::UNPACKED_RASTER_BYTES;
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
 
-/// Options for reading an elevation file.
-#[derive(Clone)]
-pub struct DemHints<'a> {
+/// What a caller states of elevation, in place of what the file does or besides it.
+#[derive(Clone, Debug, Default)]
+pub struct DemOptions {
     /// Meters per gray value of a PNG, which is refused without it, or per value of a RAW file (default 1).
     pub height_scale: Option<f64>,
     /// Elevation in meters of value 0. Default 0.
@@ -35,7 +35,14 @@ pub struct DemHints<'a> {
     pub cell: Option<f64>,
     /// The coordinate system, in place of the file's.
     pub crs: Option<Crs>,
-    /// Called with the system that the file states where `crs` takes its place.
+}
+
+/// How one elevation file is read.
+#[derive(Clone)]
+pub struct DemHints<'a> {
+    /// What is stated of it.
+    pub options: DemOptions,
+    /// Called with the system that the file states where the stated one takes its place.
     pub overridden: &'a dyn Fn(&Crs),
     /// The bytes of a companion by its name: the name given to [`read`] with another extension, such as `.prj`; `None`
     /// where there is none.
@@ -44,75 +51,14 @@ pub struct DemHints<'a> {
 
 impl Default for DemHints<'_> {
     fn default() -> Self {
-        Self {
-            height_scale: None,
-            height_offset: None,
-            nodata: None,
-            height_encoding: None,
-            raw: None,
-            vertical_datum: None,
-            cell: None,
-            crs: None,
-            overridden: &|_| (),
-            companions: &|_| None,
-        }
+        DemOptions::default().into()
     }
 }
 
-/// What a caller states of elevation files: [`DemHints`] without what is read beside them.
-#[derive(Clone, Debug, Default)]
-#[allow(missing_docs, reason = "the fields are those of the hints")]
-pub struct StatedElevation {
-    pub height_scale: Option<f64>,
-    pub height_offset: Option<f64>,
-    pub nodata: Option<f64>,
-    pub height_encoding: Option<HeightEncoding>,
-    pub raw: Option<RawLayout>,
-    pub vertical_datum: Option<String>,
-    pub cell: Option<f64>,
-    pub crs: Option<Crs>,
-}
-
-impl StatedElevation {
-    /// The hints for a file; see there for `overridden` and `companions`.
-    pub fn hints<'a>(
-        &self,
-        overridden: &'a dyn Fn(&Crs),
-        companions: &'a dyn Fn(&str) -> Option<Vec<u8>>,
-    ) -> DemHints<'a> {
-        let Self { height_scale, height_offset, nodata, height_encoding, raw, vertical_datum, cell, crs } =
-            self.clone();
-        DemHints {
-            height_scale,
-            height_offset,
-            nodata,
-            height_encoding,
-            raw,
-            vertical_datum,
-            cell,
-            crs,
-            overridden,
-            companions,
-        }
-    }
-}
-
-impl DemHints<'_> {
-    /// What is stated, to open other files by.
-    pub fn stated(&self) -> StatedElevation {
-        let Self {
-            height_scale, height_offset, nodata, height_encoding, raw, vertical_datum, cell, crs, ..
-        } = self.clone();
-        StatedElevation {
-            height_scale,
-            height_offset,
-            nodata,
-            height_encoding,
-            raw,
-            vertical_datum,
-            cell,
-            crs,
-        }
+impl From<DemOptions> for DemHints<'_> {
+    /// The hints for a file without companions.
+    fn from(options: DemOptions) -> Self {
+        Self { options, overridden: &|_| (), companions: &|_| None }
     }
 }
 
@@ -166,7 +112,7 @@ impl DemFile<'_> {
         &self,
         stated: impl FnOnce() -> Result<Option<Crs>, DemErrorKind>,
     ) -> Result<Option<Crs>, DemErrorKind> {
-        let Some(crs) = &self.hints.crs else { return self.own_crs(stated) };
+        let Some(crs) = &self.hints.options.crs else { return self.own_crs(stated) };
         // What the file states may be unreadable: another is stated for that.
         if let Ok(Some(own)) = self.own_crs(stated) {
             (self.hints.overridden)(&own);
@@ -188,19 +134,20 @@ impl DemFile<'_> {
     /// The hinted meters per value, checked.
     pub fn height_scale(&self) -> Result<Option<f64>, DemErrorKind> {
         let is_sound = |scale: f64| scale.is_finite() && scale != 0.0;
-        checked("height_scale", self.hints.height_scale, is_sound, "a finite number other than 0")
+        checked("height_scale", self.hints.options.height_scale, is_sound, "a finite number other than 0")
     }
 
     /// The hinted height of value 0, checked; 0 where there is none.
     pub fn height_offset(&self) -> Result<f64, DemErrorKind> {
-        let offset = checked("height_offset", self.hints.height_offset, f64::is_finite, "a finite number");
+        let offset =
+            checked("height_offset", self.hints.options.height_offset, f64::is_finite, "a finite number");
         Ok(offset?.unwrap_or(0.0))
     }
 
     /// The hinted distance between samples, checked.
     pub fn cell(&self) -> Result<Option<f64>, DemErrorKind> {
         let is_sound = |cell: f64| cell.is_finite() && cell > 0.0;
-        checked("cell", self.hints.cell, is_sound, "a positive number of meters")
+        checked("cell", self.hints.options.cell, is_sound, "a positive number of meters")
     }
 }
 
@@ -226,7 +173,7 @@ pub fn read(name: &str, bytes: &[u8], hints: &DemHints) -> Result<Raster, DemErr
     let raster = read_packed(&DemFile { name, bytes, hints })
         .map_err(|kind| DemError { name: name.to_owned(), kind })?;
     let mut raster = with_stated_datum(raster, hints);
-    if let Some(nodata) = hints.nodata {
+    if let Some(nodata) = hints.options.nodata {
         raster.samples.clear(nodata);
     }
     Ok(raster)
@@ -249,16 +196,16 @@ pub fn open_windows(
     let Some(open) = format_of(&file).ok().and_then(|format| format.windows) else { return Ok(None) };
     let windows =
         open(&file, content, cache_bytes).map_err(|kind| DemError { name: name.to_owned(), kind })?;
-    if hints.vertical_datum.is_none() && hints.nodata.is_none() {
+    if hints.options.vertical_datum.is_none() && hints.options.nodata.is_none() {
         return Ok(Some(windows));
     }
     let header = with_stated_datum(windows.metadata().without_samples(), hints);
-    Ok(Some(Box::new(StatedWindows { windows, header, nodata: hints.nodata })))
+    Ok(Some(Box::new(StatedWindows { windows, header, nodata: hints.options.nodata })))
 }
 
 /// A raster with the vertical datum that the caller states, if any, in place of the file's.
 fn with_stated_datum(raster: Raster, hints: &DemHints) -> Raster {
-    let vertical_datum = hints.vertical_datum.clone().or(raster.vertical_datum);
+    let vertical_datum = hints.options.vertical_datum.clone().or(raster.vertical_datum);
     Raster { vertical_datum, ..raster }
 }
 
@@ -302,7 +249,9 @@ pub fn format_by_head(name: &str, head: &[u8], hints: &DemHints) -> Option<&'sta
         return Some("packed");
     }
     let format = format_of(&DemFile { name, bytes: head, hints }).ok()?;
-    let is_picture = hints.height_scale.is_none() && hints.height_encoding.is_none() && format.name == "PNG";
+    let is_picture = hints.options.height_scale.is_none()
+        && hints.options.height_encoding.is_none()
+        && format.name == "PNG";
     (!is_picture).then_some(format.name)
 }
 
@@ -375,7 +324,7 @@ fn format_of(file: &DemFile) -> Result<&'static DemFormat, DemErrorKind> {
     if extension == "hdr" {
         return Err(unknown("it is the header of a file beside it: name that one"));
     }
-    if file.hints.raw.is_some() {
+    if file.hints.options.raw.is_some() {
         return Ok(&raw::FORMAT);
     }
     let by_content = |format: &DemFormat| matches!(format.recognition, Recognition::Content { matches, .. } if matches(file.bytes));

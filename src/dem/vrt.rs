@@ -11,6 +11,8 @@
 //!
 //! Source: GDAL, "VRT -- GDAL Virtual Format".
 
+use std::path::{Path, PathBuf};
+
 use glam::{DAffine2, DVec2};
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
@@ -67,6 +69,11 @@ impl VrtTiles {
             }
         }
         reader.finish()
+    }
+
+    /// The places of the files of the virtual raster at `path`.
+    pub fn paths(&self, path: &Path) -> Vec<PathBuf> {
+        self.files.iter().map(|file| path.with_file_name(file)).collect()
     }
 
     /// Checks that the tiles join to what the virtual raster states.

@@ -24,6 +24,10 @@ use crate::dem::sample::SampleGrid;
 /// Rasters of at most so many samples are read whole even where a part would do: that takes milliseconds.
 pub const MOST_KEPT_SAMPLES: u64 = 1 << 20;
 
+/// Bytes of decoded samples that are kept of a file that is read in windows: two rows of tiles of a raster of the largest
+/// size.
+pub const WINDOW_CACHE_BYTES: usize = 64 << 20;
+
 /// A rectangle of a raster's samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RasterWindow {

@@ -6,18 +6,11 @@ use crate::dem::error::DemErrorKind;
 use crate::dem::mosaic::{Mosaic, MosaicError, Tiles};
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
-use crate::dem::read::{self, DemHints};
+use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::vrt::{self, VrtTiles};
-use crate::dem::windows::Windows;
+use crate::dem::windows::{WINDOW_CACHE_BYTES, Windows};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
-
-/// Bytes of decoded samples that are kept of a file that is read in windows: two rows of tiles of a raster of the largest
-/// size.
-const CACHE_BYTES: usize = 64 << 20;
-
-/// Options for opening elevation. Companions are the files beside the opened one.
-pub type DemOptions = DemHints<'static>;
 
 /// Elevation that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +45,7 @@ impl OpenDemError {
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
     let Some(tiles) = TileFiles::of(path, options)? else { return open_tiles(&[path], options) };
-    let mosaic = open_tiles(&tiles.paths, &tiles.hints(options))?;
+    let mosaic = open_tiles(&tiles.paths, &tiles.options(options))?;
     tiles.check(path, &mosaic.raster)?;
     Ok(mosaic)
 }
@@ -74,15 +67,13 @@ impl TileFiles {
             return Ok(None);
         }
         let vrt = VrtTiles::read(&files::read(path)?).map_err(FileError::at(path))?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let paths = vrt.files.iter().map(|file| folder.join(file)).collect();
-        Ok(Some(Self { paths, vrt: Some(vrt) }))
+        Ok(Some(Self { paths: vrt.paths(path), vrt: Some(vrt) }))
     }
 
     /// The options for the tiles: what the caller states of missing data counts, else what the virtual raster does.
-    fn hints<'a>(&self, options: &DemHints<'a>) -> DemHints<'a> {
+    fn options(&self, options: &DemOptions) -> DemOptions {
         let nodata = options.nodata.or(self.vrt.as_ref().and_then(|vrt| vrt.nodata));
-        DemHints { nodata, ..options.clone() }
+        DemOptions { nodata, ..options.clone() }
     }
 
     /// Checks what the tiles of the virtual raster at `path` join to.
@@ -113,7 +104,7 @@ pub enum OpenedDem {
 /// See [`OpenDemError`].
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
     let windows = match TileFiles::of(path, options)? {
-        Some(tiles) => open_mosaic(&tiles.paths, &tiles.hints(options)).and_then(|windows| {
+        Some(tiles) => open_mosaic(&tiles.paths, &tiles.options(options)).and_then(|windows| {
             let header = windows.as_ref().map(|windows| windows.metadata());
             header.map_or(Ok(()), |header| tiles.check(path, header))?;
             Ok(windows)
@@ -143,16 +134,15 @@ fn samples(windows: &dyn Windows) -> u64 {
 /// The windows of the mosaic of tiles, opened by their headers; `None` where one has none.
 fn open_mosaic(
     paths: &[PathBuf],
-    options: &DemHints,
+    options: &DemOptions,
 ) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let mut headers = Vec::new();
     for path in paths {
         let Some(tile) = open_windows(path, options)? else { return Ok(None) };
         headers.push((files::file_name(path), tile.metadata().without_samples()));
     }
-    // The tiles' own files beside them are looked for anew.
-    let (paths, stated) = (paths.to_vec(), options.stated());
-    let opener = move |index: usize| match open_windows(&paths[index], &stated.hints(&|_| (), &|_| None)) {
+    let (paths, options) = (paths.to_vec(), options.clone());
+    let opener = move |index: usize| match open_windows(&paths[index], &options) {
         Ok(Some(tile)) => Ok(tile),
         Err(OpenDemError::Format(error)) => Err(error.cause),
         Ok(None) | Err(_) => Err(DemErrorKind::Changed),
@@ -161,10 +151,11 @@ fn open_mosaic(
 }
 
 /// The windows of an elevation file; `None` where its format is read whole.
-fn open_windows(path: &Path, options: &DemHints) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
+fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let (head, content) = (files::read_head(path, read::HEAD_BYTES)?, files::open(path)?);
-    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
-    let windows = read::open_windows(&files::file_name(path), &head, Box::new(content), &hints, CACHE_BYTES);
+    let hints = DemHints { companions: &files::beside(path), ..options.clone().into() };
+    let windows =
+        read::open_windows(&files::file_name(path), &head, Box::new(content), &hints, WINDOW_CACHE_BYTES);
     Ok(windows.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
@@ -184,13 +175,13 @@ pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<M
 /// The name of the format of an elevation file, by its head; `None` where it seems to be no elevation or cannot be read.
 pub fn format_by_head(path: &Path, options: &DemOptions) -> Option<&'static str> {
     let head = files::read_head(path, read::HEAD_BYTES).ok()?;
-    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
+    let hints = DemHints { companions: &files::beside(path), ..options.clone().into() };
     read::format_by_head(&files::file_name(path), &head, &hints)
 }
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
     let bytes = files::read(path)?;
-    let hints = DemHints { companions: &files::beside(path), ..options.clone() };
+    let hints = DemHints { companions: &files::beside(path), ..options.clone().into() };
     let raster = read::read(&files::file_name(path), &bytes, &hints);
     Ok(raster.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }

@@ -17,12 +17,12 @@ use crate::dem::formats::raw::{RawLayout, RawLayoutError};
 use crate::dem::mosaic::Tiles;
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
-use crate::dem::read::{self, StatedElevation};
+use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::reduced::reduced;
 use crate::dem::vrt::{self, VrtTiles};
-use crate::dem::warp::metric_crs::{metric_crs, off_scale};
+use crate::dem::warp::metric_crs::{OffScale, metric_crs, off_scale};
 use crate::dem::warp::metric_windows::MetricSystem;
-use crate::dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, Windows};
+use crate::dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
@@ -41,9 +41,6 @@ const MARGIN: u32 = 512;
 /// Samples beside an extent that warping reads.
 pub(super) const BESIDE: u32 = 4;
 
-/// Bytes of decoded samples that are kept of a file that is read in windows.
-const CACHE_BYTES: usize = 64 << 20;
-
 /// Elevation as it is read.
 pub(super) struct ReadElevation {
     /// What is held, as a raster.
@@ -52,15 +49,17 @@ pub(super) struct ReadElevation {
     whole: Raster,
     /// What is held of it.
     window: RasterWindow,
-    /// The system of the ground.
-    pub system: MetricSystem,
+    /// Why the ground is made in another system than the stated one, if it is.
+    pub off_scale: Option<OffScale>,
     /// The part of the whole that the scene is made of; `None` where that is all.
-    pub extent: Option<ExtentRects>,
+    pub extent: Option<StatedExtent>,
 }
 
 /// An extent in two systems.
-#[derive(Clone, Copy)]
-pub(super) struct ExtentRects {
+#[derive(Clone)]
+pub(super) struct StatedExtent {
+    /// The system of the ground; `None` where the elevation names none.
+    pub crs: Option<Crs>,
     /// In the system of the ground.
     pub ground: Rect,
     /// In that of the elevation files: the rectangle around the former.
@@ -79,33 +78,38 @@ impl ReadElevation {
         can_be_reduced: bool,
         findings: &mut SceneFindings,
     ) -> Result<Self, Diagnostic> {
-        let dem = &document.terrain.dem;
-        let held = match windows(document, assets, can_be_reduced, findings)? {
-            Some(windows) if document.terrain.extent.is_some() => {
-                return Self::around_extent(document, windows);
-            }
-            Some(windows) => reduced_to_fit(document, windows, findings)?,
-            None => joined(document, assets, findings)?,
+        let held = match TileList::of(document, assets)? {
+            None => replaced(document, assets, findings)?,
+            Some(list) => match list.windows(document, assets, can_be_reduced, findings)? {
+                Some(windows) if document.terrain.extent.is_some() => {
+                    return Self::around_extent(document, windows);
+                }
+                Some(windows) => reduced_to_fit(document, windows, findings)?,
+                None => list.joined(document, assets, findings)?,
+            },
         };
         let (whole, window) = (held.without_samples(), RasterWindow::all(held.size()));
-        let failed = |error| document.error(dem, error);
-        let system = MetricSystem {
-            crs: metric_crs(&held, document.crs.as_ref()).map_err(failed)?,
-            off_scale: off_scale(&held, document.crs.as_ref()).map_err(failed)?,
+        let failed = |error| document.error(&document.terrain.dem, error);
+        let off_scale = off_scale(&held, document.crs.as_ref()).map_err(failed)?;
+        let extent = match document.terrain.extent.is_some() {
+            true => {
+                let crs = metric_crs(&held, document.crs.as_ref()).map_err(failed)?;
+                stated_extent(document, &whole, crs, off_scale.as_ref())?
+            }
+            false => None,
         };
-        let extent = extent_rects(document, &whole, &system)?;
-        Ok(Self { held, whole, window, system, extent })
+        Ok(Self { held, whole, window, off_scale, extent })
     }
 
     /// Reads what the extent needs, and [`MARGIN`].
     fn around_extent(document: &Document, mut windows: Box<dyn Windows + Send>) -> Result<Self, Diagnostic> {
         let terrain = &document.terrain;
         let whole = windows.metadata().without_samples();
-        let system = MetricSystem::of(&mut windows, document.crs.as_ref())
+        let MetricSystem { crs, off_scale } = MetricSystem::of(&mut windows, document.crs.as_ref())
             .map_err(|error| document.error(&terrain.dem, error))?;
-        let extent = extent_rects(document, &whole, &system)?;
+        let extent = stated_extent(document, &whole, crs, off_scale.as_ref())?;
         let window = |margin: u32| {
-            let window = extent.as_ref().and_then(|rects| crop_window(&whole, &rects.source, margin));
+            let window = extent.as_ref().and_then(|extent| crop_window(&whole, &extent.source, margin));
             window.ok_or_else(|| nothing_within(document))
         };
         let is_small = |window: &RasterWindow| window.samples() as u64 <= RASTER_SAMPLES.get();
@@ -121,7 +125,7 @@ impl ReadElevation {
                 .error_at(terrain.extent.as_ref().and_then(|it| it.span()).unwrap_or_default(), message));
         }
         let samples = windows.samples(window).map_err(|error| document.error(&terrain.dem, error))?;
-        Ok(Self { held: part(&whole, window, samples), whole, window, system, extent })
+        Ok(Self { held: part(&whole, window, samples), whole, window, off_scale, extent })
     }
 
     /// The part of the raster with its samples in `rect`, in its own system, and `margin` more on each side, from `held` or one
@@ -141,15 +145,16 @@ pub(super) fn nothing_within(document: &Document) -> Diagnostic {
         .with_help("name points on the model, or remove `extent` to take all of it")
 }
 
-/// The extent that the document states.
-fn extent_rects(
+/// The extent that the document states, if any. `crs` is the system of the ground.
+fn stated_extent(
     document: &Document,
     whole: &Raster,
-    system: &MetricSystem,
-) -> Result<Option<ExtentRects>, Diagnostic> {
+    crs: Option<Crs>,
+    off_scale: Option<&OffScale>,
+) -> Result<Option<StatedExtent>, Diagnostic> {
     let Some(extent) = &document.terrain.extent else { return Ok(None) };
-    let scene = system.crs.clone().unwrap_or_else(Crs::local);
-    let stated = system.off_scale.as_ref().map_or_else(|| scene.clone(), |off| off.stated.clone());
+    let scene = crs.clone().unwrap_or_else(Crs::local);
+    let stated = off_scale.map_or_else(|| scene.clone(), |off| off.stated.clone());
     let given = document.points_crs.as_ref().unwrap_or(&stated);
     let own = whole.crs.as_ref().unwrap_or(&stated);
     let misplaced = |error| document.error(extent, error);
@@ -158,7 +163,7 @@ fn extent_rects(
     let ground = Rect::around(corners.map_err(misplaced)?);
     let in_source: Result<Vec<DVec2>, _> = ground.grid_points().map(|at| scene.transform(own, at)).collect();
     let source = Rect::around(in_source.map_err(misplaced)?);
-    Ok(Some(ExtentRects { ground, source }))
+    Ok(Some(StatedExtent { crs, ground, source }))
 }
 
 /// The smaller raster of one that is too large for the memory.
@@ -186,68 +191,145 @@ fn reduced_to_fit(
     Ok(raster)
 }
 
-/// The document's elevation files as one raster on disk, where their formats allow that, and they are large: for the part
-/// within an extent, or to be reduced. What is wrong with a file is left to be told by who reads it whole.
-fn windows(
-    document: &Document,
-    assets: &Assets,
-    can_be_reduced: bool,
-    findings: &mut SceneFindings,
-) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
-    let dem = &document.terrain.dem;
-    let most_kept = match (&document.terrain.extent, can_be_reduced) {
-        (Some(_), _) => MOST_KEPT_SAMPLES.min(RASTER_SAMPLES.get()),
-        (None, true) => RASTER_SAMPLES.get(),
-        (None, false) => return Ok(None),
-    };
-    let Some(elevation) = tile_list(document, assets)? else { return Ok(None) };
-    let (names, stated) = (elevation.names.clone(), elevation.stated.clone());
-    let mut tiles = Vec::new();
-    for name in &names {
-        // What the file states is compared with what the scene does.
-        let own = StatedElevation { vertical_datum: None, ..stated.clone() };
-        let overridden = RefCell::new(None);
-        let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
-        let Ok(Some(windows)) = open_windows(name, assets, &own, &note) else { return Ok(None) };
-        tiles.push((windows.metadata().without_samples(), overridden.into_inner()));
-    }
-    let samples = tiles.iter().map(|(tile, _)| u64::from(tile.width) * u64::from(tile.height)).sum::<u64>();
-    if samples <= most_kept {
-        return Ok(None);
-    }
-    let mut headers = Vec::new();
-    for (name, (mut tile, overridden)) in names.iter().zip(tiles) {
-        check_tile(name, &mut tile, overridden, document, findings);
-        headers.push((name.clone(), tile));
-    }
-    let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
-    let (count, is_alone, assets) = (headers.len(), elevation.vrts.is_empty(), assets.clone());
-    let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
-        Ok(Some(windows)) => Ok(windows),
-        Err(TileError::Dem(error)) => Err(error.kind),
-        Ok(None) | Err(TileError::Asset(_)) => Err(DemErrorKind::Changed),
-    };
-    if count == 1 && is_alone {
-        return open(0).map(Some).map_err(|error| document.error(dem, error));
-    }
-    if stating > 0 {
-        find_missing_datums(count - stating, count, document, findings);
-    }
-    let message = format!("{count} tiles joined by their headers; what they share is not compared");
-    findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
-    let mosaic = MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
-    elevation.check(document, mosaic.metadata())?;
-    Ok(Some(Box::new(mosaic)))
-}
-
 /// The elevation files that a document names: those that it lists, those in a folder, and those that a virtual raster lists.
 struct TileList {
     names: Vec<String>,
     vrts: Vec<VrtTiles>,
-    stated: StatedElevation,
+    stated: DemOptions,
 }
 
 impl TileList {
+    /// The files of the document; `None` where other elevation takes their place.
+    fn of(document: &Document, assets: &Assets) -> Result<Option<Self>, Diagnostic> {
+        let dem = &document.terrain.dem;
+        let mut list = Self { names: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
+        for name in dem.iter() {
+            if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
+                return Ok(None);
+            }
+            if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
+                let before = list.names.len();
+                list.names.extend(files.into_iter().filter(|file| read::is_tile_name(file)));
+                if list.names.len() == before {
+                    return Err(
+                        document.error(dem, format!("'{}' is a folder without elevation", quoted(name)))
+                    );
+                }
+                continue;
+            }
+            if !vrt::is_vrt(name) {
+                list.names.push(name.clone());
+                continue;
+            }
+            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+            let vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
+            let slashed = name.replace('\\', "/");
+            let folder = slashed.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+            let place =
+                |file: &String| if file.starts_with('/') { file.clone() } else { format!("{folder}{file}") };
+            list.names.extend(vrt.files.iter().map(place));
+            list.stated.nodata = list.stated.nodata.or(vrt.nodata);
+            list.vrts.push(vrt);
+        }
+        Ok(Some(list))
+    }
+
+    /// The files as one raster on disk, where their formats allow that, and they are large: for the part
+    /// within an extent, or to be reduced. What is wrong with a file is left to be told by who reads it whole.
+    fn windows(
+        &self,
+        document: &Document,
+        assets: &Assets,
+        can_be_reduced: bool,
+        findings: &mut SceneFindings,
+    ) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
+        let dem = &document.terrain.dem;
+        let most_kept = match (&document.terrain.extent, can_be_reduced) {
+            (Some(_), _) => MOST_KEPT_SAMPLES.min(RASTER_SAMPLES.get()),
+            (None, true) => RASTER_SAMPLES.get(),
+            (None, false) => return Ok(None),
+        };
+        let (names, stated) = (self.names.clone(), self.stated.clone());
+        let mut tiles = Vec::new();
+        for name in &names {
+            // What the file states is compared with what the scene does.
+            let own = DemOptions { vertical_datum: None, ..stated.clone() };
+            let overridden = RefCell::new(None);
+            let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
+            let Ok(Some(windows)) = open_windows(name, assets, &own, &note) else { return Ok(None) };
+            tiles.push((windows.metadata().without_samples(), overridden.into_inner()));
+        }
+        let samples =
+            tiles.iter().map(|(tile, _)| u64::from(tile.width) * u64::from(tile.height)).sum::<u64>();
+        if samples <= most_kept {
+            return Ok(None);
+        }
+        let mut headers = Vec::new();
+        for (name, (mut tile, overridden)) in names.iter().zip(tiles) {
+            check_tile(name, &mut tile, overridden, document, findings);
+            headers.push((name.clone(), tile));
+        }
+        let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
+        let (count, is_alone, assets) = (headers.len(), self.vrts.is_empty(), assets.clone());
+        let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
+            Ok(Some(windows)) => Ok(windows),
+            Err(TileError::Dem(error)) => Err(error.kind),
+            Ok(None) | Err(TileError::Asset(_)) => Err(DemErrorKind::Changed),
+        };
+        if count == 1 && is_alone {
+            return open(0).map(Some).map_err(|error| document.error(dem, error));
+        }
+        if stating > 0 {
+            find_missing_datums(count - stating, count, document, findings);
+        }
+        let message = format!("{count} tiles joined by their headers; what they share is not compared");
+        findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
+        let mosaic =
+            MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
+        self.check(document, mosaic.metadata())?;
+        Ok(Some(Box::new(mosaic)))
+    }
+
+    /// The files as one raster in memory.
+    fn joined(
+        &self,
+        document: &Document,
+        assets: &Assets,
+        findings: &mut SceneFindings,
+    ) -> Result<Raster, Diagnostic> {
+        let dem = &document.terrain.dem;
+        let failed = |error| document.error(dem, error);
+        let overridden = RefCell::new(None);
+        let companions = |name: &str| assets.read(name).ok();
+        let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
+        // What the file states is compared with what the scene does.
+        let options = DemOptions { vertical_datum: None, ..self.stated.clone() };
+        let hints = DemHints { options, overridden: &note, companions: &companions };
+        let mut tiles = Tiles::default();
+        for name in &self.names {
+            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+            let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+            check_tile(name, &mut tile, overridden.take(), document, findings);
+            tiles.push(name, tile).map_err(failed)?;
+        }
+        let mosaic = tiles.join().map_err(failed)?;
+        self.check(document, &mosaic.raster)?;
+        find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
+        if 2 * mosaic.in_feet > mosaic.overlaps {
+            let message = format!(
+                "of {} samples that tiles share, {} have the ratio of feet to meters: some tiles are in feet, and are read as meters",
+                mosaic.overlaps, mosaic.in_feet
+            );
+            let help =
+                "convert those tiles, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
+            findings.add_with_help(FindingCode::HeightsInFeet, dem.span().unwrap_or_default(), message, help);
+        }
+        if mosaic.tiles > 1 {
+            findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
+        }
+        Ok(mosaic.raster)
+    }
+
     /// Checks what the tiles join to.
     fn check(&self, document: &Document, joined: &Raster) -> Result<(), Diagnostic> {
         // Several are joined to another raster than each states.
@@ -259,39 +341,6 @@ impl TileList {
             Ok(())
         }
     }
-}
-
-/// The files of the document; `None` where other elevation takes their place.
-fn tile_list(document: &Document, assets: &Assets) -> Result<Option<TileList>, Diagnostic> {
-    let dem = &document.terrain.dem;
-    let mut list = TileList { names: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
-    for name in dem.iter() {
-        if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
-            return Ok(None);
-        }
-        if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
-            let before = list.names.len();
-            list.names.extend(files.into_iter().filter(|file| read::is_tile_name(file)));
-            if list.names.len() == before {
-                return Err(document.error(dem, format!("'{}' is a folder without elevation", quoted(name))));
-            }
-            continue;
-        }
-        if !vrt::is_vrt(name) {
-            list.names.push(name.clone());
-            continue;
-        }
-        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-        let vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
-        let slashed = name.replace('\\', "/");
-        let folder = slashed.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let place =
-            |file: &String| if file.starts_with('/') { file.clone() } else { format!("{folder}{file}") };
-        list.names.extend(vrt.files.iter().map(place));
-        list.stated.nodata = list.stated.nodata.or(vrt.nodata);
-        list.vrts.push(vrt);
-    }
-    Ok(Some(list))
 }
 
 /// An elevation file that has no windows.
@@ -307,19 +356,19 @@ enum TileError {
 fn open_windows(
     name: &str,
     assets: &Assets,
-    stated: &StatedElevation,
+    stated: &DemOptions,
     overridden: &dyn Fn(&Crs),
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
     let (head, content) = assets.open(name, read::HEAD_BYTES)?;
     let companions = |name: &str| assets.read(name).ok();
-    let hints = stated.hints(overridden, &companions);
-    Ok(read::open_windows(name, &head, Box::new(content), &hints, CACHE_BYTES)?)
+    let hints = DemHints { options: stated.clone(), overridden, companions: &companions };
+    Ok(read::open_windows(name, &head, Box::new(content), &hints, WINDOW_CACHE_BYTES)?)
 }
 
 /// What the document states of its elevation files.
-fn stated(document: &Document) -> Result<StatedElevation, Diagnostic> {
+fn stated(document: &Document) -> Result<DemOptions, Diagnostic> {
     let terrain = &document.terrain;
-    Ok(StatedElevation {
+    Ok(DemOptions {
         height_scale: terrain.height_scale,
         height_offset: Some(terrain.height_offset),
         nodata: terrain.nodata,
@@ -332,43 +381,6 @@ fn stated(document: &Document) -> Result<StatedElevation, Diagnostic> {
         cell: terrain.cell,
         crs: terrain.crs.clone(),
     })
-}
-
-/// The document's elevation files as one raster in memory.
-fn joined(document: &Document, assets: &Assets, findings: &mut SceneFindings) -> Result<Raster, Diagnostic> {
-    let dem = &document.terrain.dem;
-    let failed = |error| document.error(dem, error);
-    let Some(elevation) = tile_list(document, assets)? else {
-        return replaced(document, assets, findings);
-    };
-    let overridden = RefCell::new(None);
-    let companions = |name: &str| assets.read(name).ok();
-    let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
-    // What the file states is compared with what the scene does.
-    let stated = StatedElevation { vertical_datum: None, ..elevation.stated.clone() };
-    let (hints, mut tiles) = (stated.hints(&note, &companions), Tiles::default());
-    for name in &elevation.names {
-        let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-        let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
-        check_tile(name, &mut tile, overridden.take(), document, findings);
-        tiles.push(name, tile).map_err(failed)?;
-    }
-    let mosaic = tiles.join().map_err(failed)?;
-    elevation.check(document, &mosaic.raster)?;
-    find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
-    if 2 * mosaic.in_feet > mosaic.overlaps {
-        let message = format!(
-            "of {} samples that tiles share, {} have the ratio of feet to meters: some tiles are in feet, and are read as meters",
-            mosaic.overlaps, mosaic.in_feet
-        );
-        let help =
-            "convert those tiles, for example with: gdal_calc.py -A IN --calc=\"A*0.3048\" --outfile=OUT";
-        findings.add_with_help(FindingCode::HeightsInFeet, dem.span().unwrap_or_default(), message, help);
-    }
-    if mosaic.tiles > 1 {
-        findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), mosaic.note());
-    }
-    Ok(mosaic.raster)
 }
 
 /// The elevation that takes the place of the document's files.

@@ -73,11 +73,11 @@ pub fn load(document: &Document, assets: &Assets, can_be_reduced: bool) -> Resul
     let metric = metric(document, &read, filled.as_ref().unwrap_or(&read.held), &mut findings)?;
     let lattice = Lattice::from_raster(&metric).map_err(|error| document.error(dem, error))?;
     let crs = metric.crs.clone().or(document.crs.clone()).unwrap_or_else(Crs::local);
-    let scale_note = read.system.off_scale.as_ref().map(ToString::to_string);
+    let scale_note = read.off_scale.as_ref().map(ToString::to_string);
     if let Some(note) = &scale_note {
         findings.add(FindingCode::LengthsNotTrue, span, note.as_str());
     }
-    let stated_crs = read.system.off_scale.map_or_else(|| crs.clone(), |off| off.stated);
+    let stated_crs = read.off_scale.map_or_else(|| crs.clone(), |off| off.stated);
     Ok(LoadedGround { source: Arc::new(read.held), lattice, crs, stated_crs, scale_note, findings })
 }
 
@@ -97,8 +97,7 @@ fn metric<'a>(
         });
     };
     let part = read.part(source, &extent.source, BESIDE);
-    let warped =
-        |part: Raster| Ok(warp::to_metric(&part, read.system.crs.as_ref()).map_err(failed)?.into_owned());
+    let warped = |part: Raster| Ok(warp::to_metric(&part, extent.crs.as_ref()).map_err(failed)?.into_owned());
     let part = part.map(warped).transpose()?;
     part.and_then(|part| crop(&part, &extent.ground, 0))
         .map(Cow::Owned)

@@ -9,7 +9,7 @@ use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
 use crate::dem::imagery::Imagery;
-use crate::dem::read::DemHints;
+use crate::dem::read::{DemHints, DemOptions};
 use crate::dem::warp::row_positions::positions;
 use crate::dem::windows::RasterWindow;
 use crate::description::diagnostic::Diagnostic;
@@ -42,7 +42,10 @@ pub fn load(
     let Some(table) = &document.style.imagery else { return Ok(None) };
     let bytes = assets.read(&table.file).map_err(|error| document.error(&table.file, error))?;
     let companions = |name: &str| assets.read(name).ok();
-    let hints = DemHints { crs: table.crs.clone(), companions: &companions, ..DemHints::default() };
+    let hints = DemHints {
+        companions: &companions,
+        ..DemOptions { crs: table.crs.clone(), ..DemOptions::default() }.into()
+    };
     let imagery =
         Imagery::open(&table.file, &bytes, &hints).map_err(|error| document.error(&table.file, error))?;
     let own = imagery.crs.clone().ok_or_else(|| {

@@ -13,7 +13,7 @@ use sandtable::dem::answer::Answer;
 use sandtable::dem::error::DemError;
 use sandtable::dem::formats::height_encoding::HeightEncoding;
 use sandtable::dem::raster::Raster;
-use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::read::{DemHints, DemOptions, read};
 use sandtable::dem::sample::{bilinear, nearest};
 use sandtable::dem::stats::Stats;
 use sandtable::dem::warp::to_metric;
@@ -37,7 +37,10 @@ fn data() -> Option<PathBuf> {
 fn open(path: &Path) -> Result<Raster, DemError> {
     let bytes = fs::read(path).expect("a file of the test data");
     let companions = |name: &str| fs::read(name).ok();
-    let hints = DemHints { height_scale: Some(1.0), companions: &companions, ..DemHints::default() };
+    let hints = DemHints {
+        companions: &companions,
+        ..DemOptions { height_scale: Some(1.0), ..DemOptions::default() }.into()
+    };
     read(&path.to_string_lossy(), &bytes, &hints)
 }
 
@@ -362,7 +365,9 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
         ("terrarium.png", HeightEncoding::Terrarium, 1.0 / 256.0),
     ] {
         let bytes = fs::read(folder.join("dem_formats").join(file)).expect("a file of the test data");
-        let hints = |height_encoding| DemHints { height_encoding, cell: Some(30.0), ..DemHints::default() };
+        let hints = |height_encoding| {
+            DemHints::from(DemOptions { height_encoding, cell: Some(30.0), ..DemOptions::default() })
+        };
         let tile = read(file, &bytes, &hints(Some(encoding))).expect("a tile");
         assert_eq!((tile.width, tile.height), (wanted.width, wanted.height), "{file}");
         for (ours, wanted) in tile.samples.iter().zip(wanted.samples.iter()) {
@@ -374,7 +379,10 @@ fn map_tiles_of_heights_are_the_model_that_they_were_made_of() {
         assert!(refused.contains("terrain-rgb") && refused.contains("terrarium"), "{refused}");
     }
     let fuji = fs::read(folder.join("dem/fuji_terrain_rgb.png")).expect("a file of the test data");
-    let hints = DemHints { height_encoding: Some(HeightEncoding::TerrainRgb), ..DemHints::default() };
+    let hints = DemHints::from(DemOptions {
+        height_encoding: Some(HeightEncoding::TerrainRgb),
+        ..DemOptions::default()
+    });
     let summit = Stats::new(&read("fuji.png", &fuji, &hints).expect("a tile")).max;
     assert!((3700.0..3800.0).contains(&summit), "Fuji is {summit} m high");
 }
@@ -397,7 +405,7 @@ fn mutants_of_real_files_are_errors_or_rasters() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((state >> 33) as usize) % below
     };
-    let hints = DemHints { height_scale: Some(1.0), ..DemHints::default() };
+    let hints = DemHints::from(DemOptions { height_scale: Some(1.0), ..DemOptions::default() });
     for name in [
         "i16_tiled_deflate_p2.tif",
         "cog_f32_overviews.tif",

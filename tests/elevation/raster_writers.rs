@@ -9,7 +9,7 @@ use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
 use sandtable::dem::formats::DemFormat;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::read::{DemHints, DemOptions, read};
 use sandtable::dem::write::{WriteError, WrittenDem, write};
 use sandtable::geom::crs::Crs;
 
@@ -132,11 +132,11 @@ proptest! {
         let written = write(&one, format("png"), "a").expect("some heights");
         let words: Vec<&str> = written.notes[0].split(' ').collect();
         let number = |at: usize| words[at].parse::<f64>().expect("a number");
-        let hints = DemHints {
+        let hints = DemHints::from(DemOptions {
             height_scale: Some(number(4)),
             height_offset: Some(number(6)),
-            ..DemHints::default()
-        };
+            ..DemOptions::default()
+        });
         let again = back("a.png", &written, hints);
         assert_eq!(again.crs, one.crs);
         for (ours, wanted) in again.samples.iter().zip(one.samples.iter()) {

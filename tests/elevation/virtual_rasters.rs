@@ -3,11 +3,12 @@
 use glam::{DAffine2, DMat2, DVec2};
 use sandtable::dem::formats::DemFormat;
 use sandtable::dem::raster::{Raster, Samples};
+use sandtable::dem::read::DemOptions;
 use sandtable::dem::windows::{RasterWindow, Windows};
 use sandtable::dem::write::write;
 use sandtable::geom::crs::Crs;
 use sandtable::message::chain::error_text;
-use sandtable::pipeline::dem::{DemOptions, OpenedDem, open, open_either};
+use sandtable::pipeline::dem::{OpenedDem, open, open_either};
 use sandtable::pipeline::scene_file::build_scene_text;
 
 use crate::common::scratch::Scratch;

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use sandtable::dem::points::{self, PointHints};
-use sandtable::dem::read::{self as elevation, DemHints};
+use sandtable::dem::read::{self as elevation, DemHints, DemOptions};
 use sandtable::description::expression::Expression;
 use sandtable::description::parse::parse_bytes;
 use sandtable::geom::crs::Crs;
@@ -64,7 +64,10 @@ fn named<'a>(names: &[&'static str], bytes: &'a [u8]) -> Option<(&'static str, &
 pub fn elevation(bytes: &[u8]) {
     let Some((name, bytes)) = named(&RASTERS, bytes) else { return };
     let beside = |name: &str| name.ends_with(".hdr").then(|| bytes.to_vec());
-    let hints = DemHints { height_scale: Some(1.0), companions: &beside, ..DemHints::default() };
+    let hints = DemHints {
+        companions: &beside,
+        ..DemOptions { height_scale: Some(1.0), ..DemOptions::default() }.into()
+    };
     if let Ok(raster) = elevation::read(name, bytes, &hints) {
         assert!(raster.width > 0 && raster.height > 0, "a raster without samples");
         assert!(raster.map_from_grid.is_finite(), "a raster that lies nowhere");

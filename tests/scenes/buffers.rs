@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable::dem::answer::Answer;
+use sandtable::dem::read::DemOptions;
 use sandtable::draw::list::FeatureId;
-use sandtable::pipeline::dem::{self, DemOptions};
+use sandtable::pipeline::dem;
 use sandtable::pipeline::output_files::OutputFiles;
 use sandtable::pipeline::picture::{PictureSize, draw_view};
 use sandtable::pipeline::picture_buffers::{PictureBuffers, pick};

@@ -185,7 +185,7 @@ struct BtSystem {
 }
 
 fn system(file: &DemFile, header: &BtHeader) -> Result<BtSystem, DemErrorKind> {
-    let known = if header.has_projection_file { file.crs()? } else { file.hints.crs.clone() };
+    let known = if header.has_projection_file { file.crs()? } else { file.hints.options.crs.clone() };
     if known.is_some() {
         return Ok(BtSystem { crs: known, meters_per_unit: 1.0 });
     }

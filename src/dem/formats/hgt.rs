@@ -59,7 +59,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
     let cell = (raster.grid_size() - 1.0).recip();
     let raster = Raster {
         driver: "SRTMHGT",
-        crs: Some(file.hints.crs.clone().unwrap_or_else(Crs::wgs84)),
+        crs: Some(file.hints.options.crs.clone().unwrap_or_else(Crs::wgs84)),
         nodata: Some(VOID.into()),
         vertical_datum: Some("EGM96 geoid".into()),
         ..raster.placed(north_up_nodes(corner + DVec2::Y, cell))

@@ -80,7 +80,7 @@ enum PngHeights {
 impl PngHeights {
     fn new(file: &DemFile, color: ColorType) -> Result<Self, DemErrorKind> {
         let is_gray = matches!(color, ColorType::Grayscale | ColorType::GrayscaleAlpha);
-        match (is_gray, file.hints.height_encoding) {
+        match (is_gray, file.hints.options.height_encoding) {
             (false, Some(encoding)) => Ok(Self::Colors(encoding)),
             (false, None) => Err(DemErrorKind::NoHeightEncoding),
             (true, Some(encoding)) => {
@@ -199,7 +199,7 @@ fn encode(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::Encodi
 #[cfg(test)]
 mod tests {
     use crate::dem::formats::height_encoding::HeightEncoding;
-    use crate::dem::read::{DemHints, read};
+    use crate::dem::read::{DemHints, DemOptions, read};
     use image::ImageEncoder;
 
     fn picture(values: &[u16]) -> Vec<u8> {
@@ -213,12 +213,12 @@ mod tests {
 
     #[test]
     fn gray_becomes_meters_by_the_stated_scale() {
-        let hints = DemHints {
+        let hints = DemHints::from(DemOptions {
             height_scale: Some(0.5),
             height_offset: Some(-100.0),
             cell: Some(30.0),
-            ..DemHints::default()
-        };
+            ..DemOptions::default()
+        });
         let raster = read("a.png", &picture(&[0, 65535]), &hints).expect("a picture");
         assert_eq!([raster.at(0, 0), raster.at(1, 0)], [-100.0, 32667.5]);
         // The south-west sample stands at the origin.
@@ -238,7 +238,9 @@ mod tests {
         image::codecs::png::PngEncoder::new(&mut bytes)
             .write_image(&[1, 134, 170, 255, 1, 134, 170, 0], 2, 1, image::ExtendedColorType::Rgba8)
             .expect("memory");
-        let hints = |height_encoding| DemHints { height_encoding, cell: Some(1.0), ..DemHints::default() };
+        let hints = |height_encoding| {
+            DemHints::from(DemOptions { height_encoding, cell: Some(1.0), ..DemOptions::default() })
+        };
         let tile = read("a.png", &bytes, &hints(Some(HeightEncoding::TerrainRgb))).expect("a tile");
         assert_eq!((tile.at(0, 0), tile.data_type), (1.0, "Byte"));
         assert!(tile.at(1, 0).is_nan());
@@ -251,7 +253,7 @@ mod tests {
     #[test]
     fn a_picture_cut_anywhere_is_an_error() {
         let whole = picture(&[1, 2, 3, 4]);
-        let hints = DemHints { height_scale: Some(1.0), ..DemHints::default() };
+        let hints = DemHints::from(DemOptions { height_scale: Some(1.0), ..DemOptions::default() });
         for end in 0..whole.len() - 12 {
             assert!(read("a.png", &whole[..end], &hints).is_err(), "{end}");
         }

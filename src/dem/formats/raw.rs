@@ -110,7 +110,7 @@ fn sample_and_order(text: &str) -> Option<(SampleType, ByteOrder)> {
 
 /// Heights are the samples, times the stated scale plus the stated offset.
 fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
-    let raw = file.hints.raw.ok_or(DemErrorKind::NoRawLayout)?;
+    let raw = file.hints.options.raw.ok_or(DemErrorKind::NoRawLayout)?;
     let (scale, offset) = (file.height_scale()?.unwrap_or(1.0), file.height_offset()?);
     let layout = SampleLayout::dense((raw.width.into(), raw.height.into()), raw.sample, raw.order, raw.skip);
     let raster = layout.header("RAW file", size)?;
@@ -122,7 +122,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::dem::read::{DemHints, DemOptions, read};
 
     #[test]
     fn the_statement_is_a_size_a_type_and_what_is_needed_besides() {
@@ -151,13 +151,13 @@ mod tests {
 
     #[test]
     fn samples_become_meters_by_a_stated_scale() {
-        let hints = DemHints {
+        let hints = DemHints::from(DemOptions {
             raw: "2x1:u16le:skip=1".parse().ok(),
             height_scale: Some(0.5),
             height_offset: Some(-10.0),
             cell: Some(30.0),
-            ..DemHints::default()
-        };
+            ..DemOptions::default()
+        });
         let raster = read("a.r16", &[9, 2, 0, 0, 1], &hints).expect("as stated");
         assert_eq!([raster.at(0, 0), raster.at(1, 0)], [-9.0, 118.0]);
         assert_eq!(raster.spacing().x, 30.0);

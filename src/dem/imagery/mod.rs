@@ -217,6 +217,7 @@ impl ColorRaster {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dem::read::DemOptions;
 
     fn png(width: u32, height: u32, color: impl Fn(u32, u32) -> Rgba) -> Vec<u8> {
         let image = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(color(x, y)));
@@ -252,7 +253,10 @@ mod tests {
         let color = |x: u32, _| if x < 2 { [if x == 0 { 255 } else { 0 }; 4] } else { [255, 0, 0, 0] };
         let bytes = png(5, 2, |x, y| if x == 4 { [9, 9, 9, 255] } else { color(x, y) });
         let world = |_: &str| Some(b"1 0 0 -1 0 0".to_vec());
-        let hints = DemHints { crs: Some(Crs::wgs84()), companions: &world, ..DemHints::default() };
+        let hints = DemHints {
+            companions: &world,
+            ..DemOptions { crs: Some(Crs::wgs84()), ..DemOptions::default() }.into()
+        };
         let imagery = Imagery::open("a.png", &bytes, &hints).expect("a small picture");
         let read = imagery.read(all(&imagery), 2).expect("sound");
         assert_eq!((read.width, read.height), (3, 1));

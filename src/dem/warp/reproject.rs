@@ -67,14 +67,10 @@ pub fn reproject<'a>(
     let system = target.or(own);
     let stays = own == system && raster.is_axis_aligned();
     let source = if stays { raster.turned_north_up() } else { Cow::Borrowed(raster) };
-    let Some(cell) = cell.filter(|&cell| !stays || DVec2::splat(cell) != source.spacing()) else {
-        if stays {
-            return Ok(Warped { raster: with_crs(source, own), method: Resampling::Kept });
-        }
-        let transform = CrsTransform::new(&source, own, system);
-        let warped = Resampler::around(&source, &transform, None)?.bilinear();
-        return Ok(Warped { raster: Cow::Owned(warped), method: Resampling::Bilinear });
-    };
+    let cell = cell.filter(|&cell| !stays || DVec2::splat(cell) != source.spacing());
+    if stays && cell.is_none() {
+        return Ok(Warped { raster: with_crs(source, own), method: Resampling::Kept });
+    }
     let transform = CrsTransform::new(&source, own, system);
     let (resampler, method) = coarser_or_finer(&source, &transform, stays, cell, &|| data_extent(&source))?;
     let raster = if method == Resampling::Average { resampler.average() } else { resampler.bilinear() };
@@ -100,16 +96,8 @@ pub fn reproject_windows(
         return Ok(None);
     }
     let transform = CrsTransform::new(&whole, own, system);
-    let (resampler, method) = searched(source, |_, search| {
-        let valid = || search.valid();
-        match cell {
-            Some(cell) => coarser_or_finer(&whole, &transform, stays, cell, &valid),
-            None => {
-                let valid = valid().ok_or(WarpError::Empty)?;
-                Ok((Resampler::around_valid(&whole, &transform, None, valid)?, Resampling::Bilinear))
-            }
-        }
-    })?;
+    let (resampler, method) =
+        searched(source, |_, search| coarser_or_finer(&whole, &transform, stays, cell, &|| search.valid()))?;
     let raster = match method {
         Resampling::Average => average(source, &resampler)?,
         Resampling::Kept | Resampling::Bilinear => {
@@ -121,18 +109,21 @@ pub fn reproject_windows(
     Ok(Some(Warped { raster: Cow::Owned(raster), method }))
 }
 
-/// How cells of a stated size are made.
+/// How cells are made: of the stated size, or of that of the samples.
 fn coarser_or_finer<'a>(
     source: &'a Raster,
     transform: &'a CrsTransform<'a>,
     stays: bool,
-    cell: f64,
+    cell: Option<f64>,
     valid: &dyn Fn() -> Option<Rect>,
 ) -> Result<(Resampler<'a>, Resampling), WarpError> {
-    let resampler = match stays {
-        true => Resampler::over(source, transform, cell)?,
-        false => Resampler::around_valid(source, transform, Some(cell), valid().ok_or(WarpError::Empty)?)?,
+    let resampler = match cell.filter(|_| stays) {
+        Some(cell) => Resampler::over(source, transform, cell)?,
+        None => Resampler::around_valid(source, transform, cell, valid().ok_or(WarpError::Empty)?)?,
     };
+    if cell.is_none() {
+        return Ok((resampler, Resampling::Bilinear));
+    }
     let center = source.grid_from_map(source.center());
     let at = |grid: DVec2| transform.forward(source.map_from_grid.transform_point2(grid));
     let is_coarser = resampler.cell() >= COARSER * CellSize::new(center, &at)?.longest;

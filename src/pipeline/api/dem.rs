@@ -6,10 +6,11 @@ use std::sync::Arc;
 use crate::dem::formats::DemFormat;
 use crate::dem::georef;
 use crate::dem::raster::{Raster, Samples};
+use crate::dem::read::DemOptions;
 use crate::geom::crs::Crs;
 use crate::limits::RASTER_SAMPLES;
 use crate::pipeline::api::error::Error;
-use crate::pipeline::dem::{self, DemOptions};
+use crate::pipeline::dem;
 use crate::pipeline::{files, raster_file};
 
 /// An elevation model as read: a raster of heights and where it lies.

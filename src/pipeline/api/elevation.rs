@@ -6,12 +6,12 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
+use crate::dem::read::DemOptions;
 use crate::geom::crs::Crs;
 use crate::pipeline::api::dem::Dem;
 use crate::pipeline::api::error::Error;
 use crate::pipeline::api::terrain::Terrain;
 use crate::pipeline::dataset::{Dataset, DatasetOptions, QueryError, transform};
-use crate::pipeline::dem::DemOptions;
 use crate::pipeline::positions::InputLine;
 use crate::pipeline::profile::GroundProfile;
 use crate::pipeline::sight::{SightQuery, SightReport};

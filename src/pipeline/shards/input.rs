@@ -136,8 +136,8 @@ pub fn elevation_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
     let own = files::file_name(path);
     if is_vrt(&own) {
         // What it says wrong was an error of opening it.
-        let tiles = VrtTiles::read(&files::read(path)?).map(|vrt| vrt.files).unwrap_or_default();
-        tiles.iter().for_each(|tile| add(&path.with_file_name(tile)));
+        let tiles = VrtTiles::read(&files::read(path)?).map(|vrt| vrt.paths(path)).unwrap_or_default();
+        tiles.iter().for_each(|tile| add(tile));
     } else {
         add(path);
     }

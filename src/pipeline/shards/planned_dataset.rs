@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::dem::read::DemOptions;
 use crate::geom::crs::Crs;
 use crate::message::choice::Choice;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
-use crate::pipeline::dem::DemOptions;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::input::{PlanInput, elevation_files};
 use crate::pipeline::shards::plan_path::{relative, written};

@@ -177,7 +177,7 @@ mod tests {
     use crate::dem::read;
 
     fn read_grid(text: &str, crs: Option<Crs>) -> Raster {
-        let hints = read::DemHints { crs, ..read::DemHints::default() };
+        let hints = read::DemOptions { crs, ..read::DemOptions::default() }.into();
         read::read("a.asc", text.as_bytes(), &hints).expect("sound")
     }
 

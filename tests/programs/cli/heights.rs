@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::DVec2;
+use sandtable::dem::read::DemOptions;
 use sandtable::geom::crs::Crs;
 use sandtable::geom::geoid::Geoid;
 use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
-use sandtable::pipeline::dem::DemOptions;
 use sandtable::pipeline::windowed_elevation::GroundReach;
 use sandtable::terrain::query::{Interpolation, Surface, ground_height};
 use serde_json::Value;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 use image::{DynamicImage, ImageBuffer, ImageFormat};
-use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::read::{DemOptions, read};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::ColorRamp;
 use sandtable::mesh::check::check_with_area;
@@ -96,7 +96,8 @@ fn the_detail_of_every_triangle_is_under_control_by_one_tolerance() {
 fn read_gray(picture: DynamicImage, meters_per_value: f64) -> Vec<f32> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, ImageFormat::Png).expect("it can be written");
-    let hints = DemHints { height_scale: Some(meters_per_value), cell: Some(30.0), ..DemHints::default() };
+    let hints =
+        DemOptions { height_scale: Some(meters_per_value), cell: Some(30.0), ..DemOptions::default() }.into();
     let raster = read("map.png", file.get_ref(), &hints).expect("a height map");
     let lattice = Lattice::from_raster(&raster).expect("it holds ground");
     assert_eq!(lattice.cell(), DVec2::splat(30.0), "the horizontal scale");

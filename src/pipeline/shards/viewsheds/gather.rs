@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::dem::formats::DemFormat;
+use crate::dem::read::DemOptions;
 use crate::limits::RASTER_SAMPLES;
-use crate::pipeline::dem::{self, DemOptions};
+use crate::pipeline::dem;
 use crate::pipeline::raster_file;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::plan::ShardPlan;
