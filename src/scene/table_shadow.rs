@@ -79,13 +79,19 @@ impl TableShadow<'_> {
         let closing = (rise - SOFTNESS).max(1e-3);
         let last_m = (block.highest - self.table_z + step_m).max(0.0) / closing;
         let steps = ((last_m / step_m).ceil() as u32).min(MOST_STEPS);
-        let hidden = (1..=steps).map(|step| {
+        let (first_m, last_m) = block.way_over(place, toward);
+        let (first, last) = ((first_m / step_m).floor() as u32, (last_m / step_m).ceil() as u32);
+        let mut most = 0.0_f32;
+        for step in first.max(1)..=last.min(steps) {
             let way_m = step as f32 * step_m;
             let over = block.at(place + toward * way_m) - self.table_z - way_m * rise;
-            (over / (way_m * SOFTNESS + step_m) * 0.5 + 0.5).clamp(0.0, 1.0)
-        });
-        // Where there is no ground the height is NaN, which `max` passes over.
-        hidden.fold(0.0, f32::max)
+            // Where there is no ground the height is NaN, which `max` passes over.
+            most = most.max((over / (way_m * SOFTNESS + step_m) * 0.5 + 0.5).clamp(0.0, 1.0));
+            if most >= 1.0 {
+                break;
+            }
+        }
+        most
     }
 }
 
@@ -104,6 +110,25 @@ impl BlockHeights {
         let heights: Vec<f32> = (0..size.x * size.y).map(post).collect();
         let highest = heights.iter().copied().fold(f32::MIN, f32::max);
         Self { size, cell, heights, highest }
+    }
+
+    /// From how far and how far a ray from a place can be over the block, and a cell more on both sides; the second is less
+    /// than the first where it never is.
+    fn way_over(&self, place: Vec2, toward: Vec2) -> (f32, f32) {
+        let margin = self.cell;
+        let (low, high) = (-margin - place, self.size.as_vec2() * self.cell + margin - place);
+        let (mut first, mut last) = (0.0_f32, f32::MAX);
+        for axis in 0..2 {
+            let (low, high, toward) = (low[axis], high[axis], toward[axis]);
+            if toward == 0.0 {
+                // It stays beside the block, or over it.
+                last = if low <= 0.0 && high >= 0.0 { last } else { -1.0 };
+            } else {
+                let (one, other) = (low / toward, high / toward);
+                (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
+            }
+        }
+        (first, last)
     }
 
     /// The height of the nearest sample; NaN off the block.
@@ -156,6 +181,26 @@ mod tests {
         assert!(east(250) < 0.02 && west(250) == 0.0);
         assert!(east(80) > east(100) && east(100) > east(120), "{row:?}");
         assert!(west(10) > west(30), "the foot is darker");
+    }
+
+    #[test]
+    fn the_way_over_the_block_leaves_out_no_place_of_it() {
+        let ground =
+            Lattice::new(DVec2::ZERO, DVec2::new(20.0, 30.0), 21, vec![50.0; 21 * 31]).expect("sound");
+        let block = BlockHeights::new(&ground, 25.0);
+        for turn in 0..64 {
+            let (sin, cos) = (turn as f32 * std::f32::consts::TAU / 64.0).sin_cos();
+            let toward = Vec2::new(cos, sin);
+            for from in 0..200 {
+                let place = Vec2::new((from % 20) as f32 * 60.0 - 400.0, (from / 20) as f32 * 150.0 - 300.0);
+                let (first, last) = block.way_over(place, toward);
+                let is_over = |step: &u32| block.at(place + toward * *step as f32 * 7.0).is_finite();
+                let met: Vec<f32> = (0..300).filter(is_over).map(|step| step as f32 * 7.0).collect();
+                assert!(met.iter().all(|&way| first <= way && way <= last), "{place} {toward}");
+            }
+        }
+        let (first, last) = block.way_over(Vec2::new(-100.0, 50.0), Vec2::NEG_X);
+        assert!(last < first, "it leads away");
     }
 
     #[test]
