@@ -99,7 +99,7 @@ fn arena_bytes(_: impl Fn(u64) -> bool) -> u64 {
 
 /// The address space of this process in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct AddressSpace {
+pub struct AddressSpace {
     /// The most that it may have.
     most: u64,
     /// What it has.
@@ -108,9 +108,14 @@ struct AddressSpace {
 
 impl AddressSpace {
     /// `None` where it is not limited, or the system does not tell.
-    fn of_this_process() -> Option<Self> {
+    pub fn of_this_process() -> Option<Self> {
         let read = |file: &str| fs::read_to_string(format!("/proc/self/{file}")).ok();
         Self::parse(&read("limits")?, &read("status")?)
+    }
+
+    /// The most bytes that the process may have.
+    pub fn most(&self) -> u64 {
+        self.most
     }
 
     /// From the tables of limits and of the status of a process, as Linux writes them.

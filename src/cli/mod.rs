@@ -35,6 +35,8 @@ mod schema;
 mod serve;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod supervisor;
 mod threads;
 mod values;
 mod view;
@@ -70,7 +72,12 @@ pub struct BuiltInPrograms {
 ///
 /// Exit codes: 0 done, 1 the input is wrong, 2 usage.
 pub fn main(programs: BuiltInPrograms) -> ExitCode {
-    match run(&Arguments::parse(), programs) {
+    let arguments = Arguments::parse();
+    #[cfg(unix)]
+    if let Some(code) = supervisor::supervise() {
+        return code;
+    }
+    match run(&arguments, programs) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }

@@ -28,7 +28,7 @@ pub fn handle() {
 fn try_to_handle() -> io::Result<()> {
     // A file beyond the limit of `ulimit -f` is an error of writing, not the program's end.
     flag::register(SIGXFSZ, Arc::default())?;
-    let heeded: Vec<i32> = ENDING.into_iter().filter(|&signal| !is_ignored(signal)).collect();
+    let heeded = heeded();
     let is_second = Arc::new(AtomicBool::new(false));
     for &signal in &heeded {
         flag::register_conditional_default(signal, Arc::clone(&is_second))?;
@@ -43,6 +43,11 @@ fn try_to_handle() -> io::Result<()> {
     };
     thread::Builder::new().name("signals".into()).spawn(wait)?;
     Ok(())
+}
+
+/// The signals of those that end programs that this program was not started to ignore.
+pub fn heeded() -> Vec<i32> {
+    ENDING.into_iter().filter(|&signal| !is_ignored(signal)).collect()
 }
 
 /// Whether this program was started with `signal` ignored; where the system does not tell, it was not.

@@ -115,6 +115,24 @@ fn a_signal_that_the_parent_ignores_is_ignored() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn under_a_limit_of_memory_signals_reach_the_command() {
+    let limited = |scratch: &Scratch, arguments: &[&str]| {
+        let mut command = Command::new("sh");
+        command.args(["-c", "ulimit -v 4000000; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_sandtable")]);
+        command.args(arguments).current_dir(scratch.folder()).stdin(Stdio::null());
+        command
+    };
+    for (name, number) in [("INT", 2), ("TERM", 15)] {
+        let mut flight = LongFlight::begin_as(limited);
+        flight.signal(name);
+        assert_eq!(flight.ended_by(), Some(number), "a shell sees the signal {name}");
+        assert_eq!(flight.scratch.names(), ["flight.png"], "{name}");
+        assert!(flight.old_file_stands(), "{name}");
+    }
+}
+
+#[test]
 fn several_pictures_appear_together_or_not_at_all() {
     let scratch = Scratch::new();
     let scene = project("scenes/areas.toml");

@@ -76,6 +76,49 @@ fn under_any_limit_a_command_succeeds_or_says_how_much_it_needs() {
     assert_eq!(scratch.names(), ["out.png"]);
 }
 
+/// A scene of so many roads over the demonstration's elevation, as `many.toml`.
+fn write_many_roads(scratch: &Scratch, count: u32) {
+    let dem = crate::cli::project("assets/jacksboro/dem.tif");
+    std::fs::copy(dem, scratch.at("dem.tif")).expect("a copy");
+    let road = |index: u32| {
+        let corner = |step: u32| {
+            let (east, north) = (index % 80, index / 80);
+            let turn = f64::from(index * 7 + step * 5) % 3.0;
+            let x = -84.40 + 0.0038 * f64::from(east) + 0.0004 * f64::from(step);
+            format!("[{x:.6},{:.6}]", 36.17 + 0.0034 * f64::from(north) + 0.0004 * turn)
+        };
+        let corners = (0..8).map(corner).collect::<Vec<_>>().join(",");
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"name\":\"{index}\"}},\"geometry\":{{\"type\":\"LineString\",\
+             \"coordinates\":[{corners}]}}}}"
+        )
+    };
+    let roads = (0..count).map(road).collect::<Vec<_>>().join(",");
+    scratch.write("roads.geojson", format!("{{\"type\":\"FeatureCollection\",\"features\":[{roads}]}}"));
+    let scene = "[terrain]\ndem = \"dem.tif\"\n[[road]]\nfile = \"roads.geojson\"\nwidth = 4\n";
+    scratch.write("many.toml", scene);
+}
+
+#[test]
+fn a_scene_of_many_small_lists_is_never_ended_by_a_signal() {
+    let scratch = Scratch::new();
+    write_many_roads(&scratch, 6000);
+    let mut ended_early = 0;
+    for command in
+        [&["check", "many.toml"][..], &["render", "many.toml", "--size", "320x180", "-o", "out.png"]]
+    {
+        for megabytes in [110, 120, 130, 140, 150, 160, 180, 220, 260, 500] {
+            let (code, said) = run_within(megabytes, &scratch, command);
+            assert!(matches!(code, Some(0 | 1)), "{megabytes} MB: {command:?}: {code:?}: {said}");
+            assert_eq!(code == Some(1), said.contains("error: "), "{megabytes} MB: {said}");
+            assert!(megabytes < 500 || code == Some(0), "{said}");
+            ended_early += usize::from(said.contains("ended because it needs more than the"));
+        }
+    }
+    assert!(ended_early > 0, "the lists were foreseen");
+    assert!(scratch.names().iter().all(|name| !name.ends_with(".part")), "{:?}", scratch.names());
+}
+
 #[test]
 fn few_threads_under_a_limit_draw_the_same_picture() {
     let scratch = Scratch::new();
