@@ -3,12 +3,14 @@
 use glam::{UVec2, Vec2};
 
 use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon, polyline};
+use crate::annotate::drawing::Drawing;
 use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, INK, Sheet};
+use crate::annotate::sheet::{FRAME, INK};
+use crate::annotate::symbol_drawing::symbol_marks;
 use crate::annotate::text::TextStyle;
 use crate::draw::color::Srgba;
 use crate::draw::print_pattern::PrintPattern;
+use crate::symbology::symbol::MilitarySymbol;
 
 /// The size of a swatch, the gap to its text, and the distance of baselines, in design pixels.
 const SWATCH: Vec2 = Vec2::new(34.0, 16.0);
@@ -16,6 +18,8 @@ const GAP: f32 = 11.0;
 const LEAD: f32 = 24.0;
 /// The widest name, in ems: longer ones are cut.
 const WIDEST_EM: f32 = 15.0;
+/// The height of a symbol in design pixels: as much as fits between the lines.
+const SYMBOL_PX: f32 = 21.0;
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);
 /// More classes are not listed: a legend that is longer than what it explains is not read.
 const MOST: usize = 16;
@@ -52,19 +56,8 @@ pub enum LegendSwatch {
     Pattern(PrintPattern),
     /// What stands on the ground, as a block of its mean color.
     Block(Srgba),
-    /// Paths, in order, such as those of a symbol.
-    Paths(Vec<SwatchPath>),
-}
-
-/// A path of a swatch.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SwatchPath {
-    /// Points in the swatch, X right and Y down: -1 to 1 spans its height, from its middle.
-    pub points: Vec<Vec2>,
-    /// The color.
-    pub color: Srgba,
-    /// The width of the line in design pixels; 0 fills the path.
-    pub width: f32,
+    /// A military symbol.
+    Symbol(Box<MilitarySymbol>),
 }
 
 /// The legend with its upper left corner at the origin; `None` without classes.
@@ -87,7 +80,7 @@ pub(in crate::annotate) fn compose(entries: &[LegendEntry], composer: &mut Compo
         baseline = (baseline + lead).round();
         let middle = baseline - style.cap_px() * 0.5;
         let area = PixelBox::around(Vec2::new(padding + swatch.x * 0.5, middle).round(), swatch * 0.5);
-        draw_swatch(&entry.swatch, area, &sheet, &mut drawing);
+        draw_swatch(&entry.swatch, area, composer, &mut drawing);
         let x = padding + swatch.x + sheet.px(GAP);
         drawing.record_text(&entry.name, line.missing, line.shortened);
         drawing.write(&line, Vec2::new(x.round(), baseline), INK);
@@ -97,7 +90,8 @@ pub(in crate::annotate) fn compose(entries: &[LegendEntry], composer: &mut Compo
     Some(drawing.on_panel(corner, &sheet))
 }
 
-fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, sheet: &Sheet, drawing: &mut Drawing) {
+fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, composer: &mut Composer, drawing: &mut Drawing) {
+    let sheet = composer.sheet;
     match swatch {
         LegendSwatch::Line { fill, casing, width } => {
             let (middle, width) = (area.center().y, sheet.px(*width).max(1.0));
@@ -134,19 +128,12 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, sheet: &Sheet, drawing: &m
             drawing.rect(block, *fill);
             drawing.frame(block, sheet.hairline().round(), FRAME);
         }
-        LegendSwatch::Paths(paths) => {
-            for path in paths {
-                let points: Vec<Vec2> =
-                    path.points.iter().map(|at| area.center() + *at * area.size().y * 0.5).collect();
-                match path.width > 0.0 {
-                    true => polyline(&points)
-                        .into_iter()
-                        .for_each(|line| drawing.stroke(&line, sheet.px(path.width).max(0.8), path.color)),
-                    false => {
-                        polygon(&points).into_iter().for_each(|area| drawing.fill(area, path.color));
-                    }
-                }
-            }
+        LegendSwatch::Symbol(symbol) => {
+            let (bounds, most) = (symbol.bounds, sheet.px(SYMBOL_PX));
+            let size = bounds.max - bounds.min;
+            let unit_px = (area.size().x / size.x).min(most / size.y);
+            let middle = ((bounds.min + bounds.max) * 0.5 - Vec2::splat(100.0)) * unit_px;
+            drawing.append(symbol_marks(symbol, unit_px, None, composer).moved(area.center() - middle));
         }
     }
 }
@@ -154,6 +141,7 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, sheet: &Sheet, drawing: &m
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::symbology::code::SymbolCode;
 
     fn entry(name: &str) -> LegendEntry {
         let fill = Srgba::opaque(200, 120, 40);
@@ -176,12 +164,13 @@ mod tests {
     #[test]
     fn the_panel_holds_every_kind_of_swatch_and_cuts_long_names() {
         let fill = Srgba::opaque(90, 140, 90);
-        let path = SwatchPath { points: vec![Vec2::NEG_ONE, Vec2::ONE, Vec2::NEG_X], color: INK, width: 0.0 };
+        let code = SymbolCode::parse("10031000151211000000").expect("a code");
+        let symbol = MilitarySymbol::new(&code).expect("a frame");
         let entries = [
             entry(&"Main road ".repeat(20)),
             LegendEntry { name: "Forest".into(), swatch: LegendSwatch::Area { fill, edge: INK } },
             LegendEntry { name: "Tower".into(), swatch: LegendSwatch::Block(fill) },
-            LegendEntry { name: "Symbol".into(), swatch: LegendSwatch::Paths(vec![path]) },
+            LegendEntry { name: "Symbol".into(), swatch: LegendSwatch::Symbol(Box::new(symbol)) },
         ];
         let drawing = compose(&entries, &mut Composer::new(1920, 1080)).expect("classes");
         let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));

@@ -12,6 +12,7 @@ use crate::annotate::sheet::{HALO, INK};
 use crate::annotate::text::{TextStyle, TypesetLine};
 use crate::draw::color::Srgba;
 use crate::symbology::drawing::{PathStep, SymbolMark, SymbolPen};
+use crate::symbology::symbol::MilitarySymbol;
 use crate::symbology::texts::{SymbolNote, TextPlace};
 
 /// Outlines of strokes are approximated to this fraction of a pixel.
@@ -48,28 +49,7 @@ impl SymbolBlock {
         let unit_px = symbol.height.pixels(&composer.sheet) / 100.0;
         let pixels = |at: Vec2| (at - Vec2::splat(100.0)) * unit_px;
         let halo = composer.sheet.px(HALO_REACH).max(1.0);
-        let mut drawing = Drawing::default();
-        let shapes: Vec<DrawnShape> =
-            symbol.symbol.marks.iter().filter_map(|mark| DrawnShape::new(mark, unit_px)).collect();
-        for shape in &shapes {
-            shape.draw_halo(halo, &mut drawing);
-        }
-        let mut shapes = shapes.into_iter();
-        for mark in &symbol.symbol.marks {
-            match mark {
-                SymbolMark::Shape { .. } => {
-                    if let Some(shape) = shapes.next() {
-                        shape.draw(&mut drawing);
-                    }
-                }
-                SymbolMark::Text { text, center, size } => {
-                    let style = TextStyle::new(size * unit_px, TextStyle::BOLD);
-                    let line = composer.line(text, style);
-                    let at = pixels(*center) + Vec2::new(-line.advance * 0.5, style.cap_px() * 0.5);
-                    drawing.write(&line, at, Srgba::opaque(0, 0, 0));
-                }
-            }
-        }
+        let mut drawing = symbol_marks(&symbol.symbol, unit_px, Some(halo), composer);
         let area = PixelBox { min: pixels(symbol.symbol.bounds.min), max: pixels(symbol.symbol.bounds.max) };
         let around = area.grown(halo + 2.0 * unit_px);
         let texts = draw_texts(symbol, texts, unit_px, composer);
@@ -77,6 +57,40 @@ impl SymbolBlock {
         drawing.append(texts);
         Self { drawing, bounds, symbol: around, anchor: pixels(symbol.symbol.anchor), unit_px }
     }
+}
+
+/// A symbol without the text round it, its middle at the origin, `unit_px` pixels a unit of its box; on a halo that reaches so
+/// many pixels, if any.
+pub(in crate::annotate) fn symbol_marks(
+    symbol: &MilitarySymbol,
+    unit_px: f32,
+    halo: Option<f32>,
+    composer: &mut Composer,
+) -> Drawing {
+    let mut drawing = Drawing::default();
+    let shapes: Vec<DrawnShape> =
+        symbol.marks.iter().filter_map(|mark| DrawnShape::new(mark, unit_px)).collect();
+    for (shape, reach) in shapes.iter().zip(halo.into_iter().cycle()) {
+        shape.draw_halo(reach, &mut drawing);
+    }
+    let mut shapes = shapes.into_iter();
+    for mark in &symbol.marks {
+        match mark {
+            SymbolMark::Shape { .. } => {
+                if let Some(shape) = shapes.next() {
+                    shape.draw(&mut drawing);
+                }
+            }
+            SymbolMark::Text { text, center, size } => {
+                let style = TextStyle::new(size * unit_px, TextStyle::BOLD);
+                let line = composer.line(text, style);
+                let at = (*center - Vec2::splat(100.0)) * unit_px;
+                let at = at + Vec2::new(-line.advance * 0.5, style.cap_px() * 0.5);
+                drawing.write(&line, at, Srgba::opaque(0, 0, 0));
+            }
+        }
+    }
+    drawing
 }
 
 /// The lines of text round the frame.

@@ -388,7 +388,7 @@ table! {
         legend: bool = key::switch(), default true;
         /// What stands on the picture, and what round it. The picture of a layout with a margin is as much smaller.
         layout: SheetLayout = key::word::<SheetLayout>(), default "compact";
-        /// Whether there is a legend of the roads, waters, areas, buildings and models that the picture shows.
+        /// Whether there is a legend of the roads, waters, areas, buildings, models, graphics and military symbols that the picture shows.
         classes: Option<bool> = key::switch(), otherwise "in layouts with a margin";
         /// The classification, above and below all else.
         classification: Option<String> = key::filled_text(), otherwise "none";

@@ -14,6 +14,7 @@ use crate::pipeline::graphic_texts::{GraphicTexts, graphic_texts};
 use crate::pipeline::grid::{grid_over, picture_grid};
 use crate::pipeline::legend::legend_entries;
 use crate::pipeline::legend_overlay::overlay_entries;
+use crate::pipeline::legend_symbols::symbol_entries;
 use crate::pipeline::line_labels::{is_seen, line_label};
 use crate::pipeline::margin::margin_notes;
 use crate::pipeline::military::picture_symbols;
@@ -64,8 +65,8 @@ pub fn annotations(
         scale_bar: if shows(furniture.scale_bar) { scale_bar(camera, picture) } else { None },
         legend: (shows(furniture.legend) && !is_all_imagery(scene)).then(|| legend(scene)),
         classes: if has_classes {
-            let overlay = overlay_entries(scene, picture);
-            legend_entries(scene, picture).into_iter().chain(overlay).collect()
+            let over_ground = [overlay_entries(scene, picture), symbol_entries(scene, camera, picture)];
+            legend_entries(scene, picture).into_iter().chain(over_ground.into_iter().flatten()).collect()
         } else {
             Vec::new()
         },

@@ -31,6 +31,7 @@ pub mod heights_above;
 pub mod labels;
 pub mod legend;
 mod legend_overlay;
+mod legend_symbols;
 mod line_labels;
 pub mod lint;
 pub mod lod;

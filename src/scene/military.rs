@@ -22,6 +22,8 @@ use crate::terrain::lattice::Lattice;
 /// A symbol at its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSymbol {
+    /// Its code.
+    pub code: SymbolCode,
     /// The drawing.
     pub symbol: MilitarySymbol,
     /// The lines of text round it.
@@ -92,7 +94,7 @@ fn symbol_at(
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
     let text = |field| stated_text(table, field).map(|text| text.as_str());
-    let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &table.sidc), ground };
+    let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &table.sidc), ground };
     Ok(found.finished(table, &Attributes::default(), findings))
 }
 
@@ -119,10 +121,12 @@ fn read_features(
     let first = symbols.len();
     let mut left_out = LeftOutSymbols::default();
     for attributes in features {
-        let code = attributes.evaluated(&sidc).and_then(|code| written(&code)).unwrap_or_default();
-        let symbol = SymbolCode::parse(&code).map_err(|error| error.to_string());
-        let symbol = symbol.and_then(|code| MilitarySymbol::new(&code).ok_or_else(|| frameless(&code)));
-        let Some(symbol) = symbol.map_err(|error| left_out.no_code(error)).ok() else { continue };
+        let stated = attributes.evaluated(&sidc).and_then(|code| written(&code)).unwrap_or_default();
+        let code = SymbolCode::parse(&stated).map_err(|error| error.to_string());
+        let symbol = code.and_then(|code| {
+            MilitarySymbol::new(&code).map(|symbol| (code, symbol)).ok_or_else(|| frameless(&code))
+        });
+        let Some((code, symbol)) = symbol.map_err(|error| left_out.no_code(error)).ok() else { continue };
         let Some(ground) = on_ground(&attributes, &crs, frame, lattice) else {
             left_out.off += 1;
             continue;
@@ -132,7 +136,7 @@ fn read_features(
             .filter_map(|(field, text)| Some((*field, written(&attributes.evaluated(text)?)?)))
             .collect();
         let text = |field| texts.iter().find(|text| text.0 == field).map(|text| text.1.as_str());
-        let found = FoundSymbol { symbol, texts: placed(text), name: name(text, &code), ground };
+        let found = FoundSymbol { code, symbol, texts: placed(text), name: name(text, &stated), ground };
         symbols.push(found.finished(table, &attributes, findings));
         if symbols.len() > SCENE_SYMBOLS.count() {
             break;
@@ -175,6 +179,7 @@ fn name<'a>(text: impl Fn(SymbolText) -> Option<&'a str>, code: &str) -> String 
 
 /// A symbol before the keys that any feature may compute.
 struct FoundSymbol {
+    code: SymbolCode,
     symbol: MilitarySymbol,
     texts: Vec<SymbolNote>,
     name: String,
@@ -188,7 +193,7 @@ impl FoundSymbol {
         attributes: &Attributes,
         findings: &mut SceneFindings,
     ) -> SceneSymbol {
-        let Self { symbol, texts, name, ground } = self;
+        let Self { code, symbol, texts, name, ground } = self;
         for note in &symbol.notes {
             let message = format!("symbol {name}: {note}");
             if !findings.state(&message) {
@@ -197,6 +202,7 @@ impl FoundSymbol {
         }
         let direction = attributes.value(table.direction.as_deref());
         SceneSymbol {
+            code,
             symbol,
             texts,
             name,

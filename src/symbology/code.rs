@@ -167,6 +167,19 @@ impl SymbolCode {
         )
     }
 
+    /// The code of the kind alone, without what tells one of them from another.
+    pub fn kind(&self) -> Self {
+        Self {
+            context: SymbolContext::Reality,
+            status: SymbolStatus::Present,
+            role: SymbolRole::None,
+            amplifier: SymbolAmplifier::None,
+            modifiers: [0; 2],
+            unknown_function: None,
+            ..*self
+        }
+    }
+
     /// Whether it is a joker or faker: a friend who plays a suspect or an enemy in an exercise.
     pub fn is_joker_or_faker(&self) -> bool {
         let enemy = matches!(self.identity, SymbolIdentity::Suspect | SymbolIdentity::Hostile);
