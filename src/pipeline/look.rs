@@ -1,10 +1,11 @@
 //! The look of a finished picture for print in black and for red light.
 //!
-//! *Print*: the relief as light gray, classes as black patterns, roads white between black edges, water and buildings
-//! with black outlines: a photocopier keeps black and white and loses what lies between.
+//! *Print*: the relief as light gray with black contours, classes as black patterns, roads white between black edges, water
+//! and buildings with black outlines: a photocopier keeps black and white and loses what lies between.
 //!
 //! *Night*: light of one color, by luminance, as the eye adapted to the dark keeps its sight in red light.
 
+use glam::Vec2;
 use rayon::prelude::*;
 
 use crate::description::words::StylePreset;
@@ -16,6 +17,7 @@ use crate::pipeline::legend::feature_inks;
 use crate::pipeline::print_ink::PrintInk;
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
+use crate::view::camera::Camera;
 
 /// The darkest gray of the relief, 0..=1: lighter than what a copier turns black.
 const DARKEST: f32 = 0.66;
@@ -26,10 +28,10 @@ const WALL: u8 = 225;
 const BRIGHTEST: f32 = 0.3;
 const BRIGHTEST_INK: f32 = 0.9;
 
-/// Gives a picture the look of the scene's preset; most have none of their own.
-pub fn apply_look(scene: &SceneModel, picture: &mut Rendering) {
+/// Gives a picture, seen through `camera`, the look of the scene's preset; most have none of their own.
+pub fn apply_look(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
     match scene.preset {
-        Some(StylePreset::Print) => print(scene, picture),
+        Some(StylePreset::Print) => print(scene, camera, picture),
         Some(StylePreset::Night) => {
             let pixels = picture.pixels.data_mut().par_iter_mut().zip(&picture.features);
             pixels.for_each(|(pixel, feature)| {
@@ -52,7 +54,8 @@ fn red_light(color: Srgba) -> Srgba {
     Srgba([srgb_from_linear(light * BRIGHTEST), 0, 0, color.0[3]])
 }
 
-fn print(scene: &SceneModel, picture: &mut Rendering) {
+fn print(scene: &SceneModel, camera: &Camera, picture: &mut Rendering) {
+    let contours = &contour_strengths(scene, camera, picture);
     let inks = feature_inks(scene);
     let (width, height) = (picture.pixels.width(), picture.pixels.height());
     let unit = PrintPattern::unit_px(height);
@@ -72,7 +75,7 @@ fn print(scene: &SceneModel, picture: &mut Rendering) {
                     return match feature {
                         FeatureId::NONE => Srgba::WHITE,
                         FeatureId::PLINTH => Srgba::opaque(WALL, WALL, WALL),
-                        _ => gray,
+                        _ => inked(gray, contours[row as usize * width as usize + column as usize]),
                     };
                 };
                 let beside = [
@@ -89,6 +92,38 @@ fn print(scene: &SceneModel, picture: &mut Rendering) {
     if let Some(pixels) = Pixels::from_data(width, height, data) {
         picture.pixels = pixels;
     }
+}
+
+/// How much of each pixel of the bare ground a contour covers, 0 to 1.
+fn contour_strengths(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Vec<f32> {
+    let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
+    let Some(contours) = scene.contours else { return vec![0.0; width * height] };
+    let elevation = |index: usize| {
+        let center = Vec2::new((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
+        let depth_m = picture.depth_m[index];
+        let is_ground = picture.features[index] == FeatureId::GROUND && depth_m.is_finite();
+        let at = camera.ray_origin(center) + camera.ray_through(center) * depth_m;
+        if is_ground { scene.scale.elevation_m(f64::from(at.z)) as f32 } else { f32::NAN }
+    };
+    let elevations: Vec<f32> = (0..width * height).into_par_iter().map(elevation).collect();
+    let strength = |index: usize| {
+        let own = elevations[index];
+        let is_last = ((index + 1).is_multiple_of(width), index + width >= elevations.len());
+        let beside = [
+            if is_last.0 { own } else { elevations[index + 1] },
+            if is_last.1 { own } else { elevations[index + width] },
+        ];
+        // NaN beside, where the ground ends, changes nothing.
+        let change = beside.iter().fold(0.0, |most: f32, beside| most.max((beside - own).abs()));
+        if own.is_nan() { 0.0 } else { contours.strength(own, change) }
+    };
+    (0..width * height).into_par_iter().map(strength).collect()
+}
+
+/// A gray with so much of it covered with black.
+fn inked(gray: Srgba, share: f32) -> Srgba {
+    let channel = |channel: u8| (f32::from(channel) * (1.0 - share) + 0.5) as u8;
+    Srgba::opaque(channel(gray.0[0]), channel(gray.0[1]), channel(gray.0[2]))
 }
 
 const BLACK: Srgba = Srgba::opaque(0, 0, 0);

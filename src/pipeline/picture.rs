@@ -101,7 +101,7 @@ pub fn draw_view(
     let drawn = build_draw_list(scene, &camera, progress);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend)?;
-    apply_look(scene, &mut picture);
+    apply_look(scene, &camera, &mut picture);
     Ok(DrawnView { camera, picture, drawn, frame })
 }
 
