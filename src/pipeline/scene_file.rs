@@ -16,6 +16,7 @@ use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::{build, build_ground};
 use crate::scene::flights::{SceneFlight, flight};
 use crate::scene::picture::camera;
+use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
@@ -103,9 +104,7 @@ pub fn open_scene(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
-    progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed, None)?;
-    Ok(build(&document, &assets, progress)?)
+    open_scene_for(path, allowed, None, ElevationNeed::AllThatFit, progress)
 }
 
 /// [`open_scene`] with the findings about the scene, in the order of output.
@@ -119,7 +118,7 @@ pub fn open_linted(
 ) -> Result<(SceneModel, Vec<Finding>), OpenSceneError> {
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed, None)?;
-    let scene = build(&document, &assets, progress)?;
+    let scene = build(&document, &assets, ElevationNeed::AllThatFit, progress)?;
     progress("checking");
     let findings = lint(&document, &assets, &scene);
     Ok((scene, findings))
@@ -138,26 +137,29 @@ pub fn build_scene_text(
     let assets = Assets::new(path, allowed)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
     let document = parse_in_phase(&path.to_string_lossy(), text.as_bytes(), &load, None)?;
-    Ok(build(&document, &assets, progress)?)
+    Ok(build(&document, &assets, ElevationNeed::AllThatFit, progress)?)
 }
 
-/// [`open_scene`] for the phase called `phase`.
+/// [`open_scene`] for the phase called `phase`, where one is named, with as many samples of its elevation as are needed.
 ///
 /// # Errors
 /// See [`OpenSceneError`].
-pub fn open_scene_in_phase(
+pub fn open_scene_for(
     path: &Path,
     allowed: &[PathBuf],
-    phase: &str,
+    phase: Option<&str>,
+    need: ElevationNeed<'_>,
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed, Some(phase))?;
-    if document.phases.iter().any(|declared| declared.name.as_str() == phase) {
-        Ok(build(&document, &assets, progress)?)
-    } else {
-        let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
-        Err(OpenSceneError::NoPhase { name: phase.to_owned(), names })
+    let (document, assets) = open_document(path, allowed, phase)?;
+    let is_declared = |name: &str| document.phases.iter().any(|phase| phase.name.as_str() == name);
+    match phase.filter(|name| !is_declared(name)) {
+        None => Ok(build(&document, &assets, need, progress)?),
+        Some(name) => {
+            let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
+            Err(OpenSceneError::NoPhase { name: name.to_owned(), names })
+        }
     }
 }
 
@@ -178,7 +180,7 @@ pub fn open_scene_with_flight(
         let names = document.flights.iter().map(|flight| flight.name.to_string()).collect();
         return Err(OpenSceneError::NoFlight { name: name.map(str::to_owned), names });
     };
-    let mut scene = build(&document, &assets, progress)?;
+    let mut scene = build(&document, &assets, ElevationNeed::AllThatFit, progress)?;
     // A scale bar for the distance of each frame's ground would jump from frame to frame.
     scene.furniture.scale_bar = false;
     let flight = flight(&document, table, &assets, &scene)?;
@@ -233,7 +235,7 @@ pub fn open_scene_exaggerated(
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed, None)?;
     document.terrain.vertical_exaggeration = factor;
-    Ok(build(&document, &assets, progress)?)
+    Ok(build(&document, &assets, ElevationNeed::AllThatFit, progress)?)
 }
 
 fn open_document(
