@@ -20,7 +20,7 @@ fn document(service: &Service) -> Value {
         .iter()
         .map(|address| (address.path.replace(DATASET.0, DATASET.1), path_item(address, service)))
         .collect();
-    json!({
+    let mut document = json!({
         "openapi": "3.1.0",
         "info": {
             "title": "sandtable",
@@ -36,7 +36,11 @@ fn document(service: &Service) -> Value {
                 "error": {"type": "string", "description": "what was found, and what to do"},
             },
         }}},
-    })
+    });
+    if !service.prefix.as_str().is_empty() {
+        document["servers"] = json!([{"url": service.prefix.as_str()}]);
+    }
+    document
 }
 
 fn path_item(address: &ApiAddress, service: &Service) -> Value {
