@@ -13,7 +13,7 @@ use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::lint::cause_code::coded;
 use crate::pipeline::lint::lint;
 use crate::scene::assets::{AssetError, Assets};
-use crate::scene::build::{build, build_ground};
+use crate::scene::build::{build, build_ground, build_with};
 use crate::scene::flights::{SceneFlight, flight};
 use crate::scene::picture::camera;
 use crate::scene::planned_pictures::ElevationNeed;
@@ -118,7 +118,7 @@ pub fn open_linted(
 ) -> Result<(SceneModel, Vec<Finding>), OpenSceneError> {
     progress("reading the scene file");
     let (document, assets) = open_document(path, allowed, None)?;
-    let scene = build(&document, &assets, ElevationNeed::AllThatFit, progress)?;
+    let scene = build(&document, &assets, progress)?;
     progress("checking");
     let findings = lint(&document, &assets, &scene);
     Ok((scene, findings))
@@ -137,7 +137,7 @@ pub fn build_scene_text(
     let assets = Assets::new(path, allowed)?;
     let load = |name: &str| assets.read(name).map_err(Into::into);
     let document = parse_in_phase(&path.to_string_lossy(), text.as_bytes(), &load, None)?;
-    Ok(build(&document, &assets, ElevationNeed::AllThatFit, progress)?)
+    Ok(build(&document, &assets, progress)?)
 }
 
 /// [`open_scene`] for the phase called `phase`, where one is named, with as many samples of its elevation as are needed.
@@ -155,7 +155,7 @@ pub fn open_scene_for(
     let (document, assets) = open_document(path, allowed, phase)?;
     let is_declared = |name: &str| document.phases.iter().any(|phase| phase.name.as_str() == name);
     match phase.filter(|name| !is_declared(name)) {
-        None => Ok(build(&document, &assets, need, progress)?),
+        None => Ok(build_with(&document, &assets, need, progress)?),
         Some(name) => {
             let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
             Err(OpenSceneError::NoPhase { name: name.to_owned(), names })
@@ -180,7 +180,7 @@ pub fn open_scene_with_flight(
         let names = document.flights.iter().map(|flight| flight.name.to_string()).collect();
         return Err(OpenSceneError::NoFlight { name: name.map(str::to_owned), names });
     };
-    let mut scene = build(&document, &assets, ElevationNeed::AllThatFit, progress)?;
+    let mut scene = build(&document, &assets, progress)?;
     // A scale bar for the distance of each frame's ground would jump from frame to frame.
     scene.furniture.scale_bar = false;
     let flight = flight(&document, table, &assets, &scene)?;
@@ -235,7 +235,7 @@ pub fn open_scene_exaggerated(
     progress("reading the scene file");
     let (mut document, assets) = open_document(path, allowed, None)?;
     document.terrain.vertical_exaggeration = factor;
-    Ok(build(&document, &assets, ElevationNeed::AllThatFit, progress)?)
+    Ok(build(&document, &assets, progress)?)
 }
 
 fn open_document(

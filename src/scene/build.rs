@@ -69,12 +69,24 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
     Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
 }
 
-/// Builds the scene that `document` describes, with as many samples of its elevation as are needed. `progress` is called with
-/// the name of each pass as it begins.
+/// Builds the scene that `document` describes, with all samples of its elevation that fit into the memory. `progress` is called
+/// with the name of each pass as it begins.
 ///
 /// # Errors
 /// The first file that cannot be read or table that does not fit, at its place in the scene file.
 pub fn build(
+    document: &Document,
+    assets: &Assets,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, Diagnostic> {
+    build_with(document, assets, ElevationNeed::AllThatFit, progress)
+}
+
+/// [`build`] with as many samples of the elevation as are needed.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with(
     document: &Document,
     assets: &Assets,
     need: ElevationNeed<'_>,

@@ -19,7 +19,6 @@ use crate::pipeline::files::{self, ReadFileError, SystemError, WriteFileError};
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::build::build;
-use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::{SceneFeature, SceneModel};
 use crate::terrain::lattice::Lattice;
 
@@ -130,7 +129,7 @@ impl SceneSource {
         assets: Assets,
         progress: &dyn Fn(&'static str),
     ) -> Result<SceneModel, OpenSceneError> {
-        Ok(build(&self.decode(&self.text, &assets)?, &assets, ElevationNeed::AllThatFit, progress)?)
+        Ok(build(&self.decode(&self.text, &assets)?, &assets, progress)?)
     }
 
     fn decode(&self, text: &str, assets: &Assets) -> Result<Document, Diagnostics> {
