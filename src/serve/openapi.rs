@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::serve::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
 use crate::serve::parameters::BODY_TYPES;
 use crate::serve::query::Service;
+use crate::serve::ready;
 
 /// The part of a path that is a parameter, in the table and in the document.
 const DATASET: (&str, &str) = ("DATASET", "{dataset}");
@@ -129,6 +130,9 @@ fn responses(address: &ApiAddress) -> Value {
         responses["400"] = refusal("the request is wrong");
         responses["404"] = refusal("there is no such dataset");
         responses["503"] = refusal("the client asks for too much at once, or the answer took too long");
+    }
+    if address.path == ready::PATH {
+        responses["503"] = refusal("the datasets are being prepared, or the service ends");
     }
     responses
 }

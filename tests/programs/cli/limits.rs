@@ -199,6 +199,10 @@ fn pictures_reduce_elevation_that_is_too_large_and_heights_do_not() {
     assert!(!picture(label, "160x90", &few).0, "heights that are printed are those of samples");
     let near = "[[camera]]\nname = \"near\"\neye = [509000, 4008000]\nlook_at = [510000, 4009000]\n";
     assert!(!picture(near, "160x90", &few).0, "a camera near the ground sees samples");
+    let high = near.replace("look_at", "eye_elevation = 200000\nlook_at");
+    assert!(picture(&high, "160x90", &few).0, "from 200 km above, no ground is near");
+    let part = "[[camera]]\nname = \"part\"\nshows = [[508000, 4008000], [509000, 4009000]]\n";
+    assert!(!picture(part, "160x90", &few).0, "a kilometer of it fills the picture");
     let plan = "[[camera]]\nname = \"plan\"\nprojection = \"plan\"\nscale = 900000\n";
     assert!(picture(plan, "160x90", &few).0, "a pixel of a plan at 1 : 900,000 is 238 m wide");
     assert!(picture(&format!("{plan}{near}"), "160x90", &few).0);
