@@ -16,8 +16,9 @@ use crate::dem::read::DemOptions;
 use crate::dem::warp::WarpError;
 use crate::dem::warp::reproject::Resampling;
 use crate::dem::windows::MOST_KEPT_SAMPLES;
-use crate::dem::write::WrittenDem;
+use crate::dem::write::{WrittenDem, WrittenWindows};
 use crate::geom::crs::Crs;
+use crate::limits::RASTER_SAMPLES;
 use crate::message::chain::error_text;
 use crate::pipeline::convert::{
     ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
@@ -78,11 +79,47 @@ pub fn run(arguments: &ConvertArguments) -> Result<(), CliError> {
         cell: arguments.cell,
         voids: if arguments.fill_voids { VoidHandling::Fill } else { VoidHandling::Keep },
     };
-    let converted = converted(inputs, &dem_options, &options, &steps)?;
-    steps.begin("writing");
-    let written = raster_file::write(&converted.raster, format, out, inputs)?;
+    let (converted, written, valid) = match copied(inputs, &dem_options, &options, (format, out), &steps)? {
+        Some(copied) => copied,
+        None => {
+            let converted = converted(inputs, &dem_options, &options, &steps)?;
+            steps.begin("writing");
+            let written = raster_file::write(&converted.raster, format, out, inputs)?;
+            let valid = converted.raster.samples.valid().count() as u64;
+            (converted, written, valid)
+        }
+    };
     steps.finish();
-    print_lines(&summary(out, format, &converted, &written))
+    print_lines(&summary(out, format, &converted, &written, valid))
+}
+
+/// Writes a large file of which all samples stay while it is read, where the format allows it: the elevation without its
+/// samples, what was written, and how many samples hold data. `None` where it is to be read whole.
+fn copied(
+    inputs: &[PathBuf],
+    dem_options: &DemOptions,
+    options: &ConvertOptions,
+    (format, out): (&DemFormat, &Path),
+    steps: &StepTimer,
+) -> Result<Option<(Converted, WrittenDem, u64)>, CliError> {
+    // What tiles share is known where all of them are joined.
+    let [input] = inputs else { return Ok(None) };
+    if !options.keeps_samples() {
+        return Ok(None);
+    }
+    let Some(mut windows) = dem::open_large(input, dem_options, MOST_KEPT_SAMPLES) else { return Ok(None) };
+    let samples = windows.size();
+    if u64::from(samples.0) * u64::from(samples.1) > RASTER_SAMPLES.get() {
+        return Ok(None);
+    }
+    steps.begin("copying");
+    let written = raster_file::write_windows(&mut *windows, format, out, input)?;
+    let raster = windows.metadata().without_samples();
+    Ok(written.map(|WrittenWindows { stored, valid, notes }| {
+        let converted =
+            Converted { raster, resampling: Resampling::Kept, datum_shift: None, notes: Vec::new() };
+        (converted, WrittenDem { bytes: Vec::new(), companions: Vec::new(), stored, notes }, valid)
+    }))
 }
 
 fn converted(
@@ -156,10 +193,16 @@ pub fn place_error(file: &Path, error: &WarpError, crs_option: &str) -> CliError
     CliError::input(format!("{}: {reason}", file.display()))
 }
 
-fn summary(out: &Path, format: &DemFormat, converted: &Converted, written: &WrittenDem) -> Vec<String> {
+fn summary(
+    out: &Path,
+    format: &DemFormat,
+    converted: &Converted,
+    written: &WrittenDem,
+    valid: u64,
+) -> Vec<String> {
     let Converted { raster, resampling, datum_shift, notes } = converted;
     let cell = raster.spacing();
-    let valid = raster.samples.iter().filter(|value| !value.is_nan()).count();
+    let samples = u64::from(raster.width) * u64::from(raster.height);
     let resampled = match resampling {
         Resampling::Kept => "no, the samples are the file's",
         Resampling::Bilinear => "bilinear, between the four samples around each cell's center",
@@ -176,7 +219,7 @@ fn summary(out: &Path, format: &DemFormat, converted: &Converted, written: &Writ
     ];
     lines.extend(datum_shift.iter().map(|shift| row("datum shift", shift)));
     lines.extend(raster.vertical_datum.iter().map(|datum| row("heights", &format!("from {datum}"))));
-    lines.push(row("valid", &format!("{valid} of {} samples", raster.samples.len())));
+    lines.push(row("valid", &format!("{valid} of {samples} samples")));
     lines.extend(written.notes.iter().map(|note| row("note", note)));
     let companions = written.companions.iter().map(|companion| out.with_extension(companion.extension));
     lines.extend(companions.map(|path| row("beside it", &path.display().to_string())));

@@ -9,7 +9,8 @@ use crate::cli::error::CliError;
 use crate::cli::output::print_lines;
 use crate::cli::progress::StepTimer;
 use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
-use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::scene_file::open_scene_for;
+use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -51,7 +52,9 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
         crs: arguments.crs.clone(),
     };
     let WrittenScene { path, allowed } = new_scene::write(&options, &progress)?;
-    let scene = open_scene(&path, &allowed, &progress);
+    // It is rendered next, by its first camera.
+    let pictures = PlannedPictures::default();
+    let scene = open_scene_for(&path, &allowed, None, ElevationNeed::Pictures(&pictures), &progress);
     steps.finish();
     let command = |verb: &str| command(verb, &path, &allowed);
     let scene = scene.map_err(|error| {

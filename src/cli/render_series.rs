@@ -18,9 +18,10 @@ use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
 use crate::pipeline::picture_buffers::PictureBuffers;
 use crate::pipeline::picture_statistics::PictureStatistics;
-use crate::pipeline::scene_file::{open_scene, open_scene_in_phase, phases};
+use crate::pipeline::scene_file::{open_scene_for, phases};
 use crate::pipeline::sheet_file::{picture_description, write_sheet};
 use crate::pipeline::sidecar::SidecarDraft;
+use crate::scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
 use crate::scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
@@ -117,11 +118,14 @@ impl RenderSeries<'_> {
         let (arguments, file, steps) = (self.arguments, self.file, self.steps);
         let progress = |step| steps.begin(step);
         let allowed = &arguments.access.allow;
+        let pictures = planned_pictures(arguments);
+        // Buffers hold heights.
+        let need = match arguments.buffers {
+            Some(_) => ElevationNeed::AllThatFit,
+            None => ElevationNeed::Pictures(&pictures),
+        };
         if !arguments.all_phases {
-            let scene = match &arguments.phase {
-                Some(phase) => open_scene_in_phase(file, allowed, phase, &progress)?,
-                None => open_scene(file, allowed, &progress)?,
-            };
+            let scene = open_scene_for(file, allowed, arguments.phase.as_deref(), need, &progress)?;
             return Ok(vec![self.scene(scene, path, 1)?]);
         }
         let names = phases(file, allowed)?;
@@ -131,7 +135,7 @@ impl RenderSeries<'_> {
         }
         let mut scenes = Vec::new();
         for (phase, path) in names.iter().zip(named_paths(path, &names)) {
-            let scene = open_scene_in_phase(file, allowed, phase, &progress);
+            let scene = open_scene_for(file, allowed, Some(phase), need, &progress);
             match scene {
                 Ok(scene) => scenes.push(self.scene(scene, &path, names.len())?),
                 Err(error) => self.leave_out("phase", phase, error.into(), names.len())?,
@@ -234,6 +238,16 @@ impl RenderSeries<'_> {
         let camera = camera.name.clone();
         Ok(RenderedPicture { output, camera, triangles, ground_triangles, annotations, statistics })
     }
+}
+
+/// The pictures of a scene, as far as that is known before it is opened.
+fn planned_pictures(arguments: &RenderArguments) -> PlannedPictures {
+    let cameras = match &arguments.camera {
+        _ if arguments.shows_all_cameras() => PlannedCameras::All,
+        Some(name) => PlannedCameras::Named(name.clone()),
+        None => PlannedCameras::First,
+    };
+    PlannedPictures { cameras, size: arguments.size.map(|size| (size.width, size.height)) }
 }
 
 /// The size of a contact sheet where none is stated.

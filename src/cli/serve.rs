@@ -10,7 +10,7 @@ use crate::cli::options::{AccessArguments, HeightArguments};
 use crate::cli::output::warn;
 use crate::limits::RASTER_SAMPLES;
 use crate::pipeline::dataset::DatasetOptions;
-use crate::pipeline::service::{NamedFile, RequestLog, ServiceLimits, ServiceOptions};
+use crate::pipeline::service::{NamedFile, PathPrefix, RequestLog, ServiceLimits, ServiceOptions};
 
 #[derive(Debug, Args)]
 #[command(
@@ -28,6 +28,9 @@ pub struct ServeArguments {
     /// A name by which clients reach the service, beside localhost and addresses in numbers; others are refused
     #[arg(long, value_name = "NAME")]
     pub host: Vec<String>,
+    /// What all paths begin with, behind a proxy that serves others beside it: /terrain puts /health at /terrain/health
+    #[arg(long, value_name = "PATH", value_parser = PathPrefix::parse)]
+    pub prefix: Option<PathPrefix>,
     /// Write a line for each request to standard error: method, path, status, milliseconds
     #[arg(long)]
     pub log: bool,
@@ -70,6 +73,7 @@ pub fn run(arguments: &ServeArguments, serve: Option<ServeProgram>) -> Result<()
         },
         listen: arguments.listen,
         hosts: arguments.host.clone(),
+        prefix: arguments.prefix.clone().unwrap_or_default(),
         limits: ServiceLimits {
             max_points: arguments.max_points,
             max_posts: arguments.max_posts,

@@ -21,6 +21,7 @@ mod point_text;
 pub mod points;
 pub mod raster;
 pub mod read;
+pub(crate) mod read_ahead;
 pub mod reduced;
 pub mod sample;
 mod sample_type;

@@ -1,28 +1,56 @@
 //! A smaller raster of one that is read in windows: means over squares of samples, for an overview of ground that is larger
-//! than the memory.
+//! than the memory, and for pictures that show no more.
 
 use std::ops::Range;
 
 use glam::{DAffine2, DMat2, DVec2};
+use rayon::prelude::*;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples};
+use crate::dem::read_ahead::read_ahead;
 use crate::dem::windows::{RasterWindow, Windows};
+
+/// Samples that are read at a time: rows of tiles of a file.
+const BAND_SAMPLES: u32 = 1 << 22;
 
 /// The raster of every `step`-th sample of `windows`, counted from its south-west one, a power of two: each the mean of the
 /// `step` × `step` samples around it that hold data, in meters; NaN where none does. The south-west sample lies where it did.
-/// Memory: `step` rows, and the result.
+/// The same bits for every number of threads. Memory: some rows, at least `step` of them twice, and the result.
 ///
 /// # Errors
 /// The samples cannot be read.
 ///
 /// # Panics
 /// Where `step` is no power of two.
-pub fn reduced(windows: &mut impl Windows, step: u32) -> Result<Raster, DemErrorKind> {
-    let (width, height) = reduced_size(windows.size(), step);
-    let from_south = reduced_part(windows, step, 0..width, 0..height)?;
-    let samples = from_south.chunks_exact(width as usize).rev().flatten().copied().collect();
-    let rows = windows.size().1;
+pub fn reduced(windows: &mut (impl Windows + Send), step: u32) -> Result<Raster, DemErrorKind> {
+    assert!(step.is_power_of_two(), "{step} is a power of two");
+    let (columns, rows) = windows.size();
+    let (width, height) = ((columns - 1) / step + 1, (rows - 1) / step + 1);
+    let spans: Vec<Range<usize>> = (0..width).map(|column| around(column * step, step, columns)).collect();
+    // The last row holds the southernmost sample.
+    let rows_of = |row: u32| around(rows - 1 - (height - 1 - row) * step, step, rows);
+    let per_band = (BAND_SAMPLES / columns / step).max(1);
+    let bands = (0..height).step_by(per_band as usize).map(|first| {
+        let end = rows_of((first + per_band).min(height) - 1).end as u32;
+        let row = rows_of(first).start as u32;
+        RasterWindow { column: 0, row, width: columns, height: end - row }
+    });
+    let mut means = vec![0f32; width as usize * height as usize];
+    let mut of_bands =
+        means.chunks_mut(width as usize * per_band as usize).zip((0..).step_by(per_band as usize));
+    let read = |source: &mut _, window| {
+        let mut heights = Vec::new();
+        Windows::read(source, window, &mut heights).map(|()| heights)
+    };
+    read_ahead(windows, bands, read, |window, heights: Vec<f32>| {
+        let Some((means, first)) = of_bands.next() else { return };
+        means.par_chunks_mut(width as usize).enumerate().for_each(|(at, means)| {
+            let own = rows_of(first + at as u32);
+            let [from, to] = [own.start, own.end].map(|row| (row - window.row as usize) * columns as usize);
+            fill_means(&heights[from..to], columns as usize, &spans, means);
+        });
+    })?;
     let whole = windows.metadata();
     let matrix2 = DMat2::from_cols(whole.map_from_grid.matrix2.x_axis, whole.map_from_grid.matrix2.y_axis)
         * f64::from(step);
@@ -32,7 +60,7 @@ pub fn reduced(windows: &mut impl Windows, step: u32) -> Result<Raster, DemError
         data_type: "Float32",
         width,
         height,
-        samples: Samples::F32(samples),
+        samples: Samples::F32(means),
         meters_per_z: 1.0,
         map_from_grid: DAffine2 { matrix2, translation },
         nodata: None,
@@ -40,50 +68,25 @@ pub fn reduced(windows: &mut impl Windows, step: u32) -> Result<Raster, DemError
     })
 }
 
-/// Samples per row, and rows, of every `step`-th sample of a raster of `size`.
-fn reduced_size((columns, rows): (u32, u32), step: u32) -> (u32, u32) {
-    ((columns - 1) / step + 1, (rows - 1) / step + 1)
+/// The `step` columns, or rows, around one of `count`.
+fn around(at: u32, step: u32, count: u32) -> Range<usize> {
+    at.saturating_sub(step / 2) as usize..(at + step.div_ceil(2)).min(count) as usize
 }
 
-/// The samples of [`reduced`] in a rectangle of it, row by row from the south-west; rows are counted from the south.
-///
-/// # Errors
-/// The samples cannot be read.
-///
-/// # Panics
-/// Where `step` is no power of two, or the rectangle is empty or reaches beyond the reduced raster.
-fn reduced_part(
-    windows: &mut impl Windows,
-    step: u32,
-    columns: Range<u32>,
-    rows: Range<u32>,
-) -> Result<Vec<f32>, DemErrorKind> {
-    assert!(step.is_power_of_two(), "{step} is a power of two");
-    let size = windows.size();
-    let around = |at: u32, count: u32| at.saturating_sub(step / 2)..(at + step.div_ceil(2)).min(count);
-    let (west, east) =
-        (around(columns.start * step, size.0).start, around((columns.end - 1) * step, size.0).end);
-    let (mut samples, mut buffer) = (Vec::with_capacity(columns.len() * rows.len()), Vec::new());
-    for row in rows {
-        // Rasters are counted from the north.
-        let own = around(size.1 - 1 - row * step, size.1);
-        let window =
-            RasterWindow { column: west, row: own.start, width: east - west, height: own.end - own.start };
-        windows.read(window, &mut buffer)?;
-        samples.extend(columns.clone().map(|column| {
-            let span = around(column * step, size.0);
-            let (from, to) = ((span.start - west) as usize, (span.end - west) as usize);
-            mean(buffer.chunks_exact((east - west) as usize).flat_map(|line| &line[from..to]))
-        }));
+/// Fills a row of means over the columns `spans` of `lines`, which are as long as `columns`; NaN where all values are.
+fn fill_means(lines: &[f32], columns: usize, spans: &[Range<usize>], means: &mut [f32]) {
+    let mut sums = vec![(0.0, 0u32); spans.len()];
+    for line in lines.chunks_exact(columns) {
+        for ((sum, count), span) in sums.iter_mut().zip(spans) {
+            for value in line[span.clone()].iter().filter(|value| !value.is_nan()) {
+                *sum += f64::from(*value);
+                *count += 1;
+            }
+        }
     }
-    Ok(samples)
-}
-
-/// The mean of the values that are not NaN; NaN without any.
-fn mean<'a>(values: impl Iterator<Item = &'a f32>) -> f32 {
-    let valid = values.filter(|value| !value.is_nan());
-    let (sum, count) = valid.fold((0.0, 0u32), |(sum, count), &value| (sum + f64::from(value), count + 1));
-    (sum / f64::from(count)) as f32
+    for (mean, (sum, count)) in means.iter_mut().zip(sums) {
+        *mean = (sum / f64::from(count)) as f32;
+    }
 }
 
 #[cfg(test)]
@@ -107,12 +110,30 @@ mod tests {
         assert_eq!(small.at(2, 1), 2.0 * 7.5 + 5.0 * 8.5);
         // The corner is the mean of five of the six samples there.
         assert_eq!(small.at(0, 3), f64::from((2.0f32 + 5.0 + 7.0 + 10.0 + 12.0) / 5.0));
-        assert!(mean([f32::NAN].iter()).is_nan());
-        let part = reduced_part(&mut raster, 4, 1..4, 1..3).expect("in memory");
-        let wanted = [(1, 2), (2, 2), (3, 2), (1, 1), (2, 1), (3, 1)]
-            .map(|(column, row)| small.at(column, row) as f32);
-        assert_eq!(part, wanted);
         let same = reduced(&mut raster, 1).expect("in memory");
         assert_eq!((same.width, same.height, same.at(3, 4)), (21, 13, raster.at(3, 4)));
+    }
+
+    #[test]
+    fn bands_of_rows_give_the_means_of_squares_and_nan_without_data() {
+        // Rows so long that a band holds few of them, and a hole as wide as several squares.
+        let (columns, rows) = (1 << 16, 70);
+        let is_hole = |at: u32| (1000..1100).contains(&(at % columns)) && (20..50).contains(&(at / columns));
+        let height = |at: u32| if is_hole(at) { f32::NAN } else { (at.wrapping_mul(7919) % 1013) as f32 };
+        let mut raster = Raster::new(columns, Samples::F32((0..columns * rows).map(height).collect()));
+        let small = reduced(&mut raster, 16).expect("in memory");
+        assert_eq!((small.width, small.height), (4096, 5));
+        for (column, row) in [(0, 0), (17, 1), (66, 2), (66, 1), (4095, 4), (2048, 3)] {
+            let own = around(rows - 1 - (4 - row) * 16, 16, rows);
+            let values =
+                own.flat_map(|row| around(column * 16, 16, columns).map(move |column| (column, row)));
+            let valid = values
+                .map(|(column, row)| raster.at(column as u32, row as u32))
+                .filter(|value| !value.is_nan());
+            let (sum, count) = valid.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+            let mean = f64::from((sum / f64::from(count)) as f32);
+            assert_eq!(small.at(column, row).to_bits(), mean.to_bits(), "{column} {row}");
+        }
+        assert!(small.at(66, 2).is_nan(), "all of its samples are in the hole");
     }
 }

@@ -1,7 +1,10 @@
 //! Statistics of a raster's valid samples.
 
+use rayon::prelude::*;
+
 use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples};
+use crate::dem::raster::{Raster, SampleFloat, Samples};
+use crate::dem::read_ahead::read_ahead;
 use crate::dem::void_counts::{VoidCounts, VoidSearch};
 use crate::dem::windows::{RasterWindow, Windows};
 
@@ -21,34 +24,32 @@ pub struct Stats {
 }
 
 impl Stats {
-    /// The statistics of `raster`, summed in 64 bits in the order of the samples: the same bits on every machine.
+    /// The statistics of `raster`, in 64 bits: the same bits on every machine, and for every number of threads.
     ///
-    /// Two passes, since the one-pass formula loses the deviation of high plateaus.
+    /// Each row has a mean and squared deviations from it, and rows are joined in order (Chan, Golub and LeVeque 1979): sums
+    /// of squares would lose the deviation of high plateaus, and two passes would read a file twice.
     pub fn new(raster: &Raster) -> Self {
         let mut sums = StatsSums::default();
-        sums.add(&raster.samples);
-        let mean = sums.mean();
-        sums.finish(squares(0.0, &raster.samples, mean))
+        sums.add_rows(&raster.samples, raster.width);
+        sums.finish()
     }
 
-    /// The statistics of a raster that is read in windows, and its [voids](VoidCounts): the same bits. It is read twice, some
+    /// The statistics of a raster that is read in windows, and its [voids](VoidCounts): the same bits. It is read once, some
     /// rows at a time.
     ///
     /// # Errors
     /// Samples cannot be read.
-    pub fn of_windows(windows: &mut (impl Windows + ?Sized)) -> Result<(Self, VoidCounts), DemErrorKind> {
+    pub fn of_windows(
+        windows: &mut (impl Windows + Send + ?Sized),
+    ) -> Result<(Self, VoidCounts), DemErrorKind> {
         let size = windows.size();
         let (mut sums, mut voids) = (StatsSums::default(), VoidSearch::new(size));
-        for rows in RasterWindow::all(size).bands(ROWS_SAMPLES) {
-            let samples = windows.samples(rows)?;
-            sums.add(&samples);
+        let bands = RasterWindow::all(size).bands(ROWS_SAMPLES);
+        read_ahead(windows, bands, Windows::samples, |_, samples| {
+            sums.add_rows(&samples, size.0);
             voids.add_rows(&samples);
-        }
-        let (mean, mut sum) = (sums.mean(), 0.0);
-        for rows in RasterWindow::all(size).bands(ROWS_SAMPLES) {
-            sum = squares(sum, &windows.samples(rows)?, mean);
-        }
-        Ok((sums.finish(sum), voids.finish()))
+        })?;
+        Ok((sums.finish(), voids.finish()))
     }
 
     /// The lowest and the highest valid sample of a raster that is read in windows, once, some rows at a time; NaN where none
@@ -56,12 +57,13 @@ impl Stats {
     ///
     /// # Errors
     /// Samples cannot be read.
-    pub fn range_of_windows(windows: &mut (impl Windows + ?Sized)) -> Result<(f64, f64), DemErrorKind> {
-        let mut sums = StatsSums::default();
-        for rows in RasterWindow::all(windows.size()).bands(ROWS_SAMPLES) {
-            sums.add(&windows.samples(rows)?);
-        }
-        let Self { min, max, .. } = sums.finish(0.0);
+    pub fn range_of_windows(
+        windows: &mut (impl Windows + Send + ?Sized),
+    ) -> Result<(f64, f64), DemErrorKind> {
+        let (size, mut sums) = (windows.size(), StatsSums::default());
+        let bands = RasterWindow::all(size).bands(ROWS_SAMPLES);
+        read_ahead(windows, bands, Windows::samples, |_, samples| sums.add_rows(&samples, size.0))?;
+        let Self { min, max, .. } = sums.finish();
         Ok((min, max))
     }
 }
@@ -69,42 +71,93 @@ impl Stats {
 /// Samples of the rows that are read at a time.
 const ROWS_SAMPLES: u32 = 1 << 22;
 
-/// Adds the squared deviations of samples from a mean to a sum, in order.
-fn squares(sum: f64, samples: &Samples, mean: f64) -> f64 {
-    samples.valid().fold(sum, |sum, value| sum + (value - mean) * (value - mean))
-}
+/// Sums side by side in a row: a processor adds several while one addition waits for the one before.
+const LANES: usize = 8;
 
-/// Sums over samples in their order.
+/// Sums over the valid samples of rows.
+#[derive(Clone, Copy)]
 struct StatsSums {
     count: usize,
     sum: f64,
     min: f64,
     max: f64,
+    /// The sum of squared deviations from the mean.
+    squares: f64,
 }
 
 impl Default for StatsSums {
     fn default() -> Self {
-        Self { count: 0, sum: 0.0, min: f64::NAN, max: f64::NAN }
+        Self { count: 0, sum: 0.0, min: f64::INFINITY, max: f64::NEG_INFINITY, squares: 0.0 }
     }
 }
 
 impl StatsSums {
-    fn add(&mut self, samples: &Samples) {
-        for value in samples.valid() {
-            self.count += 1;
-            self.sum += value;
-            self.min = f64::min(self.min, value);
-            self.max = f64::max(self.max, value);
+    /// Adds rows of `width` samples, in order.
+    fn add_rows(&mut self, samples: &Samples, width: u32) {
+        match samples {
+            Samples::F32(values) => self.add_rows_of(values, width),
+            Samples::F64(values) => self.add_rows_of(values, width),
         }
+    }
+
+    fn add_rows_of<T: SampleFloat>(&mut self, values: &[T], width: u32) {
+        let rows: Vec<Self> = values.par_chunks(width as usize).map(Self::of_row).collect();
+        rows.iter().for_each(|row| self.join(row));
+    }
+
+    fn of_row<T: SampleFloat>(row: &[T]) -> Self {
+        let mut lanes = [Self::default(); LANES];
+        for values in row.chunks(LANES) {
+            for (lane, &value) in lanes.iter_mut().zip(values) {
+                let value: f64 = value.into();
+                let is_valid = !value.is_nan();
+                lane.count += usize::from(is_valid);
+                lane.sum += if is_valid { value } else { 0.0 };
+                lane.min = if value < lane.min { value } else { lane.min };
+                lane.max = if value > lane.max { value } else { lane.max };
+            }
+        }
+        let mut all = Self::default();
+        for lane in lanes {
+            all.count += lane.count;
+            all.sum += lane.sum;
+            all.min = all.min.min(lane.min);
+            all.max = all.max.max(lane.max);
+        }
+        let (mean, mut squares) = (all.mean(), [0.0; LANES]);
+        for values in row.chunks(LANES) {
+            for (sum, &value) in squares.iter_mut().zip(values) {
+                let deviation = value.into() - mean;
+                *sum += if deviation.is_nan() { 0.0 } else { deviation * deviation };
+            }
+        }
+        Self { squares: squares.iter().sum(), ..all }
+    }
+
+    fn join(&mut self, later: &Self) {
+        if later.count == 0 {
+            return;
+        }
+        if self.count > 0 {
+            let apart = later.mean() - self.mean();
+            let (own, others) = (self.count as f64, later.count as f64);
+            self.squares += apart * apart * (own * others / (own + others));
+        }
+        self.squares += later.squares;
+        self.count += later.count;
+        self.sum += later.sum;
+        self.min = self.min.min(later.min);
+        self.max = self.max.max(later.max);
     }
 
     fn mean(&self) -> f64 {
         self.sum / self.count as f64
     }
 
-    fn finish(self, squares: f64) -> Stats {
+    fn finish(self) -> Stats {
         let (count, mean) = (self.count, self.mean());
-        Stats { valid: count, min: self.min, max: self.max, mean, std: (squares / count as f64).sqrt() }
+        let [min, max] = [self.min, self.max].map(|bound| if count == 0 { f64::NAN } else { bound });
+        Stats { valid: count, min, max, mean, std: (self.squares / count as f64).sqrt() }
     }
 }
 
@@ -135,5 +188,14 @@ mod tests {
         let stats = Stats::new(&small(1, 1, vec![f32::NAN]));
         assert_eq!(stats.valid, 0);
         assert!(stats.min.is_nan() && stats.max.is_nan() && stats.mean.is_nan() && stats.std.is_nan());
+    }
+
+    #[test]
+    fn a_high_plateau_keeps_its_deviation_over_many_rows() {
+        // Heights of 1e6 m and a quarter of a millimeter around it: sums of squares have no digit of that left.
+        let samples = (0..100_100u32).map(|at| 1e6 + 0.000_25 * f64::from(at % 5)).collect();
+        let stats = Stats::new(&Raster::new(1001, Samples::F64(samples)));
+        assert!((stats.std - 0.000_25 * 2f64.sqrt()).abs() < 1e-9, "{stats:?}");
+        assert!((stats.mean - 1e6 - 0.000_5).abs() < 1e-8, "{stats:?}");
     }
 }

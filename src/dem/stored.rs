@@ -4,7 +4,7 @@
 //! minus zero), floats otherwise. Readers return integers of 16 bits and 32-bit floats in 32 bits and the others in 64,
 //! so the choice depends on the raster's own precision: what is read back has the same.
 
-use crate::dem::raster::{Raster, Samples};
+use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::dem::sample_type::SampleType;
 
 /// A type, and its value for no data.
@@ -18,38 +18,95 @@ pub(crate) struct StoredSamples {
 impl StoredSamples {
     /// How the samples of `raster` are stored without a loss.
     pub fn new(raster: &Raster) -> Self {
-        let (integers, float) = match raster.samples {
-            Samples::F32(_) => ([SampleType::I16, SampleType::U16], SampleType::F32),
-            Samples::F64(_) => ([SampleType::I32, SampleType::U32], SampleType::F64),
-        };
-        let keeps = |sample: &SampleType| raster.samples.valid().all(|value| sample.keeps(value));
-        let candidates = integers.into_iter().filter(keeps).chain([float]);
-        let mut stored =
-            candidates.filter_map(|sample| Some(Self { sample, nodata: nodata(raster, sample)? }));
-        // NaN is no height.
-        stored.next().unwrap_or(Self { sample: float, nodata: Some(f64::NAN) })
+        let mut survey = SampleSurvey::new(raster);
+        survey.add(&raster.samples);
+        survey.stored()
     }
 }
 
-/// The value for no data; the outer `None` where every candidate of the type is a height.
-fn nodata(raster: &Raster, sample: SampleType) -> Option<Option<f64>> {
-    let has_holes = raster.samples.iter().any(f64::is_nan);
-    if !has_holes && raster.nodata.is_none() {
-        return Some(None);
-    }
-    let own = raster.nodata.filter(|value| value.is_nan() && sample.is_float() || sample.keeps(*value));
-    let preferred: &[f64] = match sample {
+/// The values that may mean no data in a type, the preferred first.
+fn candidates(sample: SampleType) -> &'static [f64] {
+    match sample {
         SampleType::I16 => &[-32768.0, 32767.0, -9999.0],
         SampleType::U16 => &[65535.0, 0.0],
         SampleType::I32 => &[-2_147_483_648.0, 2_147_483_647.0],
         SampleType::U32 => &[4_294_967_295.0, 0.0],
         _ => &[-9999.0, f64::NAN],
-    };
-    let is_free = |nodata: &f64| nodata.is_nan() || raster.samples.iter().all(|value| value != *nodata);
-    match own.into_iter().chain(preferred.iter().copied()).find(is_free) {
-        Some(nodata) => Some(Some(nodata)),
-        None if !has_holes => Some(None),
-        None => None,
+    }
+}
+
+/// What decides how samples are stored, of a raster of which never all need be in memory.
+pub(crate) struct SampleSurvey {
+    integers: [SampleType; 2],
+    float: SampleType,
+    /// Whether each type of integers keeps all heights.
+    kept: [bool; 2],
+    /// The value that the raster names for no data.
+    own: Option<f64>,
+    /// Values that may mean no data, and whether each is a height.
+    taken: Vec<(f64, bool)>,
+    /// Samples with data.
+    pub valid: u64,
+    samples: u64,
+}
+
+impl SampleSurvey {
+    /// A survey of the samples of `raster`, of which none is seen yet.
+    pub fn new(raster: &Raster) -> Self {
+        let (integers, float) = match raster.samples {
+            Samples::F32(_) => ([SampleType::I16, SampleType::U16], SampleType::F32),
+            Samples::F64(_) => ([SampleType::I32, SampleType::U32], SampleType::F64),
+        };
+        let types = integers.into_iter().chain([float]);
+        let possible = types.flat_map(candidates).copied().chain(raster.nodata);
+        let taken = possible.filter(|value| !value.is_nan()).map(|value| (value, false)).collect();
+        Self { integers, float, kept: [true; 2], own: raster.nodata, taken, valid: 0, samples: 0 }
+    }
+
+    /// Looks at the next samples.
+    pub fn add(&mut self, samples: &Samples) {
+        match samples {
+            Samples::F32(values) => self.add_values(values),
+            Samples::F64(values) => self.add_values(values),
+        }
+    }
+
+    fn add_values<T: SampleFloat>(&mut self, values: &[T]) {
+        self.samples += values.len() as u64;
+        self.valid += values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
+        for (sample, kept) in self.integers.iter().zip(&mut self.kept).filter(|(_, kept)| **kept) {
+            let keeps = |value: f64| value.is_nan() || sample.keeps(value);
+            *kept = values.iter().all(|&value| keeps(value.into()));
+        }
+        for (candidate, taken) in self.taken.iter_mut().filter(|(_, taken)| !*taken) {
+            *taken = values.iter().any(|&value| value.into() == *candidate);
+        }
+    }
+
+    /// How the samples are stored without a loss.
+    pub fn stored(&self) -> StoredSamples {
+        let integers = self.integers.into_iter().zip(self.kept).filter(|(_, kept)| *kept);
+        let types = integers.map(|(sample, _)| sample).chain([self.float]);
+        let mut stored =
+            types.filter_map(|sample| Some(StoredSamples { sample, nodata: self.nodata(sample)? }));
+        // NaN is no height.
+        stored.next().unwrap_or(StoredSamples { sample: self.float, nodata: Some(f64::NAN) })
+    }
+
+    /// The value for no data; the outer `None` where every candidate of the type is a height.
+    fn nodata(&self, sample: SampleType) -> Option<Option<f64>> {
+        let has_holes = self.valid < self.samples;
+        if !has_holes && self.own.is_none() {
+            return Some(None);
+        }
+        let own = self.own.filter(|value| value.is_nan() && sample.is_float() || sample.keeps(*value));
+        let is_taken = |value: f64| self.taken.iter().any(|&(candidate, taken)| taken && candidate == value);
+        let is_free = |value: &f64| value.is_nan() || !is_taken(*value);
+        match own.into_iter().chain(candidates(sample).iter().copied()).find(is_free) {
+            Some(nodata) => Some(Some(nodata)),
+            None if !has_holes => Some(None),
+            None => None,
+        }
     }
 }
 

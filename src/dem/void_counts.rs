@@ -65,8 +65,21 @@ impl VoidSearch {
 
     /// Adds the next rows.
     pub fn add_rows(&mut self, samples: &Samples) {
-        for start in (0..samples.len()).step_by(self.width) {
-            self.add_row(|column| samples.get(start + column).is_nan());
+        match samples {
+            Samples::F32(values) => self.add_rows_of(values, f32::is_nan),
+            Samples::F64(values) => self.add_rows_of(values, f64::is_nan),
+        }
+    }
+
+    fn add_rows_of<T: Copy>(&mut self, values: &[T], is_missing: impl Fn(T) -> bool) {
+        for row in values.chunks_exact(self.width) {
+            // Most rows hold data all through: that is seen without a branch a sample.
+            if row.iter().fold(false, |found, &value| found | is_missing(value)) || !self.stretches.is_empty()
+            {
+                self.add_row(|column| is_missing(row[column]));
+            } else {
+                self.row += 1;
+            }
         }
     }
 

@@ -4,6 +4,9 @@
 //! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where
 //! nothing was rounded.
 
+use std::io;
+
+use crate::dem::error::DemErrorKind;
 use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
 
@@ -18,6 +21,27 @@ pub struct WrittenDem {
     pub stored: String,
     /// Notes for the user: rounding, and how to read the file.
     pub notes: Vec<String>,
+}
+
+/// A file that was written from windows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenWindows {
+    /// The type of the stored heights: `float32`, `int16`.
+    pub stored: String,
+    /// The number of samples with data.
+    pub valid: u64,
+    /// Notes for the user.
+    pub notes: Vec<String>,
+}
+
+/// A file that cannot be written from windows.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the causes explain themselves")]
+pub enum WriteWindowsError {
+    #[error(transparent)]
+    Read(#[from] DemErrorKind),
+    #[error(transparent)]
+    Write(#[from] io::Error),
 }
 
 /// A file beside another, of the same name with another extension.

@@ -26,6 +26,13 @@ pub struct ConvertOptions {
     pub voids: VoidHandling,
 }
 
+impl ConvertOptions {
+    /// Whether all samples stay as they are.
+    pub fn keeps_samples(&self) -> bool {
+        self.crs.is_none() && self.cell.is_none() && self.voids == VoidHandling::Keep
+    }
+}
+
 /// The treatment of voids that samples enclose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoidHandling {

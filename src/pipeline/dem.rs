@@ -126,6 +126,15 @@ pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<
     })
 }
 
+/// Opens one elevation file of more than `most_kept` samples that can be read in windows; `None` for any other, for tiles, and for
+/// one that is broken, of which [`open`] says why.
+pub fn open_large(path: &Path, options: &DemOptions, most_kept: u64) -> Option<Box<dyn Windows + Send>> {
+    if path.is_dir() || vrt::is_vrt(&files::file_name(path)) {
+        return None;
+    }
+    open_windows(path, options).ok().flatten().filter(|windows| samples(&**windows) > most_kept)
+}
+
 fn samples(windows: &dyn Windows) -> u64 {
     let (width, height) = windows.size();
     u64::from(width) * u64::from(height)

@@ -1,4 +1,4 @@
-//! The fingerprint of a scene: whether two pictures were made of the same files.
+//! The fingerprint of a scene: whether two pictures were made of the same files; and of other content.
 
 use std::path::{Path, PathBuf};
 
@@ -17,5 +17,14 @@ pub fn fingerprint(path: &Path, files: &[PathBuf]) -> Result<String, ReadFileErr
         // The hash of each, so that bytes cannot move from one to the next unseen.
         whole.update(Sha256::digest(files::read(file)?));
     }
-    Ok(whole.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hexadecimal(&whole.finalize()))
+}
+
+/// The SHA-256 of `bytes`, in hexadecimal digits.
+pub fn content_hash(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -11,7 +11,7 @@ use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
-use crate::scene::{SceneModel, SceneView};
+use crate::scene::{SCREEN_PX, SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
 
 /// The size of a picture.
@@ -26,7 +26,7 @@ pub struct PictureSize {
 impl PictureSize {
     /// The size of a view's paper, or 1920 × 1080.
     pub fn of(view: &SceneView) -> Self {
-        let (width, height) = view.paper.map_or((1920, 1080), |paper| paper.size_px());
+        let (width, height) = view.paper.map_or(SCREEN_PX, |paper| paper.size_px());
         Self { width, height }
     }
 }

@@ -1,12 +1,15 @@
 //! Writing rasters: the file and the files beside it, without replacing an input.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::dem::error::DemErrorKind;
 use crate::dem::formats::DemFormat;
 use crate::dem::raster::Raster;
-use crate::dem::write::{self, Companion, WriteError, WrittenDem};
+use crate::dem::windows::Windows;
+use crate::dem::write::{self, Companion, WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 use crate::pipeline::error::FileError;
-use crate::pipeline::files::{self, ReadFileError, WriteFileError};
+use crate::pipeline::files::{self, ReadFileError, SystemError, WriteFileError};
 use crate::pipeline::output_files::OutputFiles;
 
 /// A raster that cannot be written.
@@ -19,6 +22,8 @@ pub enum WriteRasterError {
     Sidecar(PathBuf),
     #[error(transparent)]
     Read(#[from] ReadFileError),
+    #[error(transparent)]
+    Samples(#[from] FileError<DemErrorKind>),
     #[error(transparent)]
     File(#[from] WriteFileError),
 }
@@ -60,6 +65,41 @@ pub fn add(
     }
     files.write(path, &written.bytes)?;
     Ok(written)
+}
+
+/// [`write()`] of a raster that is read in windows and is kept as it is; `None` where the format is written from memory.
+///
+/// # Errors
+/// As [`write()`]; of `input`, where samples cannot be read.
+pub fn write_windows(
+    source: &mut (dyn Windows + Send),
+    format: &DemFormat,
+    path: &Path,
+    input: &Path,
+) -> Result<Option<WrittenWindows>, WriteRasterError> {
+    let Some(writer) = format.windows_writer else { return Ok(None) };
+    let (mut files, mut written) =
+        (OutputFiles::default(), Err(WriteWindowsError::Read(DemErrorKind::Changed)));
+    let filled = files.write_with(path, |out| {
+        written = writer(source, out);
+        match &mut written {
+            Err(WriteWindowsError::Write(error)) => {
+                Err(std::mem::replace(error, io::ErrorKind::Other.into()))
+            }
+            _ => Ok(()),
+        }
+    });
+    filled?;
+    match written {
+        Ok(written) => {
+            files.publish()?;
+            Ok(Some(written))
+        }
+        Err(WriteWindowsError::Read(error)) => Err(FileError::at(input)(error).into()),
+        Err(WriteWindowsError::Write(error)) => {
+            Err(WriteFileError::new(path, SystemError::from(error)).into())
+        }
+    }
 }
 
 /// A companion may replace a sidecar of an input only by the same bytes.

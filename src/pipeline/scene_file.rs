@@ -13,9 +13,10 @@ use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::lint::cause_code::coded;
 use crate::pipeline::lint::lint;
 use crate::scene::assets::{AssetError, Assets};
-use crate::scene::build::{build, build_ground};
+use crate::scene::build::{build, build_ground, build_with};
 use crate::scene::flights::{SceneFlight, flight};
 use crate::scene::picture::camera;
+use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
@@ -103,9 +104,7 @@ pub fn open_scene(
     allowed: &[PathBuf],
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
-    progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed, None)?;
-    Ok(build(&document, &assets, progress)?)
+    open_scene_for(path, allowed, None, ElevationNeed::AllThatFit, progress)
 }
 
 /// [`open_scene`] with the findings about the scene, in the order of output.
@@ -141,23 +140,26 @@ pub fn build_scene_text(
     Ok(build(&document, &assets, progress)?)
 }
 
-/// [`open_scene`] for the phase called `phase`.
+/// [`open_scene`] for the phase called `phase`, where one is named, with as many samples of its elevation as are needed.
 ///
 /// # Errors
 /// See [`OpenSceneError`].
-pub fn open_scene_in_phase(
+pub fn open_scene_for(
     path: &Path,
     allowed: &[PathBuf],
-    phase: &str,
+    phase: Option<&str>,
+    need: ElevationNeed<'_>,
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, OpenSceneError> {
     progress("reading the scene file");
-    let (document, assets) = open_document(path, allowed, Some(phase))?;
-    if document.phases.iter().any(|declared| declared.name.as_str() == phase) {
-        Ok(build(&document, &assets, progress)?)
-    } else {
-        let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
-        Err(OpenSceneError::NoPhase { name: phase.to_owned(), names })
+    let (document, assets) = open_document(path, allowed, phase)?;
+    let is_declared = |name: &str| document.phases.iter().any(|phase| phase.name.as_str() == name);
+    match phase.filter(|name| !is_declared(name)) {
+        None => Ok(build_with(&document, &assets, need, progress)?),
+        Some(name) => {
+            let names = document.phases.iter().map(|phase| phase.name.to_string()).collect();
+            Err(OpenSceneError::NoPhase { name: name.to_owned(), names })
+        }
     }
 }
 

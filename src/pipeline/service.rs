@@ -24,12 +24,47 @@ pub struct ServiceOptions {
     /// The names by which clients reach the service, beside `localhost` and addresses in numbers; requests for others are
     /// refused.
     pub hosts: Vec<String>,
+    /// What the paths of all addresses begin with.
+    pub prefix: PathPrefix,
     /// Limits of requests.
     pub limits: ServiceLimits,
     /// Whether each request is logged.
     pub log: RequestLog,
     /// Writes a line for the user: where the service listens, warnings, the log.
     pub write_line: fn(&str),
+}
+
+/// The beginning of all paths of a service that shares its host with others: empty, or `/` and names with `/` between.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PathPrefix(String);
+
+/// A text that no path begins with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("write a path of letters, digits and -._~ that begins with / and ends without, as in /terrain/v2")]
+pub struct PathPrefixError;
+
+impl PathPrefix {
+    /// Parses a prefix that is not empty.
+    ///
+    /// # Errors
+    /// It does not begin with `/`, ends with one, or holds a character that needs an escape in a path.
+    pub fn parse(text: &str) -> Result<Self, PathPrefixError> {
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-._~".contains(letter);
+        // `.` and `..` are steps in a path, and no names.
+        let is_name = |name: &str| !["", ".", ".."].contains(&name) && name.chars().all(is_plain);
+        let names = text.strip_prefix('/').filter(|_| text.len() <= LONGEST_NAME).ok_or(PathPrefixError)?;
+        if names.split('/').all(is_name) { Ok(Self(text.to_owned())) } else { Err(PathPrefixError) }
+    }
+
+    /// The prefix.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// The path of an address, which begins with `/`.
+    pub fn before(&self, path: &str) -> String {
+        format!("{}{path}", self.0)
+    }
 }
 
 /// Limits of requests and connections.
@@ -147,6 +182,21 @@ mod tests {
             let file = NamedFile::parse(text).expect(text);
             assert_eq!((file.name(), file.path()), (name, Path::new(path)));
         }
+    }
+
+    #[test]
+    fn a_prefix_is_a_plain_path_without_an_end() {
+        for right in ["/terrain", "/a/b-1/c.d_e~f"] {
+            assert_eq!(
+                PathPrefix::parse(right).map(|prefix| prefix.before("/v1")),
+                Ok(format!("{right}/v1"))
+            );
+        }
+        for wrong in ["", "/", "terrain", "/a/", "/a//b", "/a/../b", "/.", "/{a}", "/a b", "/a%20", "/ä"] {
+            assert_eq!(PathPrefix::parse(wrong), Err(PathPrefixError), "{wrong}");
+        }
+        assert!(PathPrefix::parse(&format!("/{}", "x".repeat(100))).is_err());
+        assert_eq!(PathPrefix::default().before("/"), "/");
     }
 
     #[test]

@@ -33,6 +33,7 @@ use crate::scene::ground;
 use crate::scene::imagery;
 use crate::scene::military;
 use crate::scene::models;
+use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
 use crate::scene::sight_layers;
@@ -55,7 +56,7 @@ use crate::terrain::triangle_surface::SurfaceTriangle;
 /// # Errors
 /// The first file that cannot be read or table that does not fit, at its place in the scene file.
 pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
-    let loaded = ground::load(document, assets, false)?;
+    let loaded = ground::load(document, assets, ElevationNeed::All)?;
     let mut lattice = loaded.lattice;
     let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, lattice.origin());
     let sources = Sources::new(&frame, assets);
@@ -68,7 +69,8 @@ pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround,
     Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
 }
 
-/// Builds the scene that `document` describes. `progress` is called with the name of each pass as it begins.
+/// Builds the scene that `document` describes, with all samples of its elevation that fit into the memory. `progress` is called
+/// with the name of each pass as it begins.
 ///
 /// # Errors
 /// The first file that cannot be read or table that does not fit, at its place in the scene file.
@@ -77,8 +79,21 @@ pub fn build(
     assets: &Assets,
     progress: &dyn Fn(&'static str),
 ) -> Result<SceneModel, Diagnostic> {
+    build_with(document, assets, ElevationNeed::AllThatFit, progress)
+}
+
+/// [`build`] with as many samples of the elevation as are needed.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with(
+    document: &Document,
+    assets: &Assets,
+    need: ElevationNeed<'_>,
+    progress: &dyn Fn(&'static str),
+) -> Result<SceneModel, Diagnostic> {
     progress("reading elevation");
-    let loaded = ground::load(document, assets, true)?;
+    let loaded = ground::load(document, assets, need)?;
     let (crs, stated_crs, mut lattice) = (loaded.crs, loaded.stated_crs, loaded.lattice);
     let frame = WorldFrame::new(document, &crs, &stated_crs, lattice.origin());
 

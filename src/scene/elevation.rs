@@ -3,7 +3,8 @@
 //! ```text
 //! files without an extent, or small ──► read whole, tiles joined
 //! large files with an extent        ──► opened by their headers ──► the system of the ground ──► the window around the extent
-//! files too large for the memory    ──► opened by their headers ──► means of squares of samples, for pictures
+//! files too large for the memory, or
+//! for what pictures show of them    ──► opened by their headers ──► means of squares of samples
 //! ```
 
 use std::cell::RefCell;
@@ -18,7 +19,6 @@ use crate::dem::mosaic::Tiles;
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints, DemOptions};
-use crate::dem::reduced::reduced;
 use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::warp::metric_crs::{OffScale, metric_crs, off_scale};
 use crate::dem::warp::metric_windows::MetricSystem;
@@ -29,10 +29,12 @@ use crate::description::finding_code::FindingCode;
 use crate::description::words::HeightEncodingWord;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
-use crate::limits::{RASTER_SAMPLES, REDUCED_SAMPLES};
+use crate::limits::{PICTURED_SAMPLES, RASTER_SAMPLES};
 use crate::message::suggest::quoted;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::overridden_crs::OverriddenCrs;
+use crate::scene::planned_pictures::ElevationNeed;
+use crate::scene::reduced_elevation::reduced_as_needed;
 use crate::scene::scene_findings::SceneFindings;
 
 /// Samples beside an extent that are read of large files, so that voids on its border are known to end.
@@ -67,26 +69,38 @@ pub(super) struct StatedExtent {
 }
 
 impl ReadElevation {
-    /// Reads the document's elevation files. One that is larger than a raster in memory is reduced, where it can be and the
-    /// document states no extent.
+    /// Reads the document's elevation files. One that is larger than a raster in memory, or than what pictures show of it, is
+    /// reduced, where that is enough and the document states no extent.
     ///
     /// # Errors
     /// They cannot be read, are not of one raster, or have no place in a system in meters; the extent has none on them.
     pub fn new(
         document: &Document,
         assets: &Assets,
-        can_be_reduced: bool,
+        need: ElevationNeed<'_>,
         findings: &mut SceneFindings,
     ) -> Result<Self, Diagnostic> {
         let held = match TileList::of(document, assets)? {
             None => replaced(document, assets, findings)?,
-            Some(list) => match list.windows(document, assets, can_be_reduced, findings)? {
-                Some(windows) if document.terrain.extent.is_some() => {
-                    return Self::around_extent(document, windows);
+            Some(list) => {
+                let mut of_windows = findings.clone();
+                let windows = list.windows(document, assets, need, &mut of_windows)?;
+                let reduced = match windows {
+                    Some(windows) if document.terrain.extent.is_some() => {
+                        *findings = of_windows;
+                        return Self::around_extent(document, windows);
+                    }
+                    Some(windows) => reduced_as_needed(document, windows, need, &mut of_windows)?,
+                    None => None,
+                };
+                match reduced {
+                    Some(reduced) => {
+                        *findings = of_windows;
+                        reduced
+                    }
+                    None => list.joined(document, assets, findings)?,
                 }
-                Some(windows) => reduced_to_fit(document, windows, findings)?,
-                None => list.joined(document, assets, findings)?,
-            },
+            }
         };
         let (whole, window) = (held.without_samples(), RasterWindow::all(held.size()));
         let failed = |error| document.error(&document.terrain.dem, error);
@@ -166,31 +180,6 @@ fn stated_extent(
     Ok(Some(StatedExtent { crs, ground, source }))
 }
 
-/// The smaller raster of one that is too large for the memory.
-fn reduced_to_fit(
-    document: &Document,
-    mut windows: Box<dyn Windows + Send>,
-    findings: &mut SceneFindings,
-) -> Result<Raster, Diagnostic> {
-    let dem = &document.terrain.dem;
-    let (width, height) = windows.size();
-    let samples = |step: u32| u64::from(width / step) * u64::from(height / step);
-    let step = (1..31)
-        .map(|power| 1 << power)
-        .find(|step| samples(*step) <= REDUCED_SAMPLES.get())
-        .unwrap_or(1 << 31);
-    let of_overview = windows.overview(step).map(|(held, mut overview)| reduced(&mut overview, step / held));
-    let raster = of_overview.unwrap_or_else(|| reduced(&mut windows, step));
-    let raster = raster.map_err(|error| document.error(dem, error))?;
-    let message = format!(
-        "the elevation model has {width} x {height} samples, more than the {RASTER_SAMPLES} of a scene: each height is that of \
-         {step} x {step} of them"
-    );
-    let help = "name a part with `extent`, which is taken in full";
-    findings.add_with_help(FindingCode::ElevationReduced, dem.span().unwrap_or_default(), message, help);
-    Ok(raster)
-}
-
 /// The elevation files that a document names: those that it lists, those in a folder, and those that a virtual raster lists.
 struct TileList {
     names: Vec<String>,
@@ -240,14 +229,15 @@ impl TileList {
         &self,
         document: &Document,
         assets: &Assets,
-        can_be_reduced: bool,
+        need: ElevationNeed<'_>,
         findings: &mut SceneFindings,
     ) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
         let dem = &document.terrain.dem;
-        let most_kept = match (&document.terrain.extent, can_be_reduced) {
+        let most_kept = match (&document.terrain.extent, need) {
             (Some(_), _) => MOST_KEPT_SAMPLES.min(RASTER_SAMPLES.get()),
-            (None, true) => RASTER_SAMPLES.get(),
-            (None, false) => return Ok(None),
+            (None, ElevationNeed::Pictures(_)) => PICTURED_SAMPLES.get().min(RASTER_SAMPLES.get()),
+            (None, ElevationNeed::AllThatFit) => RASTER_SAMPLES.get(),
+            (None, ElevationNeed::All) => return Ok(None),
         };
         let (names, stated) = (self.names.clone(), self.stated.clone());
         let mut tiles = Vec::new();

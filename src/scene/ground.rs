@@ -19,12 +19,14 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::scene::assets::Assets;
 use crate::scene::elevation::{BESIDE, ReadElevation, nothing_within};
+use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::scene_findings::SceneFindings;
 use crate::terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {
-    /// The raster as read; tiles joined, voids filled where the scene file says so. Of large files, only what the extent needs.
+    /// The raster as read; tiles joined, voids filled where the scene file says so. Of large files, only what the extent
+    /// needs, or means of squares of samples.
     pub source: Arc<Raster>,
     /// The heights in the scene's system, before earthworks.
     pub lattice: Lattice,
@@ -38,16 +40,19 @@ pub struct LoadedGround {
     pub findings: SceneFindings,
 }
 
-/// Reads the document's elevation files and brings them to a metric system. `can_be_reduced` says whether means of samples
-/// will do where there are more of these than fit into memory: for pictures, not for heights.
+/// Reads the document's elevation files, as far as they are needed, and brings them to a metric system.
 ///
 /// # Errors
 /// A file cannot be read, several are not tiles of one raster, or they cannot be brought to the scene's
 /// system.
-pub fn load(document: &Document, assets: &Assets, can_be_reduced: bool) -> Result<LoadedGround, Diagnostic> {
+pub fn load(
+    document: &Document,
+    assets: &Assets,
+    need: ElevationNeed<'_>,
+) -> Result<LoadedGround, Diagnostic> {
     let dem = &document.terrain.dem;
     let (mut findings, span) = (SceneFindings::new(document), dem.span().unwrap_or_default());
-    let mut read = ReadElevation::new(document, assets, can_be_reduced, &mut findings)?;
+    let mut read = ReadElevation::new(document, assets, need, &mut findings)?;
     for found in undeclared_nodata(&read.held) {
         let (evidence, value) = (&found.evidence, found.written());
         let message = format!("{evidence}: if that means no data, say `nodata = {value}` under [terrain]");

@@ -36,8 +36,10 @@ pub mod near;
 pub mod overridden_crs;
 pub mod picture;
 pub mod placement;
+pub mod planned_pictures;
 pub mod plinth;
 pub mod ramps;
+mod reduced_elevation;
 pub mod report;
 pub mod roads;
 pub mod scatter;
@@ -408,6 +410,9 @@ pub struct SceneView {
     /// The paper that it fills, where it is meant for print.
     pub paper: Option<PaperSheet>,
 }
+
+/// The size of a picture where nothing states one, pixels.
+pub const SCREEN_PX: (u32, u32) = (1920, 1080);
 
 /// A sheet of paper.
 #[derive(Clone, Copy, Debug, PartialEq)]

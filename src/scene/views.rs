@@ -83,15 +83,48 @@ const EYE_FOV_DEG: f64 = 40.0;
 const FITTED_FOV_DEG: f64 = 28.0;
 
 fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
-    let (aim, fov_deg) = match (&table.eye, &table.look_at) {
-        _ if table.projection != CameraProjection::Perspective => {
-            (ViewAim::Parallel(parallel(table, frame, lattice)?), FITTED_FOV_DEG)
-        }
-        (Some(eye), Some(look_at)) => (aimed(table, eye, look_at, frame, lattice)?, EYE_FOV_DEG),
-        _ => (ViewAim::Fitted(fitted(table, frame, lattice)?), FITTED_FOV_DEG),
+    let aim = match eye_and_target(table) {
+        Some((eye, look_at)) => aimed(table, eye, look_at, frame, lattice)?,
+        None => aim_without_eye(table, frame, &plan(lattice))?,
     };
-    let fov_y_rad = (table.field_of_view.unwrap_or(fov_deg) as f32).to_radians();
-    Ok(SceneView { name: table.name.to_string(), aim, fov_y_rad, paper: paper(table) })
+    Ok(SceneView {
+        name: table.name.to_string(),
+        aim,
+        fov_y_rad: fov_y_rad(Some(table)),
+        paper: paper(table),
+    })
+}
+
+/// The ground of a lattice in world space.
+fn plan(lattice: &Lattice) -> Rect {
+    Rect { min: DVec2::ZERO, max: lattice.extent().size() }
+}
+
+/// Where a camera has its eye, and where it looks; `None` where its eye depends on what it shows, or where it has none.
+pub(super) fn eye_and_target(table: &CameraTable) -> Option<(&Stated<[f64; 2]>, &Stated<[f64; 2]>)> {
+    let is_perspective = table.projection == CameraProjection::Perspective;
+    table.eye.as_ref().zip(table.look_at.as_ref()).filter(|_| is_perspective)
+}
+
+/// The vertical field of view of a camera, radians; without one, that of a view of the whole ground.
+pub(super) fn fov_y_rad(table: Option<&CameraTable>) -> f32 {
+    let usual = match table.and_then(eye_and_target) {
+        Some(_) => EYE_FOV_DEG,
+        None => FITTED_FOV_DEG,
+    };
+    (table.and_then(|table| table.field_of_view).unwrap_or(usual) as f32).to_radians()
+}
+
+/// The aim of a camera without an eye of its own, on ground that fills the rectangle `ground` of world space.
+pub(super) fn aim_without_eye(
+    table: &CameraTable,
+    frame: &WorldFrame<'_>,
+    ground: &Rect,
+) -> Result<ViewAim, Diagnostic> {
+    Ok(match table.projection {
+        CameraProjection::Perspective => ViewAim::Fitted(fitted(table, frame, ground)?),
+        _ => ViewAim::Parallel(parallel(table, frame, ground)?),
+    })
 }
 
 fn aimed(
@@ -122,17 +155,17 @@ fn aimed(
     Ok(ViewAim::At { eye, target })
 }
 
-fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<FittedView, Diagnostic> {
+fn fitted(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Result<FittedView, Diagnostic> {
     let radians = |degrees: f64| degrees.to_radians() as f32;
     Ok(FittedView {
         azimuth_rad: table.azimuth.map(radians),
         pitch_rad: table.pitch.map(radians),
-        shown: shown(table, frame, lattice)?,
+        shown: shown(table, frame, ground)?,
     })
 }
 
 /// The paper of a camera.
-fn paper(table: &CameraTable) -> Option<PaperSheet> {
+pub(super) fn paper(table: &CameraTable) -> Option<PaperSheet> {
     let [longer, shorter] = paper_mm(table.paper?);
     let size_mm = if table.portrait { [shorter, longer] } else { [longer, shorter] };
     Some(PaperSheet { size_mm, dpi: table.dpi.unwrap_or(PAPER_DPI) })
@@ -141,11 +174,7 @@ fn paper(table: &CameraTable) -> Option<PaperSheet> {
 /// The dots per inch of a screen, by convention.
 const SCREEN_DPI: f64 = 96.0;
 
-fn parallel(
-    table: &CameraTable,
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
-) -> Result<ParallelView, Diagnostic> {
+fn parallel(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Result<ParallelView, Diagnostic> {
     let radians = |degrees: f64| degrees.to_radians() as f32;
     let (pitch_rad, stretch) = match table.projection {
         CameraProjection::Plan => (FRAC_PI_2, 1.0),
@@ -161,20 +190,19 @@ fn parallel(
         stretch,
         scale: table.scale,
         dpi: table.dpi.unwrap_or(if table.paper.is_some() { PAPER_DPI } else { SCREEN_DPI }),
-        shown: shown(table, frame, lattice)?,
+        shown: shown(table, frame, ground)?,
         middle: None,
     })
 }
 
 /// The ground around the points that a camera shows; `None` where it names none.
-fn shown(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<Option<Rect>, Diagnostic> {
+fn shown(table: &CameraTable, frame: &WorldFrame<'_>, ground: &Rect) -> Result<Option<Rect>, Diagnostic> {
     let shown = table.shows.as_ref().map(|shows| {
         let crs = table.crs.as_ref().unwrap_or(&frame.points_crs);
         let corners: Result<Vec<DVec2>, _> =
             shows.iter().map(|&corner| frame.world(crs, DVec2::from(corner))).collect();
         let corners = corners.map_err(|error| frame.document.error(shows, error))?;
-        let ground = Rect { min: DVec2::ZERO, max: lattice.extent().size() };
-        let shown = Rect::around(corners).intersection(&ground);
+        let shown = Rect::around(corners).intersection(ground);
         if shown.is_empty() {
             let help = "name points on it, or remove `shows` to see all of it";
             let message = "the camera shows nothing of the elevation model";
@@ -209,10 +237,9 @@ pub fn find_buried(
 }
 
 /// A view that is fitted to the whole ground.
-fn overview() -> SceneView {
+pub(super) fn overview() -> SceneView {
     let view = FittedView { azimuth_rad: None, pitch_rad: None, shown: None };
-    let fov_y_rad = (FITTED_FOV_DEG as f32).to_radians();
-    SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad, paper: None }
+    SceneView { name: "overview".into(), aim: ViewAim::Fitted(view), fov_y_rad: fov_y_rad(None), paper: None }
 }
 
 #[cfg(test)]

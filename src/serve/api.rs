@@ -4,9 +4,10 @@
 
 use crate::dem::height_datum::HeightDatum;
 use crate::message::choice::Choice;
-use crate::pipeline::service::ServiceLimits;
+use crate::pipeline::service::{PathPrefix, ServiceLimits};
 use crate::serve::api::ApiNeed::{Optional, Required};
 use crate::serve::api::ApiValue::{Count, Number, Text, Words};
+use crate::serve::{health, ready};
 use crate::terrain::query::Interpolation;
 
 /// An address of the service.
@@ -232,13 +233,14 @@ pub const VIEWSHED: ApiAddress = ApiAddress {
 };
 
 /// Every address.
-pub const ADDRESSES: [ApiAddress; 8] = [
+pub const ADDRESSES: [ApiAddress; 9] = [
     HEIGHTS,
     LOS,
     PROFILE,
     VIEWSHED,
     page("/datasets", "the datasets with their systems, extents and cells", "application/json"),
-    page("/health", "version, and whether the datasets are ready", "application/json"),
+    page(health::PATH, "version, and whether the datasets are ready", "application/json"),
+    page(ready::PATH, "whether requests should be sent here: 200, or 503", "application/json"),
     page("/openapi.json", "this list as an OpenAPI document", "application/json"),
     page("/", "this list as text", "text/plain"),
 ];
@@ -247,9 +249,9 @@ const fn page(path: &'static str, summary: &'static str, answer: &'static str) -
     ApiAddress { path, methods: ApiMethods::Get, summary, answer, parameters: &[] }
 }
 
-/// The paths of all addresses.
-pub fn paths() -> Vec<&'static str> {
-    ADDRESSES.iter().map(|address| address.path).collect()
+/// The paths of all addresses below a prefix.
+pub fn paths(prefix: &PathPrefix) -> Vec<String> {
+    ADDRESSES.iter().map(|address| prefix.before(address.path)).collect()
 }
 
 #[cfg(test)]

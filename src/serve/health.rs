@@ -9,6 +9,9 @@ use crate::serve::datasets::{DatasetFacts, ServedDataset};
 use crate::serve::query::Service;
 use crate::serve::reply::OK;
 
+/// Its path.
+pub const PATH: &str = "/health";
+
 #[derive(Serialize)]
 struct Health<'a> {
     status: &'static str,

@@ -22,8 +22,9 @@ pub fn page(service: &Service) -> Response {
         text,
         "\nA POST takes the same parameters as a form, in parts or not, or as a JSON object. Heights and distances are meters. At most {} \
          locations\nare answered at a time. A refusal is JSON with status and error.\n\n\
-         Example: /v1/{first}?locations=46.2,-122.19\n",
-        service.limits.max_points
+         Example: {}?locations=46.2,-122.19\n",
+        service.limits.max_points,
+        service.prefix.before(&format!("/v1/{first}"))
     );
     text.into_response()
 }
@@ -33,7 +34,12 @@ fn describe(address: &ApiAddress, service: &Service, text: &mut String) {
         ApiMethods::Get => "GET",
         ApiMethods::GetOrPost => "GET or POST",
     };
-    let _ = writeln!(text, "{:<WIDTH$}  {}", format!("{methods} {}", address.path), address.summary);
+    let _ = writeln!(
+        text,
+        "{:<WIDTH$}  {}",
+        format!("{methods} {}", service.prefix.before(address.path)),
+        address.summary
+    );
     for parameter in address.parameters {
         let form = format!("{}={}", parameter.name, parameter.value.form(&service.limits));
         let default = match parameter.need {

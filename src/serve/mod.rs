@@ -8,7 +8,7 @@
 //!         ├─ heights, los, profile, viewshed               the queries (`query` is what they share)
 //!         ├─ datasets                                      the rasters and scenes that are served
 //!         ├─ api ─► help, openapi                          what may be asked, as a table and as pages
-//!         └─ reply, health                                 writing
+//!         └─ reply, health, ready, etag                    writing
 //! ```
 //!
 //! Every answer comes from the [`Dataset`](crate::pipeline::dataset::Dataset) that the commands query, and its numbers
@@ -20,6 +20,7 @@ mod api;
 mod clients;
 mod coordinates;
 mod datasets;
+mod etag;
 mod health;
 mod heights;
 mod help;
@@ -31,6 +32,7 @@ mod parameters;
 mod polyline;
 mod profile;
 mod query;
+mod ready;
 mod reply;
 mod router;
 mod samples;
@@ -55,6 +57,7 @@ use crate::serve::datasets::Datasets;
 use crate::serve::listener::{Gate, RequestConnection};
 use crate::serve::parameters::{LONG_BODIES, LONG_BODIES_OF_CLIENT};
 use crate::serve::query::Service;
+use crate::serve::ready::Readiness;
 
 /// Why the service cannot start or continue.
 #[derive(Debug, thiserror::Error)]
@@ -82,6 +85,8 @@ pub fn run(options: &ServiceOptions) -> Result<(), ServeError> {
         limits: options.limits,
         wgs84: Crs::wgs84(),
         hosts: options.hosts.clone(),
+        prefix: options.prefix.clone(),
+        readiness: Readiness::default(),
         clients: Clients::new(options.limits.max_connections as usize, shares(&options.limits)),
         answers: AnswerMemory::default(),
         geoid: Geoid::default(),
@@ -125,10 +130,15 @@ fn runtime() -> io::Result<Runtime> {
     Builder::new_multi_thread().enable_all().max_blocking_threads(blocking).build()
 }
 
-/// Makes the ground of every dataset in the background. Queries for elevations as read do not wait for it.
+/// Makes the ground of every dataset in the background, and answers a first height of each. Queries for elevations as read do not
+/// wait for it.
 fn prepare(service: &Arc<Service>) {
     let service = Arc::clone(service);
-    let work = move || service.datasets.all().iter().for_each(|served| drop(served.dataset.prepare_ground()));
+    let work = move || {
+        let datasets = service.datasets.all();
+        datasets.iter().for_each(|served| drop(served.dataset.prepare_ground()));
+        service.readiness.try_all(datasets);
+    };
     // If the thread does not start, the first query for the ground makes it.
     let _ = std::thread::Builder::new().name("ground".into()).spawn(work);
 }
@@ -139,7 +149,8 @@ async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> 
     let gate = Gate::new(listener, Arc::clone(&service.clients));
     let address = axum::serve::Listener::local_addr(&gate)?;
     let mut signals = StopSignals::listen()?;
-    (service.write_line)(&format!("listening at http://{address}: {}", service.datasets.names()));
+    let (prefix, names) = (service.prefix.as_str(), service.datasets.names());
+    (service.write_line)(&format!("listening at http://{address}{prefix}: {names}"));
     let (stop, stopped) = oneshot::channel::<()>();
     let router = router::router(Arc::clone(service));
     let router = router.into_make_service_with_connect_info::<RequestConnection>();
@@ -149,6 +160,7 @@ async fn serve(listener: TcpListener, service: &Arc<Service>) -> io::Result<()> 
     let grace = Duration::from_secs(service.limits.grace_s.into());
     let cut_short = async {
         signals.next().await;
+        service.readiness.end();
         let _ = stop.send(());
         let _ = tokio::time::timeout(grace, signals.next()).await;
     };

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::serve::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
 use crate::serve::parameters::BODY_TYPES;
 use crate::serve::query::Service;
+use crate::serve::ready;
 
 /// The part of a path that is a parameter, in the table and in the document.
 const DATASET: (&str, &str) = ("DATASET", "{dataset}");
@@ -20,7 +21,7 @@ fn document(service: &Service) -> Value {
         .iter()
         .map(|address| (address.path.replace(DATASET.0, DATASET.1), path_item(address, service)))
         .collect();
-    json!({
+    let mut document = json!({
         "openapi": "3.1.0",
         "info": {
             "title": "sandtable",
@@ -36,7 +37,11 @@ fn document(service: &Service) -> Value {
                 "error": {"type": "string", "description": "what was found, and what to do"},
             },
         }}},
-    })
+    });
+    if !service.prefix.as_str().is_empty() {
+        document["servers"] = json!([{"url": service.prefix.as_str()}]);
+    }
+    document
 }
 
 fn path_item(address: &ApiAddress, service: &Service) -> Value {
@@ -125,6 +130,9 @@ fn responses(address: &ApiAddress) -> Value {
         responses["400"] = refusal("the request is wrong");
         responses["404"] = refusal("there is no such dataset");
         responses["503"] = refusal("the client asks for too much at once, or the answer took too long");
+    }
+    if address.path == ready::PATH {
+        responses["503"] = refusal("the datasets are being prepared, or the service ends");
     }
     responses
 }

@@ -9,7 +9,7 @@ use tokio::sync::Semaphore;
 use crate::geom::crs::Crs;
 use crate::geom::geoid::Geoid;
 use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::service::{RequestLog, ServiceLimits};
+use crate::pipeline::service::{PathPrefix, RequestLog, ServiceLimits};
 use crate::pipeline::windowed_elevation::GroundReach;
 use crate::serve::answers::AnswerMemory;
 use crate::serve::api::ApiAddress;
@@ -17,6 +17,7 @@ use crate::serve::clients::Clients;
 use crate::serve::coordinates::{Coordinates, Location};
 use crate::serve::datasets::{Datasets, ServedDataset};
 use crate::serve::parameters::Parameters;
+use crate::serve::ready::Readiness;
 use crate::serve::reply::HttpError;
 use crate::terrain::sight::Curvature;
 use crate::terrain::stop_flag::StopFlag;
@@ -35,6 +36,9 @@ pub struct Service {
     pub wgs84: Crs,
     /// The names under which it is asked for, beside its addresses.
     pub hosts: Vec<String>,
+    /// What paths begin with.
+    pub prefix: PathPrefix,
+    pub readiness: Readiness,
     pub clients: Arc<Clients>,
     pub answers: AnswerMemory,
     /// The geoid, with the nodes that requests have needed.

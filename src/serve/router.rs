@@ -40,7 +40,7 @@ use crate::serve::profile::ProfileQuery;
 use crate::serve::query::{Query, QueryWeight, Service};
 use crate::serve::reply::{HttpError, quoted};
 use crate::serve::viewshed::ViewshedQuery;
-use crate::serve::{answers, api, datasets, health, help, host, openapi};
+use crate::serve::{answers, api, datasets, etag, health, help, host, openapi, ready};
 use crate::terrain::stop_flag::StopFlag;
 
 /// Values longer than this are parsed on another thread, because parsing takes longer than the move.
@@ -56,19 +56,26 @@ const PAGE_METHODS: &str = "GET, HEAD, OPTIONS";
 type Shared = State<Arc<Service>>;
 
 pub fn router(service: Arc<Service>) -> Router {
+    let at = |path: &str| service.prefix.before(path);
     let router = Router::new()
-        .route("/", page(help::page))
-        .route("/datasets", page(datasets::page))
-        .route("/openapi.json", page(openapi::page))
-        .route("/health", page(health::page))
-        .route("/v1/los", query::<LosQuery>())
-        .route("/v1/profile", query::<ProfileQuery>())
-        .route("/v1/viewshed", query::<ViewshedQuery>())
+        .route(&at("/"), page(help::page))
+        .route(&at("/datasets"), page(datasets::page))
+        .route(&at("/openapi.json"), page(openapi::page))
+        .route(&at(health::PATH), page(health::page))
+        .route(&at(ready::PATH), page(ready::page))
+        .route(&at("/v1/los"), query::<LosQuery>())
+        .route(&at("/v1/profile"), query::<ProfileQuery>())
+        .route(&at("/v1/viewshed"), query::<ViewshedQuery>())
         .route(
-            "/v1/{datasets}",
+            &at("/v1/{datasets}"),
             get(heights).post(heights).fallback(async |method| other(&method, QUERY_METHODS)),
         )
         .fallback(async |State(service): Shared, uri: Uri| not_found(&service, &uri));
+    let router = match service.prefix.as_str() {
+        "" => router,
+        prefix => router.route(prefix, page(help::page)),
+    };
+    let router = router.layer(from_fn_with_state(Arc::clone(&service), etag::tag));
     let router = router.layer(from_fn_with_state(Arc::clone(&service), host::check));
     let router = match service.log {
         RequestLog::On => router.layer(from_fn_with_state(Arc::clone(&service), log)),
@@ -117,7 +124,7 @@ fn not_found(service: &Service, uri: &Uri) -> HttpError {
     let (path, names) = (quoted(uri.path()), service.datasets.names());
     HttpError::unknown(format!(
         "there is nothing at {path}; there are {}, where the datasets are {names}",
-        api::paths().join(", ")
+        api::paths(&service.prefix).join(", ")
     ))
 }
 

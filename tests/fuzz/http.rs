@@ -33,6 +33,7 @@ fn options(dataset: &str) -> ServiceOptions {
         dataset: DatasetOptions::default(),
         listen: SocketAddr::from((Ipv4Addr::LOCALHOST, 0)),
         hosts: Vec::new(),
+        prefix: Default::default(),
         limits: ServiceLimits { timeout_s: 10, max_posts: 1000, ..ServiceLimits::default() },
         log: RequestLog::Off,
         write_line: |line| {

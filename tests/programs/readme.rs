@@ -22,7 +22,7 @@ use crate::serve::client::Server;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The pages whose links are followed.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 10] = [
     "README.md",
     "CHANGELOG.md",
     "assets/README.md",
@@ -30,6 +30,7 @@ const PAGES: [&str; 9] = [
     "scenes/README.md",
     "src/ARCHITECTURE.md",
     "src/python/README.md",
+    "src/SERVE.md",
     "src/SHARDS.md",
     "tests/bench/README.md",
 ];

@@ -30,6 +30,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes,
     writer: Some(write),
+    windows_writer: None,
 };
 
 /// The no-data value where the header states none, by Esri's definition of the format.

@@ -49,6 +49,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
     writer: Some(write),
+    windows_writer: None,
 };
 
 /// The first byte of the values, in every version.

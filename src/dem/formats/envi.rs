@@ -27,6 +27,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 /// The first band.

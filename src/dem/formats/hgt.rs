@@ -25,6 +25,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes,
     writer: Some(write),
+    windows_writer: None,
 };
 
 const VOID: i16 = -32768;

@@ -23,14 +23,14 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
-use std::io::{Read, Seek};
+use std::io::{Read, Seek, Write};
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemFile;
 use crate::dem::tiff::geotiff;
 use crate::dem::windows::Windows;
-use crate::dem::write::{WriteError, WrittenDem};
+use crate::dem::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 use crate::limits::UNPACKED_RASTER_BYTES;
 
 /// The formats, in the order in which their content is tried.
@@ -55,6 +55,14 @@ type DemWriter = fn(&Raster, &str) -> Result<WrittenDem, WriteError>;
 /// Opens the content of a file, of whose bytes only the first are given; the number is that of the bytes to be cached.
 type WindowsOpener =
     fn(&DemFile, Box<dyn FileContent>, usize) -> Result<Box<dyn Windows + Send>, DemErrorKind>;
+
+type WindowsWriter =
+    fn(&mut (dyn Windows + Send), &mut dyn WrittenContent) -> Result<WrittenWindows, WriteWindowsError>;
+
+/// A file that is being written, in order but for its head.
+pub trait WrittenContent: Write + Seek + Send {}
+
+impl<C: Write + Seek + Send> WrittenContent for C {}
 
 /// The content of a file that stays on disk.
 pub trait FileContent: Read + Seek + Send {}
@@ -81,6 +89,8 @@ pub struct DemFormat {
     pub(crate) most_bytes: fn(&[u8]) -> u64,
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<DemWriter>,
+    /// Writes a raster that is read in windows: the bytes of `writer`; `None` where the format is written from memory.
+    pub(crate) windows_writer: Option<WindowsWriter>,
 }
 
 /// How files of a format are recognized.

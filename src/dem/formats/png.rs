@@ -31,6 +31,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes: any_size,
     writer: Some(write),
+    windows_writer: None,
 };
 
 /// Deflate turns one byte into at most 1032; filters add one byte a row.

@@ -25,6 +25,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     windows: Some(|file, content, _| plain_raster::windows(file, content, plain)),
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 /// The layout of a RAW file: north row first, from the west.

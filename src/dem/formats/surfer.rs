@@ -36,6 +36,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 /// The blank value of the versions whose files do not state it.

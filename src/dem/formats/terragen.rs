@@ -29,6 +29,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 const START: &[u8] = b"TERRAGENTERRAIN ";

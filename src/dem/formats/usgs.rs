@@ -32,6 +32,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 const VOID: i64 = -32767;

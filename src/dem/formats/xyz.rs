@@ -22,6 +22,7 @@ pub(super) static FORMAT: DemFormat = DemFormat {
     windows: None,
     most_bytes: any_size,
     writer: None,
+    windows_writer: None,
 };
 
 /// How far from its node a point may lie, in cells: rounded decimals of degrees are a few thousandths off.

@@ -24,7 +24,7 @@ use crate::dem::tiff::mask;
 use crate::dem::tiff::place::PlaceTags;
 use crate::dem::tiff::storage::{Storage, decode_error};
 use crate::dem::tiff::windows::GeoTiffWindows;
-use crate::dem::tiff::write::write;
+use crate::dem::tiff::write::{write, write_windows};
 use crate::dem::windows::Windows;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::TIFF_TAG_BYTES;
@@ -38,6 +38,7 @@ pub(crate) static FORMAT: DemFormat = DemFormat {
     windows: Some(windows),
     most_bytes: any_size,
     writer: Some(write),
+    windows_writer: Some(write_windows),
 };
 
 /// The most bytes of a text tag; GDAL's metadata takes a few kilobytes.

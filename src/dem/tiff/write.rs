@@ -16,13 +16,16 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
-use crate::dem::raster::Raster;
+use crate::dem::formats::WrittenContent;
+use crate::dem::raster::{Raster, Samples};
+use crate::dem::read_ahead::read_ahead;
 use crate::dem::sample_type::NumberKind;
-use crate::dem::stored::StoredSamples;
+use crate::dem::stored::{SampleSurvey, StoredSamples};
 use crate::dem::tiff::gdal_metadata::GDAL_METADATA;
 use crate::dem::tiff::write_geokeys::GeoKeyTags;
 use crate::dem::units::name_of_length;
-use crate::dem::write::{WriteError, WrittenDem};
+use crate::dem::windows::{RasterWindow, Windows};
+use crate::dem::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 
 /// Samples along a side of a tile, as GDAL writes them.
 const TILE: u32 = 256;
@@ -37,11 +40,59 @@ pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteErr
         .into_par_iter()
         .map(|index| tile(&raster, stored, (index % across) * TILE, (index / across) * TILE))
         .collect();
-    let notes = if is_named { vec![] } else { vec!["heights are converted to meters".to_owned()] };
-    Ok(WrittenDem {
-        notes,
-        ..WrittenDem::new(file(tags(&raster, stored), &tiles), stored.sample.gdal_name())
+    let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
+    let mut bytes = head(tags(&raster, stored), &lengths);
+    tiles.iter().for_each(|tile| bytes.extend(tile));
+    Ok(WrittenDem { notes: notes(is_named), ..WrittenDem::new(bytes, stored.sample.gdal_name()) })
+}
+
+/// Samples that are looked at together before the first is written: 16 or 32 MiB.
+const SURVEYED_SAMPLES: u32 = 1 << 22;
+
+/// Writes a raster that is read in windows, twice, and holds a row of tiles of it: the bytes of [`write`].
+pub(crate) fn write_windows(
+    source: &mut (dyn Windows + Send),
+    out: &mut dyn WrittenContent,
+) -> Result<WrittenWindows, WriteWindowsError> {
+    let own = source.metadata().without_samples();
+    let is_named = name_of_length(own.meters_per_z).is_some();
+    let written = |raster: Raster| if is_named { raster } else { raster.into_meters() };
+    let part = |samples: Samples, height: u32| written(Raster { samples, height, ..own.without_samples() });
+    let header = written(own.without_samples());
+    let mut survey = SampleSurvey::new(&header);
+    let all = RasterWindow::all(source.size());
+    read_ahead(source, all.bands(SURVEYED_SAMPLES), Windows::samples, |window, samples| {
+        survey.add(&part(samples, window.height).samples);
+    })?;
+    let stored = survey.stored();
+    let across = header.width.div_ceil(TILE);
+    // The lengths of the tiles are not known yet, but how many there are: the head is as long.
+    let mut lengths = vec![0; (across * header.height.div_ceil(TILE)) as usize];
+    out.write_all(&head(tags(&header, stored), &lengths))?;
+    let (mut unwritten, mut outcome) = (lengths.iter_mut(), Ok(()));
+    read_ahead(source, all.bands(TILE * header.width), Windows::samples, |window, samples| {
+        let rows = part(samples, window.height);
+        let tiles: Vec<Vec<u8>> =
+            (0..across).into_par_iter().map(|index| tile(&rows, stored, index * TILE, 0)).collect();
+        for (tile, length) in tiles.iter().zip(unwritten.by_ref()) {
+            *length = tile.len() as u32;
+            if outcome.is_ok() {
+                outcome = out.write_all(tile);
+            }
+        }
+    })?;
+    outcome?;
+    out.rewind()?;
+    out.write_all(&head(tags(&header, stored), &lengths))?;
+    Ok(WrittenWindows {
+        stored: stored.sample.gdal_name().to_ascii_lowercase(),
+        valid: survey.valid,
+        notes: notes(is_named),
     })
+}
+
+fn notes(is_named: bool) -> Vec<String> {
+    if is_named { vec![] } else { vec!["heights are converted to meters".to_owned()] }
 }
 
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
@@ -179,11 +230,11 @@ fn place(raster: &Raster) -> Vec<(u16, TiffField)> {
     }
 }
 
-/// Header, directory, long values and tiles. At most 2²⁸ samples of eight bytes fit the 4 GiB of a classic TIFF.
-fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
-    let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
-    tags.push((324, TiffField::longs(&lengths)));
-    tags.push((325, TiffField::longs(&lengths)));
+/// Header, directory and long values, before tiles of these lengths. At most 2²⁸ samples of eight bytes fit the 4 GiB of a
+/// classic TIFF.
+fn head(mut tags: Vec<(u16, TiffField)>, lengths: &[u32]) -> Vec<u8> {
+    tags.push((324, TiffField::longs(lengths)));
+    tags.push((325, TiffField::longs(lengths)));
     tags.sort_by_key(|(tag, _)| *tag);
     let first_tile = 8 + directory(&tags, 8).len() as u32;
     let next = |start: &mut u32, length: &u32| {
@@ -194,9 +245,6 @@ fn file(mut tags: Vec<(u16, TiffField)>, tiles: &[Vec<u8>]) -> Vec<u8> {
     tags.iter_mut().filter(|(tag, _)| *tag == 324).for_each(|(_, field)| *field = TiffField::longs(&starts));
     let mut bytes = b"II*\0\x08\0\0\0".to_vec();
     bytes.extend(directory(&tags, 8));
-    for tile in tiles {
-        bytes.extend(tile);
-    }
     bytes
 }
 
@@ -223,4 +271,40 @@ fn directory(tags: &[(u16, TiffField)], start: usize) -> Vec<u8> {
     entries.extend([0; 4]);
     entries.extend(long);
     entries
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    /// A raster of more than two rows of tiles, with a height for each sample.
+    fn raster(samples: Samples, meters_per_z: f64, nodata: Option<f64>) -> Raster {
+        Raster { meters_per_z, nodata, ..Raster::new(530, samples) }
+    }
+
+    #[test]
+    fn from_windows_a_file_has_the_bytes_that_it_has_from_memory() {
+        let count = 530 * 600;
+        let whole = |at: u32| (at % 9001) as f32 - 4500.0;
+        let holed = |at: u32| if at % 977 == 5 { f32::NAN } else { (at % 9001) as f32 / 7.0 };
+        // The only height that no 16 bits hold is the last.
+        let late = |at: u32| if at + 1 == count { 0.5 } else { whole(at) };
+        let rasters = [
+            raster(Samples::F32((0..count).map(whole).collect()), 1.0, Some(-32768.0)),
+            raster(Samples::F32((0..count).map(holed).collect()), 1.0, Some(holed(100).into())),
+            raster(Samples::F32((0..count).map(late).collect()), 1.0, None),
+            raster(Samples::F64((0..count).map(|at| f64::from(holed(at))).collect()), 0.3048, None),
+            raster(Samples::F32((0..count).map(whole).collect()), 0.7, Some(-9999.0)),
+            raster(Samples::F32(vec![f32::NAN; count as usize]), 1.0, Some(-9999.0)),
+        ];
+        for mut raster in rasters {
+            let wanted = write(&raster, "").expect("any raster can be written");
+            let mut out = Cursor::new(Vec::new());
+            let written = write_windows(&mut raster, &mut out).expect("memory");
+            assert!(out.into_inner() == wanted.bytes, "{}", wanted.stored);
+            assert_eq!((written.stored, written.notes), (wanted.stored, wanted.notes));
+            assert_eq!(written.valid, raster.samples.valid().count() as u64);
+        }
+    }
 }

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use crate::pipeline::editing::editor::SceneSource;
 use crate::pipeline::files;
 use crate::pipeline::fingerprint::fingerprint;
-use crate::pipeline::scene_file::{OpenSceneError, open_scene, open_scene_in_phase};
+use crate::pipeline::scene_file::{OpenSceneError, open_scene_for};
 use crate::scene::SceneModel;
+use crate::scene::planned_pictures::ElevationNeed;
 
 /// A scene file that is shown, with the files that it was made of.
 #[derive(Clone, Debug)]
@@ -59,10 +60,8 @@ impl WatchedScene {
             return ReloadedScene::Unchanged;
         }
         self.fingerprint = now;
-        let opened = match &self.phase {
-            Some(phase) => open_scene_in_phase(&self.path, &self.allowed, phase, progress),
-            None => open_scene(&self.path, &self.allowed, progress),
-        };
+        let need = ElevationNeed::AllThatFit;
+        let opened = open_scene_for(&self.path, &self.allowed, self.phase.as_deref(), need, progress);
         match opened {
             Ok(scene) => {
                 self.files.clone_from(&scene.files);

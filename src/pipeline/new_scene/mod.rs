@@ -34,7 +34,8 @@ use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::scene::assets::Assets;
-use crate::scene::build::build;
+use crate::scene::build::build_with;
+use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
 
 /// The name of the scene file in its folder.
 const FILE_NAME: &str = "scene.toml";
@@ -134,9 +135,11 @@ fn complete(
     allowed: &[PathBuf],
 ) -> Result<SceneDraft, OpenSceneError> {
     let assets = Assets::new(path, allowed)?;
+    // What is found of the ground is as fine as its first picture.
+    let pictures = PlannedPictures::default();
     let built = |draft: &SceneDraft| {
         let document = parse(&path.to_string_lossy(), &text::terrain(draft))?;
-        Ok::<_, OpenSceneError>(build(&document, &assets, &|_| ())?)
+        Ok::<_, OpenSceneError>(build_with(&document, &assets, ElevationNeed::Pictures(&pictures), &|_| ())?)
     };
     let mut scene = built(&draft)?;
     draft.nodata = undeclared_nodata(scene.heights.snapshot().source());

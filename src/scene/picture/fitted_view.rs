@@ -22,7 +22,7 @@ pub(super) const ABOVE: f32 = 0.06;
 const POSTS: u32 = 128;
 
 /// The pitches between which the one is chosen that fills the picture best: 40°, 45° and 50°.
-const PITCHES: [f32; 3] = [FRAC_PI_4 * 40.0 / 45.0, FRAC_PI_4, FRAC_PI_4 * 50.0 / 45.0];
+pub(super) const PITCHES: [f32; 3] = [FRAC_PI_4 * 40.0 / 45.0, FRAC_PI_4, FRAC_PI_4 * 50.0 / 45.0];
 
 /// The share of the picture that a view toward the north fills at least; ground that is longer from south to north than
 /// the picture is high is seen from its long side instead. More of it turns more blocks out of their north.
@@ -36,14 +36,11 @@ pub(super) fn fitted_aim(
     scene: &SceneModel,
     view: &FittedView,
     fov_y_rad: f32,
-    (width, height): (u32, u32),
+    size: (u32, u32),
 ) -> (Vec3, Vec3) {
     let points = silhouette(scene, view.shown);
-    let half = libm::tanf(fov_y_rad / 2.0) * Vec2::new(width as f32 / height as f32, 1.0);
-    let frame = FitFrame {
-        min: -half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, BELOW)),
-        max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
-    };
+    let half = half_picture(fov_y_rad, size);
+    let frame = free_frame(half);
     let aimed = |azimuth_rad: f32, pitch_rad: f32| {
         let axes = DirectionAxes::new(azimuth_rad, pitch_rad);
         let eye = fitted_eye(&points, &axes, &frame);
@@ -71,6 +68,19 @@ pub(super) fn fitted_aim(
         }
     };
     (eye, eye + axes.forward * scene.bounds.0.distance(scene.bounds.1).max(1.0))
+}
+
+/// Half of a picture of `size` pixels, as tangents of angles from the axis of view: across and down.
+pub(super) fn half_picture(fov_y_rad: f32, (width, height): (u32, u32)) -> Vec2 {
+    libm::tanf(fov_y_rad / 2.0) * Vec2::new(width as f32 / height as f32, 1.0)
+}
+
+/// The part of a picture that a fitted view fills.
+pub(super) fn free_frame(half: Vec2) -> FitFrame {
+    FitFrame {
+        min: -half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, BELOW)),
+        max: half * (1.0 - 2.0 * Vec2::new(LEFT_RIGHT, ABOVE)),
+    }
 }
 
 /// A view of a direction that is fitted.

@@ -27,13 +27,7 @@ pub(super) fn parallel_camera(
     let axes = DirectionAxes::new(view.azimuth_rad, view.pitch_rad);
     let shown = ParallelSpan::new(silhouette(scene, view.shown), &axes);
     let picture = DVec2::new(f64::from(size.0), f64::from(size.1));
-    let stretch = DVec2::new(1.0, f64::from(view.stretch));
-    let scale = view.scale.unwrap_or_else(|| {
-        let free = picture * DVec2::new(1.0 - 2.0 * f64::from(LEFT_RIGHT), f64::from(1.0 - BELOW - ABOVE));
-        let span_m = (shown.max - shown.min).truncate().as_dvec2() * stretch;
-        round_scale(view.dpi / INCH_M * (span_m / free).max_element().max(1e-6))
-    });
-    let px_per_m = view.dpi / (INCH_M * scale) * stretch;
+    let px_per_m = pixels_per_meter(view, &shown, size);
     let half_m = (picture / (2.0 * px_per_m)).as_vec2();
     let middle = view.middle.map_or((shown.min + shown.max).truncate() / 2.0, |at| {
         ParallelSpan::new([at.as_vec2().extend(0.0)], &axes).min.truncate()
@@ -48,6 +42,18 @@ pub(super) fn parallel_camera(
     let eye = axes.right.as_dvec3() * at.x + axes.up.as_dvec3() * at.y + axes.forward.as_dvec3() * at.z;
     let frame = ParallelFrame { half_m, dpi: view.dpi as f32 };
     Camera::parallel(eye.as_vec3(), &axes, frame, size, (0.5, far - near))
+}
+
+/// Pixels per meter across and up the picture of a view of `shown` on a picture of `size` pixels.
+pub(super) fn pixels_per_meter(view: &ParallelView, shown: &ParallelSpan, size: (u32, u32)) -> DVec2 {
+    let picture = DVec2::new(f64::from(size.0), f64::from(size.1));
+    let stretch = DVec2::new(1.0, f64::from(view.stretch));
+    let scale = view.scale.unwrap_or_else(|| {
+        let free = picture * DVec2::new(1.0 - 2.0 * f64::from(LEFT_RIGHT), f64::from(1.0 - BELOW - ABOVE));
+        let span_m = (shown.max - shown.min).truncate().as_dvec2() * stretch;
+        round_scale(view.dpi / INCH_M * (span_m / free).max_element().max(1e-6))
+    });
+    view.dpi / (INCH_M * scale) * stretch
 }
 
 /// The least number of two significant figures that is not below `scale`: at most a tenth of the size is lost.

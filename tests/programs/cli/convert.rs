@@ -142,3 +142,36 @@ fn a_file_that_may_be_an_input_is_not_written_over_unasked() {
     let refused = convert(&scratch, &["grid.asc"]).failed(2);
     assert!(refused.contains("the file to write"), "{refused}");
 }
+
+#[test]
+fn a_large_file_is_copied_with_the_bytes_of_one_that_is_held() {
+    let scratch = Scratch::new();
+    let (columns, rows) = (1100u32, 1000u32);
+    let height = |at: u32| if at % 4001 == 7 { -9999 } else { (at / columns * 3 + at % columns * 2) as i16 };
+    let bytes: Vec<u8> = (0..columns * rows).flat_map(|at| height(at).to_le_bytes()).collect();
+    scratch.write("big.bil", bytes);
+    scratch.write(
+        "big.hdr",
+        format!(
+            "ncols {columns}\nnrows {rows}\nnbits 16\npixeltype SIGNEDINT\nbyteorder I\nulxmap 500000\n\
+             ulymap 4600000\nxdim 30\nydim 30\nnodata -9999\n"
+        ),
+    );
+    let said = convert(&scratch, &["big.bil", "copied.tif"]).ok();
+    // A raster and itself are joined in memory.
+    let joined = convert(&scratch, &["big.bil", "big.bil", "-o", "held.tif"]).ok();
+    let facts = |said: &str| said.lines().skip(1).take(6).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(facts(&said), facts(&joined));
+    let holes = (0..columns * rows).filter(|at| at % 4001 == 7).count();
+    assert!(said.contains(&format!("valid        {} of 1100000 samples", 1_100_000 - holes)), "{said}");
+    let bytes = |name: &str| std::fs::read(scratch.at(name)).expect("it was written");
+    assert!(bytes("copied.tif") == bytes("held.tif"));
+    convert(&scratch, &["copied.tif", "again.tif"]).ok();
+    assert!(bytes("again.tif") == bytes("held.tif"), "in tiles as in rows");
+    // A file that breaks off is found while it is copied, and leaves nothing.
+    scratch.write("cut.tif", bytes("held.tif")[..bytes("held.tif").len() / 2].to_vec());
+    let refused = convert(&scratch, &["cut.tif", "of_cut.tif"]).failed(1);
+    assert!(refused.contains("cut.tif") && !scratch.at("of_cut.tif").exists(), "{refused}");
+    let names = std::fs::read_dir(scratch.folder()).expect("a folder").flatten();
+    assert!(names.into_iter().all(|entry| !entry.file_name().to_string_lossy().contains(".part")));
+}

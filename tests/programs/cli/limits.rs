@@ -180,6 +180,34 @@ fn pictures_reduce_elevation_that_is_too_large_and_heights_do_not() {
         checked.contains("elevation-reduced") && checked.contains("each height is that of 4 x 4 of them"),
         "{checked}"
     );
+    // Of what a picture shows, no more is read than it can show, and that is as good.
+    let picture = |scene: &str, size: &str, more: &[&str]| {
+        scratch.write("s.toml", format!("[terrain]\ndem = \"hill.tif\"\n{scene}"));
+        let command = [&["render", "s.toml", "--json", "--size", size][..], more].concat();
+        let told: serde_json::Value =
+            serde_json::from_str(&run_in(scratch.folder(), &command).ok()).expect("JSON");
+        let number = |of: &str| told.pointer(of).and_then(|value| value.as_f64()).expect("a number");
+        let is_reduced = told["notes"].to_string().contains("the picture shows 2 x 2 within a pixel");
+        (is_reduced, number("/ground_lightness/mean"), number("/ground_fraction"))
+    };
+    let few = ["--limit", "pictured-samples=100k"];
+    let [whole, reduced] = [picture("", "160x90", &[]), picture("", "160x90", &few)];
+    assert!(!whole.0 && reduced.0, "{whole:?} {reduced:?}");
+    assert!((whole.1 - reduced.1).abs() < 0.5 && (whole.2 - reduced.2).abs() < 0.01, "{whole:?} {reduced:?}");
+    assert!(!picture("", "640x360", &few).0, "a larger picture shows all samples");
+    let label = "[[label]]\nat = [510000, 4009000]\ntext = \"{height} m\"\n";
+    assert!(!picture(label, "160x90", &few).0, "heights that are printed are those of samples");
+    let near = "[[camera]]\nname = \"near\"\neye = [509000, 4008000]\nlook_at = [510000, 4009000]\n";
+    assert!(!picture(near, "160x90", &few).0, "a camera near the ground sees samples");
+    let high = near.replace("look_at", "eye_elevation = 200000\nlook_at");
+    assert!(picture(&high, "160x90", &few).0, "from 200 km above, no ground is near");
+    let part = "[[camera]]\nname = \"part\"\nshows = [[508000, 4008000], [509000, 4009000]]\n";
+    assert!(!picture(part, "160x90", &few).0, "a kilometer of it fills the picture");
+    let plan = "[[camera]]\nname = \"plan\"\nprojection = \"plan\"\nscale = 900000\n";
+    assert!(picture(plan, "160x90", &few).0, "a pixel of a plan at 1 : 900,000 is 238 m wide");
+    assert!(picture(&format!("{plan}{near}"), "160x90", &few).0);
+    assert!(!picture(&format!("{plan}{near}"), "160x90", &[&few[..], &["--camera", "near"]].concat()).0);
+    scratch.write("s.toml", "[terrain]\ndem = \"hill.tif\"\n");
     let refused =
         run_in(scratch.folder(), &[&["height", "s.toml", "--at", "500100,4000100"][..], &limits].concat());
     let said = refused.failed(1);

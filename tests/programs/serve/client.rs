@@ -77,7 +77,10 @@ impl Server {
         let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
         let mut greeting = String::new();
         stderr.read_line(&mut greeting).expect("UTF-8");
-        let address = greeting.split("http://").nth(1).and_then(|rest| rest.split(": ").next()?.parse().ok());
+        let address = greeting
+            .split("http://")
+            .nth(1)
+            .and_then(|rest| rest.split(['/', ' ']).next()?.trim_end_matches(':').parse().ok());
         let address = address.unwrap_or_else(|| panic!("no address in {greeting:?}"));
         Self { child, address, greeting, stderr }
     }

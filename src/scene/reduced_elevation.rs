@@ -1,0 +1,78 @@
+//! Elevation of more samples than a scene needs: means of squares of them, read in windows or from an overview of the file.
+
+use crate::dem::raster::Raster;
+use crate::dem::reduced::reduced;
+use crate::dem::warp::metric_windows::MetricSystem;
+use crate::dem::windows::Windows;
+use crate::description::diagnostic::Diagnostic;
+use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
+use crate::geom::crs::Crs;
+use crate::limits::{RASTER_SAMPLES, REDUCED_SAMPLES};
+use crate::scene::picture::shown_step::{UnreadGround, shown_step};
+use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
+use crate::scene::scene_findings::SceneFindings;
+
+/// The smaller raster of one that is too large for the memory, or for what pictures show of it; `None` where all of it is
+/// needed and fits.
+pub(super) fn reduced_as_needed(
+    document: &Document,
+    mut windows: Box<dyn Windows + Send>,
+    need: ElevationNeed<'_>,
+    findings: &mut SceneFindings,
+) -> Result<Option<Raster>, Diagnostic> {
+    let dem = &document.terrain.dem;
+    let (width, height) = windows.size();
+    let shown = match need {
+        ElevationNeed::Pictures(pictures) => shown_by(pictures, document, &mut windows)?,
+        ElevationNeed::All | ElevationNeed::AllThatFit => 1,
+    };
+    let fitting = fitting_step((width, height));
+    let step = shown.max(fitting);
+    if step == 1 {
+        return Ok(None);
+    }
+    let of_overview = windows.overview(step).map(|(held, mut overview)| reduced(&mut overview, step / held));
+    let raster = of_overview.unwrap_or_else(|| reduced(&mut windows, step));
+    let raster = raster.map_err(|error| document.error(dem, error))?;
+    let span = dem.span().unwrap_or_default();
+    if fitting > shown {
+        let message = format!(
+            "the elevation model has {width} x {height} samples, more than the {RASTER_SAMPLES} of a scene: each height is \
+             that of {step} x {step} of them"
+        );
+        let help = "name a part with `extent`, which is taken in full";
+        findings.add_with_help(FindingCode::ElevationReduced, span, message, help);
+    } else {
+        let message = format!(
+            "of the {width} x {height} samples of the elevation model the picture shows {step} x {step} within a pixel: each \
+             height is their mean"
+        );
+        findings.add(FindingCode::SamplesAveraged, span, message);
+    }
+    Ok(Some(raster))
+}
+
+/// The side of the squares of samples of which a raster of `size` has no more than pictures show of one that is too large for
+/// the memory; 1 for one that is not.
+fn fitting_step((width, height): (u32, u32)) -> u32 {
+    let samples = |step: u32| u64::from(width / step) * u64::from(height / step);
+    if samples(1) <= RASTER_SAMPLES.get() {
+        return 1;
+    }
+    (1..31).map(|power| 1 << power).find(|step| samples(*step) <= REDUCED_SAMPLES.get()).unwrap_or(1 << 31)
+}
+
+/// [`shown_step`] of elevation that is not read yet.
+fn shown_by(
+    pictures: &PlannedPictures,
+    document: &Document,
+    windows: &mut Box<dyn Windows + Send>,
+) -> Result<u32, Diagnostic> {
+    let MetricSystem { crs, off_scale } = MetricSystem::of(windows, document.crs.as_ref())
+        .map_err(|error| document.error(&document.terrain.dem, error))?;
+    let crs = crs.or(document.crs.clone()).unwrap_or_else(Crs::local);
+    let stated_crs = off_scale.map_or_else(|| crs.clone(), |off| off.stated);
+    let whole = windows.metadata().without_samples();
+    Ok(shown_step(pictures, document, &UnreadGround { whole: &whole, crs: &crs, stated_crs: &stated_crs }))
+}
