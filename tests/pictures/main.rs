@@ -7,6 +7,7 @@ mod annotate;
 mod gallery;
 mod grid;
 mod overlaps;
+mod print;
 mod render_cpu;
 mod render_gpu;
 mod render_live;
