@@ -28,6 +28,7 @@ mod pick;
 mod plan;
 mod profile;
 mod progress;
+mod remote;
 mod render;
 mod render_series;
 mod report;
@@ -70,7 +71,9 @@ pub struct BuiltInPrograms {
 ///
 /// Exit codes: 0 done, 1 the input is wrong, 2 usage.
 pub fn main(programs: BuiltInPrograms) -> ExitCode {
-    match run(&Arguments::parse(), programs) {
+    let done = run(&Arguments::parse(), programs);
+    remote::note_traffic();
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }
@@ -79,6 +82,7 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
     // Before anything is read: what reads a limit holds it.
     limit::set(&arguments.limit)?;
+    remote::set(&arguments.allow_remote)?;
     let threads = address_space::threads_for(&arguments.command)?;
     // A picture has threads of its own.
     if !matches!(arguments.command, Command::Render(_)) {
