@@ -86,6 +86,7 @@ cfg_if::cfg_if! {
         pub mod message;
         pub mod model;
         pub mod pipeline;
+        pub mod remote;
         pub mod render;
         pub mod ribbon;
         pub mod roam;
@@ -110,6 +111,7 @@ cfg_if::cfg_if! {
         mod message;
         mod model;
         mod pipeline;
+        mod remote;
         mod render;
         mod ribbon;
         mod roam;
@@ -136,6 +138,7 @@ pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
 pub use crate::pipeline::api::{dem::Dem, elevation::Elevation, error::Error, terrain::Terrain};
 pub use crate::pipeline::sight::{SightQuery, SightReport};
 pub use crate::pipeline::{choice::WordError, profile::GroundProfile};
+pub use crate::remote::{access::RemoteAccess, address::AllowedHost};
 pub use crate::terrain::hillshade::HillshadeOptions;
 pub use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling};
 pub use crate::terrain::query::service::{HeightService, Snapshot};

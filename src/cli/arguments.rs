@@ -26,6 +26,7 @@ use crate::cli::serve::ServeArguments;
 use crate::cli::view::ViewArguments;
 use crate::cli::viewshed::ViewshedArguments;
 use crate::cli::work::WorkArguments;
+use crate::remote::address::AllowedHost;
 
 /// Builds digital terrain models from scene files and renders annotated pictures of them.
 #[derive(Debug, Parser)]
@@ -35,6 +36,9 @@ pub struct Arguments {
     /// Set a limit on input or work, as in raster-samples=1G; src/LIMITS.md lists them
     #[arg(long, global = true, value_name = "NAME=VALUE", value_parser = stated_limit)]
     pub limit: Vec<StatedLimit>,
+    /// Let elevation be read by its address (https, s3, gs, az) from HOST, in a build with the feature `cloud`
+    #[arg(long, global = true, value_name = "HOST", value_parser = AllowedHost::parse)]
+    pub allow_remote: Vec<AllowedHost>,
     #[command(subcommand)]
     pub command: Command,
 }

@@ -33,18 +33,29 @@ fn count(text: &str) -> Option<u64> {
     is_count.then(|| digits.parse::<u64>().ok()?.checked_mul(scale)).flatten()
 }
 
+/// Checks that as many options of a name were stated as were parsed: of options of all commands, only those on one side of the
+/// command are.
+///
+/// # Errors
+/// They are stated both before and after the command.
+pub fn check_side(name: &str, parsed: usize) -> Result<(), CliError> {
+    let with_value = format!("{name}=");
+    let is_option = |argument: &OsString| {
+        argument == name || argument.as_encoded_bytes().starts_with(with_value.as_bytes())
+    };
+    match args_os().filter(is_option).count() > parsed {
+        true => Err(CliError::usage(format!("state every {name} after the command"))),
+        false => Ok(()),
+    }
+}
+
 /// Sets the limits, before anything is read.
 ///
 /// # Errors
 /// A name is unknown, a limit is fixed or stated twice, a value is out of range, or limits are stated both before and after
 /// the command.
 pub fn set(limits: &[StatedLimit]) -> Result<(), CliError> {
-    // Of options of all commands, only those on one side of the command are parsed.
-    let is_limit =
-        |argument: &OsString| argument == "--limit" || argument.as_encoded_bytes().starts_with(b"--limit=");
-    if args_os().filter(is_limit).count() > limits.len() {
-        return Err(CliError::usage("state every --limit after the command"));
-    }
+    check_side("--limit", limits.len())?;
     for (index, StatedLimit { name, value }) in limits.iter().enumerate() {
         if limits[..index].iter().any(|before| before.name == *name) {
             return Err(CliError::usage(format!("--limit {} is stated twice", quoted(name))));

@@ -28,6 +28,7 @@ mod pick;
 mod plan;
 mod profile;
 mod progress;
+mod remote;
 mod render;
 mod render_series;
 mod report;
@@ -77,7 +78,9 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
     if let Some(code) = supervisor::supervise() {
         return code;
     }
-    match run(&arguments, programs) {
+    let done = run(&arguments, programs);
+    remote::note_traffic();
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => error.report(),
     }
@@ -86,6 +89,7 @@ pub fn main(programs: BuiltInPrograms) -> ExitCode {
 fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
     // Before anything is read: what reads a limit holds it.
     limit::set(&arguments.limit)?;
+    remote::set(&arguments.allow_remote)?;
     let threads = address_space::threads_for(&arguments.command)?;
     // A picture has threads of its own.
     if !matches!(arguments.command, Command::Render(_)) {

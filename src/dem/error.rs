@@ -46,6 +46,9 @@ pub enum DemErrorKind {
     Unpacked(ArchiveError),
     #[error("the {format} is broken: {source}; fetch or export the file again")]
     Undecodable { format: &'static str, source: Box<dyn std::error::Error + Send + Sync> },
+    /// What holds the content does not give it: a server, not the system.
+    #[error("{0}")]
+    Unread(Box<dyn std::error::Error + Send + Sync>),
     #[error(
         "{} x {} samples are more than the {most} that are read; cut or coarsen the file, for example with: gdal_translate -outsize 25% 25%, or {most:#}",
         .size.x, .size.y

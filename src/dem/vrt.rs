@@ -76,6 +76,18 @@ impl VrtTiles {
         self.files.iter().map(|file| path.with_file_name(file)).collect()
     }
 
+    /// Checks that the files are named relative to the virtual raster: one on a server names no file of this machine.
+    ///
+    /// # Errors
+    /// A file is named otherwise.
+    pub fn check_beside(&self) -> Result<(), DemErrorKind> {
+        let elsewhere = |file: &&String| file.starts_with('/') || file.split('/').any(|part| part == "..");
+        match self.files.iter().find(elsewhere) {
+            Some(file) => Err(unsupported(format!("'{}', which does not lie beside it", shortened(file)))),
+            None => Ok(()),
+        }
+    }
+
     /// Checks that the tiles join to what the virtual raster states.
     ///
     /// # Errors

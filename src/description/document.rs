@@ -143,7 +143,7 @@ table! {
     struct TerrainTable {
         /// The elevation file, or a list of up to 256 that are tiles of one raster; the first tile with a
         /// value wins. A folder stands for those in it, a GDAL virtual raster (`.vrt`) for those that it
-        /// lists.
+        /// lists. An address (`https://`, `s3://`, `gs://`, `az://`) is read with `--allow-remote HOST`.
         dem: Stated<Vec<String>> = key::files(&[]), required;
         /// Coordinate system of the DEM where the file names none or a wrong one.
         crs: Option<Crs> = key::crs(), otherwise "what the file names";

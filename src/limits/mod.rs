@@ -99,6 +99,9 @@ limits! {
         UNPACKED_RASTER_BYTES = 1 << 30 => BYTES, "bytes",
             "of an unpacked elevation file: a raster of the most samples",
             "unpack it before";
+        REMOTE_DISK_BYTES = 1 << 30 => BYTES, "bytes",
+            "of files read by address that are kept on disk for later runs; the oldest are removed first",
+            "what is not kept is fetched again";
         UNPACKED_VECTOR_BYTES = 512 << 20 => BYTES, "bytes",
             "of an unpacked vector file; a city's OpenStreetMap XML is a tenth of it",
             "unpack it before";

@@ -22,6 +22,7 @@ use crate::pipeline::dem::{self, OpenDemError, OpenedDem};
 use crate::pipeline::ground::{self, GroundError, QueriedGround};
 use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
 use crate::pipeline::windowed_elevation::{GroundReach, WindowedElevation};
+use crate::remote::address::is_address_path;
 use crate::scene::SceneGround;
 use crate::terrain::query::batch::HeightSlices;
 use crate::terrain::query::service::HeightService;
@@ -131,7 +132,9 @@ impl Dataset {
             let ground = open_scene_ground(path, &options.allowed)?;
             return Ok(Self { name, content: DatasetContent::Scene(ground) });
         }
-        let content = match dem::open_either(path, &options.dem, options.most_kept)? {
+        // What is far away is read where it is needed, however small it is.
+        let most_kept = if is_address_path(path) { 0 } else { options.most_kept };
+        let content = match dem::open_either(path, &options.dem, most_kept)? {
             OpenedDem::Kept(mosaic) => {
                 let warning = dem::warning(path, &mosaic);
                 let raster = Arc::new(mosaic.raster);

@@ -9,8 +9,10 @@ use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::windows::{WINDOW_CACHE_BYTES, Windows};
+use crate::pipeline::elevation_files::{self, CompanionFiles};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
+use crate::remote::address::is_address_path;
 
 /// Elevation that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -66,7 +68,10 @@ impl TileFiles {
         if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
             return Ok(None);
         }
-        let vrt = VrtTiles::read(&files::read(path)?).map_err(FileError::at(path))?;
+        let vrt = VrtTiles::read(&elevation_files::read(path)?).map_err(FileError::at(path))?;
+        if is_address_path(path) {
+            vrt.check_beside().map_err(FileError::at(path))?;
+        }
         Ok(Some(Self { paths: vrt.paths(path), vrt: Some(vrt) }))
     }
 
@@ -113,6 +118,8 @@ pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<
     };
     let fault = match windows {
         Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
+        // It would be the same again, and a server may take half a minute for it.
+        Err(error @ OpenDemError::File(_)) => return Err(error),
         windows => windows.err(),
     };
     open(path, options).map(|mosaic| OpenedDem::Kept(Box::new(mosaic))).map_err(|whole| {
@@ -154,6 +161,9 @@ fn open_mosaic(
     let opener = move |index: usize| match open_windows(&paths[index], &options) {
         Ok(Some(tile)) => Ok(tile),
         Err(OpenDemError::Format(error)) => Err(error.cause),
+        Err(OpenDemError::File(error)) if is_address_path(&error.path) => {
+            Err(DemErrorKind::Unread(error.into()))
+        }
         Ok(None) | Err(_) => Err(DemErrorKind::Changed),
     };
     Ok(Some(Box::new(MosaicWindows::new(headers, Box::new(opener))?)))
@@ -161,10 +171,11 @@ fn open_mosaic(
 
 /// The windows of an elevation file; `None` where its format is read whole.
 fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
-    let (head, content) = (files::read_head(path, read::HEAD_BYTES)?, files::open(path)?);
-    let hints = DemHints { companions: &files::beside(path), ..options.clone().into() };
-    let windows =
-        read::open_windows(&files::file_name(path), &head, Box::new(content), &hints, WINDOW_CACHE_BYTES);
+    let (head, content) = elevation_files::open(path)?;
+    let companions = CompanionFiles::beside(path);
+    let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
+    let windows = read::open_windows(&files::file_name(path), &head, content, &hints, WINDOW_CACHE_BYTES);
+    companions.check()?;
     Ok(windows.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 
@@ -189,9 +200,11 @@ pub fn format_by_head(path: &Path, options: &DemOptions) -> Option<&'static str>
 }
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
-    let bytes = files::read(path)?;
-    let hints = DemHints { companions: &files::beside(path), ..options.clone().into() };
+    let bytes = elevation_files::read(path)?;
+    let companions = CompanionFiles::beside(path);
+    let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
     let raster = read::read(&files::file_name(path), &bytes, &hints);
+    companions.check()?;
     Ok(raster.map_err(|error| FileError::<DemErrorKind>::new(path, error.kind))?)
 }
 

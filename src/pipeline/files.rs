@@ -10,6 +10,8 @@ use crate::export::encode_png;
 use crate::limits::INPUT_BYTES;
 use crate::pipeline::error::FileError;
 use crate::pipeline::output_files::OutputFiles;
+use crate::remote::address::is_address_path;
+use crate::remote::error::RemoteError;
 
 /// The path that means standard input.
 const STDIN: &str = "-";
@@ -27,6 +29,10 @@ pub enum ReadFileCause {
     TooLarge(u64),
     #[error("byte {0} is not UTF-8 text")]
     NotText(usize),
+    #[error("this is an address: elevation alone is read by its address, and not for plans; fetch the file")]
+    Address,
+    #[error(transparent)]
+    Remote(#[from] RemoteError),
     #[error(transparent)]
     System(#[from] SystemError),
 }
@@ -44,6 +50,8 @@ pub enum WriteFileCause {
     Folder,
     #[error("this is a device or a pipe; name a file")]
     Device,
+    #[error("this is an address; results are written to files")]
+    Address,
     #[error("this is not the name of a file")]
     NoName,
     #[error("this is a file that is read; name another to write to")]
@@ -96,11 +104,20 @@ fn system(path: &Path) -> impl Fn(io::Error) -> ReadFileError + '_ {
     |error| FileError::new(path, SystemError::from(error))
 }
 
+/// Checks that a path is no address.
+///
+/// # Errors
+/// [`ReadFileCause::Address`].
+pub fn check_on_disk(path: &Path) -> Result<(), ReadFileError> {
+    if is_address_path(path) { Err(ReadFileError::new(path, ReadFileCause::Address)) } else { Ok(()) }
+}
+
 /// The bytes of a regular file of at most 4 GiB.
 ///
 /// # Errors
 /// See [`ReadFileCause`].
 pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
+    check_on_disk(path)?;
     let metadata = fs::metadata(path).map_err(system(path))?;
     if !metadata.is_file() {
         return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
@@ -116,6 +133,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
 /// # Errors
 /// See [`ReadFileCause`].
 pub fn open(path: &Path) -> Result<fs::File, ReadFileError> {
+    check_on_disk(path)?;
     // What is no file is not opened: a pipe would wait for its writer.
     if !fs::metadata(path).map_err(system(path))?.is_file() {
         return Err(ReadFileError::new(path, ReadFileCause::NotAFile));
@@ -194,6 +212,9 @@ pub fn beside(path: &Path) -> impl Fn(&str) -> Option<Vec<u8>> + '_ {
 /// The folder does not exist; `path` is a folder, a device, a file that may not be written to or one of `inputs`, whose
 /// links are followed.
 pub fn check_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> Result<(), WriteFileError> {
+    if is_address_path(path) {
+        return Err(WriteFileError::new(path, WriteFileCause::Address));
+    }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let is_input = || {
         let same = |output: PathBuf| {

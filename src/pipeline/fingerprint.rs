@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use crate::pipeline::elevation_files;
 use crate::pipeline::files::{self, ReadFileError};
+use crate::remote::address::is_address_path;
 
 /// The SHA-256 of the scene file at `path` and of the `files` that the scene was made of, in hexadecimal digits. It depends
-/// on their contents and order, not on their names.
+/// on their contents and order, not on their names; of a file with an address, on its address and on what its server says of its
+/// version.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -15,7 +18,10 @@ pub fn fingerprint(path: &Path, files: &[PathBuf]) -> Result<String, ReadFileErr
     let mut whole = Sha256::new();
     for file in std::iter::once(path).chain(files.iter().map(PathBuf::as_path)) {
         // The hash of each, so that bytes cannot move from one to the next unseen.
-        whole.update(Sha256::digest(files::read(file)?));
+        whole.update(match is_address_path(file) {
+            true => Sha256::digest(elevation_files::version(file)?),
+            false => Sha256::digest(files::read(file)?),
+        });
     }
     Ok(hexadecimal(&whole.finalize()))
 }

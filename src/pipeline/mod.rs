@@ -18,6 +18,7 @@ pub mod csv;
 pub mod dataset;
 pub mod dem;
 pub mod editing;
+pub mod elevation_files;
 pub mod error;
 pub mod export;
 pub mod files;

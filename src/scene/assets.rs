@@ -5,6 +5,8 @@
 //! allows besides. A path is judged twice: as it is written, before the disk is asked whether it exists, and
 //! as the system resolves it, so that a symbolic link leads nowhere that a plain path would not.
 //!
+//! Elevation may have an address in place of a path: it is read from the hosts that the user allows, and from no others.
+//!
 //! Paths are written with `/`; `\` is taken for it, so that a scene reads alike on every system.
 
 use std::collections::BTreeSet;
@@ -13,11 +15,15 @@ use std::io::{self, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::dem::formats::FileContent;
 use crate::dem::raster::Raster;
-use crate::limits::ASSET_BYTES;
+use crate::limits::{ASSET_BYTES, COMPANION_BYTES};
 use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
 use crate::model::error::CompanionError;
+use crate::remote::address::is_address;
+use crate::remote::error::RemoteError;
+use crate::remote::open;
 
 /// The most names of a folder that are looked at for the one that was meant.
 const MAX_NAMES: usize = 10_000;
@@ -88,7 +94,23 @@ pub enum AssetError {
         /// What the system said.
         source: io::Error,
     },
+    /// A file that cannot be read by its address.
+    #[error("{address}")]
+    Remote {
+        /// The address.
+        address: String,
+        /// Why.
+        source: RemoteError,
+    },
 }
+
+impl AssetError {
+    fn remote(address: &str) -> impl Fn(RemoteError) -> Self + '_ {
+        |source| Self::Remote { address: address.to_owned(), source }
+    }
+}
+
+impl FileContent for File {}
 
 fn did_you_mean(name: Option<&str>) -> String {
     name.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default()
@@ -144,9 +166,38 @@ impl Assets {
     /// [`AssetError`] where the file is not there or may not be read.
     pub fn elevation(&self, name: &str) -> Result<Option<&Raster>, AssetError> {
         let Some(elevation) = &self.elevation else { return Ok(None) };
-        let path = self.resolve(name)?;
+        let path = if is_address(name) { PathBuf::from(name) } else { self.resolve(name)? };
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
         Ok(Some(elevation))
+    }
+
+    /// The bytes of the elevation file that the scene calls `name`, which may be an address.
+    ///
+    /// # Errors
+    /// [`AssetError`].
+    pub fn read_elevation(&self, name: &str) -> Result<Vec<u8>, AssetError> {
+        if !is_address(name) {
+            return self.read(name);
+        }
+        let bytes = open::read(name, ASSET_BYTES.get()).map_err(AssetError::remote(name))?;
+        self.note_address(name);
+        Ok(bytes)
+    }
+
+    /// The bytes of a companion of an elevation file; `None` where there is none.
+    ///
+    /// # Errors
+    /// A server does not answer.
+    pub fn read_companion(&self, name: &str) -> Result<Option<Vec<u8>>, AssetError> {
+        match is_address(name) {
+            true => open::read_companion(name, COMPANION_BYTES.get()).map_err(AssetError::remote(name)),
+            false => Ok(self.read(name).ok()),
+        }
+    }
+
+    /// Adds an address to the files read.
+    fn note_address(&self, name: &str) {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(PathBuf::from(name));
     }
 
     /// The bytes of the file that the scene calls `name`, relative to the scene file, or absolute under an
@@ -158,11 +209,21 @@ impl Assets {
         self.read_resolved(self.resolve(name)?)
     }
 
-    /// The file that the scene calls `name`, of any size, to be read in parts, and its first `head` bytes.
+    /// The elevation file that the scene calls `name`, of any size, to be read in parts, and its first bytes: `head` of one on
+    /// disk.
     ///
     /// # Errors
     /// [`AssetError`].
-    pub fn open(&self, name: &str, head: u64) -> Result<(Vec<u8>, File), AssetError> {
+    pub fn open_elevation(
+        &self,
+        name: &str,
+        head: u64,
+    ) -> Result<(Vec<u8>, Box<dyn FileContent>), AssetError> {
+        if is_address(name) {
+            let opened = open::open(name).map_err(AssetError::remote(name))?;
+            self.note_address(name);
+            return Ok((opened.head, opened.content));
+        }
         let path = self.resolve(name)?;
         check_is_file(&path)?;
         let mut bytes = Vec::new();
@@ -173,7 +234,7 @@ impl Assets {
         });
         let file = opened.map_err(|source| AssetError::Unreadable { resolved: path.clone(), source })?;
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
-        Ok((bytes, file))
+        Ok((bytes, Box::new(file)))
     }
 
     /// The names of the files in the folder that the scene calls `name`, after that name, in alphabetical order; `None` where
@@ -182,6 +243,9 @@ impl Assets {
     /// # Errors
     /// [`AssetError`], also where the folder holds more than 10,000 names.
     pub fn folder(&self, name: &str) -> Result<Option<Vec<String>>, AssetError> {
+        if is_address(name) {
+            return Ok(None);
+        }
         let path = self.resolve(name)?;
         if !path.is_dir() {
             return Ok(None);
@@ -194,7 +258,7 @@ impl Assets {
         Ok(Some(names.into_iter().map(|file| format!("{inside}/{file}")).collect()))
     }
 
-    /// The files read so far, links followed, in alphabetical order: what no output may be written over.
+    /// The files read so far, links followed, and the addresses, in alphabetical order: what no output may be written over.
     pub fn files_read(&self) -> Vec<PathBuf> {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }

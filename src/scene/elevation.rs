@@ -31,6 +31,7 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::{PICTURED_SAMPLES, RASTER_SAMPLES};
 use crate::message::suggest::quoted;
+use crate::remote::address::is_address;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::overridden_crs::OverriddenCrs;
 use crate::scene::planned_pictures::ElevationNeed;
@@ -210,8 +211,11 @@ impl TileList {
                 list.names.push(name.clone());
                 continue;
             }
-            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
+            let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
             let vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
+            if is_address(name) {
+                vrt.check_beside().map_err(|error| document.error(dem, error))?;
+            }
             let slashed = name.replace('\\', "/");
             let folder = slashed.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
             let place =
@@ -246,7 +250,14 @@ impl TileList {
             let own = DemOptions { vertical_datum: None, ..stated.clone() };
             let overridden = RefCell::new(None);
             let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
-            let Ok(Some(windows)) = open_windows(name, assets, &own, &note) else { return Ok(None) };
+            let windows = match open_windows(name, assets, &own, &note) {
+                Ok(Some(windows)) => windows,
+                // It would be the same again, and a server may take half a minute for it.
+                Err(TileError::Asset(error @ AssetError::Remote { .. })) => {
+                    return Err(document.error(dem, error));
+                }
+                Ok(None) | Err(_) => return Ok(None),
+            };
             tiles.push((windows.metadata().without_samples(), overridden.into_inner()));
         }
         let samples =
@@ -264,6 +275,9 @@ impl TileList {
         let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
             Ok(Some(windows)) => Ok(windows),
             Err(TileError::Dem(error)) => Err(error.kind),
+            Err(TileError::Asset(error @ AssetError::Remote { .. })) => {
+                Err(DemErrorKind::Unread(error.into()))
+            }
             Ok(None) | Err(TileError::Asset(_)) => Err(DemErrorKind::Changed),
         };
         if count == 1 && is_alone {
@@ -290,15 +304,17 @@ impl TileList {
         let dem = &document.terrain.dem;
         let failed = |error| document.error(dem, error);
         let overridden = RefCell::new(None);
-        let companions = |name: &str| assets.read(name).ok();
+        let companions = CompanionAssets::of(assets);
         let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
         // What the file states is compared with what the scene does.
         let options = DemOptions { vertical_datum: None, ..self.stated.clone() };
-        let hints = DemHints { options, overridden: &note, companions: &companions };
+        let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
         let mut tiles = Tiles::default();
         for name in &self.names {
-            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
-            let mut tile = read::read(name, &bytes, &hints).map_err(|error| document.error(dem, error))?;
+            let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
+            let tile = read::read(name, &bytes, &hints);
+            companions.check().map_err(|error| document.error(dem, error))?;
+            let mut tile = tile.map_err(|error| document.error(dem, error))?;
             check_tile(name, &mut tile, overridden.take(), document, findings);
             tiles.push(name, tile).map_err(failed)?;
         }
@@ -349,10 +365,35 @@ fn open_windows(
     stated: &DemOptions,
     overridden: &dyn Fn(&Crs),
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
-    let (head, content) = assets.open(name, read::HEAD_BYTES)?;
-    let companions = |name: &str| assets.read(name).ok();
-    let hints = DemHints { options: stated.clone(), overridden, companions: &companions };
-    Ok(read::open_windows(name, &head, Box::new(content), &hints, WINDOW_CACHE_BYTES)?)
+    let (head, content) = assets.open_elevation(name, read::HEAD_BYTES)?;
+    let companions = CompanionAssets::of(assets);
+    let hints = DemHints { options: stated.clone(), overridden, companions: &|name| companions.get(name) };
+    let windows = read::open_windows(name, &head, content, &hints, WINDOW_CACHE_BYTES);
+    companions.check()?;
+    Ok(windows?)
+}
+
+/// The companions of elevation files. One that is not there is none; a server that does not answer is an error.
+struct CompanionAssets<'a> {
+    assets: &'a Assets,
+    fault: RefCell<Option<AssetError>>,
+}
+
+impl<'a> CompanionAssets<'a> {
+    fn of(assets: &'a Assets) -> Self {
+        Self { assets, fault: RefCell::default() }
+    }
+
+    fn get(&self, name: &str) -> Option<Vec<u8>> {
+        self.assets.read_companion(name).unwrap_or_else(|error| {
+            self.fault.borrow_mut().get_or_insert(error);
+            None
+        })
+    }
+
+    fn check(&self) -> Result<(), AssetError> {
+        self.fault.take().map_or(Ok(()), Err)
+    }
 }
 
 /// What the document states of its elevation files.

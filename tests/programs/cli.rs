@@ -26,6 +26,7 @@ mod pages;
 mod pictures;
 mod prints;
 mod profile;
+mod remote;
 mod report;
 mod schema;
 mod series;

@@ -14,7 +14,7 @@ import tomllib
 
 # Where a package may be used under several licenses, the first of these; the texts follow in this order.
 LICENSES = ["MIT", "Apache-2.0", "BSD-3-Clause", "BSD-2-Clause", "ISC", "Zlib", "0BSD", "BSL-1.0", "CC0-1.0",
-            "Unicode-3.0", "OFL-1.1", "Ubuntu-font-1.0"]
+            "Unicode-3.0", "OFL-1.1", "Ubuntu-font-1.0", "CDLA-Permissive-2.0"]
 
 # How a license's own text begins, to find it among a package's files.
 BEGINNINGS = {
@@ -23,7 +23,7 @@ BEGINNINGS = {
     "ISC": "Permission to use, copy, modify, and", "Zlib": "This software is provided 'as-is'",
     "0BSD": "Permission to use, copy, modify, and", "BSL-1.0": "Boost Software License",
     "CC0-1.0": "Statement of Purpose", "Unicode-3.0": "UNICODE LICENSE V3", "OFL-1.1": "SIL OPEN FONT LICENSE",
-    "Ubuntu-font-1.0": "UBUNTU FONT LICENCE",
+    "Ubuntu-font-1.0": "UBUNTU FONT LICENCE", "CDLA-Permissive-2.0": "Community Data License Agreement - Permissive",
 }
 
 

@@ -23,7 +23,8 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
-use std::io::{Read, Seek, Write};
+use std::io::{self, Cursor, Read, Seek, Write};
+use std::ops::Range;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
@@ -64,10 +65,19 @@ pub trait WrittenContent: Write + Seek + Send {}
 
 impl<C: Write + Seek + Send> WrittenContent for C {}
 
-/// The content of a file that stays on disk.
-pub trait FileContent: Read + Seek + Send {}
+/// The content of a file that stays where it is: on disk, or on a server.
+pub trait FileContent: Read + Seek + Send {
+    /// Says which bytes are read next, in ascending order, to content that is far away and fetches them together.
+    fn announce(&mut self, _ranges: &[Range<u64>]) {}
+}
 
-impl<C: Read + Seek + Send> FileContent for C {}
+impl<C: FileContent + ?Sized> FileContent for Box<C> {
+    fn announce(&mut self, ranges: &[Range<u64>]) {
+        (**self).announce(ranges);
+    }
+}
+
+impl<B: AsRef<[u8]> + Send> FileContent for Cursor<B> {}
 
 /// The extensions of the formats that are written, for messages.
 pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .bt, .hgt or .png";
@@ -135,6 +145,14 @@ impl DemFormat {
     /// A file of this format that a decoder or the file system refuses.
     pub(crate) fn undecodable(&self, source: impl Error + Send + Sync + 'static) -> DemErrorKind {
         DemErrorKind::Undecodable { format: self.name, source: Box::new(source) }
+    }
+
+    /// A file of this format that cannot be read: broken, as far as the system reads it.
+    pub(crate) fn unread(&self, error: io::Error) -> DemErrorKind {
+        match error.get_ref() {
+            Some(_) => DemErrorKind::Unread(Box::new(error)),
+            None => self.undecodable(error),
+        }
     }
 
     pub(crate) fn unsupported(

@@ -70,6 +70,7 @@ impl Windows for PlainWindows {
         window.assert_within(self.size());
         let PlainRaster { raster, layout, nodata, scale, offset } = &self.plain;
         let (lines, layout) = layout.lines(window);
+        self.content.announce(&lines);
         let mut bytes = vec![0; lines.iter().map(|line| (line.end - line.start) as usize).sum()];
         let mut rest = &mut bytes[..];
         for line in lines {
@@ -84,5 +85,8 @@ impl Windows for PlainWindows {
 }
 
 fn unreadable(format: &'static str, fault: std::io::Error) -> DemErrorKind {
-    DemErrorKind::Undecodable { format, source: Box::new(fault) }
+    match fault.get_ref() {
+        Some(_) => DemErrorKind::Unread(Box::new(fault)),
+        None => DemErrorKind::Undecodable { format, source: Box::new(fault) },
+    }
 }

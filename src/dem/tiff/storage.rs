@@ -294,6 +294,7 @@ pub(crate) fn decode_error(error: TiffError) -> DemErrorKind {
         TiffError::LimitsExceeded => FORMAT.broken(format!(
             "a tag claims more than the file holds, or than the {TIFF_TAG_BYTES} bytes that are read of one: {TIFF_TAG_BYTES:#}"
         )),
+        TiffError::IoError(error) if error.get_ref().is_some() => FORMAT.unread(error),
         other => FORMAT.undecodable(other),
     }
 }

@@ -121,25 +121,27 @@ impl<'a> Unpacker<'a> {
         file: &'f mut F,
         block: TiffBlock,
     ) -> Result<Cow<'f, [u8]>, DemErrorKind> {
-        let needed = self.storage.row_bytes() * block.window.height as usize;
-        let range = self.range(block, needed, file.length())?;
-        file.bytes(range).map_err(|error| FORMAT.undecodable(error))
+        let range = packed_range(self.storage, block, file.length())?;
+        file.bytes(range).map_err(|error| FORMAT.unread(error))
     }
+}
 
-    /// Where the packed bytes of a block lie in a file; empty beyond its end.
-    fn range(
-        &self,
-        block: TiffBlock,
-        needed: usize,
-        file_bytes: usize,
-    ) -> Result<Range<usize>, DemErrorKind> {
-        let unlisted = || FORMAT.broken(format!("its tables do not state where block {} lies", block.index));
-        let (start, bytes) = self.storage.place(block.index).ok_or_else(unlisted)?;
-        let most = needed.saturating_mul(MOST_GROWTH).saturating_add(SLACK);
-        let start = usize::try_from(start).unwrap_or(usize::MAX).min(file_bytes);
-        let bytes = usize::try_from(bytes).unwrap_or(usize::MAX).min(most);
-        Ok(start..start.saturating_add(bytes).min(file_bytes))
-    }
+/// Where the packed bytes of a block lie in a file; empty beyond its end.
+///
+/// # Errors
+/// The tables do not list the block.
+pub(crate) fn packed_range(
+    storage: &Storage,
+    block: TiffBlock,
+    file_bytes: usize,
+) -> Result<Range<usize>, DemErrorKind> {
+    let unlisted = || FORMAT.broken(format!("its tables do not state where block {} lies", block.index));
+    let (start, bytes) = storage.place(block.index).ok_or_else(unlisted)?;
+    let needed = storage.row_bytes() * block.window.height as usize;
+    let most = needed.saturating_mul(MOST_GROWTH).saturating_add(SLACK);
+    let start = usize::try_from(start).unwrap_or(usize::MAX).min(file_bytes);
+    let bytes = usize::try_from(bytes).unwrap_or(usize::MAX).min(most);
+    Ok(start..start.saturating_add(bytes).min(file_bytes))
 }
 
 // Each of these fills `out` from the start of a stream, ignores the rest, and returns the number of bytes.

@@ -17,7 +17,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, SeekFrom};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -27,6 +27,7 @@ use tiff::decoder::Decoder;
 
 use crate::dem::cache::LruCache;
 use crate::dem::error::{DemError, DemErrorKind};
+use crate::dem::formats::FileContent;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::{DemFile, DemHints};
 use crate::dem::tiff::blocks;
@@ -34,7 +35,7 @@ use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
 use crate::dem::tiff::image_kind;
 use crate::dem::tiff::mask::{self, IS_MASK};
 use crate::dem::tiff::storage::{Storage, TiffBlock, decode_error};
-use crate::dem::tiff::unpack::BlockBytes;
+use crate::dem::tiff::unpack::{BlockBytes, packed_range};
 use crate::dem::windows::{RasterWindow, Windows};
 use crate::limits::BLOCK_SAMPLES;
 use crate::limits::TIFF_IMAGES;
@@ -78,7 +79,7 @@ pub struct GeoTiffWindows<R> {
 /// Blocks for each thread that are decoded before the next are: enough to keep all threads at work.
 const BLOCKS_PER_THREAD: usize = 4;
 
-impl<R: Read + Seek + Send> GeoTiffWindows<R> {
+impl<R: FileContent> GeoTiffWindows<R> {
     /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those of
     /// [`crate::dem::read::read`], but for a stated no-data value and vertical datum, which
     /// [`open_windows`](crate::dem::read::open_windows) applies.
@@ -97,8 +98,8 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         hints: &DemHints,
         cache_bytes: usize,
     ) -> Result<Self, DemErrorKind> {
-        let mut file = SharedFile::new(file).map_err(|error| FORMAT.undecodable(error))?;
-        let start = file.bytes(0..4).map_err(|error| FORMAT.undecodable(error))?;
+        let mut file = SharedFile::new(file).map_err(|error| FORMAT.unread(error))?;
+        let start = file.bytes(0..4).map_err(|error| FORMAT.unread(error))?;
         if !geotiff::recognizes(&start) {
             return Err(FORMAT.broken("it does not start with the signature of a TIFF file"));
         }
@@ -190,6 +191,24 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         Ok(Arc::new(samples.scaled(*scale, *offset)))
     }
 
+    /// Says which bytes of the file are read next. Blocks that the table does not list are an error of their reading.
+    fn announce_blocks(&self, blocks: &[TiffBlock]) {
+        let length = self.file.length;
+        let range = |image: &Storage, at: TiffBlock| {
+            packed_range(image, at, length).map(|range| range.start as u64..range.end as u64).ok()
+        };
+        let mut ranges: BTreeMap<u64, Range<u64>> = BTreeMap::new();
+        for at in blocks {
+            let of_mask = self.mask.iter().flat_map(|mask| {
+                mask.blocks_meeting(at.window).filter_map(|at| range(mask, at)).collect::<Vec<_>>()
+            });
+            for range in range(&self.heights, *at).into_iter().chain(of_mask) {
+                ranges.insert(range.start, range);
+            }
+        }
+        self.file.lock().announce(&ranges.into_values().collect::<Vec<_>>());
+    }
+
     /// Decodes those of `blocks` that are not kept, some at a time on all threads, and calls `each` with every block; those
     /// that are kept come first. The error is that of the first broken block.
     fn each_block(
@@ -209,6 +228,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
         let most = rayon::current_num_threads() * BLOCKS_PER_THREAD;
         let at_once = (self.cache_bytes / largest.max(1)).clamp(1, most);
         for some in missing.chunks(at_once) {
+            self.announce_blocks(some);
             let decoded: Vec<Result<Arc<Samples>, DemErrorKind>> = match some {
                 [one] => vec![self.decode(*one)],
                 some => some.par_iter().map(|&at| self.decode(at)).collect(),
@@ -225,7 +245,7 @@ impl<R: Read + Seek + Send> GeoTiffWindows<R> {
     }
 }
 
-impl<R: Read + Seek + Send> Windows for GeoTiffWindows<R> {
+impl<R: FileContent> Windows for GeoTiffWindows<R> {
     fn metadata(&self) -> &Raster {
         &self.header.raster
     }
@@ -284,7 +304,7 @@ impl<R> Clone for SharedFile<R> {
     }
 }
 
-impl<R: Read + Seek> SharedFile<R> {
+impl<R: FileContent> SharedFile<R> {
     fn new(mut file: R) -> io::Result<Self> {
         let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
         Ok(Self { file: Arc::new(Mutex::new(file)), length })
@@ -296,7 +316,7 @@ impl<R: Read + Seek> SharedFile<R> {
     }
 
     fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
-        file.rewind().map_err(|error| FORMAT.undecodable(error))?;
+        file.rewind().map_err(|error| FORMAT.unread(error))?;
         let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
         Ok(decoder.with_limits(geotiff::limits(self.length)))
     }
@@ -351,7 +371,7 @@ impl<R: Read + Seek> SharedFile<R> {
     }
 }
 
-impl<R: Read + Seek> BlockBytes for SharedFile<R> {
+impl<R: FileContent> BlockBytes for SharedFile<R> {
     fn length(&self) -> usize {
         self.length
     }
@@ -359,8 +379,17 @@ impl<R: Read + Seek> BlockBytes for SharedFile<R> {
     fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
         let mut file = self.lock();
         file.seek(SeekFrom::Start(range.start as u64))?;
-        let mut bytes = Vec::new();
-        (&mut *file).take(range.len() as u64).read_to_end(&mut bytes)?;
+        // In one read: a file on a server is not asked for many small parts.
+        let (mut bytes, mut filled) = (vec![0; range.len()], 0);
+        while filled < bytes.len() {
+            match file.read(&mut bytes[filled..]) {
+                Ok(0) => break,
+                Ok(count) => filled += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        bytes.truncate(filled);
         Ok(Cow::Owned(bytes))
     }
 }

@@ -11,6 +11,7 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::finding_code::FindingCode;
 use crate::geom::crs::CrsError;
 use crate::model::error::ModelError;
+use crate::remote::error::RemoteError;
 use crate::scene::assets::AssetError;
 use crate::vector::error::VectorError;
 
@@ -44,7 +45,13 @@ fn of_asset(error: &AssetError) -> FindingCode {
         AssetError::Missing { .. } | AssetError::Folder { .. } | AssetError::NotAPath { .. } => {
             FindingCode::MissingFile
         }
-        AssetError::Outside { .. } => FindingCode::FileOutside,
+        AssetError::Outside { .. } | AssetError::Remote { source: RemoteError::HostNotAllowed(_), .. } => {
+            FindingCode::FileOutside
+        }
+        AssetError::Remote { source: RemoteError::Missing | RemoteError::Address(_), .. } => {
+            FindingCode::MissingFile
+        }
+        AssetError::Remote { .. } => FindingCode::UnreadableFile,
         AssetError::NotAFile { .. } | AssetError::TooLarge { .. } | AssetError::Unreadable { .. } => {
             FindingCode::UnreadableFile
         }

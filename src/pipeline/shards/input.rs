@@ -122,6 +122,7 @@ impl PlanInput {
 /// # Errors
 /// A file or a folder cannot be read.
 pub fn elevation_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
+    files::check_on_disk(path)?;
     if path.is_dir() {
         let all = files::list_folder(path)?;
         let tiles: BTreeSet<String> =

@@ -1,13 +1,13 @@
 //! The source of patches: a raster read in windows, and a bounded cache of patches.
 
 use std::collections::BTreeMap;
-use std::io::{Read, Seek};
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 
 use crate::dem::cache::LruCache;
 use crate::dem::error::DemError;
+use crate::dem::formats::FileContent;
 use crate::dem::tiff::windows::GeoTiffWindows;
 use crate::dem::warp::{self, WarpError};
 use crate::dem::windows::Windows;
@@ -116,7 +116,7 @@ pub fn exact_spheres(reach: f32) -> impl Fn(PatchedGround<'_>) -> SphereMap {
 ///
 /// # Errors
 /// None fits, or the one that does cannot be opened.
-pub fn finest_that_fits<R: Read + Seek + Send>(
+pub fn finest_that_fits<R: FileContent>(
     file: GeoTiffWindows<R>,
     patch: u32,
 ) -> Result<GeoTiffWindows<R>, PagingError> {

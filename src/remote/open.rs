@@ -1,0 +1,80 @@
+//! Opening files by their addresses.
+
+use crate::dem::formats::FileContent;
+use crate::remote::error::RemoteError;
+
+#[cfg(feature = "cloud")]
+use crate::remote::{access::RemoteAccess, address::RemoteAddress, file::RemoteFile, store::StoredFile};
+
+/// A file that is read in parts, and its first bytes.
+pub struct OpenedAddress {
+    /// The first bytes, enough to know the format by.
+    pub head: Vec<u8>,
+    /// All of it.
+    pub content: Box<dyn FileContent>,
+}
+
+/// Opens the file at an address, to be read in parts.
+///
+/// # Errors
+/// [`RemoteError`].
+#[cfg(feature = "cloud")]
+pub fn open(address: &str) -> Result<OpenedAddress, RemoteError> {
+    let mut file = open_file(address)?;
+    Ok(OpenedAddress { head: file.head(), content: Box::new(file) })
+}
+
+/// The bytes of the file at an address, which has at most `most`.
+///
+/// # Errors
+/// [`RemoteError`].
+#[cfg(feature = "cloud")]
+pub fn read(address: &str, most: u64) -> Result<Vec<u8>, RemoteError> {
+    open_file(address)?.read_whole(most)
+}
+
+/// What tells this version of the file at an address from others: the same text for the same content.
+///
+/// # Errors
+/// [`RemoteError`].
+#[cfg(feature = "cloud")]
+pub fn version(address: &str) -> Result<String, RemoteError> {
+    Ok(open_file(address)?.version())
+}
+
+#[cfg(feature = "cloud")]
+fn open_file(address: &str) -> Result<RemoteFile, RemoteError> {
+    let parsed = RemoteAddress::parse(address).ok_or(RemoteError::Address("it has no known scheme"))??;
+    let access = RemoteAccess::of_run();
+    RemoteFile::open(StoredFile::at(&parsed, access)?, &parsed.to_string(), access.blocks.as_deref())
+}
+
+#[cfg(not(feature = "cloud"))]
+#[allow(missing_docs, reason = "see the other build")]
+pub fn open(_: &str) -> Result<OpenedAddress, RemoteError> {
+    Err(RemoteError::NotBuilt)
+}
+
+#[cfg(not(feature = "cloud"))]
+#[allow(missing_docs, reason = "see the other build")]
+pub fn read(_: &str, _: u64) -> Result<Vec<u8>, RemoteError> {
+    Err(RemoteError::NotBuilt)
+}
+
+#[cfg(not(feature = "cloud"))]
+#[allow(missing_docs, reason = "see the other build")]
+pub fn version(_: &str) -> Result<String, RemoteError> {
+    Err(RemoteError::NotBuilt)
+}
+
+/// The bytes of a companion of a file, by its own address; `None` where there is none.
+///
+/// # Errors
+/// [`RemoteError`], but for one that is not there.
+pub fn read_companion(address: &str, most: u64) -> Result<Option<Vec<u8>>, RemoteError> {
+    match read(address, most) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.is_absence() => Ok(None),
+        Err(error) => Err(error),
+    }
+}

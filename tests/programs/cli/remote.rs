@@ -1,0 +1,265 @@
+//! Elevation by address, as the program reads it: without the feature `cloud` one sentence, with it the answers of the file on
+//! disk, from `moto`'s server.
+
+use crate::cli::run;
+
+#[test]
+#[cfg(not(feature = "cloud"))]
+fn a_program_without_the_feature_says_how_it_is_built() {
+    let questions: [&[&str]; 2] =
+        [&["height", "s3://b/a.tif", "--at", "1,2"], &["dem", "info", "HTTPS://example.org/a.tif"]];
+    for arguments in questions {
+        let error = run(arguments).failed(1);
+        assert!(error.contains("--features cloud"), "{error}");
+    }
+}
+
+#[test]
+fn only_elevation_has_an_address_and_no_output() {
+    let dem = crate::cli::project("assets/jacksboro/dem.tif");
+    let error = run(&["check", "https://example.org/scene.toml"]).failed(1);
+    assert!(error.contains("elevation alone is read by its address"), "{error}");
+    let error = run(&["dem", "convert", &dem, "-o", "s3://bucket/out.tif"]).failed(1);
+    assert!(error.contains("results are written to files"), "{error}");
+    let error = run(&["height", "--allow-remote", "https://a.org", &dem, "--at", "1,2"]).failed(2);
+    assert!(error.contains("is no host"), "{error}");
+}
+
+#[cfg(feature = "cloud")]
+mod with_moto {
+    use std::ffi::OsString;
+    use std::io::{BufRead, BufReader};
+    use std::path::{Path, PathBuf};
+    use std::process::{Child, Command, Stdio};
+
+    use crate::cli::{Ran, program, ran};
+    use crate::common::scratch::Scratch;
+    use crate::common::skip::skipped;
+
+    /// Samples along a side of the raster: 64 tiles.
+    const SIDE: u32 = 2048;
+
+    /// A server that speaks S3, with a bucket `terrain`.
+    struct Store {
+        child: Child,
+        host: String,
+        scratch: Scratch,
+    }
+
+    impl Drop for Store {
+        fn drop(&mut self) {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+
+    impl Store {
+        /// Starts the server; `None` where `SANDTABLE_MOTO` names no Python that has `moto` and `boto3`.
+        fn start() -> Option<Self> {
+            let Some(python) = std::env::var_os("SANDTABLE_MOTO") else {
+                skipped("no S3 server: SANDTABLE_MOTO is not set");
+                let is_required = std::env::var_os("SANDTABLE_REQUIRE_VALIDATOR").is_some();
+                assert!(!is_required, "SANDTABLE_REQUIRE_VALIDATOR is set");
+                return None;
+            };
+            let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/s3_server.py");
+            let mut child = Command::new(python)
+                .arg(script)
+                .stdin(Stdio::piped())
+                .stdout(Stdio::piped())
+                .spawn()
+                .expect("Python starts");
+            let mut line = String::new();
+            let out = child.stdout.take().expect("a pipe");
+            BufReader::new(out).read_line(&mut line).expect("the server says its host");
+            let host = line.trim().to_owned();
+            assert!(host.starts_with("127.0.0.1:"), "{host}");
+            Some(Self { child, host, scratch: Scratch::new() })
+        }
+
+        /// Puts a file into the bucket.
+        fn put(&mut self, path: &Path, key: &str) {
+            use std::io::Write;
+            let pipe = self.child.stdin.as_mut().expect("a pipe");
+            writeln!(pipe, "{}\t{key}", path.display())
+                .and_then(|()| pipe.flush())
+                .expect("the server listens");
+            let done = self.scratch.at("put");
+            let _ = std::fs::remove_file(&done);
+            writeln!(pipe, "done\t{}", done.display())
+                .and_then(|()| pipe.flush())
+                .expect("the server listens");
+            while !done.exists() {
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+        }
+
+        /// The program with credentials in the environment, blocks in a folder `cache`, and the server's host allowed.
+        fn command(&self, cache: &str, arguments: &[&str]) -> Command {
+            let mut command = program(self.scratch.folder(), arguments);
+            command
+                .args(["--allow-remote", &self.host])
+                .env("AWS_ENDPOINT_URL", format!("http://{}", self.host))
+                .env("AWS_ALLOW_HTTP", "true")
+                .env("AWS_ACCESS_KEY_ID", "testing")
+                .env("AWS_SECRET_ACCESS_KEY", "testing")
+                .env("AWS_REGION", "us-east-1")
+                .env("XDG_CACHE_HOME", self.scratch.at(cache));
+            command
+        }
+
+        fn run(&self, cache: &str, arguments: &[&str]) -> Ran {
+            ran(self.command(cache, arguments).output().expect("the program starts"))
+        }
+
+        /// What a run prints that must have succeeded, and the bytes that it says it fetched.
+        #[track_caller]
+        fn fetched(&self, cache: &str, arguments: &[&str]) -> (String, u64) {
+            let ran = self.run(cache, arguments);
+            assert_eq!(ran.code, 0, "{ran:?}");
+            let note = ran.err.lines().find(|line| line.starts_with("note:") && line.contains("fetched"));
+            let bytes = note.and_then(|line| line.split_whitespace().rev().nth(1)?.parse().ok());
+            (ran.out, bytes.unwrap_or_else(|| panic!("no note of what was fetched: {}", ran.err)))
+        }
+    }
+
+    /// Terrain that packs as real terrain does: hills, and a noise of decimeters.
+    fn write_terrain(scratch: &Scratch) -> PathBuf {
+        let mut bytes = Vec::new();
+        let mut state = 7u32;
+        for row in 0..SIDE {
+            for column in 0..SIDE {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let (x, y) = (f64::from(column), f64::from(row));
+                let noise = f64::from(state >> 24) / 256.0;
+                let z = 800.0
+                    + 300.0 * (x * 0.006).sin() * (y * 0.004).cos()
+                    + 40.0 * (x * 0.05 + y * 0.03).sin()
+                    + noise;
+                bytes.extend((z as f32).to_le_bytes());
+            }
+        }
+        let plain = scratch.write("terrain.flt", bytes);
+        let header =
+            format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 0\nyllcorner 0\ncellsize 1\nbyteorder LSBFIRST\n");
+        scratch.write("terrain.hdr", header);
+        let tif = plain.with_extension("tif");
+        let words = ["dem", "convert"].map(OsString::from);
+        let arguments: Vec<OsString> =
+            words.into_iter().chain([plain.into(), "-o".into(), tif.clone().into()]).collect();
+        let ran = ran(program(scratch.folder(), &arguments).output().expect("the program starts"));
+        assert_eq!(ran.code, 0, "{ran:?}");
+        tif
+    }
+
+    /// Bytes of the header and of the tiles that meet a window of columns and rows, by the tags of a little-endian TIFF.
+    fn needed_bytes(tiff: &[u8], columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> u64 {
+        let short = |at: usize| u16::from_le_bytes(tiff[at..at + 2].try_into().expect("2 bytes"));
+        let long = |at: usize| u32::from_le_bytes(tiff[at..at + 4].try_into().expect("4 bytes"));
+        let directory = long(4) as usize;
+        let fields = (0..usize::from(short(directory))).map(|index| directory + 2 + 12 * index);
+        let list = |tag: u16| {
+            let field = fields.clone().find(|at| short(*at) == tag).expect("the tag is there");
+            let (count, place) = (long(field + 4) as usize, long(field + 8) as usize);
+            assert_eq!(short(field + 2), 4, "longs");
+            (0..count).map(|index| long(place + 4 * index)).collect::<Vec<u32>>()
+        };
+        let (starts, lengths) = (list(324), list(325));
+        let header = u64::from(*starts.iter().min().expect("tiles"));
+        let across = SIDE / 256;
+        let tiles = (rows.start / 256..rows.end.div_ceil(256)).flat_map(|row| {
+            (columns.start / 256..columns.end.div_ceil(256)).map(move |column| row * across + column)
+        });
+        header + tiles.map(|tile| u64::from(lengths[tile as usize])).sum::<u64>()
+    }
+
+    #[test]
+    fn a_remote_file_gives_the_bits_of_the_file_on_disk() {
+        let Some(mut store) = Store::start() else { return };
+        let tif = write_terrain(&store.scratch);
+        let local = tif.to_str().expect("UTF-8").to_owned();
+        store.put(&tif, "dem/terrain.tif");
+        let remote = "s3://terrain/dem/terrain.tif";
+        let tiff = std::fs::read(&tif).expect("readable");
+        let web = format!("http://{}/terrain/dem/terrain.tif", store.host);
+
+        // A height reads one tile, another program of the same words nothing but the first block.
+        let (one, bytes) = store.fetched("a", &["height", remote, "--at", "1000.5,1000.5"]);
+        let (local_one, _) = local_run(&store, &["height", &local, "--at", "1000.5,1000.5"]);
+        assert_eq!(one, local_one);
+        let needed = needed_bytes(&tiff, 999..1002, 1046..1049);
+        assert_ratio("a height", bytes, needed);
+        let (again, bytes) = store.fetched("a", &["height", remote, "--at", "1000.5,1000.5"]);
+        assert_eq!(again, one);
+        assert!(bytes <= 16 << 10, "the first block, and words of companions that are not there: {bytes}");
+        assert_eq!(store.fetched("w", &["height", &web, "--at", "1000.5,1000.5"]).0, one);
+
+        // A viewshed reads the square around its range.
+        let viewshed = |file: &str, out: &str| -> Vec<String> {
+            ["viewshed", file, "--at", "1000,1000", "--observer-height", "2", "--range", "300", "-o", out]
+                .map(str::to_owned)
+                .to_vec()
+        };
+        let (seen, there) = (store.scratch.at("there.tif"), store.scratch.at("here.tif"));
+        let arguments = viewshed(remote, "there.tif");
+        let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let (_, bytes) = store.fetched("b", &words);
+        let arguments = viewshed(&local, "here.tif");
+        let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        local_run(&store, &words);
+        assert_eq!(std::fs::read(seen).expect("written"), std::fs::read(there).expect("written"));
+        assert_ratio("a viewshed", bytes, needed_bytes(&tiff, 700..1301, 748..1349));
+
+        // All of it, row by row.
+        let (info, bytes) = store.fetched("c", &["dem", "info", remote, "--json"]);
+        assert_eq!(info, local_run(&store, &["dem", "info", &local, "--json"]).0);
+        assert_ratio("dem info", bytes, tiff.len() as u64);
+
+        // A scene with an extent reads that part of it.
+        let scene = |dem: &str| {
+            format!(
+                "title = \"Part\"\n[terrain]\ndem = \"{dem}\"\nextent = [[900, 900], [1100, 1100]]\n\
+                 [[camera]]\nname = \"top\"\n"
+            )
+        };
+        store.scratch.write("far.toml", scene(remote));
+        store.scratch.write("near.toml", scene("terrain.tif"));
+        store.fetched("d", &["render", "far.toml", "--size", "160x90", "-o", "far.png"]);
+        local_run(&store, &["render", "near.toml", "--size", "160x90", "-o", "near.png"]);
+        let picture = |name: &str| std::fs::read(store.scratch.at(name)).expect("drawn");
+        assert!(picture("far.png") == picture("near.png"), "the pictures differ");
+    }
+
+    #[track_caller]
+    fn assert_ratio(what: &str, fetched: u64, needed: u64) {
+        let ratio = fetched as f64 / needed as f64;
+        println!("{what}: {fetched} bytes fetched / {needed} needed = {ratio:.3}");
+        assert!((0.9..=1.3).contains(&ratio), "{what}: {fetched} / {needed} = {ratio}");
+    }
+
+    #[track_caller]
+    fn local_run(store: &Store, arguments: &[&str]) -> (String, String) {
+        let ran = ran(program(store.scratch.folder(), arguments).output().expect("the program starts"));
+        assert_eq!(ran.code, 0, "{ran:?}");
+        (ran.out, ran.err)
+    }
+
+    #[test]
+    fn an_address_is_refused_until_its_host_is_allowed() {
+        let Some(store) = Store::start() else { return };
+        let mut command = program(store.scratch.folder(), &["height", "s3://terrain/a.tif", "--at", "1,2"]);
+        command.env("AWS_ENDPOINT_URL", format!("http://{}", store.host)).env("AWS_ALLOW_HTTP", "true");
+        let refused = ran(command.output().expect("the program starts")).failed(1);
+        assert!(refused.contains(&format!("--allow-remote {}", store.host)), "{refused}");
+        let web = format!("http://{}/terrain/a.tif", store.host);
+        let refused = ran(program(store.scratch.folder(), &["height", &web, "--at", "1,2"])
+            .output()
+            .expect("it starts"));
+        assert!(refused.failed(1).contains(&format!("--allow-remote {}", store.host)));
+        let missing = store.run("a", &["height", "s3://terrain/none.tif", "--at", "1,2"]);
+        assert!(
+            missing.code == 1 && missing.err.contains("s3://terrain/none.tif: there is no such file"),
+            "{missing:?}"
+        );
+    }
+}
