@@ -84,7 +84,7 @@ const FITTED_FOV_DEG: f64 = 28.0;
 
 fn camera(table: &CameraTable, frame: &WorldFrame<'_>, lattice: &Lattice) -> Result<SceneView, Diagnostic> {
     let aim = match eye_and_target(table) {
-        Some((eye, look_at)) => aimed(table, eye, look_at, frame, lattice)?,
+        Some([eye, look_at]) => aimed(table, eye, look_at, frame, lattice)?,
         None => aim_without_eye(table, frame, &plan(lattice))?,
     };
     Ok(SceneView {
@@ -101,9 +101,10 @@ fn plan(lattice: &Lattice) -> Rect {
 }
 
 /// Where a camera has its eye, and where it looks; `None` where its eye depends on what it shows, or where it has none.
-pub(super) fn eye_and_target(table: &CameraTable) -> Option<(&Stated<[f64; 2]>, &Stated<[f64; 2]>)> {
+pub(super) fn eye_and_target(table: &CameraTable) -> Option<[&Stated<[f64; 2]>; 2]> {
     let is_perspective = table.projection == CameraProjection::Perspective;
-    table.eye.as_ref().zip(table.look_at.as_ref()).filter(|_| is_perspective)
+    let places = table.eye.as_ref().zip(table.look_at.as_ref());
+    places.filter(|_| is_perspective).map(|(eye, look_at)| [eye, look_at])
 }
 
 /// The vertical field of view of a camera, radians; without one, that of a view of the whole ground.

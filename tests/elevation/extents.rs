@@ -12,6 +12,7 @@ use sandtable::description::parse::parse_bytes;
 use sandtable::geom::crs::Crs;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::ground::{LoadedGround, load};
+use sandtable::scene::planned_pictures::ElevationNeed;
 
 use crate::common::scratch::Scratch;
 
@@ -60,8 +61,8 @@ fn ground(scratch: &Scratch, text: &str, whole: Option<&Raster>) -> Result<Loade
     let document = parse_bytes("a.toml", text.as_bytes()).unwrap_or_else(|error| panic!("{error}"));
     let assets = Assets::new(&scratch.at("a.toml"), &[]).expect("the folder is there");
     match whole {
-        Some(whole) => load(&document, &assets.with_elevation(Arc::new(whole.clone())), false),
-        None => load(&document, &assets, false),
+        Some(whole) => load(&document, &assets.with_elevation(Arc::new(whole.clone())), ElevationNeed::All),
+        None => load(&document, &assets, ElevationNeed::All),
     }
 }
 

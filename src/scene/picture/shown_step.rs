@@ -113,7 +113,7 @@ fn finest_pixel_m(
     let aim = match table {
         None => views::overview().aim,
         Some(table) => match views::eye_and_target(table) {
-            Some((eye, _)) => {
+            Some([eye, _]) => {
                 let eye = (frame.point(eye, table.crs.as_ref())?, table.eye_elevation);
                 return Ok(stated_depth_m(eye, half, frame, plan).map(|depth| pixel_m(depth, half, size)));
             }
