@@ -75,7 +75,7 @@ pub struct OpenedScene {
     pub(super) load: Option<SceneLoad>,
     /// The next list, while it is made.
     pub(super) relisting: Option<Relisting>,
-    /// The next spheres, while they are made.
+    /// The ground for another picture, while it is made.
     pub(super) reaching: Option<Reaching>,
     /// Whether the list is of old, or will be when the next one is there.
     pub(super) wants_list: bool,
@@ -185,7 +185,7 @@ impl OpenedScene {
             reaching: None,
             wants_list: false,
             shadows: ShadowState::default(),
-            size: FIRST_SIZE,
+            size: view.seen.map_or(OPENING_SIZE, |seen| seen.size),
             list,
             scene,
             walk,
@@ -197,7 +197,7 @@ impl OpenedScene {
         opened.walk.sight();
         let seen = opened.opening_camera(view)?;
         if let Some(task) = opened.walk.reach_task(&seen) {
-            opened.walk.take_reach(&task, task.spheres());
+            opened.walk.take_reach(task.ground());
         }
         let first = opened.walk.update(&seen)?.changes;
         let first = opened.without_hidden(first);

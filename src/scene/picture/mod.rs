@@ -20,6 +20,7 @@ mod parallel_view;
 pub mod placed_text;
 pub mod recut;
 pub mod setting;
+pub mod sheet_cuts;
 mod sight;
 mod solids;
 pub mod standing;
