@@ -41,7 +41,7 @@ pub fn reduced(windows: &mut impl Windows, step: u32) -> Result<Raster, DemError
 }
 
 /// Samples per row, and rows, of every `step`-th sample of a raster of `size`.
-fn reduced_size((columns, rows): (u32, u32), step: u32) -> (u32, u32) {
+pub fn reduced_size((columns, rows): (u32, u32), step: u32) -> (u32, u32) {
     ((columns - 1) / step + 1, (rows - 1) / step + 1)
 }
 
@@ -52,7 +52,7 @@ fn reduced_size((columns, rows): (u32, u32), step: u32) -> (u32, u32) {
 ///
 /// # Panics
 /// Where `step` is no power of two, or the rectangle is empty or reaches beyond the reduced raster.
-fn reduced_part(
+pub fn reduced_part(
     windows: &mut impl Windows,
     step: u32,
     columns: Range<u32>,

@@ -30,8 +30,7 @@ impl OpenedScene {
         let task = if self.reaching.is_none() && is_shown { self.walk.reach_task(&camera) } else { None };
         if let Some(task) = task {
             let context = context.clone();
-            self.reaching =
-                Some(WorkerJob::start(move || task.ground(), move || context.request_repaint()));
+            self.reaching = Some(WorkerJob::start(move || task.ground(), move || context.request_repaint()));
         }
         Ok(())
     }

@@ -15,6 +15,7 @@ pub mod disk_ground;
 pub mod edit;
 mod far_block;
 pub mod frame;
+pub mod ground_windows;
 mod laid;
 pub mod measure;
 pub mod page_heights;

@@ -38,8 +38,8 @@ impl ReachTask {
     /// Makes the ground, as it was seen last when the task was made.
     pub fn ground(self) -> ReachedGround {
         let ground = self.spheres.ground();
-        let mut mesh =
-            Deferred::new(ground, self.cell.min_element()).expect("the walk's own patches have 16-bit indices");
+        let mut mesh = Deferred::new(ground, self.cell.min_element())
+            .expect("the walk's own patches have 16-bit indices");
         // A patch that cannot be read is an error of the walk's next update, which lists it again.
         let is_listed = mesh.update(self.eye, &self.visible).is_ok();
         let listed = self.visible.iter().filter(|_| is_listed);
