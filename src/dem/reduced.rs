@@ -26,7 +26,7 @@ const BAND_SAMPLES: u32 = 1 << 22;
 pub fn reduced(windows: &mut (impl Windows + Send), step: u32) -> Result<Raster, DemErrorKind> {
     assert!(step.is_power_of_two(), "{step} is a power of two");
     let (columns, rows) = windows.size();
-    let (width, height) = ((columns - 1) / step + 1, (rows - 1) / step + 1);
+    let (width, height) = reduced_size((columns, rows), step);
     let spans: Vec<Range<usize>> = (0..width).map(|column| around(column * step, step, columns)).collect();
     // The last row holds the southernmost sample.
     let rows_of = |row: u32| around(rows - 1 - (height - 1 - row) * step, step, rows);
@@ -66,6 +66,41 @@ pub fn reduced(windows: &mut (impl Windows + Send), step: u32) -> Result<Raster,
         nodata: None,
         ..whole.without_samples()
     })
+}
+
+/// Samples per row, and rows, of every `step`-th sample of a raster of `size`.
+pub fn reduced_size((columns, rows): (u32, u32), step: u32) -> (u32, u32) {
+    ((columns - 1) / step + 1, (rows - 1) / step + 1)
+}
+
+/// The samples of [`reduced`] in a rectangle of it, row by row from the south-west; rows are counted from the south.
+///
+/// # Errors
+/// The samples cannot be read.
+///
+/// # Panics
+/// Where `step` is no power of two, or the rectangle is empty or reaches beyond the reduced raster.
+pub fn reduced_part(
+    windows: &mut impl Windows,
+    step: u32,
+    columns: Range<u32>,
+    rows: Range<u32>,
+) -> Result<Vec<f32>, DemErrorKind> {
+    assert!(step.is_power_of_two(), "{step} is a power of two");
+    let (size, width) = (windows.size(), columns.len());
+    let spans: Vec<Range<usize>> = columns.map(|column| around(column * step, step, size.0)).collect();
+    let (west, east) = (spans[0].start, spans[width - 1].end);
+    let spans: Vec<Range<usize>> = spans.iter().map(|span| span.start - west..span.end - west).collect();
+    let (mut means, mut lines) = (vec![0f32; width * rows.len()], Vec::new());
+    for (row, means) in rows.zip(means.chunks_mut(width)) {
+        // Rasters are counted from the north.
+        let own = around(size.1 - 1 - row * step, step, size.1);
+        let (column, row) = (west as u32, own.start as u32);
+        let window = RasterWindow { column, row, width: (east - west) as u32, height: own.len() as u32 };
+        windows.read(window, &mut lines)?;
+        fill_means(&lines, east - west, &spans, means);
+    }
+    Ok(means)
 }
 
 /// The `step` columns, or rows, around one of `count`.
@@ -110,6 +145,10 @@ mod tests {
         assert_eq!(small.at(2, 1), 2.0 * 7.5 + 5.0 * 8.5);
         // The corner is the mean of five of the six samples there.
         assert_eq!(small.at(0, 3), f64::from((2.0f32 + 5.0 + 7.0 + 10.0 + 12.0) / 5.0));
+        let part = reduced_part(&mut raster, 4, 1..4, 1..3).expect("in memory");
+        let wanted = [(1, 2), (2, 2), (3, 2), (1, 1), (2, 1), (3, 1)]
+            .map(|(column, row)| small.at(column, row) as f32);
+        assert_eq!(part, wanted);
         let same = reduced(&mut raster, 1).expect("in memory");
         assert_eq!((same.width, same.height, same.at(3, 4)), (21, 13, raster.at(3, 4)));
     }

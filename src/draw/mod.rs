@@ -10,6 +10,7 @@ pub mod ground_cover;
 pub mod ground_grain;
 pub mod ground_imagery;
 pub mod ground_levels;
+pub mod ground_window;
 pub mod hatching;
 pub mod lighting;
 pub mod list;

@@ -50,6 +50,8 @@ pub struct PagedElevation {
     pub terrain: ElevationWindows,
     /// The same for questions about heights.
     pub questions: ElevationWindows,
+    /// The same for the light on the ground near the eye.
+    pub near: ElevationWindows,
     /// All of it, its samples further apart: the south-west one lies where it does in the terrain.
     pub overview: Arc<Raster>,
 }
@@ -134,12 +136,13 @@ impl PagedElevation {
         }
         let fitting = |file| finest_that_fits(file, DEFAULT_PATCH).map_err(paging).map(WatchedWindows::new);
         let mut terrain = fitting(first)?;
-        let Some(second) = windows(path, QUESTION_CACHE) else { return Ok(None) };
-        let questions = fitting(second)?;
+        let (second, third) = (windows(path, QUESTION_CACHE), windows(path, TERRAIN_CACHE));
+        let Some((second, third)) = second.zip(third) else { return Ok(None) };
+        let (questions, near) = (fitting(second)?, fitting(third)?);
         let (columns, rows) = terrain.size();
         let step = (columns.max(rows) - 1).div_ceil(OVERVIEW_CELLS).next_power_of_two();
         let overview = reduced(&mut terrain, step).map_err(FileError::<DemErrorKind>::at(path))?;
-        Ok(Some(Self { terrain, questions, overview: Arc::new(overview) }))
+        Ok(Some(Self { terrain, questions, near, overview: Arc::new(overview) }))
     }
 }
 

@@ -14,6 +14,8 @@
 //! Cost: memory grows with the parts, time of [`Drapes::recut`] with the displayed triangles under what is cut again; nothing
 //! is looked at in patches that are not named.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -93,33 +95,72 @@ impl StalePatch {
     }
 }
 
+/// The parts of ribbons in one patch, by their places among the plans given.
+type PatchParts = Vec<(usize, PlanMesh)>;
+
 /// What lies on the ground, by patch.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Drapes {
-    patches: Vec<PatchDrape>,
+    parts: DrapeParts,
+    /// By patch, each part cut to the ground as it was displayed when the patch was last cut; none where it never was.
+    cut: Vec<Vec<CutPart>>,
 }
 
-/// What lies in one patch.
+/// What lies on the ground by patch, before it is cut: to be cut on another thread.
 #[derive(Clone, Debug, Default)]
-struct PatchDrape {
-    /// The parts of ribbons, by their places among the plans given.
-    parts: Vec<(usize, PlanMesh)>,
-    /// Each part cut to the ground as it was displayed when the patch was last cut.
-    cut: Vec<CutPart>,
+pub struct DrapeParts(Arc<Vec<PatchParts>>);
+
+/// Parts that were cut on another thread.
+#[derive(Clone, Debug)]
+pub struct CutDrapes {
+    of: DrapeParts,
+    patches: Vec<(usize, Vec<CutPart>)>,
+}
+
+impl DrapeParts {
+    /// The parts in `patches` cut to what is displayed there.
+    ///
+    /// # Panics
+    /// Where a number is not that of a patch.
+    pub fn cut(&self, patches: &[usize], ground: &dyn TriangleSurface) -> CutDrapes {
+        let cut = |&patch: &usize| {
+            (patch, self.0[patch].iter().map(|(_, plan)| CutPart::of(plan, ground)).collect())
+        };
+        let patches = if self.0.is_empty() { Vec::new() } else { patches.par_iter().map(cut).collect() };
+        CutDrapes { of: self.clone(), patches }
+    }
+
+    fn in_patch(&self, patch: usize) -> &[(usize, PlanMesh)] {
+        self.0.get(patch).map_or(&[], Vec::as_slice)
+    }
 }
 
 impl Drapes {
-    /// Nothing, in any patch.
-    pub const NONE: Self = Self { patches: Vec::new() };
-
     /// Divides `plans` along the borders; nothing is cut to the ground yet. Patches are numbered row by row from the
     /// south-west.
     pub fn new<'a>(borders: &Borders, plans: impl IntoIterator<Item = &'a PlanMesh>) -> Self {
-        let mut patches = vec![PatchDrape::default(); borders.patch_count()];
+        let mut patches = vec![PatchParts::new(); borders.patch_count()];
         for (ribbon, plan) in plans.into_iter().enumerate() {
             divide(ribbon, plan, borders, &mut patches);
         }
-        Self { patches }
+        Self { cut: vec![Vec::new(); patches.len()], parts: DrapeParts(Arc::new(patches)) }
+    }
+
+    /// The parts, as they are before they are cut.
+    pub fn parts(&self) -> &DrapeParts {
+        &self.parts
+    }
+
+    /// Exchanges what was cut of patches with what was cut of them on another thread. Does nothing where that was cut of
+    /// other parts; returns whether it was of these.
+    pub fn exchange(&mut self, other: &mut CutDrapes) -> bool {
+        let is_own = Arc::ptr_eq(&self.parts.0, &other.of.0);
+        if is_own {
+            for (patch, cut) in &mut other.patches {
+                std::mem::swap(&mut self.cut[*patch], cut);
+            }
+        }
+        is_own
     }
 
     /// Cuts the parts in `stale` to what is displayed there now. The refiner gives these patches: those it changed,
@@ -128,46 +169,53 @@ impl Drapes {
     /// # Panics
     /// Where a number is not that of a patch.
     pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
-        if self.patches.is_empty() {
+        if self.cut.is_empty() {
             return;
         }
-        let cut: Vec<Vec<Option<CutPart>>> =
-            stale.par_iter().map(|of| self.patches[of.patch].recut(of.areas.as_deref(), ground)).collect();
+        let cut: Vec<Vec<Option<CutPart>>> = stale.par_iter().map(|of| self.cut_again(of, ground)).collect();
         for (of, cut) in stale.iter().zip(cut) {
-            let patch = &mut self.patches[of.patch];
-            patch.cut.resize(patch.parts.len(), CutPart::default());
-            let renewed = patch.cut.iter_mut().zip(cut);
+            let held = &mut self.cut[of.patch];
+            held.resize(cut.len(), CutPart::default());
+            let renewed = held.iter_mut().zip(cut);
             renewed.filter_map(|(held, cut)| Some((held, cut?))).for_each(|(held, cut)| *held = cut);
         }
     }
 
+    /// Each part of a patch cut again; `None` for those that lie as they were cut.
+    fn cut_again(&self, of: &StalePatch, ground: &dyn TriangleSurface) -> Vec<Option<CutPart>> {
+        let held = &self.cut[of.patch];
+        let cut = |(at, (_, plan)): (usize, &(usize, PlanMesh))| match (held.get(at), &of.areas) {
+            (Some(cut), Some(areas)) => cut.recut(plan, ground, areas),
+            _ => Some(CutPart::of(plan, ground)),
+        };
+        self.parts.in_patch(of.patch).iter().enumerate().map(cut).collect()
+    }
+
     /// The ribbons in a patch, as places among the plans given, and what was cut of each; none where it was never cut.
     pub fn in_patch(&self, patch: usize) -> impl Iterator<Item = (usize, &DrawMesh)> {
-        let patch = self.patches.get(patch);
-        let parts = patch.into_iter().flat_map(|PatchDrape { parts, cut }| parts.iter().zip(cut));
-        parts.map(|((ribbon, _), cut)| (*ribbon, cut.mesh()))
+        let cut = self.cut.get(patch).into_iter().flatten();
+        self.parts.in_patch(patch).iter().zip(cut).map(|((ribbon, _), cut)| (*ribbon, cut.mesh()))
     }
 
     /// The ribbons in a patch, cut or not, as places among the plans given.
     pub fn held(&self, patch: usize) -> impl Iterator<Item = usize> {
-        self.patches.get(patch).into_iter().flat_map(|patch| patch.parts.iter().map(|(ribbon, _)| *ribbon))
+        self.parts.in_patch(patch).iter().map(|(ribbon, _)| *ribbon)
     }
 
     /// Whether something lies in a patch.
     pub fn is_occupied(&self, patch: usize) -> bool {
-        self.patches.get(patch).is_some_and(|patch| !patch.parts.is_empty())
+        !self.parts.in_patch(patch).is_empty()
     }
 
     /// How many patches hold something.
     pub fn occupied(&self) -> usize {
-        self.patches.iter().filter(|patch| !patch.parts.is_empty()).count()
+        self.parts.0.iter().filter(|parts| !parts.is_empty()).count()
     }
 
     /// The largest clearance in meters between what was cut and what is displayed now: 0 but for rounding where every
     /// patch that changed was cut again. See [`check_clearance`].
     pub fn check(&self, ground: &dyn TriangleSurface) -> f64 {
-        let cut: Vec<&DrawMesh> =
-            self.patches.iter().flat_map(|patch| &patch.cut).map(CutPart::mesh).collect();
+        let cut: Vec<&DrawMesh> = self.cut.iter().flatten().map(CutPart::mesh).collect();
         cut.par_iter().map(|mesh| check_clearance(mesh, ground)).reduce(|| 0.0, f64::max)
     }
 
@@ -176,7 +224,7 @@ impl Drapes {
         let of_patch = |&patch: &usize| {
             let window = Rect::around(borders.window((patch % borders.columns(), patch / borders.columns())));
             let own = WindowSurface { ground, window: window.grown(-borders.rounding_m()) };
-            let cut = self.patches.get(patch).into_iter().flat_map(|patch| &patch.cut);
+            let cut = self.cut.get(patch).into_iter().flatten();
             cut.map(|cut| check_clearance(cut.mesh(), &own)).fold(0.0, f64::max)
         };
         patches.par_iter().map(of_patch).reduce(|| 0.0, f64::max)
@@ -199,28 +247,16 @@ impl TriangleSurface for WindowSurface<'_> {
     }
 }
 
-impl PatchDrape {
-    /// The part that a ribbon has here; ribbons are handed in one after the other.
-    fn part(&mut self, ribbon: usize) -> &mut PlanMesh {
-        if self.parts.last().is_none_or(|(last, _)| *last != ribbon) {
-            self.parts.push((ribbon, PlanMesh::default()));
-        }
-        &mut self.parts.last_mut().expect("there is one now").1
+/// The part that a ribbon has in a patch; ribbons are handed in one after the other.
+fn part(parts: &mut PatchParts, ribbon: usize) -> &mut PlanMesh {
+    if parts.last().is_none_or(|(last, _)| *last != ribbon) {
+        parts.push((ribbon, PlanMesh::default()));
     }
-
-    /// Each part cut to the ground again; `None` for those that lie as they were cut. `areas` hold all triangles that have
-    /// changed; without them all may have.
-    fn recut(&self, areas: Option<&[Rect]>, ground: &dyn TriangleSurface) -> Vec<Option<CutPart>> {
-        let recut = |(at, (_, plan)): (usize, &(usize, PlanMesh))| match (self.cut.get(at), areas) {
-            (Some(cut), Some(areas)) => cut.recut(plan, ground, areas),
-            _ => Some(CutPart::of(plan, ground)),
-        };
-        self.parts.iter().enumerate().map(recut).collect()
-    }
+    &mut parts.last_mut().expect("there is one now").1
 }
 
 /// Adds each triangle of a plan to the parts it has in the patches it meets.
-fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [PatchDrape]) {
+fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [PatchParts]) {
     let (mut piece, mut scratch) = (Vec::new(), Vec::new());
     for corners in plan.corners() {
         let texture = TextureMap::of(corners);
@@ -231,7 +267,7 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
             if piece.len() < 3 || polygon::doubled_area(&piece) < 2.0 * SLIVER_M2 {
                 continue;
             }
-            let part = patches[row * borders.columns() + column].part(ribbon);
+            let part = part(&mut patches[row * borders.columns() + column], ribbon);
             let ids: Vec<_> =
                 piece.iter().map(|&at| part.vertex(PlanVertex { at, uv: texture.at(at) })).collect();
             polygon::fan(&ids).for_each(|corners| part.triangle(corners));
@@ -263,9 +299,9 @@ mod tests {
         let (borders, road) = (borders(), road());
         let drapes = Drapes::new(&borders, [&road]);
         let mut area = 0.0;
-        for (index, patch) in drapes.patches.iter().enumerate() {
+        for (index, parts) in drapes.parts.0.iter().enumerate() {
             let [low, _, high, _] = borders.window((index % 3, index / 3));
-            for (ribbon, part) in &patch.parts {
+            for (ribbon, part) in parts {
                 assert_eq!(*ribbon, 0);
                 area += part.area_m2();
                 assert!(

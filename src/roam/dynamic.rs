@@ -26,6 +26,7 @@ use crate::roam::layout::PatchLayout;
 use crate::roam::levels::VertexRect;
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
+use crate::roam::sphere_task::{SphereTask, TaskGround};
 use crate::roam::spheres::{OwnRadius, SphereMap};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::volumes::Volumes;
@@ -78,26 +79,6 @@ pub struct DynamicTerrain {
     edits: u64,
     /// One a patch, false between edits.
     dirty: Vec<bool>,
-}
-
-/// Spheres for another reach, to be made on another thread. While it is kept, the next edit copies heights and errors.
-#[derive(Clone, Debug)]
-pub struct SphereTask {
-    options: DynamicOptions,
-    lattice: Arc<Lattice>,
-    layout: PatchLayout,
-    errors: Arc<ErrorMap>,
-    roughness: Option<Arc<Roughness>>,
-    /// How often the terrain had been edited.
-    edits: u64,
-}
-
-impl SphereTask {
-    /// The spheres.
-    pub fn spheres(&self) -> SphereMap {
-        let ground = PatchedGround { lattice: &self.lattice, layout: &self.layout };
-        SphereMap::new(ground, &own_radius(&self.options, &self.errors, self.roughness.as_deref()))
-    }
 }
 
 /// The effects of an edit.
@@ -189,13 +170,6 @@ impl DynamicTerrain {
         self.options.reach
     }
 
-    /// Makes the spheres anew for another reach; a mesh of the terrain must begin anew.
-    pub fn set_reach(&mut self, reach: f32) {
-        let task = self.sphere_task(reach);
-        let spheres = task.spheres();
-        self.take_spheres(&task, spheres);
-    }
-
     /// The task of making the spheres anew for another reach.
     pub fn sphere_task(&self, reach: f32) -> SphereTask {
         SphereTask {
@@ -208,12 +182,13 @@ impl DynamicTerrain {
         }
     }
 
-    /// Takes over the spheres that a task has made, unless the terrain was edited since; returns whether it did. A mesh of
-    /// the terrain must begin anew then.
-    pub fn take_spheres(&mut self, task: &SphereTask, spheres: SphereMap) -> bool {
-        let is_current = task.edits == self.edits;
+    /// Exchanges the spheres with those that a task has made, unless the terrain was edited since; returns whether it did. A
+    /// mesh of the terrain must then be that of the task's ground, or begin anew.
+    pub fn exchange_spheres(&mut self, made: &mut TaskGround) -> bool {
+        let is_current = made.task.edits == self.edits;
         if is_current {
-            (self.options.reach, self.spheres) = (task.options.reach, spheres);
+            std::mem::swap(&mut self.options.reach, &mut made.task.options.reach);
+            std::mem::swap(&mut self.spheres, &mut made.spheres);
         }
         is_current
     }
@@ -322,7 +297,7 @@ impl DynamicTerrain {
     }
 }
 
-fn own_radius<'a>(
+pub(super) fn own_radius<'a>(
     options: &DynamicOptions,
     errors: &'a ErrorMap,
     roughness: Option<&'a Roughness>,

@@ -11,7 +11,8 @@
 //! - `refine`: policies that set the bits; `closure`: the fewest bits that keep an error bound.
 //! - `emit`, `extract`: triangles from bits, and from errors alone, without a view.
 //! - `displayed`: the mesh of the bits as a surface for features; `measured_ground`: a ground with all its measures.
-//! - `levels`, `edit`, `dynamic`: updates of errors and spheres after heights changed, and a terrain that can be edited.
+//! - `levels`, `edit`, `dynamic`: updates of errors and spheres after heights changed, and a terrain that can be edited;
+//!   `sphere_task`: its spheres for another picture, made on another thread.
 //! - `paging`: terrain larger than memory.
 //! - `shown`, `frames`, `measure`, `bound`: index lists of a frame, comparisons of frames, of a frame with the ground, and of
 //!   a mesh with the ground.
@@ -45,4 +46,5 @@ pub mod quadtree;
 pub mod refine;
 pub mod roughness;
 pub mod shown;
+pub mod sphere_task;
 pub mod spheres;

@@ -152,7 +152,12 @@ fn z_factor(lattice: &Lattice, scale: VerticalScale, is_water: impl Fn(usize) ->
 /// Whether all samples that are numbers are whole.
 fn holds_whole_meters(samples: &Samples) -> bool {
     match samples {
-        Samples::F32(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
+        Samples::F32(samples) => is_whole_meters(samples),
         Samples::F64(samples) => samples.iter().all(|sample| sample.is_nan() || sample.fract() == 0.0),
     }
+}
+
+/// Whether all heights that are numbers are whole.
+pub(super) fn is_whole_meters(heights: &[f32]) -> bool {
+    heights.iter().all(|height| height.is_nan() || height.fract() == 0.0)
 }

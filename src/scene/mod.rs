@@ -26,6 +26,7 @@ pub mod footprint;
 pub mod graphics;
 pub mod ground;
 pub mod ground_map;
+pub mod ground_window;
 pub mod imagery;
 pub mod label_course;
 pub mod land_cover;

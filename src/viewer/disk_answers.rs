@@ -11,6 +11,7 @@ use crate::pipeline::walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
 use crate::terrain::sight::ground::SightGround;
 use crate::view::camera::Camera;
 use crate::viewer::app::ViewerApp;
+use crate::viewer::finer_ground::FinerGround;
 use crate::viewer::loading::opening_error;
 use crate::viewer::measuring::{MeasureKind, Measuring};
 use crate::viewer::opened::OpenedScene;
@@ -46,7 +47,7 @@ impl OpenedScene {
             PagingStage::Shown => paged.is_busy(),
             PagingStage::Failed(_) => false,
         };
-        self.paged.as_ref().is_some_and(is_busy)
+        self.paged.as_ref().is_some_and(is_busy) || self.finer.as_ref().is_some_and(FinerGround::is_busy)
     }
 
     /// The exact place of a pick on terrain that is not in memory; `None` where the pick is exact.

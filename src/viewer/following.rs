@@ -57,6 +57,9 @@ impl ViewerApp {
         for error in followed.into_iter().filter_map(Result::err) {
             self.notices.warn(opening_error(&error));
         }
+        if let Err(failure) = opened.follow_finer_ground(&self.context, &self.slot) {
+            self.notices.warn(format!("finer ground cannot be shown: {failure}"));
+        }
         if let Err(failure) = opened.follow_reach(&self.context) {
             self.notices.warn(format!("measuring the ground for this picture failed: {failure}"));
         }

@@ -13,6 +13,7 @@ use crate::pipeline::editing::editor::{SceneEditor, SceneSource};
 use crate::pipeline::fingerprint::fingerprint;
 use crate::pipeline::paged_elevation::PagedElevation;
 use crate::pipeline::viewing::{is_scene_file, open_to_view};
+use crate::viewer::finer_ground::FinerGround;
 use crate::viewer::opened::{OpenedScene, OpeningView};
 use crate::viewer::paging::PagedTerrain;
 use crate::viewer::scene_load::LoaderSlot;
@@ -144,9 +145,12 @@ pub(super) fn load_paged(
     let source = editor.source().clone();
     let scene = source.build_on(Arc::clone(&elevation.overview), progress);
     let scene = scene.map_err(|error| opening_error(&error))?;
-    let paged = PagedTerrain::start(elevation, wake).map_err(|error| opening_error(&error))?;
-    let opened = OpenedScene::new(path.to_owned(), scene, Some(paged), shown, progress)
+    let PagedElevation { terrain, questions, near, .. } = elevation;
+    let paged = PagedTerrain::start(terrain, questions, wake).map_err(|error| opening_error(&error))?;
+    let finer = FinerGround::new(near).map_err(|error| opening_error(&error))?;
+    let mut opened = OpenedScene::new(path.to_owned(), scene, Some(paged), shown, progress)
         .map_err(|error| opening_error(&error))?;
+    opened.finer = Some(finer);
     Ok(LoadedFile { opened: Box::new(opened), editor: None, source, fingerprint: None })
 }
 

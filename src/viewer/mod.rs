@@ -20,6 +20,7 @@ mod commands;
 mod disk_answers;
 mod drawing_job;
 pub mod error;
+mod finer_ground;
 mod following;
 mod frame_times;
 mod ghost;

@@ -16,13 +16,14 @@ use crate::pipeline::walk::frame::{ReachRenewal, WalkError, WalkOptions, WalkSta
 use crate::pipeline::walk::pick::{PickedWorld, StandingIndex, WalkPick, described, pixel_ray};
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::live::KeptPatches;
-use crate::render::gpu::live::prepared::PreparedShadows;
+use crate::render::gpu::live::prepared::{PreparedShadows, PreparedWindows};
 use crate::scene::picture;
 use crate::scene::{SceneModel, SceneView};
 use crate::terrain::sight::ray::Ray;
 use crate::view::camera::{Camera, CameraError, far_m};
 use crate::view::navigation::pose::{ViewPicture, ViewPose};
 use crate::view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
+use crate::viewer::finer_ground::FinerGround;
 use crate::viewer::paging::PagedTerrain;
 use crate::viewer::reaching::Reaching;
 use crate::viewer::relisting::Relisting;
@@ -75,11 +76,13 @@ pub struct OpenedScene {
     pub(super) load: Option<SceneLoad>,
     /// The next list, while it is made.
     pub(super) relisting: Option<Relisting>,
-    /// The next spheres, while they are made.
+    /// The ground for another picture, while it is made.
     pub(super) reaching: Option<Reaching>,
     /// Whether the list is of old, or will be when the next one is there.
     pub(super) wants_list: bool,
     pub(super) shadows: ShadowState,
+    /// Finer ground around the eye; `None` where the scene is in memory.
+    pub(super) finer: Option<FinerGround>,
     /// The size of the picture, pixels.
     pub(super) size: (u32, u32),
 }
@@ -121,6 +124,8 @@ pub struct SceneFrame {
     pub load: Option<SceneLoad>,
     /// Shadows to take over; `None` where the renderer has them.
     pub shadows: Option<PreparedShadows>,
+    /// Windows of finer ground to take over; `None` where the renderer has them.
+    pub windows: Option<PreparedWindows>,
     /// What changed on the ground.
     pub changes: GroundChanges,
     /// How it is seen.
@@ -185,7 +190,8 @@ impl OpenedScene {
             reaching: None,
             wants_list: false,
             shadows: ShadowState::default(),
-            size: FIRST_SIZE,
+            finer: None,
+            size: view.seen.map_or(OPENING_SIZE, |seen| seen.size),
             list,
             scene,
             walk,
@@ -197,13 +203,16 @@ impl OpenedScene {
         opened.walk.sight();
         let seen = opened.opening_camera(view)?;
         if let Some(task) = opened.walk.reach_task(&seen) {
-            opened.walk.take_reach(&task, task.spheres());
+            opened.walk.take_reach(task.ground());
         }
         let first = opened.walk.update(&seen)?.changes;
         let first = opened.without_hidden(first);
         progress("sending the scene to the adapter");
         let shadowed = ShadowedView { camera: seen, ground: opened.walk.shown_ground() };
-        let prepared = slot.prepare(&opened.list, &shadowed, &first)?;
+        let mut prepared = slot.prepare(&opened.list, &shadowed, &first)?;
+        if opened.paged.is_some() {
+            slot.expect_windows(&mut prepared)?;
+        }
         if prepared.is_some() {
             opened.shadows.made_for(seen);
             let list = Arc::clone(&opened.list);
@@ -320,6 +329,9 @@ impl OpenedScene {
             self.relist();
         }
         let load = self.load.take();
+        if load.as_ref().is_some_and(|load| load.kept == KeptPatches::None) {
+            self.finer.iter_mut().for_each(FinerGround::forget_handed);
+        }
         if load.as_ref().is_some_and(|load| load.prepared.is_none()) {
             self.walk.forget_handed();
             self.paged.iter_mut().for_each(PagedTerrain::forget_handed);
@@ -333,9 +345,11 @@ impl OpenedScene {
         let (changes, statistics) = self.updated(&refined_for)?;
         let update_ms = started.elapsed().as_secs_f32() * 1e3;
         let shadows = self.shadows.take_ready();
+        let windows = self.finer.as_mut().and_then(FinerGround::take_ready);
         Ok(SceneFrame {
             load,
             shadows,
+            windows,
             changes,
             lighting: self.walk.lighting(&camera),
             camera,

@@ -19,7 +19,7 @@ use crate::dem::answer::Answer;
 use crate::dem::windows::Windows;
 use crate::draw::patches::{GroundChanges, PatchId};
 use crate::message::chain::error_text;
-use crate::pipeline::paged_elevation::{ElevationWindows, PagedElevation, ReadingWatch};
+use crate::pipeline::paged_elevation::{ElevationWindows, ReadingWatch};
 use crate::pipeline::walk::disk_ground::DiskGround;
 use crate::pipeline::walk::frame::WalkStatistics;
 use crate::pipeline::walk::page_heights::{PageHeights, page};
@@ -113,12 +113,15 @@ pub struct PagedTerrain {
 }
 
 impl PagedTerrain {
-    /// Begins to read the terrain; `wake` is called when [`PagedTerrain::follow`] has news.
+    /// Begins to read the terrain, of which `questions` are asked by jobs; `wake` is called when [`PagedTerrain::follow`] has news.
     ///
     /// # Errors
     /// The file is no lattice.
-    pub fn start(elevation: PagedElevation, wake: impl Fn() + Send + 'static) -> Result<Self, LatticeError> {
-        let PagedElevation { terrain, questions, .. } = elevation;
+    pub fn start(
+        terrain: ElevationWindows,
+        questions: ElevationWindows,
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<Self, LatticeError> {
         let (size, watch) = (terrain.size(), Arc::clone(terrain.watch()));
         let questions = Arc::new(Mutex::new(DiskGround::new(questions)?));
         let (requests, asked) = channel();

@@ -1,43 +1,36 @@
-//! Making the nested spheres anew beside the window, for a picture of another size or another tolerance.
+//! Making the ground anew beside the window, for a picture of another size or another tolerance.
 
 use egui::Context;
 
-use crate::roam::dynamic::SphereTask;
-use crate::roam::spheres::SphereMap;
+use crate::pipeline::walk::reach::ReachedGround;
 use crate::viewer::opened::OpenedScene;
-use crate::viewer::worker::{WorkerFailure, WorkerJob};
+use crate::viewer::worker::{WorkerFailure, WorkerJob, drop_apart};
 
-/// Spheres that are being made.
-pub struct Reaching {
-    task: SphereTask,
-    job: WorkerJob<SphereMap>,
-}
+/// The ground that is being made.
+pub type Reaching = WorkerJob<ReachedGround>;
 
 impl OpenedScene {
-    /// Whether spheres are being made.
+    /// Whether the ground is being made anew.
     pub fn is_reaching(&self) -> bool {
         self.reaching.is_some()
     }
 
-    /// Takes over the spheres that were made meanwhile, and begins to make others where the picture needs them.
+    /// Takes over the ground that was made meanwhile, and begins to make another where the picture needs it.
     ///
     /// # Errors
-    /// A fault of the program; the spheres before stay.
+    /// A fault of the program; the ground before stays.
     pub fn follow_reach(&mut self, context: &Context) -> Result<(), WorkerFailure> {
-        if let Some(done) = self.reaching.as_ref().and_then(|reaching| reaching.job.poll()) {
-            let made = self.reaching.take().zip(Some(done?));
-            if let Some((Reaching { task, .. }, spheres)) = made {
-                self.walk.take_reach(&task, spheres);
-            }
+        if let Some(done) = self.reaching.as_ref().and_then(WorkerJob::poll) {
+            self.reaching = None;
+            drop_apart(self.walk.take_reach(done?));
         }
         let Ok(camera) = self.camera(self.size) else { return Ok(()) };
         // Terrain on disk has spheres of its own.
         let is_shown = self.paged.as_ref().is_none_or(|paged| !paged.is_shown());
         let task = if self.reaching.is_none() && is_shown { self.walk.reach_task(&camera) } else { None };
         if let Some(task) = task {
-            let (made, context) = (task.clone(), context.clone());
-            let job = WorkerJob::start(move || made.spheres(), move || context.request_repaint());
-            self.reaching = Some(Reaching { task, job });
+            let context = context.clone();
+            self.reaching = Some(WorkerJob::start(move || task.ground(), move || context.request_repaint()));
         }
         Ok(())
     }

@@ -103,10 +103,14 @@ impl OpenedScene {
         let task = self.walk.standing_task(self.wanted_sun);
         let (made, hidden, slot, context) =
             (task.clone(), self.hidden.clone(), slot.clone(), context.clone());
+        let has_windows = self.finer.is_some();
         let work = move || {
             let mut list = made.list(&camera, &|_| ());
             list.items.retain(|item| !hidden.contains(&item.feature));
-            let prepared = slot.prepare(&list, &shadowed, &GroundChanges::default())?;
+            let mut prepared = slot.prepare(&list, &shadowed, &GroundChanges::default())?;
+            if has_windows {
+                slot.expect_windows(&mut prepared)?;
+            }
             let list = Arc::new(list);
             let standing = StandingIndex::new(Arc::clone(&list));
             Ok(RelistedScene { list, standing, prepared, eye: camera.eye(), seen })

@@ -68,6 +68,9 @@ impl SceneGraphics {
         if let Some(shadows) = frame.shadows.take() {
             self.renderer.show_shadows(shadows)?;
         }
+        if let Some(windows) = frame.windows.take() {
+            self.renderer.show_windows(windows)?;
+        }
         self.renderer.set_lighting(frame.lighting);
         let sent = self.renderer.update(&frame.changes)?;
         let upload_ms = milliseconds(uploading);

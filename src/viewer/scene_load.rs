@@ -52,6 +52,15 @@ impl LoaderSlot {
         Ok(Some(prepared))
     }
 
+    /// Readies a prepared scene for windows of finer ground.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn expect_windows(&self, prepared: &mut Option<PreparedScene>) -> Result<(), GpuError> {
+        let both = self.loader().zip(prepared.as_mut());
+        both.map_or(Ok(()), |(loader, prepared)| loader.expect_windows(prepared))
+    }
+
     /// Whether there is a renderer.
     pub fn is_filled(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()

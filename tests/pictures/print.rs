@@ -19,7 +19,7 @@ struct CopiedPixels {
 }
 
 fn copied(scene: &SceneModel) -> BTreeMap<FeatureId, CopiedPixels> {
-    let view = scene.views.first().expect("a camera");
+    let view = scene.cameras.first().expect("a camera");
     let drawn = draw_view(scene, view, SIZE, RenderBackend::Cpu, &|_| ()).expect("a picture");
     let mut pixels: BTreeMap<FeatureId, CopiedPixels> = BTreeMap::new();
     for (feature, pixel) in drawn.picture.features.iter().zip(drawn.picture.pixels.data()) {

@@ -7,6 +7,8 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use sandtable::draw::ground_levels::coarser_levels;
+use sandtable::draw::ground_window::GroundWindow;
 use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable::draw::patches::{
     DrapedPiece, GroundChanges, GroundMapPatch, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
@@ -285,6 +287,44 @@ fn a_scene_prepared_on_another_thread_shows_as_one_that_is_loaded() {
         let bare = loader.prepare(&list, &shadows).unwrap_or_else(|error| panic!("{error}"));
         renderer.show(bare, KeptPatches::None);
         assert!(share_apart(&window.frame(&mut renderer, &camera), &before) > 0.05, "without ground");
+    }
+}
+
+#[test]
+fn a_window_of_finer_ground_over_a_coarse_map_shows_as_the_fine_map() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    let fine = list.ground.clone().expect("the scene has a ground map");
+    let level = coarser_levels(&fine).next().expect("it has many posts");
+    let mut coarse = list.clone();
+    let map = ground_of(&mut coarse);
+    (map.cell, map.columns, map.rows) = (fine.cell * 2.0, level.size.columns, level.size.rows);
+    (map.posts, map.form_level) = (level.posts, fine.form_level.saturating_sub(1));
+    let all = GroundWindow { first: [0, 0], columns: fine.columns, posts: fine.posts.clone() };
+    let part = GroundWindow { first: [20, 0], columns: 30, posts: vec![fine.posts[0]; 30 * 25] };
+    for gpu in gpus() {
+        let mut renderer = loaded(gpu, &list, WINDOW);
+        let window = Window::new(gpu, WINDOW);
+        let wanted = window.frame(&mut renderer, &camera);
+        let mut renderer = loaded(gpu, &coarse, WINDOW);
+        let without = window.frame(&mut renderer, &camera);
+        assert!(share_apart(&without, &wanted) > 0.02, "posts are seen on {}", gpu.name());
+        let mut show = |renderer: &mut LiveRenderer, ground: &GroundWindow| {
+            let prepared = renderer.loader().prepare_windows(&[Arc::new(ground.clone())]);
+            let shown = prepared.and_then(|prepared| renderer.show_windows(prepared));
+            shown.unwrap_or_else(|error| panic!("{error}"));
+            window.frame(renderer, &camera)
+        };
+        let shown = show(&mut renderer, &all);
+        let apart = share_apart(&shown, &wanted);
+        assert!(apart < 1e-3, "{apart} of the pixels differ on {}", gpu.name());
+        let shadows = LiveShadows::default();
+        let other = renderer.loader().prepare(&coarse, &shadows).unwrap_or_else(|error| panic!("{error}"));
+        renderer.show(other, KeptPatches::All);
+        assert_eq!(share_apart(&window.frame(&mut renderer, &camera), &shown), 0.0, "the window stays");
+        let beside = share_apart(&show(&mut renderer, &part), &without);
+        assert!(beside > 0.005 && beside < 0.6, "{beside} of the pixels are in the part");
+        let broken = GroundWindow { columns: 7, ..part.clone() };
+        assert!(renderer.loader().prepare_windows(&[Arc::new(broken)]).is_err(), "rows are not whole");
     }
 }
 

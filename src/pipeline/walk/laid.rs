@@ -18,6 +18,7 @@ use crate::roam::refine::deferred::surface::DeferredSurface;
 use crate::scene::SceneModel;
 use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::picture::recut::{GroundSheets, SeenTint};
+use crate::scene::picture::sheet_cuts::{SheetCuts, SheetParts};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::triangle_surface::TriangleSurface;
@@ -141,6 +142,19 @@ impl LaidGround {
     pub fn forget_cuts(&mut self, is_meant: impl Fn(usize) -> bool) {
         let patches = self.patches.iter_mut().enumerate();
         patches.filter(|(patch, _)| is_meant(*patch)).for_each(|(_, laid)| laid.is_cut = false);
+    }
+
+    /// What lies on the ground, to be cut on another thread.
+    pub fn parts(&self) -> SheetParts {
+        self.sheets.parts()
+    }
+
+    /// Exchanges what was cut: the ground is to display what `cuts` were cut to.
+    pub fn exchange_cuts(&mut self, cuts: &mut SheetCuts) {
+        self.forget_cuts(|_| true);
+        cuts.patches().iter().for_each(|&patch| self.patches[patch].is_cut = true);
+        let planned = self.sheets.exchange_cuts(cuts);
+        planned.into_iter().for_each(|patch| self.patches[patch].is_cut = false);
     }
 
     /// What lies uppermost on a patch at a world position; `None` for bare ground.

@@ -15,12 +15,13 @@ pub mod disk_ground;
 pub mod edit;
 mod far_block;
 pub mod frame;
+pub mod ground_windows;
 mod laid;
 pub mod measure;
 pub mod page_heights;
 pub mod paged;
 pub mod pick;
-mod reach;
+pub mod reach;
 mod relief_map;
 mod shown;
 pub mod shown_ground;
@@ -194,8 +195,7 @@ impl Walk {
     pub fn update(&mut self, camera: &Camera) -> Result<WalkFrame, WalkError> {
         let vantage = self.vantage(camera);
         if let (ReachRenewal::InUpdate, Some(task)) = (self.options.renewal, self.reach_task(camera)) {
-            let spheres = task.spheres();
-            self.take_reach(&task, spheres);
+            self.take_reach(task.ground());
         }
         let terrain = self.mesh.source();
         let visible = self.view.update(terrain.ground(), terrain.heights(), Culling::frustum(camera));

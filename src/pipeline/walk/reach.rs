@@ -1,8 +1,15 @@
-//! Making the nested spheres anew for another size of the picture, in an update or on another thread.
+//! Making the ground anew for another size of the picture, in an update or on another thread: its nested spheres, the
+//! triangles that they show, and what lies on the ground, cut to these.
+
+use glam::{DVec2, Vec3};
 
 use crate::pipeline::walk::Walk;
-use crate::roam::dynamic::SphereTask;
-use crate::roam::spheres::SphereMap;
+use crate::roam::block::BlockSource;
+use crate::roam::graph::Vertex;
+use crate::roam::refine::deferred::Deferred;
+use crate::roam::refine::deferred::surface::DeferredSurface;
+use crate::roam::sphere_task::{SphereTask, TaskGround};
+use crate::scene::picture::sheet_cuts::{SheetCuts, SheetParts};
 use crate::view::camera::Camera;
 
 /// Spheres that reach farther than a picture needs, by up to this factor, are kept: they show more triangles, and making
@@ -12,27 +19,64 @@ const MOST_REACH: f32 = 1.25;
 /// Spheres that are made anew because a picture needs larger ones reach by this factor farther than it needs.
 const SPARE_REACH: f32 = 1.1;
 
+/// What the ground for another picture is made of. While it is kept, the next edit copies heights and errors.
+pub struct ReachTask {
+    spheres: SphereTask,
+    eye: Vec3,
+    visible: Vec<Vertex>,
+    cell: DVec2,
+    laid: SheetParts,
+}
+
+/// The ground for another picture; after [`Walk::take_reach`] the one before, to be dropped where no frame waits for it.
+pub struct ReachedGround {
+    mesh: Deferred<TaskGround>,
+    laid: SheetCuts,
+}
+
+impl ReachTask {
+    /// Makes the ground, as it was seen last when the task was made.
+    pub fn ground(self) -> ReachedGround {
+        let ground = self.spheres.ground();
+        let mut mesh = Deferred::new(ground, self.cell.min_element())
+            .expect("the walk's own patches have 16-bit indices");
+        // A patch that cannot be read is an error of the walk's next update, which lists it again.
+        let is_listed = mesh.update(self.eye, &self.visible).is_ok();
+        let listed = self.visible.iter().filter(|_| is_listed);
+        let patches = listed.map(|&corner| mesh.source().layout().patch_index(corner)).collect();
+        let laid = self.laid.cut(patches, &DeferredSurface::new(&mesh, self.cell));
+        ReachedGround { mesh, laid }
+    }
+}
+
 impl Walk {
-    /// The task of making the spheres anew for the picture of a camera; `None` where they are as large as it needs, and not
-    /// much larger.
-    pub fn reach_task(&self, camera: &Camera) -> Option<SphereTask> {
-        let (needed, terrain) = (self.vantage(camera).reach, self.mesh.source());
-        let held = terrain.reach();
+    /// The task of making the ground anew for the picture of a camera; `None` where its spheres are as large as that needs,
+    /// and not much larger.
+    pub fn reach_task(&self, camera: &Camera) -> Option<ReachTask> {
+        let terrain = self.mesh.source();
+        let (needed, held) = (self.vantage(camera).reach, terrain.reach());
         if (needed..=needed * MOST_REACH).contains(&held) {
             return None;
         }
         let reach = if needed > held { needed * SPARE_REACH } else { needed };
-        Some(terrain.sphere_task(reach))
+        Some(ReachTask {
+            spheres: terrain.sphere_task(reach),
+            eye: self.mesh.eye(),
+            visible: self.mesh.visible().to_vec(),
+            cell: terrain.lattice().cell(),
+            laid: self.laid.parts(),
+        })
     }
 
-    /// Takes over the spheres that a task has made: the next update shows the ground by them. After an edit since then they
-    /// are of no use, and [`Walk::reach_task`] has another task.
-    pub fn take_reach(&mut self, task: &SphereTask, spheres: SphereMap) {
-        if self.mesh.source_mut().take_spheres(task, spheres) {
-            self.mesh.restart();
+    /// Takes over the ground that a task has made, and returns the one before: the next update shows the new one. After an
+    /// edit since the task was begun it is of no use, and [`Walk::reach_task`] has another task.
+    pub fn take_reach(&mut self, mut made: ReachedGround) -> ReachedGround {
+        if self.mesh.source_mut().exchange_spheres(made.mesh.source_mut()) {
+            self.mesh.exchange(&mut made.mesh);
             self.shown.relist_all();
-            self.laid.forget_cuts(|_| true);
+            self.laid.exchange_cuts(&mut made.laid);
         }
+        made
     }
 }
 
@@ -68,18 +112,20 @@ mod tests {
         let large = triangles(at_once, 2400);
         assert!(large > small && triangles(by_task, 2400) < large, "{small} and {large} triangles");
         let task = by_task.reach_task(&camera(2400)).expect("too small");
-        by_task.take_reach(&task, task.spheres());
-        assert_eq!(triangles(by_task, 2400), large);
+        by_task.take_reach(task.ground());
+        let made = by_task.update(&camera(2400)).expect("in memory");
+        assert_eq!(made.statistics.triangles, large);
+        by_task.check();
         assert!(by_task.reach_task(&camera(2400)).is_none());
         // An edit between the task and its end makes it useless.
         let task = by_task.reach_task(&camera(300)).expect("too large");
-        let spheres = task.spheres();
+        let ground = task.ground();
         let post = Post { column: 40, row: 40 };
         let height = by_task.elevations().height(post) + 30.0;
         let edited =
             by_task.edit(|lattice| set_heights(lattice, PostRect { first: post, last: post }, &[height]));
         assert!(edited.expect("in memory").is_some());
-        by_task.take_reach(&task, spheres);
+        by_task.take_reach(ground);
         assert!(by_task.reach_task(&camera(300)).is_some());
         triangles(by_task, 2400);
         by_task.check();

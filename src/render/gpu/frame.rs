@@ -14,6 +14,7 @@ use crate::render::gpu::memory::{Loader, bind, texture, view};
 use crate::render::gpu::pipelines::Layouts;
 use crate::render::gpu::shadow::ShadowTextures;
 use crate::render::gpu::uniforms::{FrameUniforms, RAMP_COLUMNS};
+use crate::render::gpu::windows::WindowTexture;
 use crate::render::shadow::Shadows;
 
 /// The textures of group 0.
@@ -23,6 +24,7 @@ pub struct FrameTextures {
     ramp: wgpu::Texture,
     imagery: wgpu::Texture,
     shadows: ShadowTextures,
+    windows: WindowTexture,
 }
 
 /// Group 0 and the constants in it.
@@ -40,6 +42,7 @@ impl FrameTextures {
             ramp: ramp_stops(loader, map)?,
             imagery: imagery_texture(loader, map)?,
             shadows: ShadowTextures::upload(loader, shadows)?,
+            windows: WindowTexture::upload(loader, &[])?,
         })
     }
 
@@ -56,6 +59,16 @@ impl FrameTextures {
         Ok(())
     }
 
+    /// Windows of finer posts.
+    pub fn windows(&self) -> &WindowTexture {
+        &self.windows
+    }
+
+    /// Replaces the windows of finer posts.
+    pub fn replace_windows(&mut self, windows: WindowTexture) {
+        self.windows = windows;
+    }
+
     /// Replaces the maps of shadows.
     pub fn replace_shadows(&mut self, shadows: ShadowTextures) {
         self.shadows = shadows;
@@ -67,12 +80,15 @@ impl FrameGroup {
     pub fn new(loader: &Loader<'_>, layouts: &Layouts, textures: &FrameTextures) -> Result<Self, GpuError> {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let constants = loader.buffer(|| "the camera".into(), usage, size_of::<FrameUniforms>() as u64)?;
-        let FrameTextures { ground, ramp, imagery, shadows } = textures;
-        let views = [&ground.posts, ramp, &shadows.pages, &shadows.texels, imagery].map(view);
-        let [posts, ramp, pages, texels, imagery] = views.each_ref().map(wgpu::BindingResource::TextureView);
+        let FrameTextures { ground, ramp, imagery, shadows, windows } = textures;
+        let views =
+            [&ground.posts, ramp, &shadows.pages, &shadows.texels, imagery, windows.posts()].map(view);
+        let [posts, ramp, pages, texels, imagery, windows] =
+            views.each_ref().map(wgpu::BindingResource::TextureView);
         let sampler = sampler(loader.gpu);
         let sampler = wgpu::BindingResource::Sampler(&sampler);
-        let resources = [constants.as_entire_binding(), posts, ramp, pages, texels, imagery, sampler];
+        let resources =
+            [constants.as_entire_binding(), posts, ramp, pages, texels, imagery, sampler, windows];
         let group = bind(loader.gpu, "frame", &layouts.frame, resources);
         Ok(Self { group, constants })
     }

@@ -145,7 +145,7 @@ impl TexelWriter<'_> {
 }
 
 /// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10, from −1 (woods) to 1.
-fn packed(post: &GroundPost) -> [u32; 4] {
+pub fn packed(post: &GroundPost) -> [u32; 4] {
     let share = |share: f32, most: f32| (share.clamp(0.0, 1.0) * most + 0.5) as u32;
     [
         post.height_m.to_bits(),

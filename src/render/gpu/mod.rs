@@ -32,6 +32,7 @@ mod plan;
 mod readback;
 mod shadow;
 mod uniforms;
+mod windows;
 
 use crate::draw::list::DrawList;
 use crate::render::gpu::adapter::{Gpu, GpuApi};
@@ -92,7 +93,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         let shadows = ShadowView::both(&shadows);
         let ground = list.ground.as_deref();
         let row_bits = row_bits(gpu.limits.max_texture_dimension_2d);
-        let scene = FrameScene { ground, lighting: &list.lighting, shadows, row_bits };
+        let scene = FrameScene { ground, windows: &[], lighting: &list.lighting, shadows, row_bits };
         frame.write(gpu, &FrameUniforms::new(scene, camera));
         let materials = GpuMaterials::upload(&loader, &layouts, list, &places)?;
         Ok((targets, frame, materials, GpuGeometry::upload(&loader, list, &plan, Some(camera))?))

@@ -36,6 +36,8 @@ impl ShaderParts {
     const MAP_WATER: Self = Self(8192);
     /// The edges of triangles.
     const EDGES: Self = Self(16_384);
+    /// Windows of finer posts.
+    pub const WINDOWS: Self = Self(32_768);
 
     /// What bare ground shows.
     pub const GROUND: Self = Self(Self::GROUND_COLOR.0 | Self::GROUND_LIGHT.0);
@@ -104,6 +106,7 @@ impl ShaderParts {
             .with(Self::HAZE)
             .with(all(&map).when(colored))
             .with(Self::GRAIN.when(colored || self.has(Self::NATURAL)))
+            .with(Self::WINDOWS.when(self.has(Self::GROUND)))
             .with(all(&shadows).when(lit));
         let of_material =
             all(&[Self::GROUND, Self::OWN_LIGHT, Self::HATCHING, Self::WATER, Self::NATURAL, Self::EDGES]);

@@ -28,6 +28,8 @@ const DRAPE_NEARER_PX: f32 = 1.0 / 128.0;
 const SHADER: &str = concat!(
     include_str!("shader.wgsl"),
     "\n",
+    include_str!("ground_windows.wgsl"),
+    "\n",
     include_str!("whole_picture.wgsl"),
     "\n",
     include_str!("sky.wgsl")
@@ -69,7 +71,7 @@ const PATCH_BUFFERS: [Option<wgpu::VertexBufferLayout>; 1] = [Some(wgpu::VertexB
 
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler.
+    /// Group 0: constants, ground posts, ramp, shadows, the draped picture and its sampler, windows of finer posts.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: the table of materials, an array of textures and its sampler.
     pub materials: wgpu::BindGroupLayout,
@@ -137,6 +139,7 @@ impl Layouts {
                     (fragment, texture(wgpu::TextureSampleType::Float { filterable: false })),
                     (fragment, texture(wgpu::TextureSampleType::Float { filterable: true })),
                     (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                    (fragment, texture(wgpu::TextureSampleType::Uint)),
                 ],
             ),
             materials: group(

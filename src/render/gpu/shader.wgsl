@@ -32,6 +32,8 @@ struct Frame {
     contour: vec4f,       // rgb, strength
     contour_shape: vec4f, // interval in meters (0: none), width in pixels, every how many is heavier; 1 where the ground has a grain
     ground_levels: array<vec4u, 24>, // columns, rows, first post of all; binary logarithm of the texels in a row
+    ground_windows: array<vec4u, 8>, // column and row of the first post, columns, rows
+    window_size: vec4u,   // number of windows; rows of the texture for each
     shadows: array<ShadowView, 2>, // of the sun, of the sky
 }
 
@@ -122,6 +124,7 @@ const SKY_SHADOWS_PART = 2048u;
 const HAZE_PART = 4096u;
 const MAP_WATER_PART = 8192u;
 const EDGES_PART = 16384u;
+const WINDOWS_PART = 32768u;
 
 struct Corner {
     @location(0) position: vec3f,
@@ -243,7 +246,10 @@ fn post_at(at: vec2u, level: u32) -> Post {
     let place = frame.ground_levels[level];
     let index = place.z + at.y * place.x + at.x;
     let row_bits = frame.ground_levels[0].w;
-    let texel = textureLoad(ground_posts, vec2u(index & ((1u << row_bits) - 1u), index >> row_bits), 0);
+    return unpacked(textureLoad(ground_posts, vec2u(index & ((1u << row_bits) - 1u), index >> row_bits), 0));
+}
+
+fn unpacked(texel: vec4u) -> Post {
     let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
     let visibility = shares / vec3f(4095.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
     return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0), vec2f(0.0));
@@ -267,11 +273,15 @@ fn ground_on_level(at: vec2f, level: u32) -> Post {
     let size = frame.ground_levels[level].xy;
     let first = min(vec2u(grid), max(size, vec2u(2u)) - 2u);
     let next = min(first + 1u, size - 1u);
-    let part = grid - vec2f(first);
     let sw = post_at(first, level);
     let se = post_at(vec2u(next.x, first.y), level);
     let nw = post_at(vec2u(first.x, next.y), level);
     let ne = post_at(next, level);
+    return between(sw, se, nw, ne, grid - vec2f(first), scale);
+}
+
+// Between four posts, of which `scale` lie on a cell of the map.
+fn between(sw: Post, se: Post, nw: Post, ne: Post, part: vec2f, scale: f32) -> Post {
     var post = mix_post(mix_post(sw, se, part.x), mix_post(nw, ne, part.x), part.y);
     let east = mix(se.height - sw.height, ne.height - nw.height, part.y);
     let north = mix(nw.height - sw.height, ne.height - se.height, part.x);
@@ -289,17 +299,21 @@ fn ground_at(at: vec2f, right: vec2f, down: vec2f) -> Post {
     let along = length(down / frame.ground.zw);
     let axis = select(down, right, across > along);
     let longer = max(across, along);
-    let taps = clamp(ceil(longer / max(min(across, along), 1.0)), 1.0, MOST_TAPS);
+    var windows = 0.0;
+    if has(WINDOWS_PART) {
+        windows = windows_over(at);
+    }
+    let taps = clamp(ceil(longer / max(min(across, along), exp2(-windows))), 1.0, MOST_TAPS);
     let most = f32(frame.ground_size.z - 1u);
-    let level = clamp(log2(max(longer / taps, 1e-6)), 0.0, most);
-    let lower = u32(level);
+    let level = clamp(log2(max(longer / taps, 1e-6)), -windows, most);
+    let lower = i32(floor(level));
     let part = level - f32(lower);
     var sum = Post(0.0, vec2f(0.0), vec3f(0.0), vec2f(0.0), vec2f(0.0));
     for (var tap = 0.0; tap < taps; tap += 1.0) {
         let here = at + axis * ((tap + 0.5) / taps - 0.5);
-        var post = ground_on_level(here, lower);
+        var post = ground_at_level(here, lower);
         if part > 0.0 {
-            post = mix_post(post, ground_on_level(here, lower + 1u), part);
+            post = mix_post(post, ground_at_level(here, lower + 1), part);
         }
         sum.height += post.height / taps;
         sum.slope += post.slope / taps;

@@ -15,6 +15,7 @@ use crate::draw::water::WaterColor;
 use crate::render::gpu::geometry::SurfaceOwner;
 use crate::render::gpu::ground::{MOST_LEVELS, levels};
 use crate::render::gpu::shadow::ShadowView;
+use crate::render::gpu::windows::{MOST_WINDOWS, WindowPlace};
 use crate::render::picture::LEAST_VISIBLE_ALPHA;
 use crate::view::camera::{Camera, ViewProjection};
 
@@ -62,6 +63,8 @@ pub struct FrameUniforms {
     contour: [f32; 4],
     contour_shape: [f32; 4],
     ground_levels: [[u32; 4]; MOST_LEVELS],
+    ground_windows: [[u32; 4]; MOST_WINDOWS],
+    window_size: [u32; 4],
     shadows: [ShadowView; 2],
 }
 
@@ -86,6 +89,8 @@ pub struct Instance {
 #[derive(Clone, Copy, Debug)]
 pub struct FrameScene<'a> {
     pub ground: Option<&'a GroundMap>,
+    /// Where windows of finer posts lie.
+    pub windows: &'a [WindowPlace],
     pub lighting: &'a Lighting,
     pub shadows: [ShadowView; 2],
     /// [`row_bits`](crate::render::gpu::ground::row_bits) of the adapter.
@@ -136,6 +141,18 @@ impl FrameUniforms {
             undergrowth: with(Undergrowth::COLOR.linear(), Undergrowth::MOST),
             shallow: with(WaterColor::SHALLOW.linear(), WaterColor::OFF_SHORE),
             open: with(WaterColor::OPEN.linear(), 1.0),
+            ground_windows: std::array::from_fn(|window| {
+                scene
+                    .windows
+                    .get(window)
+                    .map_or([0; 4], |WindowPlace { first, size, .. }| [first[0], first[1], size[0], size[1]])
+            }),
+            window_size: [
+                scene.windows.len() as u32,
+                scene.windows.first().map_or(0, |window| window.rows_apart),
+                0,
+                0,
+            ],
             shadows: scene.shadows,
             ..Self::ground(scene.ground, scene.row_bits)
         }

@@ -20,6 +20,7 @@ mod parallel_view;
 pub mod placed_text;
 pub mod recut;
 pub mod setting;
+pub mod sheet_cuts;
 pub(in crate::scene) mod shown_step;
 mod sight;
 mod solids;

@@ -86,8 +86,9 @@ pub struct GroundSheets {
 }
 
 /// Plans in drawing order, cut by patch.
-struct DrapeSheet {
-    drapes: Drapes,
+#[derive(Default)]
+pub(super) struct DrapeSheet {
+    pub drapes: Drapes,
     plans: Vec<SheetPlan>,
 }
 
@@ -110,12 +111,12 @@ impl GroundSheets {
             head,
             looks: BTreeMap::new(),
             borders: borders(ground),
-            ribbons: DrapeSheet::EMPTY,
-            symbols: DrapeSheet::EMPTY,
-            tints: DrapeSheet::EMPTY,
-            seen: DrapeSheet::EMPTY,
+            ribbons: DrapeSheet::default(),
+            symbols: DrapeSheet::default(),
+            tints: DrapeSheet::default(),
+            seen: DrapeSheet::default(),
             seen_material: None,
-            graphics: DrapeSheet::EMPTY,
+            graphics: DrapeSheet::default(),
             graphic_colors: BTreeMap::new(),
             texts: Vec::new(),
             replaced: BTreeSet::new(),
@@ -163,8 +164,13 @@ impl GroundSheets {
         &self.texts
     }
 
-    fn sheets(&self) -> [&DrapeSheet; 5] {
+    pub(super) fn sheets(&self) -> [&DrapeSheet; 5] {
         [&self.ribbons, &self.symbols, &self.tints, &self.seen, &self.graphics]
+    }
+
+    pub(super) fn sheets_mut(&mut self) -> [&mut DrapeSheet; 5] {
+        let Self { ribbons, symbols, tints, seen, graphics, .. } = self;
+        [ribbons, symbols, tints, seen, graphics]
     }
 
     /// Adds the texture of a tint to the materials: it is to be laid when a list has them.
@@ -188,7 +194,7 @@ impl GroundSheets {
             let plans = vec![SheetPlan { material, markings: None, lake: None, layer, feature }];
             DrapeSheet { drapes: Drapes::new(&self.borders, [&tint.plan]), plans }
         });
-        let before = std::mem::replace(&mut self.seen, laid.unwrap_or(DrapeSheet::EMPTY));
+        let before = std::mem::replace(&mut self.seen, laid.unwrap_or(DrapeSheet::default()));
         let is_held =
             |&patch: &usize| before.drapes.is_occupied(patch) || self.seen.drapes.is_occupied(patch);
         (0..self.borders.patch_count()).filter(is_held).collect()
@@ -206,10 +212,7 @@ impl GroundSheets {
 
     /// Cuts what lies in `stale` to what is displayed there.
     pub fn recut(&mut self, stale: &[StalePatch], ground: &dyn TriangleSurface) {
-        let Self { ribbons, symbols, tints, seen, graphics, .. } = self;
-        for sheet in [ribbons, symbols, tints, seen, graphics] {
-            sheet.drapes.recut(stale, ground);
-        }
+        self.sheets_mut().into_iter().for_each(|sheet| sheet.drapes.recut(stale, ground));
     }
 
     /// Plans the lines of sight and the tactical graphics for an eye that turns around where `camera` is, over the finest
@@ -385,8 +388,6 @@ impl GroundSheets {
 }
 
 impl DrapeSheet {
-    const EMPTY: Self = Self { drapes: Drapes::NONE, plans: Vec::new() };
-
     fn features(&self, patch: usize) -> impl Iterator<Item = FeatureId> {
         self.drapes.held(patch).map(|plan| self.plans[plan].feature)
     }

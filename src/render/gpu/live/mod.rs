@@ -41,7 +41,7 @@ use crate::render::gpu::live::encode::Encoder;
 use crate::render::gpu::live::ground_map::EditedMap;
 use crate::render::gpu::live::patches::PatchStore;
 use crate::render::gpu::live::pick::{PickTarget, PickedPoint};
-use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene, PreparedShadows};
+use crate::render::gpu::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
 use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
 use crate::render::gpu::materials::GpuMaterials;
 use crate::render::gpu::memory::Loader;
@@ -51,6 +51,7 @@ use crate::render::gpu::pipelines::{FEATURE, GpuPass, Layouts, PassTarget, Pipel
 use crate::render::gpu::plan::{DrawCall, PipelineKey, Plan};
 use crate::render::gpu::shadow::ShadowView;
 use crate::render::gpu::uniforms::{FrameScene, FrameUniforms};
+use crate::render::gpu::windows::WindowTexture;
 use crate::render::shadow::Shadows;
 use crate::view::camera::Camera;
 
@@ -243,9 +244,15 @@ impl LiveRenderer {
         let PreparedScene { mut scene, pipelines: [colors, features] } = prepared;
         self.colors.adopt(colors);
         self.features.adopt(features);
+        let mut windows = None;
         if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
             let added = std::mem::replace(&mut scene.patches, before.patches);
             scene.patches.adopt_materials(added);
+            windows = Some(before.textures.windows().clone());
+        }
+        if let Some(windows) = windows {
+            // Without them the ground is shown from the map alone.
+            let _ = scene.take_windows(&self.gpu, &self.layouts, windows);
         }
         scene.make(&self.gpu, &mut self.colors, &mut self.features);
         self.scene = Some(*scene);
@@ -295,6 +302,23 @@ impl LiveRenderer {
             scene.parts = ShaderParts::of_picture(map.as_deref(), &scene.lighting, shadows);
             scene.map = EditedMap::new(map);
             scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            Ok(())
+        })
+    }
+
+    /// Replaces the windows of finer ground by those that a loader of this renderer has prepared. Does nothing before a scene
+    /// is loaded.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the windows before stay.
+    pub fn show_windows(&mut self, PreparedWindows(windows): PreparedWindows) -> Result<(), GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("showing finer ground", || {
+            let parts = scene.parts;
+            scene.take_windows(&self.gpu, &self.layouts, windows)?;
+            if scene.parts != parts {
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
             Ok(())
         })
     }
@@ -405,6 +429,15 @@ impl LiveRenderer {
 }
 
 impl LoadedScene {
+    fn take_windows(&mut self, gpu: &Gpu, layouts: &Layouts, windows: WindowTexture) -> Result<(), GpuError> {
+        if !windows.places().is_empty() {
+            self.parts = self.parts.with(ShaderParts::WINDOWS);
+        }
+        self.textures.replace_windows(windows);
+        self.frame = FrameGroup::new(&Loader::new(gpu), layouts, &self.textures)?;
+        Ok(())
+    }
+
     /// Makes the pipelines that it draws with and that are missing.
     fn make(&self, gpu: &Gpu, colors: &mut Pipelines, features: &mut Pipelines) {
         let [color_keys, feature_keys] = self.plan.keys(self.parts);
@@ -420,7 +453,8 @@ impl LoadedScene {
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
         let Self { shadows, row_bits, .. } = *self;
-        let scene = FrameScene { ground: self.map.map(), lighting: &self.lighting, shadows, row_bits };
+        let (ground, windows) = (self.map.map(), self.textures.windows().places());
+        let scene = FrameScene { ground, windows, lighting: &self.lighting, shadows, row_bits };
         FrameUniforms::new(scene, camera).with_size(size)
     }
 

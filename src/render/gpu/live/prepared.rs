@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use crate::draw::ground_window::GroundWindow;
 use crate::draw::list::{DepthLayer, DrawList};
 use crate::draw::patches::GroundChanges;
 use crate::render::gpu::adapter::Gpu;
@@ -22,6 +23,7 @@ use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::pipelines::{Layouts, Pipelines};
 use crate::render::gpu::plan::Plan;
 use crate::render::gpu::shadow::{ShadowTextures, ShadowView};
+use crate::render::gpu::windows::WindowTexture;
 
 /// Prepares scenes for a renderer, on any thread.
 #[derive(Clone, Debug)]
@@ -47,6 +49,10 @@ pub struct PreparedShadows {
     pub(super) views: [ShadowView; 2],
     pub(super) has_shadows: [bool; 2],
 }
+
+/// Windows of finer ground on the device that are not shown yet.
+#[derive(Debug)]
+pub struct PreparedWindows(pub(super) WindowTexture);
 
 impl LiveLoader {
     pub(super) fn new(gpu: &Gpu, layouts: &Arc<Layouts>, pipelines: [&Pipelines; 2]) -> Self {
@@ -100,6 +106,32 @@ impl LiveLoader {
             self.gpu.finish_sending()?;
             let has_shadows = [&shadows.sun, &shadows.sky].map(Option::is_some);
             Ok(PreparedShadows { textures, views: ShadowView::both(shadows), has_shadows })
+        })
+    }
+
+    /// Makes the pipelines that a prepared scene needs once it has windows of finer ground: no frame waits for them then.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn expect_windows(&self, prepared: &mut PreparedScene) -> Result<(), GpuError> {
+        self.gpu.guarded("building its shaders", || {
+            let PreparedScene { scene, pipelines: [colors, features] } = prepared;
+            scene.parts = scene.parts.with(ShaderParts::WINDOWS);
+            scene.make(&self.gpu, colors, features);
+            Ok(())
+        })
+    }
+
+    /// Brings windows of finer posts than the ground map has to the device, the coarsest first, each with half the distance
+    /// between the posts of the one before; waits until they are there.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn prepare_windows(&self, windows: &[Arc<GroundWindow>]) -> Result<PreparedWindows, GpuError> {
+        self.gpu.guarded("sending finer ground", || {
+            let windows = WindowTexture::upload(&Loader::new(&self.gpu), windows)?;
+            self.gpu.finish_sending()?;
+            Ok(PreparedWindows(windows))
         })
     }
 

@@ -309,16 +309,23 @@ impl<S: BlockSource> Deferred<S> {
         &mut self.source
     }
 
-    /// Begins anew, as after [`Deferred::new`]: for a source whose spheres have all changed.
-    pub fn restart(&mut self) {
-        self.patches.fill(WalkedPatch::default());
-        self.spare = (0..self.meshes.0.len() as u32).collect();
-        self.seen.fill(0);
-        self.behind.fill(false);
-        self.wheel = Wheel::new(0);
-        self.visible.clear();
-        self.station = EyeStation { eye: Vec3::NAN, traveled: 0.0, ..self.station };
-        self.settled = false;
+    /// Exchanges the meshes with those of `other`, whose source has the same patches: each source must have, from now on, the
+    /// spheres that the other had.
+    pub fn exchange<T>(&mut self, other: &mut Deferred<T>) {
+        use std::mem::swap;
+        swap(&mut self.patches, &mut other.patches);
+        swap(&mut self.meshes, &mut other.meshes);
+        swap(&mut self.seen, &mut other.seen);
+        swap(&mut self.behind, &mut other.behind);
+        swap(&mut self.spare, &mut other.spare);
+        swap(&mut self.wheel, &mut other.wheel);
+        swap(&mut self.visible, &mut other.visible);
+        swap(&mut self.station, &mut other.station);
+        swap(&mut self.settled, &mut other.settled);
+        swap(&mut self.frame, &mut other.frame);
+        swap(&mut self.changes, &mut other.changes);
+        swap(&mut self.changed, &mut other.changed);
+        swap(&mut self.counts, &mut other.counts);
     }
 
     /// The number of patches with a mesh.
