@@ -366,6 +366,21 @@ pub(super) static RULES: &[TableRule] = &[
         most: 15,
         is_title: true,
     }),
+    rule(
+        "label",
+        "Names of rivers",
+        "lines",
+        "has(name) and (waterway ?? fclass) in ('river', 'canal', 'stream')",
+    )
+    .keys(&["kind = \"water\""])
+    .label(LabelRule {
+        text: "name",
+        name: "name",
+        // After all places: a river's name finds room somewhere along it.
+        rank: "match(waterway ?? fclass, 'river', 7, 'canal', 8, 9)",
+        most: 15,
+        is_title: false,
+    }),
     rule("label", "Peaks", "points", "has(name) and (natural ?? fclass) in ('peak', 'volcano')").keys(&[
         "kind = \"summit\"",
     ])
