@@ -169,7 +169,7 @@ fn a_large_file_is_copied_with_the_bytes_of_one_that_is_held() {
     convert(&scratch, &["copied.tif", "again.tif"]).ok();
     assert!(bytes("again.tif") == bytes("held.tif"), "in tiles as in rows");
     // A file that breaks off is found while it is copied, and leaves nothing.
-    scratch.write("cut.tif", bytes("held.tif")[..bytes("held.tif").len() / 2].to_vec());
+    scratch.write("cut.tif", &bytes("held.tif")[..bytes("held.tif").len() / 2]);
     let refused = convert(&scratch, &["cut.tif", "of_cut.tif"]).failed(1);
     assert!(refused.contains("cut.tif") && !scratch.at("of_cut.tif").exists(), "{refused}");
     let names = std::fs::read_dir(scratch.folder()).expect("a folder").flatten();
