@@ -83,7 +83,9 @@ impl VrtTiles {
     pub fn check_beside(&self) -> Result<(), DemErrorKind> {
         let elsewhere = |file: &&String| file.starts_with('/') || file.split('/').any(|part| part == "..");
         match self.files.iter().find(elsewhere) {
-            Some(file) => Err(unsupported(format!("'{}', which does not lie beside it", shortened(file)))),
+            Some(file) => {
+                Err(unsupported(format!("a file that does not lie beside it ('{}')", shortened(file))))
+            }
             None => Ok(()),
         }
     }

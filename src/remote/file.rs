@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
+use std::slice;
+use std::time::{Duration, Instant};
 
 use crate::dem::cache::LruCache;
 use crate::dem::formats::FileContent;
@@ -26,6 +28,8 @@ const MEMORY_BYTES: u64 = 32 << 20;
 const MOST_AT_ONCE: u64 = MEMORY_BYTES / 2;
 /// The most bytes that are taken from disk into memory beside what is wanted.
 const MOST_BESIDE: u64 = MEMORY_BYTES / 4;
+/// How long an error of fetching stands for the next reads: each tile of a window would wait for a dead server in its turn.
+const FAILURE_STANDS: Duration = Duration::from_secs(5);
 /// Of what was read on and on, the part that is fetched ahead.
 const AHEAD: u64 = 4;
 
@@ -39,6 +43,8 @@ pub(crate) struct RemoteFile {
     /// The block after those that were read last, and how many these are.
     next: u64,
     run: u64,
+    /// The last error of fetching, and when it was.
+    failure: Option<(RemoteError, Instant)>,
 }
 
 impl RemoteFile {
@@ -52,7 +58,7 @@ impl RemoteFile {
             BlocksOnDisk::new(folder, address, &format!("{} {version}", object.size))
         });
         let blocks = LruCache::new(MEMORY_BYTES as usize);
-        let mut file = Self { object, at: 0, blocks, on_disk, next: 1, run: 1 };
+        let mut file = Self { object, at: 0, blocks, on_disk, next: 1, run: 1, failure: None };
         file.put(0, &head);
         Ok(file)
     }
@@ -86,7 +92,7 @@ impl RemoteFile {
         {
             // What a server claims is not taken before it is there.
             let part = start..size.min(start + MOST_AT_ONCE);
-            self.hold(std::slice::from_ref(&part))?;
+            self.hold(slice::from_ref(&part))?;
             bytes.try_reserve((part.end - part.start) as usize).map_err(|_| too_large())?;
             for block in blocks_of(&part) {
                 let held = self.blocks.take(block);
@@ -168,7 +174,12 @@ impl RemoteFile {
             run.start * BLOCK_BYTES
                 ..(run.start * BLOCK_BYTES + Self::bytes_of(size, run.start, run.end - run.start))
         });
-        let found = self.object.ranges(ranges.collect())?;
+        if let Some((error, _)) = self.failure.as_ref().filter(|(_, at)| at.elapsed() < FAILURE_STANDS) {
+            return Err(error.clone());
+        }
+        let found = self.object.ranges(ranges.collect());
+        self.failure = found.as_ref().err().map(|error| (error.clone(), Instant::now()));
+        let found = found?;
         for (run, bytes) in runs.iter().zip(found) {
             if let Some(disk) = &mut self.on_disk {
                 disk.keep(run.start, run.end - run.start, &bytes);
@@ -202,7 +213,7 @@ impl Read for RemoteFile {
         if self.at >= end {
             return Ok(0);
         }
-        self.hold(&[self.at..end]).map_err(io::Error::other)?;
+        self.hold(slice::from_ref(&(self.at..end))).map_err(io::Error::other)?;
         let mut filled = 0;
         for block in blocks_of(&(self.at..end)) {
             let held = self.blocks.get(block).ok_or_else(|| io::Error::other("a block is missing"))?;
@@ -284,7 +295,7 @@ mod tests {
             for (at, count, is_announced) in reads {
                 let range = (at as usize).min(size)..(at as usize + count).min(size).max((at as usize).min(size));
                 if is_announced {
-                    file.announce(&[at..at + count as u64]);
+                    file.announce(slice::from_ref(&(at..at + count as u64)));
                 }
                 file.seek(SeekFrom::Start(at)).expect("sought");
                 let mut found = Vec::new();

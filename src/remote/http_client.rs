@@ -203,7 +203,7 @@ fn check_content_range(headers: &HeaderMap, first: u64, last: u64) -> Result<(),
 
 #[cfg(test)]
 mod tests {
-    use std::io::{Read, Write};
+    use std::io::{Read, Seek, SeekFrom, Write};
     use std::net::TcpListener;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -372,6 +372,23 @@ mod tests {
     fn a_file_that_changes_between_two_requests_is_an_error() {
         let (host, _) = serve(|index, first, last| part(first, last, if index == 0 { "a" } else { "b" }));
         assert_eq!(read_from(&host), Err(RemoteError::Changed));
+    }
+
+    #[test]
+    fn a_server_that_fails_is_not_tried_again_for_every_tile() {
+        let (host, count) = serve(|index, first, last| match index {
+            0 => part(first, last, "a"),
+            _ => status("500 Broken"),
+        });
+        let address = RemoteAddress::parse(&format!("http://{host}/dem.tif")).expect("one").expect("sound");
+        let place = StoredFile::at(&address, &allowing(&[&host])).expect("allowed");
+        let mut file = RemoteFile::open(place, &address.to_string(), None).expect("it answers once");
+        for at in [10_000, 20_000, 40_000] {
+            let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read(&mut [0; 100]));
+            assert!(read.expect_err("it fails").to_string().contains("500"), "{at}");
+        }
+        // The first block, and one other with four more tries.
+        assert_eq!(count.load(Ordering::SeqCst), 6);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::SystemError;
+use crate::remote::address::is_address_path;
 
 /// The folder of a new scene file.
 pub(super) struct SceneFolder {
@@ -26,6 +27,8 @@ pub enum FolderCause {
     Nowhere,
     #[error("there is no such file")]
     NoFile,
+    #[error("this is an address; a new scene is made of files: fetch it")]
+    Address,
     #[error("this is not a file")]
     NotAFile,
     #[error("its name is not Unicode text; rename it")]
@@ -97,6 +100,9 @@ fn outermost(mut folders: Vec<PathBuf>) -> Vec<PathBuf> {
 }
 
 fn real(file: &Path) -> Result<PathBuf, FolderError> {
+    if is_address_path(file) {
+        return Err(FileError::new(file, FolderCause::Address));
+    }
     let real = file.canonicalize().map_err(|_| FileError::new(file, FolderCause::NoFile))?;
     if real.is_file() { Ok(real) } else { Err(FileError::new(file, FolderCause::NotAFile)) }
 }

@@ -33,6 +33,7 @@ mod with_moto {
     use std::process::{Child, Command, Stdio};
 
     use crate::cli::{Ran, program, ran};
+    use crate::common::data::data;
     use crate::common::scratch::Scratch;
     use crate::common::skip::skipped;
 
@@ -228,6 +229,27 @@ mod with_moto {
         local_run(&store, &["render", "near.toml", "--size", "160x90", "-o", "near.png"]);
         let picture = |name: &str| std::fs::read(store.scratch.at(name)).expect("drawn");
         assert!(picture("far.png") == picture("near.png"), "the pictures differ");
+    }
+
+    #[test]
+    fn real_files_on_a_server_are_those_on_disk() {
+        let Some(mut store) = Store::start() else { return };
+        for path in ["dem/bigtujunga_utm11_i16_tiled.tif", "dem/eudem_laea_f32_deflate.tif", "dem/n43.dt0"] {
+            let Some(file) = data(path) else { return };
+            store.put(&file, path);
+            let (remote, local) = (format!("s3://terrain/{path}"), file.to_str().expect("UTF-8"));
+            let (there, bytes) = store.fetched("real", &["dem", "info", &remote, "--json"]);
+            assert_eq!(there, local_run(&store, &["dem", "info", local, "--json"]).0, "{path}");
+            let size = std::fs::metadata(&file).expect("there").len();
+            assert!(bytes as f64 <= 1.3 * size as f64 + 16_384.0, "{path}: {bytes} bytes fetched of {size}");
+            let mesh = |file: &str, out: &str| {
+                let words = ["mesh", file, "--max-error", "20", "-o", out];
+                store.command("real", &words).output().expect("the program starts").status.success()
+            };
+            assert!(mesh(&remote, "there.obj") && mesh(local, "here.obj"), "{path}");
+            let (there, here) = (store.scratch.at("there.obj"), store.scratch.at("here.obj"));
+            assert!(std::fs::read(there).ok() == std::fs::read(here).ok(), "{path}: the meshes differ");
+        }
     }
 
     #[track_caller]
