@@ -10,8 +10,9 @@ use crate::pipeline::labels;
 use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
+use crate::scene::paper_sheet::SCREEN_PX;
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
-use crate::scene::{SCREEN_PX, SceneModel, SceneView};
+use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
 
 /// The size of a picture.

@@ -35,6 +35,7 @@ pub mod misplacement;
 pub mod models;
 pub mod near;
 pub mod overridden_crs;
+pub mod paper_sheet;
 pub mod picture;
 pub mod placement;
 pub mod planned_pictures;
@@ -93,6 +94,7 @@ use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
 use crate::scene::military::SceneSymbol;
+use crate::scene::paper_sheet::PaperSheet;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
 use crate::scene::roads::profiles::{BridgeProfile, RoadProfile};
@@ -410,26 +412,6 @@ pub struct SceneView {
     pub fov_y_rad: f32,
     /// The paper that it fills, where it is meant for print.
     pub paper: Option<PaperSheet>,
-}
-
-/// The size of a picture where nothing states one, pixels.
-pub const SCREEN_PX: (u32, u32) = (1920, 1080);
-
-/// A sheet of paper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PaperSheet {
-    /// Width and height in millimeters.
-    pub size_mm: [f64; 2],
-    /// Pixels per inch.
-    pub dpi: f64,
-}
-
-impl PaperSheet {
-    /// Width and height in pixels.
-    pub fn size_px(&self) -> (u32, u32) {
-        let [width, height] = self.size_mm.map(|side| libm::round(side / 25.4 * self.dpi) as u32);
-        (width.clamp(16, 16_384), height.clamp(16, 16_384))
-    }
 }
 
 impl SceneView {

@@ -13,11 +13,12 @@ use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
 use crate::scene::feature_labels;
 use crate::scene::label_course::LabelCourse;
+use crate::scene::paper_sheet::PaperSheet;
 use crate::scene::scene_findings::SceneFindings;
 use crate::scene::sources::Sources;
 use crate::scene::vertical_scale::DrawnGround;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FittedView, PaperSheet, ParallelView, SceneLabel, SceneView, ViewAim};
+use crate::scene::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
 

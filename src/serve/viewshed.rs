@@ -25,6 +25,7 @@ use crate::serve::parameters::Parameters;
 use crate::serve::query::{GroundQuery, OBSERVER_M, Query, QueryWeight, Service, above_m, curvature};
 use crate::serve::reply::{HttpError, OK, quoted};
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::post_rect::PostRect;
 use crate::terrain::sight::line::SightEnd;
 use crate::terrain::sight::viewshed::{
     self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions,
@@ -105,7 +106,8 @@ impl Query for ViewshedQuery {
         let window = PostWindow::around(&here.lattice, at, self.options.range_m);
         window.check(&here.lattice, service.limits.max_posts)?;
         let ground = served.ground(&self.ground.reach(&observer_at, self.options.range_m))?;
-        let lattice = &ground.lattice;
+        let part = window.part(&ground.lattice);
+        let lattice = part.as_ref().unwrap_or(&ground.lattice);
         let observer = SightEnd { at, ..self.options.observer };
         let options = ViewshedOptions { observer, ..self.options };
         let viewshed = viewshed::viewshed_until(lattice, &options, stop).map_err(|answer| {
@@ -168,6 +170,16 @@ impl PostWindow {
         };
         // Rounded outward, so that rounding leaves out no post right at the range.
         Self { first: post((grid - reach).floor()), last: post((grid + reach).ceil()) }
+    }
+
+    /// The ground around these posts alone, where it is less than half of what is held: a viewshed sets up a state for each post
+    /// that is held.
+    fn part(&self, lattice: &Lattice) -> Option<Lattice> {
+        /// Posts beside the range that its lines may meet.
+        const BESIDE: u32 = 4;
+        let around = PostRect { first: self.first, last: self.last }.grown((BESIDE, BESIDE), lattice);
+        let is_little = 2 * around.width() * around.height() < lattice.held_heights().len();
+        (lattice.holds_all() && is_little).then(|| lattice.holding_only(around))
     }
 
     fn columns(&self) -> u32 {

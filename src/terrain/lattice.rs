@@ -233,6 +233,19 @@ impl Lattice {
         })
     }
 
+    /// This lattice with the heights of the posts `held` alone in memory, as [`Lattice::held_part`] has them, and none pinned.
+    ///
+    /// # Panics
+    /// Where one of them is not held here.
+    pub fn holding_only(&self, held: PostRect) -> Self {
+        let row = |row: u32| {
+            let first = self.index(Post { column: held.first.column, row });
+            &self.heights[first..=self.index(Post { column: held.last.column, row })]
+        };
+        let heights = (held.first.row..=held.last.row).map(row).collect::<Vec<_>>().concat();
+        Self { held, pinned: vec![false; heights.len()], heights, ..*self }
+    }
+
     /// The lattice with every height times `factor`, which is above 0.
     pub fn stretched(&self, factor: f32) -> Self {
         let heights = self.heights.iter().map(|height| height * factor).collect();
@@ -570,6 +583,9 @@ pub(in crate::terrain) mod tests {
             assert!(std::panic::catch_unwind(|| part.height(beyond)).is_err(), "{beyond:?}");
         }
         assert!(std::panic::catch_unwind(|| part.heights().len()).is_err());
+        let only = whole.holding_only(held);
+        assert_eq!((only.held_heights(), only.held()), (part.held_heights(), held));
+        assert_eq!(only.corner_heights(cell), whole.corner_heights(cell));
     }
 
     #[test]

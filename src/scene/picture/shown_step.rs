@@ -24,13 +24,14 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::{CameraTable, Document};
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
+use crate::scene::paper_sheet::{PaperSheet, SCREEN_PX};
 use crate::scene::picture::fit::{ParallelSpan, fitted_eye};
 use crate::scene::picture::fitted_view::{PITCHES, free_frame, half_picture};
 use crate::scene::picture::parallel_view::pixels_per_meter;
 use crate::scene::planned_pictures::{PlannedCameras, PlannedPictures};
 use crate::scene::views;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FittedView, PaperSheet, ParallelView, SCREEN_PX, ViewAim};
+use crate::scene::{FittedView, ParallelView, ViewAim};
 use crate::view::axes::DirectionAxes;
 
 /// The width of a square of samples, in pixels of level ground.

@@ -94,6 +94,33 @@ fn a_viewshed_tells_each_post_in_runs() {
 }
 
 #[test]
+fn a_viewshed_of_a_small_range_says_of_its_posts_what_a_larger_one_does() {
+    let scratch = walled();
+    let server = Server::start(scratch.folder(), &["wall.asc"]);
+    let letters = |range: u32| {
+        let path = format!("/v1/viewshed?observer=500153,5000207&earth=flat&crs=native&range={range}");
+        let answer = server.get(&path).ok();
+        let corner = ["x", "y"].map(|axis| answer["south_west"][axis].as_f64().expect("a number"));
+        let rows = answer["runs"].as_array().expect("rows").clone();
+        let row = |row: &serde_json::Value| {
+            let posts = runs(row.as_str().expect("a row"));
+            posts.flat_map(|(length, letter)| vec![letter; length as usize]).collect::<Vec<char>>()
+        };
+        (corner, rows.iter().map(row).collect::<Vec<_>>())
+    };
+    let (small, large) = (letters(70), letters(190));
+    let beside = [0, 1].map(|axis| ((small.0[axis] - large.0[axis]) / 10.0).round() as usize);
+    let mut seen = [0, 0];
+    for (row, posts) in small.1.iter().enumerate() {
+        for (column, &post) in posts.iter().enumerate().filter(|(_, post)| **post != 'b') {
+            assert_eq!(post, large.1[row + beside[1]][column + beside[0]], "{column} {row}");
+            seen[usize::from(post == 'h')] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&posts| posts > 10), "some are seen, and some hidden: {seen:?}");
+}
+
+#[test]
 fn a_viewshed_too_large_is_refused_with_the_range_that_is_not() {
     let scratch = walled();
     let server = Server::start(scratch.folder(), &["wall.asc", "--max-posts", "100"]);

@@ -11,7 +11,8 @@ use crate::geom::rect::Rect;
 use crate::pipeline::scene_file::open_scene;
 use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::planned_dataset::PlannedWord;
-use crate::scene::{PaperSheet, ParallelView, SceneModel, SceneView, ViewAim};
+use crate::scene::paper_sheet::PaperSheet;
+use crate::scene::{ParallelView, SceneModel, SceneView, ViewAim};
 
 /// What each sheet shows, and on which paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
