@@ -194,7 +194,7 @@ impl GroundSheets {
             let plans = vec![SheetPlan { material, markings: None, lake: None, layer, feature }];
             DrapeSheet { drapes: Drapes::new(&self.borders, [&tint.plan]), plans }
         });
-        let before = std::mem::replace(&mut self.seen, laid.unwrap_or(DrapeSheet::default()));
+        let before = std::mem::replace(&mut self.seen, laid.unwrap_or_default());
         let is_held =
             |&patch: &usize| before.drapes.is_occupied(patch) || self.seen.drapes.is_occupied(patch);
         (0..self.borders.patch_count()).filter(is_held).collect()
