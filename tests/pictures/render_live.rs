@@ -308,7 +308,7 @@ fn a_window_of_finer_ground_over_a_coarse_map_shows_as_the_fine_map() {
         let mut renderer = loaded(gpu, &coarse, WINDOW);
         let without = window.frame(&mut renderer, &camera);
         assert!(share_apart(&without, &wanted) > 0.02, "posts are seen on {}", gpu.name());
-        let mut show = |renderer: &mut LiveRenderer, ground: &GroundWindow| {
+        let show = |renderer: &mut LiveRenderer, ground: &GroundWindow| {
             let prepared = renderer.loader().prepare_windows(&[Arc::new(ground.clone())]);
             let shown = prepared.and_then(|prepared| renderer.show_windows(prepared));
             shown.unwrap_or_else(|error| panic!("{error}"));
