@@ -18,8 +18,8 @@ Every layer of the vector files is surveyed: lines with `highway` become roads b
 `barrier` fences and walls, with `power` power lines; polygons of water become lakes, with `building` buildings, with \
 `landuse`, `natural` or `leisure` areas. A layer without such properties is classified by its name (roads, rivers, \
 lakes, buildings). The schemas of Geofabrik, BGT, TIGER/Line, Ordnance Survey and BD TOPO are known as well. Cities, \
-towns, villages, peaks and rivers with names become labels, the most important first. What is left is named in a \
-comment, with its properties.
+towns, villages and peaks with names become labels, the most important first. What is left is named in a comment, with \
+its properties.
 
 No file is overwritten, and none is copied.")]
 pub struct NewArguments {

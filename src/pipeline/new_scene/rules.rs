@@ -8,7 +8,7 @@
 //! | OS OpenMap Local, Open Roads and Open Rivers (Ordnance Survey) | the road classification; `form` |
 //! | BD TOPO (IGN, France) | `NATURE` and the names of its layers |
 //!
-//! A condition names values that no other schema has, so that no two rules draw the same feature; one more may name it.
+//! A condition names values that no other schema has, so that no two rules take the same feature.
 
 /// A table that may be written.
 pub(super) struct TableRule {
@@ -365,21 +365,6 @@ pub(super) static RULES: &[TableRule] = &[
         rank: "match(PLACE, 'city', 1, 'town', 2, 'village', 3, 'suburb', 4, 'hamlet', 5, 6)",
         most: 15,
         is_title: true,
-    }),
-    rule(
-        "label",
-        "Names of rivers",
-        "lines",
-        "has(name) and (waterway ?? fclass) in ('river', 'canal', 'stream')",
-    )
-    .keys(&["kind = \"water\""])
-    .label(LabelRule {
-        text: "name",
-        name: "name",
-        // After all places: a river's name finds room somewhere along it.
-        rank: "match(waterway ?? fclass, 'river', 7, 'canal', 8, 9)",
-        most: 15,
-        is_title: false,
     }),
     rule("label", "Peaks", "points", "has(name) and (natural ?? fclass) in ('peak', 'volcano')").keys(&[
         "kind = \"summit\"",

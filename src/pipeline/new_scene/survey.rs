@@ -390,8 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_rules_draw_the_same_feature() {
-        let is_name = |what: &str| RULES.iter().any(|rule| rule.what == what && rule.label.is_some());
+    fn no_two_rules_take_the_same_feature() {
         let values = RULES.iter().flat_map(|rule| rule.condition.split('\'').skip(1).step_by(2));
         for value in values {
             let rules = |property: &str| {
@@ -402,10 +401,7 @@ mod tests {
                 ["highway", "fclass", "nature", "class", "MTFCC", "place", "bgt_fysiekvoorkomen", "form"]
             {
                 for taken in rules(property) {
-                    // What is drawn may have a name besides.
-                    let drawn = taken.iter().filter(|(what, _)| !is_name(what)).count();
-                    let named = taken.len() - drawn;
-                    assert!(drawn <= 1 && named <= 1, "{property} = {value}: {taken:?}");
+                    assert!(taken.len() <= 1, "{property} = {value}: {taken:?}");
                 }
             }
         }
