@@ -285,8 +285,6 @@ impl RenderedPicture {
         let AnnotationReport { hidden, outside, crowded_out, shortened, .. } = &self.annotations;
         let [led, off_line] = moved(&self.annotations);
         let labels = [
-            ("led by a line", &led),
-            ("at a place, not along their line", &off_line),
             ("hidden", hidden),
             ("outside the picture", outside),
             ("without room", crowded_out),
