@@ -9,8 +9,10 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/render/gpu");
 
 /// The modules, as files that are joined.
-const MODULES: [&[&str]; 2] =
-    [&["shader.wgsl", "whole_picture.wgsl", "sky.wgsl"], &["whole_picture.wgsl", "encode.wgsl"]];
+const MODULES: [&[&str]; 2] = [
+    &["shader.wgsl", "ground_windows.wgsl", "whole_picture.wgsl", "sky.wgsl"],
+    &["whole_picture.wgsl", "encode.wgsl"],
+];
 
 fn text_of(module: &[&str]) -> String {
     let read = |file: &&str| {
