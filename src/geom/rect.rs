@@ -60,8 +60,19 @@ impl Rect {
     /// The part of the line from `from` to `to` that lies inside; `None` where there is none (Liang and Barsky 1984). An
     /// end that lies inside comes back as it is.
     pub fn clip_line(&self, from: DVec2, to: DVec2) -> Option<(DVec2, DVec2)> {
-        let (mut enter, mut leave) = (0.0, 1.0);
         let along = to - from;
+        let at = |part: f64| if part == 1.0 { to } else { from + along * part };
+        self.clip_ray(from, along, (0.0, 1.0)).map(|(enter, leave)| (at(enter), at(leave)))
+    }
+
+    /// The part of the ray `from + along * part` that lies inside, as its parts, out of those from `enter` to `leave`; `None`
+    /// where there is none.
+    pub fn clip_ray(
+        &self,
+        from: DVec2,
+        along: DVec2,
+        (mut enter, mut leave): (f64, f64),
+    ) -> Option<(f64, f64)> {
         for axis in 0..2 {
             let (low, high) = (self.min[axis] - from[axis], self.max[axis] - from[axis]);
             if along[axis] == 0.0 {
@@ -74,8 +85,7 @@ impl Rect {
             enter = first.min(last).max(enter);
             leave = first.max(last).min(leave);
         }
-        let at = |part: f64| if part == 1.0 { to } else { from + along * part };
-        (enter <= leave).then(|| (at(enter), at(leave)))
+        (enter <= leave).then_some((enter, leave))
     }
 
     /// Width and height; negative where empty.

@@ -1,5 +1,6 @@
 //! Parts of messages to users.
 
+pub mod capitalized;
 pub mod chain;
 pub mod choice;
 pub mod suggest;

@@ -103,8 +103,7 @@ impl ReadGround {
 
 /// The elevation of the ground that a pixel shows, meters; NaN off the model.
 fn elevation_m(scene: &SceneModel, camera: &Camera, pixel: Vec2, depth_m: f32) -> f32 {
-    let at = camera.ray_origin(pixel) + camera.ray_through(pixel) * depth_m;
-    let map = scene.lattice.map_point(at);
+    let map = scene.lattice.map_point(camera.point_at(pixel, depth_m));
     ground_height(&scene.lattice, Interpolation::Planar, map)
         .height_m()
         .map_or(f32::NAN, |height| height as f32)

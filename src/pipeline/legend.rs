@@ -12,6 +12,7 @@ use crate::description::words::{Cover, StylePreset};
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::draw::print_pattern::PrintPattern;
+use crate::message::capitalized::capitalized;
 use crate::pipeline::print_ink::PrintInk;
 use crate::render::picture::Rendering;
 use crate::ribbon::texture::RibbonSurface;
@@ -177,9 +178,7 @@ fn class_name(name: &str) -> String {
     let words: Vec<&str> = words.collect();
     let is_number = |word: &&&str| word.chars().all(|letter| letter.is_ascii_digit() || letter == '#');
     let count = words.len() - usize::from(words.last().filter(is_number).is_some());
-    let name = words[..count].join(" ");
-    let mut letters = name.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+    capitalized(&words[..count].join(" "))
 }
 
 /// The names of the model classes with most members.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::annotate::class_legend::{LegendEntry, LegendSwatch};
 use crate::description::words::StylePreset;
+use crate::message::capitalized::capitalized;
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
 use crate::symbology::code::SymbolCode;
@@ -68,11 +69,6 @@ fn entries(codes: impl Iterator<Item = SymbolCode>, is_print: bool) -> Vec<Legen
         Some(LegendEntry { name: capitalized(name), swatch: LegendSwatch::Symbol(Box::new(symbol)) })
     };
     sides.map(side).chain(kinds.into_iter().filter_map(kind)).filter_map(entry).collect()
-}
-
-fn capitalized(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
 #[cfg(test)]

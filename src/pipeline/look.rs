@@ -102,7 +102,7 @@ fn contour_strengths(scene: &SceneModel, camera: &Camera, picture: &Rendering) -
         let center = Vec2::new((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
         let depth_m = picture.depth_m[index];
         let is_ground = picture.features[index] == FeatureId::GROUND && depth_m.is_finite();
-        let at = camera.ray_origin(center) + camera.ray_through(center) * depth_m;
+        let at = camera.point_at(center, depth_m);
         if is_ground { scene.scale.elevation_m(f64::from(at.z)) as f32 } else { f32::NAN }
     };
     let elevations: Vec<f32> = (0..width * height).into_par_iter().map(elevation).collect();

@@ -81,7 +81,7 @@ impl PictureBuffers<'_> {
             (column < width && row < height).then(|| row as usize * width as usize + column as usize)?;
         let depth_m = self.rendering.depth_m[index];
         let center = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
-        let at = self.camera.ray_origin(center) + self.camera.ray_through(center) * depth_m;
+        let at = self.camera.point_at(center, depth_m);
         depth_m.is_finite().then_some((self.rendering.features[index], at))
     }
 

@@ -79,8 +79,9 @@ impl TableShadow<'_> {
         let closing = (rise - SOFTNESS).max(1e-3);
         let last_m = (block.highest - self.table_z + step_m).max(0.0) / closing;
         let steps = ((last_m / step_m).ceil() as u32).min(MOST_STEPS);
-        let (first_m, last_m) = block.way_over(place, toward);
-        let (first, last) = ((first_m / step_m).floor() as u32, (last_m / step_m).ceil() as u32);
+        let Some((first_m, last_m)) = block.way_over(place, toward) else { return 0.0 };
+        let step = |way_m: f64| way_m / f64::from(step_m);
+        let (first, last) = (step(first_m).floor() as u32, step(last_m).ceil() as u32);
         let mut most = 0.0_f32;
         for step in first.max(1)..=last.min(steps) {
             let way_m = step as f32 * step_m;
@@ -112,23 +113,12 @@ impl BlockHeights {
         Self { size, cell, heights, highest }
     }
 
-    /// From how far and how far a ray from a place can be over the block, and a cell more on both sides; the second is less
-    /// than the first where it never is.
-    fn way_over(&self, place: Vec2, toward: Vec2) -> (f32, f32) {
-        let margin = self.cell;
-        let (low, high) = (-margin - place, self.size.as_vec2() * self.cell + margin - place);
-        let (mut first, mut last) = (0.0_f32, f32::MAX);
-        for axis in 0..2 {
-            let (low, high, toward) = (low[axis], high[axis], toward[axis]);
-            if toward == 0.0 {
-                // It stays beside the block, or over it.
-                last = if low <= 0.0 && high >= 0.0 { last } else { -1.0 };
-            } else {
-                let (one, other) = (low / toward, high / toward);
-                (first, last) = (first.max(one.min(other)), last.min(one.max(other)));
-            }
-        }
-        (first, last)
+    /// From how far and how far a ray from a place can be over the block, and a cell more on both sides, meters; `None` where
+    /// it never is.
+    fn way_over(&self, place: Vec2, toward: Vec2) -> Option<(f64, f64)> {
+        let block =
+            Rect { min: -self.cell.as_dvec2(), max: ((self.size + 1).as_vec2() * self.cell).as_dvec2() };
+        block.clip_ray(place.as_dvec2(), toward.as_dvec2(), (0.0, f64::MAX))
     }
 
     /// The height of the nearest sample; NaN off the block.
@@ -193,14 +183,14 @@ mod tests {
             let toward = Vec2::new(cos, sin);
             for from in 0..200 {
                 let place = Vec2::new((from % 20) as f32 * 60.0 - 400.0, (from / 20) as f32 * 150.0 - 300.0);
-                let (first, last) = block.way_over(place, toward);
+                let way = block.way_over(place, toward);
                 let is_over = |step: &u32| block.at(place + toward * *step as f32 * 7.0).is_finite();
-                let met: Vec<f32> = (0..300).filter(is_over).map(|step| step as f32 * 7.0).collect();
-                assert!(met.iter().all(|&way| first <= way && way <= last), "{place} {toward}");
+                let mut met = (0..300).filter(is_over).map(|step| f64::from(step) * 7.0);
+                let is_held = |at: f64| way.is_some_and(|(first, last)| first <= at && at <= last);
+                assert!(met.all(is_held), "{place} {toward}");
             }
         }
-        let (first, last) = block.way_over(Vec2::new(-100.0, 50.0), Vec2::NEG_X);
-        assert!(last < first, "it leads away");
+        assert_eq!(block.way_over(Vec2::new(-100.0, 50.0), Vec2::NEG_X), None, "it leads away");
     }
 
     #[test]

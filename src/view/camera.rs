@@ -238,8 +238,12 @@ impl Camera {
         Some(Projected { pixel, depth_m })
     }
 
-    /// The direction of the ray through a picture position, one meter long along the viewing direction. A point
-    /// `depth_m` along the viewing direction is `ray_origin(pixel) + ray_through(pixel) * depth_m`.
+    /// The world point that is seen at a picture position, `depth_m` along the viewing direction.
+    pub fn point_at(&self, pixel: Vec2, depth_m: f32) -> Vec3 {
+        self.ray_origin(pixel) + self.ray_through(pixel) * depth_m
+    }
+
+    /// The direction of the ray through a picture position, one meter long along the viewing direction.
     pub fn ray_through(&self, pixel: Vec2) -> Vec3 {
         self.forward + self.across(pixel, self.tan_half_fov())
     }
@@ -338,7 +342,7 @@ mod tests {
         let camera = parallel(0.4, 0.8, 1.3);
         let world = Vec3::new(960.0, 2100.0, 12.0);
         let seen = camera.project(world).expect("parallel rays see all");
-        let back = camera.ray_origin(seen.pixel) + camera.ray_through(seen.pixel) * seen.depth_m;
+        let back = camera.point_at(seen.pixel, seen.depth_m);
         assert!((back - world).length() < 2e-2, "{back} against {world}");
         let span = camera.scale_denominator().expect("a scale") * 0.0254 / 96.0;
         assert!((span - 1.0).abs() < 1e-6, "one meter a pixel, not {span}");

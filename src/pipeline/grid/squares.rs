@@ -27,7 +27,7 @@ pub fn square_names(scene: &SceneModel, camera: &Camera, picture: &Rendering) ->
         let at = (pixel.y * size.x + pixel.x) as usize;
         let is_ground = ![FeatureId::NONE, FeatureId::PLINTH].contains(&picture.features[at]);
         let middle = pixel.as_vec2() + 0.5;
-        let world = camera.ray_origin(middle) + camera.ray_through(middle) * picture.depth_m[at];
+        let world = camera.point_at(middle, picture.depth_m[at]);
         let square = Some(world.truncate().as_dvec2()).filter(|_| is_ground).and_then(|at| square(scene, at));
         if let Some(square) = square {
             shown.entry(square).or_default().push(middle);

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::DVec2;
 
 use crate::geom::polygon;
+use crate::message::capitalized::capitalized;
 use crate::pipeline::files;
 use crate::pipeline::new_scene::rules::LEAST_TITLE_RANK;
 use crate::pipeline::new_scene::survey::NamedDistrict;
@@ -55,18 +56,14 @@ pub(super) fn of_file(file: &Path) -> String {
     // `N43E007.hgt.zip` has two extensions.
     let is_packed = file.extension().is_some_and(|extension| extension == "zip" || extension == "gz");
     let stem = if is_packed { files::file_stem(Path::new(&stem)) } else { stem };
-    let words = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).map(capitalized);
+    let words = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).map(title_word);
     let title = words.collect::<Vec<_>>().join(" ");
     if title.is_empty() { "A scene".into() } else { title }
 }
 
 /// A word with a capital letter first; abbreviations in capitals.
-fn capitalized(word: &str) -> String {
-    if ABBREVIATIONS.contains(&word) {
-        return word.to_uppercase();
-    }
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+fn title_word(word: &str) -> String {
+    if ABBREVIATIONS.contains(&word) { word.to_uppercase() } else { capitalized(word) }
 }
 
 #[cfg(test)]

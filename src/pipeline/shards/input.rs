@@ -17,6 +17,7 @@ use sha2::{Digest, Sha256};
 use crate::dem::read::is_tile_name;
 use crate::dem::vrt::{VrtTiles, is_vrt};
 use crate::pipeline::files::{self, ReadFileCause, ReadFileError, SystemError};
+use crate::pipeline::fingerprint::hexadecimal;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 
 /// The most bytes of files that are compared by their content: a tenth of a second.
@@ -170,15 +171,6 @@ fn is_companion_name(name: &str, is_stem: impl Fn(&str) -> bool) -> bool {
     (is_world_file || COMPANIONS.contains(&extension.as_str())) && is_stem(stem)
 }
 
-/// The SHA-256 of bytes, in hexadecimal digits.
-pub fn sha256(bytes: &[u8]) -> String {
-    hex(Sha256::digest(bytes).as_slice())
-}
-
-fn hex(digest: &[u8]) -> String {
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// The SHA-256 of the next `bytes` bytes of a file.
 ///
 /// # Errors
@@ -186,7 +178,7 @@ fn hex(digest: &[u8]) -> String {
 pub fn hash(file: &mut File, bytes: u64) -> io::Result<String> {
     let mut whole = Sha256::new();
     add(&mut whole, file, bytes)?;
-    Ok(hex(whole.finalize().as_slice()))
+    Ok(hexadecimal(&whole.finalize()))
 }
 
 fn hash_of_ends(file: &mut File, bytes: u64) -> io::Result<String> {
@@ -194,7 +186,7 @@ fn hash_of_ends(file: &mut File, bytes: u64) -> io::Result<String> {
     add(&mut whole, file, END)?;
     file.seek(SeekFrom::Start(bytes - END))?;
     add(&mut whole, file, END)?;
-    Ok(hex(whole.finalize().as_slice()))
+    Ok(hexadecimal(&whole.finalize()))
 }
 
 fn add(whole: &mut Sha256, file: &mut File, bytes: u64) -> io::Result<()> {
@@ -244,11 +236,5 @@ mod tests {
         let found = elevation_files(&folder.join("tiles/a.bil")).expect("readable");
         assert_eq!(found, ["tiles/a.bil", "tiles/a.hdr"].map(|name| folder.join(name)));
         fs::remove_dir_all(folder).expect("its own folder");
-    }
-
-    #[test]
-    fn known_bytes_have_their_known_hash() {
-        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(sha256(b"abc"), expected);
     }
 }

@@ -8,11 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::limits::PLAN_SHARDS;
 use crate::pipeline::files;
+use crate::pipeline::fingerprint::content_hash;
 use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::shards::atlas::arguments::AtlasArguments;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
-use crate::pipeline::shards::input::{PlanInput, sha256};
+use crate::pipeline::shards::input::PlanInput;
 use crate::pipeline::shards::shard::Shard;
 use crate::pipeline::shards::tiles::arguments::TilesArguments;
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
@@ -105,7 +106,8 @@ pub fn write(
         lines += &serde_json::to_string(shard).map_err(json)?;
         lines.push('\n');
     }
-    let list = ShardList { count: shards.len(), bytes: lines.len() as u64, sha256: sha256(lines.as_bytes()) };
+    let list =
+        ShardList { count: shards.len(), bytes: lines.len() as u64, sha256: content_hash(lines.as_bytes()) };
     let (format, program) = (FORMAT.into(), PROGRAM.into());
     let head = PlanHead { format, version: VERSION, program, product, inputs, shards: list };
     let head = serde_json::to_string_pretty(&head).map_err(json)? + "\n";
@@ -154,12 +156,12 @@ impl ShardPlan {
         let lines = line_ranges(&shards);
         if shards.len() as u64 != list.bytes
             || lines.len() != list.count
-            || sha256(shards.as_bytes()) != list.sha256
+            || content_hash(shards.as_bytes()) != list.sha256
         {
             let message = "it is not the list of shards that plan.json states".to_owned();
             return Err(PlanError::new(&list_path, PlanFault::Value(message)).into());
         }
-        let identity = sha256(head.as_bytes());
+        let identity = content_hash(head.as_bytes());
         Ok(Self { folder: folder.to_owned(), product, inputs, identity, shards, lines })
     }
 

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::pipeline::files;
+use crate::pipeline::fingerprint::content_hash;
 use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
-use crate::pipeline::shards::input::{has_size, hash, sha256};
+use crate::pipeline::shards::input::{has_size, hash};
 use crate::pipeline::shards::plan::ShardPlan;
 use crate::pipeline::shards::shard::stem;
 
@@ -86,7 +87,7 @@ pub fn publish(plan: &ShardPlan, id: usize, results: &[ShardFile]) -> Result<(),
     let described = |file: &ShardFile| ResultFile {
         path: file.path.clone(),
         bytes: file.bytes.len() as u64,
-        sha256: sha256(&file.bytes),
+        sha256: content_hash(&file.bytes),
     };
     let (format, plan_hash) = (FORMAT.to_owned(), plan.identity.clone());
     let described = results.par_iter().map(described).collect();

@@ -7,10 +7,10 @@ use glam::DVec2;
 use crate::dem::answer::Answer;
 use crate::limits::PLAN_POINTS;
 use crate::pipeline::files::{self, ReadFileError, SystemError};
+use crate::pipeline::fingerprint::content_hash;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::{MOST_POINTS, POINT_BYTES};
-use crate::pipeline::shards::input::sha256;
 use crate::pipeline::shards::plan::ShardPlan;
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
 use crate::pipeline::shards::shard::{PointRange, Shard};
@@ -45,7 +45,7 @@ fn points(plan: &ShardPlan, shard: &Shard) -> Result<Vec<DVec2>, ShardError> {
     file.seek(SeekFrom::Start(range.first * POINT_BYTES)).map_err(failed)?;
     let mut bytes = Vec::new();
     file.take(range.count * POINT_BYTES).read_to_end(&mut bytes).map_err(failed)?;
-    if sha256(&bytes) != range.sha256 {
+    if content_hash(&bytes) != range.sha256 {
         let what = "the points of the shard are not those that were planned".to_owned();
         return Err(PlanError::new(&path, PlanFault::Stale(what)).into());
     }

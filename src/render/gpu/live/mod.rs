@@ -244,15 +244,11 @@ impl LiveRenderer {
         let PreparedScene { mut scene, pipelines: [colors, features] } = prepared;
         self.colors.adopt(colors);
         self.features.adopt(features);
-        let mut windows = None;
         if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
+            // Without them the ground is shown from the map alone.
+            let _ = scene.take_windows(&self.gpu, &self.layouts, before.textures.windows().clone());
             let added = std::mem::replace(&mut scene.patches, before.patches);
             scene.patches.adopt_materials(added);
-            windows = Some(before.textures.windows().clone());
-        }
-        if let Some(windows) = windows {
-            // Without them the ground is shown from the map alone.
-            let _ = scene.take_windows(&self.gpu, &self.layouts, windows);
         }
         scene.make(&self.gpu, &mut self.colors, &mut self.features);
         self.scene = Some(*scene);
