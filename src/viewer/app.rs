@@ -267,9 +267,15 @@ impl ViewerApp {
             seen: Some(before.seen_from(self.view.size)),
             hidden: self.tree.hidden.clone(),
         });
+        let replaces = match &task {
+            LoadingTask::File(..) => self.session.as_ref().map(|session| session.editor.text().to_owned()),
+            LoadingTask::Edited(..) => None,
+        };
         let context = self.context.clone();
         let wake = move || context.request_repaint();
-        self.loading = Some(SceneLoading::start(task, view, self.slot.clone(), wake));
+        let mut loading = SceneLoading::start(task, view, self.slot.clone(), wake);
+        loading.replaces = replaces;
+        self.loading = Some(loading);
         self.failure = None;
     }
 

@@ -174,6 +174,31 @@ fn an_edit_is_undone_redone_saved_and_closing_with_one_asks() {
 }
 
 #[test]
+fn an_edit_made_while_a_file_is_read_is_kept() {
+    let scene = TestScene::new("reading");
+    let mut harness = window(Some(&scene.file));
+    let opens =
+        |harness: &mut AppHarness, file: &Path| harness.state_mut().as_mut().expect("shown").open(file);
+    let waits = |app: &ViewerApp| app.loading.is_none();
+    opens(&mut harness, &scene.file);
+    key(&mut harness, Modifiers::NONE, Key::K);
+    click(&mut harness, IN_VIEW);
+    assert!(is_changed(&harness), "dug");
+    until(&mut harness, waits);
+    assert!(is_changed(&harness), "the file as it was does not replace the edit");
+    assert!(app(&harness).notice_texts().any(|text| text.contains("edits that are not saved")));
+    opens(&mut harness, Path::new("scenes/lake.toml"));
+    click(&mut harness, IN_VIEW - egui::vec2(60.0, 0.0));
+    until(&mut harness, waits);
+    let opened = |harness: &AppHarness| app(harness).opened.as_ref().expect("open").path.clone();
+    assert!(is_changed(&harness) && opened(&harness) == scene.file, "asks before another file is shown");
+    harness.run_steps(2);
+    harness.get_by_label("Go on without saving").click();
+    until(&mut harness, |app| app.question.is_none() && app.loading.is_none());
+    assert_eq!(opened(&harness), Path::new("scenes/lake.toml"));
+}
+
+#[test]
 fn the_sun_and_what_is_hidden_wait_for_a_thread_and_the_picture_stays() {
     let mut harness = window(Some(Path::new("scenes/road.toml")));
     let low = glam::Vec3::new(0.8, 0.0, 0.6);

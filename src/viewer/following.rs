@@ -14,6 +14,7 @@ use crate::viewer::loading::{LoadedFile, opening_error};
 use crate::viewer::paging::PagingStage;
 use crate::viewer::panels::light::LightPanel;
 use crate::viewer::panels::tree::TreePanel;
+use crate::viewer::saving::Leaving;
 use crate::viewer::session::EditingSession;
 use crate::viewer::watch::{FileWatch, WatchState};
 use crate::viewer::worker::{WorkerJob, drop_apart};
@@ -82,9 +83,10 @@ impl ViewerApp {
     pub(super) fn follow_loading(&mut self, ui: &Ui) {
         let Some(loading) = &mut self.loading else { return };
         let Some(result) = loading.poll() else { return };
-        let path = loading.path.clone();
+        let (path, replaces) = (loading.path.clone(), loading.replaces.take());
         self.loading = None;
         match result {
+            Ok(_) if self.is_edited_since(replaces.as_deref()) => self.keep_edits(path),
             Ok(loaded) => self.take_over(path, loaded, ui),
             // The last good scene stays, and the error with it.
             Err(message) if self.opened.is_some() => {
@@ -94,6 +96,20 @@ impl ViewerApp {
                 self.watch_files(std::slice::from_ref(&path));
                 self.failure = Some(OpeningFailure { path, message });
             }
+        }
+    }
+
+    /// Whether the scene has edits that were made after its text was `replaced`, which is to be replaced.
+    fn is_edited_since(&self, replaced: Option<&str>) -> bool {
+        let Some((replaced, session)) = replaced.zip(self.session.as_ref()) else { return false };
+        session.editor.is_changed() && session.editor.text() != replaced
+    }
+
+    /// Keeps the scene that was edited while the file at `path` was opened; another file is opened after a question.
+    fn keep_edits(&mut self, path: PathBuf) {
+        match self.opened.as_ref().is_some_and(|opened| opened.path == path) {
+            true => self.follow_change(),
+            false => self.leave(Leaving::Open(path)),
         }
     }
 

@@ -27,6 +27,9 @@ pub struct SceneLoading {
     pub step: &'static str,
     /// When it began.
     pub since: Instant,
+    /// The edited text that it may replace: that of the scene shown when it began. `None` of a scene as it is edited, and
+    /// where none was shown.
+    pub replaces: Option<String>,
     news: Receiver<LoadingNews>,
 }
 
@@ -80,7 +83,7 @@ impl SceneLoading {
             });
             tell(LoadingNews::Done(Box::new(loaded)));
         });
-        Self { path, step: "starting", since: Instant::now(), news }
+        Self { path, step: "starting", since: Instant::now(), replaces: None, news }
     }
 
     /// The scene, or why there is none; `None` while it is being opened.

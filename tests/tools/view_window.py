@@ -201,7 +201,7 @@ def by_hand(display, scene):
     time.sleep(1.5)
     display.shot("9-question")
     if program.poll() is not None:
-        fail("the window closed with edits that were not saved")
+        fail(f"the window closed with edits that were not saved; it ended with {program.returncode}: {program.stderr.read()}")
     display.xdo("key", "Tab")
     time.sleep(0.3)
     display.xdo("key", "Return")
