@@ -9,6 +9,8 @@ use crate::draw::pixels::Pixels;
 
 /// The contrast of letters and halo, as WCAG 2.2, 1.4.3 asks of text.
 const LEAST_CONTRAST: f32 = 4.5;
+/// The same of a narrow halo: the pixels between it and slanted edges of letters mix both.
+const HALO_CONTRAST: f32 = 5.0;
 /// The share of the ground in the halo: more, and the halo no longer clears the ground's texture away.
 const MOST_TINT: f32 = 0.5;
 /// Its share in a patch that breaks a line: enough that the break is not seen, not so much that numbers sink.
@@ -34,15 +36,16 @@ impl Halo {
 
     /// A patch of the ground's own tone under letters of `ink`, as far as they stay legible: it breaks what is drawn there.
     pub fn patch(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
-        let color = mean(pixels, area).map_or_else(|| paper(ink), |ground| tinted(ground, ink, PATCH_TINT));
+        let color = mean(pixels, area)
+            .map_or_else(|| paper(ink), |ground| tinted(ground, ink, (PATCH_TINT, LEAST_CONTRAST)));
         let [red, green, blue, _] = color.0;
         Self { reach_px, color: Srgba([red, green, blue, 0xf4]) }
     }
 
     /// The halo of letters of `ink` over `area` of the picture.
     pub fn over(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
-        let color = mean(pixels, area).map_or_else(|| paper(ink), |ground| tinted(ground, ink, MOST_TINT));
-        Self { reach_px, color }
+        let tint = |ground| tinted(ground, ink, (MOST_TINT, HALO_CONTRAST));
+        Self { reach_px, color: mean(pixels, area).map_or_else(|| paper(ink), tint) }
     }
 }
 
@@ -55,15 +58,15 @@ fn paper(ink: Srgba) -> Srgba {
     Srgba([red, green, blue, HALO.0[3]])
 }
 
-/// The most tinted color that leaves the contrast, whatever single pixel is below it; the paper's where none does.
-fn tinted(ground: Vec3, ink: Srgba, most: f32) -> Srgba {
+/// The most tinted color that leaves the least contrast, whatever single pixel is below it; the paper's where none does.
+fn tinted(ground: Vec3, ink: Srgba, (most, least): (f32, f32)) -> Srgba {
     let paper = paper(ink);
     let mixed = |step: usize| {
         let share = most * step as f32 / TINT_STEPS as f32;
         let [red, green, blue, _] = Srgba::from_linear(paper.linear().lerp(ground, share)).0;
         Srgba([red, green, blue, paper.0[3]])
     };
-    let is_legible = |color: &Srgba| worst_contrast(*color, ink) >= LEAST_CONTRAST;
+    let is_legible = |color: &Srgba| worst_contrast(*color, ink) >= least;
     // Letters neither dark nor light need a paper through which no ground shows.
     let [red, green, blue, alpha] = paper.0;
     let denser = (alpha..=255).map(|alpha| Srgba([red, green, blue, alpha]));

@@ -376,6 +376,15 @@ pub(super) static RULES: &[TableRule] = &[
         most: 10,
         is_title: false,
     }),
+    rule("label", "Names of rivers", "lines", "has(name) and (waterway ?? fclass) in ('river', 'canal')")
+        .keys(&["kind = \"water\""])
+        .label(LabelRule {
+            text: "name",
+            name: "name",
+            rank: "match(waterway ?? fclass, 'river', 7, 8)",
+            most: 6,
+            is_title: false,
+        }),
 ];
 
 #[cfg(test)]
