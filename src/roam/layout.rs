@@ -93,9 +93,8 @@ impl PatchLayout {
 
     /// The south-west corners of the patches that share a vertex with the rectangle `min`..=`max` of vertices.
     pub fn patches_meeting(&self, min: Vertex, max: Vertex) -> impl Iterator<Item = Vertex> + use<> {
-        let shift = self.patch.trailing_zeros();
-        let before = |at: i32| (at - 1).max(0) >> shift;
-        self.patches_within((before(min.x), before(min.y)), (max.x >> shift, max.y >> shift))
+        let before = |at: i32| (at - 1).max(0) / self.patch;
+        self.patches_within((before(min.x), before(min.y)), (max.x / self.patch, max.y / self.patch))
     }
 
     /// The place of the patch with south-west corner `corner` in [`PatchLayout::patches`].

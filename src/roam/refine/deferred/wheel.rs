@@ -86,9 +86,8 @@ impl Wheel {
     /// Takes an entry out of the list that it is in.
     pub fn remove(&mut self, entry: u32, WheelList(list): WheelList) {
         let list = &mut self.lists[list as usize];
-        if let Some(at) = list.iter().position(|&other| other == entry) {
-            list.remove(at);
-        }
+        let at = list.iter().position(|&other| other == entry);
+        list.remove(at.expect("the owner stores the list that an entry is in"));
     }
 
     /// Takes out every entry for which `keep` returns false.
