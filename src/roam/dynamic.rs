@@ -277,14 +277,14 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), Vertex::new(-1, -1));
-        let (shift, inner) = (layout.patch().trailing_zeros(), layout.patch() - 1);
+        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), None);
+        let shift = layout.patch().trailing_zeros();
         for &vertex in vertices {
-            let own = Vertex::new(vertex.x >> shift, vertex.y >> shift);
-            if own == last && vertex.x & inner != 0 && vertex.y & inner != 0 {
+            // Vertices that have these in common belong to the same patches.
+            let around = [vertex.moved(-1, -1), vertex].map(|at| (at.x >> shift, at.y >> shift));
+            if last.replace(around) == Some(around) {
                 continue;
             }
-            last = own;
             dirty.extend(
                 layout
                     .patches_meeting(vertex, vertex)

@@ -114,7 +114,7 @@ fn heading(what: &str) {
 
 /// The papers' sizes on one flight: 5 m a frame, a tolerance that shows 8.8 thousand triangles of 1025².
 fn sizes() {
-    let options = WalkOptions { tolerance_px: Some(6.0), ..WalkOptions::default() };
+    let options = WalkOptions { tolerance_px: Some(7.1), ..WalkOptions::default() };
     let all = fields::fractal(4097);
     let corner = |side: usize| -> Vec<f32> {
         all.chunks_exact(4097).take(side).flat_map(|row| row[..side].iter().copied()).collect()

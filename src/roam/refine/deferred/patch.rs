@@ -15,7 +15,7 @@ use glam::{DVec2, Vec3};
 use crate::geom::rect::Rect;
 use crate::roam::block::PatchBlock;
 use crate::roam::refine::deferred::topology::{CENTER, NONE, Topology, TopologyNode, triangle};
-use crate::roam::refine::deferred::wheel::{FARTHEST, Wheel, WheelLink};
+use crate::roam::refine::deferred::wheel::{FARTHEST, Wheel, WheelList};
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;
@@ -61,6 +61,7 @@ impl EyeStation {
 
     /// How far the eye is inside the sphere about (`x`, `y`, `z`), meters; negative outside, −∞ for a radius of 0. In f64, so
     /// that neighbors agree to the last bit and nested spheres stay nested.
+    #[inline]
     pub fn inside_m(&self, [x, y, z, radius]: [f32; 4]) -> f64 {
         let (dx, dy, dz) = (
             f64::from(x) - f64::from(self.eye.x),
@@ -73,13 +74,13 @@ impl EyeStation {
     }
 }
 
-/// The sphere of a vertex and its link in the wheel: sixteen bytes, four to a cache line. The flags, which change with the
+/// The sphere of a vertex and its list in the wheel: twelve bytes, five to a cache line. The flags, which change with the
 /// neighbors, are stored apart, sixty-four to a line.
 #[derive(Clone, Copy, Debug)]
 struct VertexCell {
     z: f32,
     radius: f32,
-    link: WheelLink,
+    list: WheelList,
 }
 
 /// The mesh of one patch.
@@ -148,7 +149,7 @@ impl PatchMesh {
             let hole = if z.is_nan() { HOLE } else { 0 };
             self.flags.push(hole | (absent * ONE_PARENT));
             let z = if z.is_nan() { 0.0 } else { z };
-            self.cells.push(VertexCell { z, radius: block.radii[at], link: WheelLink::FREE });
+            self.cells.push(VertexCell { z, radius: block.radii[at], list: WheelList::NONE });
         }
         self.flags[CENTER as usize] |= BOTH_PARENTS;
         self.slots.clear();
@@ -220,15 +221,15 @@ impl PatchMesh {
         Some(changed)
     }
 
-    /// Marks a vertex as in no list of the wheel; returns its last link.
-    pub fn leave(&mut self, vertex: u16) -> WheelLink {
+    /// Marks a vertex as in no list of the wheel.
+    #[inline]
+    pub fn leave(&mut self, vertex: u16) {
         self.flags[vertex as usize] &= !WAITING;
-        self.cells[vertex as usize].link
     }
 
-    /// The link of a vertex; valid while the vertex waits.
-    pub fn link(&mut self, vertex: u16) -> &mut WheelLink {
-        &mut self.cells[vertex as usize].link
+    /// The list of a vertex; valid while the vertex waits.
+    pub fn list(&self, vertex: u16) -> WheelList {
+        self.cells[vertex as usize].list
     }
 
     /// The active children that a vertex counts.
@@ -247,6 +248,7 @@ impl PatchMesh {
         (slot != NONE).then_some(slot as usize)
     }
 
+    #[inline]
     pub(super) fn sphere(&self, topology: &Topology, vertex: u16) -> [f32; 4] {
         let cell = &self.cells[vertex as usize];
         let [column, row] = topology.places()[vertex as usize];
@@ -279,11 +281,10 @@ impl PatchMesh {
     /// Decides a vertex, unless it waits or cannot change, and puts it into the wheel.
     fn decide_one(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         let flags = self.flags[vertex as usize];
-        let active = flags & ACTIVE != 0;
-        let may_change = if active { flags < ONE_CHILD } else { flags & PARENTS == BOTH_PARENTS };
-        if !may_change || flags & WAITING != 0 {
+        if flags & WAITING != 0 || !self.may_change(vertex) {
             return;
         }
+        let active = flags & ACTIVE != 0;
         with.counts.examined += 1;
         match (active, inside > 0.0) {
             (false, true) => self.activate(with, vertex),
@@ -293,8 +294,15 @@ impl PatchMesh {
         if inside != f64::NEG_INFINITY {
             let due = with.station.due(inside.abs());
             self.flags[vertex as usize] |= WAITING;
-            self.cells[vertex as usize].link = with.wheel.put(self.entries + u32::from(vertex), due);
+            self.cells[vertex as usize].list = with.wheel.put(self.entries + u32::from(vertex), due);
         }
+    }
+
+    /// Whether a vertex can change before its neighbors do: it is active without active children, or its parents are active.
+    #[inline]
+    pub(super) fn may_change(&self, vertex: u16) -> bool {
+        let flags = self.flags[vertex as usize];
+        if flags & ACTIVE != 0 { flags < ONE_CHILD } else { flags & PARENTS == BOTH_PARENTS }
     }
 
     /// Whether the parents of a vertex are active.

@@ -85,6 +85,7 @@ impl Topology {
     }
 
     /// A vertex's place in a patch stored row by row.
+    #[inline]
     pub fn row_major(&self, vertex: u16) -> usize {
         let [column, row] = self.places[vertex as usize].map(usize::from);
         row * (self.side as usize + 1) + column

@@ -5,11 +5,9 @@
 //! taken when its *beginning* is reached: early, never late. Those that may change before the next tick are in a separate
 //! list, which is taken every time.
 //!
-//! Entries are numbers of the owner's choice, linked through cells that the owner stores; the wheel holds only the heads of
-//! the lists, three kilobytes for any number of entries.
-
-/// No entry, no list.
-pub const FREE: u32 = u32::MAX;
+//! Entries are numbers of the owner's choice; the owner stores the list of each. A list is an array, so that reading the
+//! entry after next does not wait for the next, as in a chain through the vertices' own records, and an entry to take out is
+//! found by a scan.
 
 /// Slots of a level; one word of bits tells which are not empty.
 const SLOTS: u64 = 64;
@@ -26,51 +24,39 @@ pub const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
 /// The head of the list that is taken every time.
 const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 
-/// The owner of the entries' links.
-pub trait Links {
-    /// The link of an entry that is in a list.
-    fn link(&mut self, entry: u32) -> &mut WheelLink;
-
-    /// Marks an entry as in no list; returns its last link.
-    fn leave(&mut self, entry: u32) -> WheelLink;
-}
-
-/// The link of an entry.
+/// The number of a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct WheelLink {
-    /// The next entry, or [`FREE`].
-    pub next: u32,
-    /// The list it is in.
-    list: u16,
+pub struct WheelList(u16);
+
+impl WheelList {
+    /// No list.
+    pub const NONE: Self = Self(u16::MAX);
 }
 
-impl WheelLink {
-    /// In no list yet.
-    pub const FREE: Self = Self { next: FREE, list: u16::MAX };
-}
-
-/// The heads of the lists.
+/// The lists.
 #[derive(Clone, Debug)]
 pub struct Wheel {
     now: u64,
     filled: [u64; LEVELS],
-    heads: [u32; NEXT_TIME + 1],
+    /// Those that have been taken keep their memory.
+    lists: Vec<Vec<u32>>,
 }
 
 impl Wheel {
     /// An empty wheel at tick `now`.
     pub fn new(now: u64) -> Self {
-        Self { now, filled: [0; LEVELS], heads: [FREE; NEXT_TIME + 1] }
+        Self { now, filled: [0; LEVELS], lists: vec![Vec::new(); NEXT_TIME + 1] }
     }
 
     /// Puts `entry`, which is in no list, into the list that is taken at tick `due` or up to a sixteenth of the distance
-    /// earlier; next time where that is now. Returns the link that its owner must store.
+    /// earlier; next time where that is now. Returns the list, which its owner must store.
     #[must_use]
-    pub fn put(&mut self, entry: u32, due: u64) -> WheelLink {
+    #[inline]
+    pub fn put(&mut self, entry: u32, due: u64) -> WheelList {
         let due = due.min(self.now + FARTHEST);
         let list = if due <= self.now { NEXT_TIME } else { self.slot(due) };
-        let next = std::mem::replace(&mut self.heads[list], entry);
-        WheelLink { next, list: list as u16 }
+        self.lists[list].push(entry);
+        WheelList(list as u16)
     }
 
     /// The slot of a tick after now, marked as filled.
@@ -86,9 +72,9 @@ impl Wheel {
         level as usize * SLOTS as usize + slot as usize
     }
 
-    /// The tick at which the list of `link` is taken; 0 for the one that is taken every time.
-    pub fn begin(&self, link: WheelLink) -> u64 {
-        let list = u64::from(link.list);
+    /// The tick at which a list is taken; 0 for the one that is taken every time.
+    pub fn begin(&self, WheelList(list): WheelList) -> u64 {
+        let list = u64::from(list);
         if list as usize == NEXT_TIME {
             return 0;
         }
@@ -97,40 +83,22 @@ impl Wheel {
         (now + slot.wrapping_sub(now) % SLOTS) << shift
     }
 
-    /// Takes an entry out of the list it is in, walking the list.
-    pub fn remove(&mut self, links: &mut impl Links, entry: u32) {
-        let WheelLink { next, list } = links.leave(entry);
-        let head = &mut self.heads[list as usize];
-        if *head == entry {
-            *head = next;
-            return;
-        }
-        let mut before = *head;
-        while links.link(before).next != entry {
-            before = links.link(before).next;
-        }
-        links.link(before).next = next;
+    /// Takes an entry out of the list that it is in.
+    pub fn remove(&mut self, entry: u32, WheelList(list): WheelList) {
+        let list = &mut self.lists[list as usize];
+        let at = list.iter().position(|&other| other == entry);
+        list.remove(at.expect("the owner stores the list that an entry is in"));
     }
 
     /// Takes out every entry for which `keep` returns false.
-    pub fn retain(&mut self, links: &mut impl Links, keep: impl Fn(u32) -> bool) {
-        for head in &mut self.heads {
-            let mut entry = std::mem::replace(head, FREE);
-            while entry != FREE {
-                let kept = keep(entry);
-                let next = if kept {
-                    std::mem::replace(&mut links.link(entry).next, std::mem::replace(head, entry))
-                } else {
-                    links.leave(entry).next
-                };
-                entry = next;
-            }
-        }
+    pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
+        self.lists.iter_mut().for_each(|list| list.retain(|&entry| keep(entry)));
     }
 
-    /// Advances to tick `now`, which must not be before the last, and appends the entries due by then to `due`.
-    pub fn take_due(&mut self, links: &mut impl Links, now: u64, due: &mut Vec<u32>) {
-        take_list(&mut self.heads[NEXT_TIME], links, due);
+    /// Advances to tick `now`, which must not be before the last, and appends the entries due by then to `due`,
+    /// those of a list in the reverse of the order in which they were put there.
+    pub fn take_due(&mut self, now: u64, due: &mut Vec<u32>) {
+        due.extend(self.lists[NEXT_TIME].drain(..).rev());
         for level in 0..LEVELS {
             if (self.now >> (level as u32 * SHIFT)) == (now >> (level as u32 * SHIFT)) {
                 break;
@@ -139,7 +107,7 @@ impl Wheel {
             self.filled[level] &= !slots;
             while slots != 0 {
                 let slot = slots.trailing_zeros() as usize;
-                take_list(&mut self.heads[level * SLOTS as usize + slot], links, due);
+                due.extend(self.lists[level * SLOTS as usize + slot].drain(..).rev());
                 slots &= slots - 1;
             }
         }
@@ -158,28 +126,10 @@ impl Wheel {
     }
 }
 
-fn take_list(head: &mut u32, links: &mut impl Links, due: &mut Vec<u32>) {
-    let mut entry = std::mem::replace(head, FREE);
-    while entry != FREE {
-        due.push(entry);
-        entry = links.leave(entry).next;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-
-    impl Links for Vec<WheelLink> {
-        fn link(&mut self, entry: u32) -> &mut WheelLink {
-            &mut self[entry as usize]
-        }
-
-        fn leave(&mut self, entry: u32) -> WheelLink {
-            std::mem::replace(&mut self[entry as usize], WheelLink::FREE)
-        }
-    }
 
     proptest! {
         #[test]
@@ -188,46 +138,45 @@ mod tests {
             ahead in proptest::collection::vec(0u64..1 << 20, 1..60),
             strides in proptest::collection::vec(0u64..1 << 14, 1..400),
         ) {
-            let mut links = vec![WheelLink::FREE; ahead.len()];
+            let mut lists = vec![WheelList::NONE; ahead.len()];
             let mut wheel = Wheel::new(start);
             for (vertex, &ahead) in ahead.iter().enumerate() {
-                links[vertex] = wheel.put(vertex as u32, start + ahead);
+                lists[vertex] = wheel.put(vertex as u32, start + ahead);
             }
             let (mut now, mut waiting) = (start, ahead.len());
             for stride in strides {
                 let last = now;
                 now += stride;
                 let mut due = Vec::new();
-                wheel.take_due(&mut links, now, &mut due);
+                wheel.take_due(now, &mut due);
                 waiting -= due.len();
                 for vertex in due {
+                    lists[vertex as usize] = WheelList::NONE;
                     let ahead = ahead[vertex as usize];
                     prop_assert!(ahead == 0 || start + ahead >= last, "late");
                     prop_assert!(start + ahead - ahead / 8 <= now + 1, "{ahead} at {}", now - start);
                 }
-                let left = links.iter().enumerate().filter(|(_, link)| **link != WheelLink::FREE);
+                let left = lists.iter().enumerate().filter(|(_, list)| **list != WheelList::NONE);
                 for (vertex, _) in left {
                     prop_assert!(start + ahead[vertex] > now, "{} is overdue at {}", ahead[vertex], now - start);
                 }
             }
-            prop_assert_eq!(waiting, links.iter().filter(|link| **link != WheelLink::FREE).count());
+            prop_assert_eq!(waiting, lists.iter().filter(|list| **list != WheelList::NONE).count());
         }
 
         #[test]
         fn what_is_taken_out_is_not_handed_out(ahead in proptest::collection::vec(0u64..500, 2..40)) {
-            let mut links = vec![WheelLink::FREE; ahead.len()];
             let mut wheel = Wheel::new(7);
-            for (vertex, &ahead) in ahead.iter().enumerate() {
-                links[vertex] = wheel.put(vertex as u32, 7 + ahead);
-            }
-            let begins: Vec<u64> = links.iter().map(|&link| wheel.begin(link)).collect();
+            let put = |(vertex, &ahead): (usize, &u64)| wheel.put(vertex as u32, 7 + ahead);
+            let lists: Vec<WheelList> = ahead.iter().enumerate().map(put).collect();
+            let begins: Vec<u64> = lists.iter().map(|&list| wheel.begin(list)).collect();
             prop_assert!(begins.iter().zip(&ahead).all(|(&begin, &ahead)| begin <= 7 + ahead));
-            wheel.retain(&mut links, |vertex| vertex % 4 != 0);
+            wheel.retain(|vertex| vertex % 4 != 0);
             for vertex in (2..ahead.len() as u32).step_by(4) {
-                wheel.remove(&mut links, vertex);
+                wheel.remove(vertex, lists[vertex as usize]);
             }
             let mut due = Vec::new();
-            wheel.take_due(&mut links, 600, &mut due);
+            wheel.take_due(600, &mut due);
             due.sort_unstable();
             let kept: Vec<u32> = (0..ahead.len() as u32).filter(|vertex| vertex % 2 == 1).collect();
             prop_assert_eq!(due, kept);
