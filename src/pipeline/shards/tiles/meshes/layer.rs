@@ -1,25 +1,15 @@
-//! The description of a pyramid: `layer.json`, by which viewers find its tiles.
-
-use std::path::Path;
+//! The description of a pyramid of meshes: `layer.json`, by which viewers find its tiles.
 
 use serde_json::{Value, json};
 
-use crate::pipeline::files;
-use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::tiles::arguments::TilesArguments;
+use crate::pipeline::shards::tiles::meshes::groups;
 use crate::pipeline::shards::tiles::tiling::TileRange;
 
-/// Writes the description of tiles that are all there.
-///
-/// # Errors
-/// It cannot be written.
-pub fn gather(arguments: &TilesArguments, path: &Path) -> Result<(), ShardError> {
-    Ok(files::write(path, format!("{:#}\n", layer(arguments)).as_bytes())?)
-}
-
-fn layer(arguments: &TilesArguments) -> Value {
+/// The description of all tiles.
+pub fn layer(arguments: &TilesArguments) -> Value {
     let available = |level: u32| {
-        let TileRange { x, y, .. } = TileRange::meeting(level, arguments.bounds);
+        let TileRange { x, y, .. } = groups::meeting(level, arguments.bounds);
         json!([{ "startX": x.start(), "startY": y.start(), "endX": x.end(), "endY": y.end() }])
     };
     let levels: Vec<Value> = (0..=arguments.max_zoom).map(available).collect();
