@@ -23,7 +23,8 @@ use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::plan as plan_heights;
 use crate::pipeline::shards::plan_path::written;
 use crate::pipeline::shards::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
-use crate::pipeline::shards::tiles::plan::plan as plan_tiles;
+use crate::pipeline::shards::tiles::encoding::TileEncoding;
+use crate::pipeline::shards::tiles::plan::{TilesRequest, plan as plan_tiles};
 use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
 use crate::pipeline::shards::viewsheds::plan::plan as plan_viewsheds;
 use crate::terrain::query::Surface;
@@ -37,7 +38,7 @@ pub enum PlanCommand {
     Viewsheds(PlanViewshedsArguments),
     /// Annotated sheets of a scene side by side, at a true scale
     Atlas(PlanAtlasArguments),
-    /// Terrain tiles for globes in browsers: quantized-mesh
+    /// Terrain tiles for globes and maps in browsers: quantized-mesh, terrain-RGB
     Tiles(PlanTilesArguments),
 }
 
@@ -99,11 +100,15 @@ pub struct PlanAtlasArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Heights above EGM96 are brought to the ellipsoid; others are taken as they are. Without elevation, tiles lie at 0."
+    after_help = "Of quantized-mesh, heights above EGM96 are brought to the ellipsoid; others are taken as they are.\n\
+                  Colors have the heights of the file. Without elevation, tiles lie at 0; pictures of nothing else are left out."
 )]
 pub struct PlanTilesArguments {
     /// The elevation file or scene
     file: PathBuf,
+    /// How tiles state heights
+    #[arg(long, default_value = "quantized-mesh", value_parser = choice::<TileEncoding>())]
+    encoding: TileEncoding,
     /// The finest level [default: as fine as the elevation]
     #[arg(long, value_name = "Z", value_parser = clap::value_parser!(u32).range(0..=22))]
     max_zoom: Option<u32>,
@@ -190,7 +195,7 @@ fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
 }
 
 fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
-    let PlanTilesArguments { file, max_zoom, heights, access, output, .. } = arguments;
+    let PlanTilesArguments { file, encoding, max_zoom, heights, access, output, .. } = arguments;
     let (heights, access) = (heights.clone(), access.clone());
     let crs = Some(Crs::wgs84());
     let dataset = DatasetArguments { file: file.clone(), crs, json: arguments.json, heights, access };
@@ -198,7 +203,8 @@ fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
     let opened = dataset.open()?;
     files::make_folder(output)?;
     let queried = QueriedDataset { path: file.clone(), crs: dataset.crs(&opened), dataset: opened };
-    let shards = plan_tiles(planned(&dataset, output), &queried, *max_zoom, output)?;
+    let request = TilesRequest { encoding: *encoding, max_zoom: *max_zoom };
+    let shards = plan_tiles(planned(&dataset, output), &queried, request, output)?;
     report(output, "tiles", shards, arguments.json)
 }
 

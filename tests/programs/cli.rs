@@ -35,6 +35,7 @@ mod serve;
 mod sets;
 mod shards;
 mod shards_atlas;
+mod shards_colors;
 #[cfg(unix)]
 mod shards_killed;
 mod shards_tiles;

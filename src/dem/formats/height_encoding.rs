@@ -32,6 +32,19 @@ impl HeightEncoding {
             Self::Terrarium => number / 256.0 - 32_768.0,
         }
     }
+
+    /// The color whose height is nearest to one in meters: within 0.05 m for terrain-RGB and 1/512 m for Terrarium. The lowest
+    /// or the highest where the encoding does not reach so far, and the lowest for NaN.
+    pub fn color(self, meters: f64) -> [u8; 3] {
+        let number = match self {
+            Self::TerrainRgb => (meters + 10_000.0) * 10.0,
+            Self::Terrarium => (meters + 32_768.0) * 256.0,
+        };
+        // Numbers beyond the range of a color, and NaN, become its ends.
+        let number = (libm::round(number) as u32).min(0xff_ffff);
+        let [_, red, green, blue] = number.to_be_bytes();
+        [red, green, blue]
+    }
 }
 
 /// A text names no encoding.
@@ -70,6 +83,28 @@ mod tests {
         assert_eq!(HeightEncoding::TerrainRgb.meters([1, 134, 160]), 0.0);
         assert_eq!(HeightEncoding::Terrarium.meters([128, 0, 0]), 0.0);
         assert_eq!(HeightEncoding::Terrarium.meters([128, 1, 128]), 1.5);
+    }
+
+    #[test]
+    fn heights_become_the_nearest_color_within_the_range() {
+        assert_eq!(HeightEncoding::TerrainRgb.color(0.0), [1, 134, 160]);
+        assert_eq!(HeightEncoding::Terrarium.color(1.5), [128, 1, 128]);
+        // Everest and the Challenger Deep.
+        assert_eq!(HeightEncoding::TerrainRgb.color(8848.86), [2, 224, 73]);
+        assert_eq!(HeightEncoding::TerrainRgb.color(-10_935.0), [0, 0, 0]);
+        for (encoding, half_step) in
+            [(HeightEncoding::TerrainRgb, 0.05), (HeightEncoding::Terrarium, 1.0 / 512.0)]
+        {
+            for step in -20_000..20_000 {
+                let height = f64::from(step) * 0.4321;
+                let back = encoding.meters(encoding.color(height));
+                assert!((back - height).abs() <= half_step + 1e-9, "{encoding}: {height} as {back}");
+            }
+            for [lowest, highest] in [[f64::NEG_INFINITY, f64::INFINITY], [f64::NAN, 1e9]] {
+                assert_eq!(encoding.color(lowest), [0; 3]);
+                assert_eq!(encoding.color(highest), [255; 3]);
+            }
+        }
     }
 
     #[test]

@@ -87,6 +87,10 @@ pub enum PlanFault {
     NoPoints,
     #[error("it names no coordinate system, or lies nowhere on the globe; tiles need longitude and latitude")]
     NoPlace,
+    #[error(
+        "it lies between latitudes {south} and {north}, and Web Mercator ends at 85.05; plan quantized-mesh tiles of it"
+    )]
+    BeyondMercator { south: f64, north: f64 },
     #[error("its ground has no elevation anywhere")]
     NoGround,
     #[error("it holds more than the {PLAN_POINTS} points of a plan; cut it, or {PLAN_POINTS:#}")]

@@ -59,17 +59,7 @@ pub fn gather(
             heights::gather::gather(plan, arguments, &out)?;
             Ok(vec![out])
         }
-        PlannedProduct::Tiles(arguments) => {
-            if out.is_some() {
-                let message =
-                    "tiles stay where they are, and `layer.json` with them; leave out -o".to_owned();
-                return Err(PlanError::new(&plan.folder, PlanFault::Output(message)).into());
-            }
-            let out = plan.folder.join("tiles/layer.json");
-            plan.verify_inputs()?;
-            tiles::gather::gather(arguments, &out)?;
-            Ok(vec![out])
-        }
+        PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?]),
         PlannedProduct::Viewsheds(arguments) => {
             let out = checked(plan, own("viewsheds.tif"))?;
             let extension = out.extension().unwrap_or_default().to_string_lossy().into_owned();

@@ -1,39 +1,42 @@
-//! The description of a pyramid: `layer.json`, by which viewers find its tiles.
+//! What belongs to all tiles: the description by which viewers find them, and the coarse levels of pictures.
 
-use std::path::Path;
-
-use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 use crate::pipeline::files;
-use crate::pipeline::shards::error::ShardError;
-use crate::pipeline::shards::tiles::arguments::TilesArguments;
-use crate::pipeline::shards::tiles::tiling::TileRange;
+use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
+use crate::pipeline::shards::plan::ShardPlan;
+use crate::pipeline::shards::tiles::arguments::{TilePyramid, TilesArguments};
+use crate::pipeline::shards::tiles::{colors, meshes};
 
-/// Writes the description of tiles that are all there.
+/// Writes the description of tiles that are all there, and what belongs to several shards; returns the description's place,
+/// which is in the folder of the tiles: `out` is refused.
 ///
 /// # Errors
-/// It cannot be written.
-pub fn gather(arguments: &TilesArguments, path: &Path) -> Result<(), ShardError> {
-    Ok(files::write(path, format!("{:#}\n", layer(arguments)).as_bytes())?)
-}
-
-fn layer(arguments: &TilesArguments) -> Value {
-    let available = |level: u32| {
-        let TileRange { x, y, .. } = TileRange::meeting(level, arguments.bounds);
-        json!([{ "startX": x.start(), "startY": y.start(), "endX": x.end(), "endY": y.end() }])
+/// An argument is wrong, a result cannot be read, or a file cannot be written.
+pub fn gather(
+    plan: &ShardPlan,
+    arguments: &TilesArguments,
+    out: Option<&Path>,
+) -> Result<PathBuf, ShardError> {
+    arguments.fault().map_or(Ok(()), |fault| Err(plan.wrong_argument(fault)))?;
+    let pyramid = arguments.pyramid();
+    let name = match pyramid {
+        TilePyramid::Meshes(_) => "layer.json",
+        TilePyramid::Colors(_) => "tilejson.json",
     };
-    let levels: Vec<Value> = (0..=arguments.max_zoom).map(available).collect();
-    json!({
-        "tilejson": "2.1.0",
-        "name": "sandtable",
-        "version": "1.0.0",
-        "format": "quantized-mesh-1.0",
-        "scheme": "tms",
-        "projection": "EPSG:4326",
-        "tiles": ["{z}/{x}/{y}.terrain"],
-        "bounds": arguments.bounds,
-        "minzoom": 0,
-        "maxzoom": arguments.max_zoom,
-        "available": levels,
-    })
+    if out.is_some() {
+        let message = format!("tiles stay where they are, and `{name}` with them; leave out -o");
+        return Err(PlanError::new(&plan.folder, PlanFault::Output(message)).into());
+    }
+    plan.verify_inputs()?;
+    let description = match pyramid {
+        TilePyramid::Meshes(_) => meshes::layer::layer(arguments),
+        TilePyramid::Colors(pyramid) => {
+            colors::gather::write_coarse_tiles(plan, &pyramid)?;
+            colors::tilejson::tilejson(&pyramid)
+        }
+    };
+    let path = plan.folder.join("tiles").join(name);
+    files::write(&path, format!("{description:#}\n").as_bytes())?;
+    Ok(path)
 }

@@ -9,7 +9,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::pipeline::shards::tiles::tiling::{POSTS, TileAddress};
+use crate::pipeline::shards::tiles::meshes::posts::{POSTS, posts};
+use crate::pipeline::shards::tiles::tiling::TileAddress;
 
 /// The greatest coordinate in a tile.
 const MOST: u16 = 32_767;
@@ -25,7 +26,7 @@ pub fn tile_bytes(tile: TileAddress, heights: &[f64], [low, high]: [f32; 2]) -> 
     let heights: Vec<u16> = heights.iter().map(quantized).collect();
     let height_m = |height: u16| f64::from(low) + f64::from(height) / steps;
     let positions: Vec<DVec3> =
-        tile.posts().iter().zip(&heights).map(|(&at, &height)| ecef(at, height_m(height))).collect();
+        posts(tile).iter().zip(&heights).map(|(&at, &height)| ecef(at, height_m(height))).collect();
     let MeshOrder { order, place, triangles } = MeshOrder::of_posts();
     let mut bytes = header(&positions, [low, high]);
     bytes.extend((order.len() as u32).to_le_bytes());
