@@ -27,6 +27,10 @@ mod pictures;
 mod prints;
 mod profile;
 mod remote;
+#[cfg(feature = "cloud")]
+mod remote_https;
+#[cfg(feature = "cloud")]
+mod remote_servers;
 mod report;
 mod schema;
 mod series;
