@@ -31,6 +31,8 @@ mod remote;
 mod remote_https;
 #[cfg(feature = "cloud")]
 mod remote_servers;
+#[cfg(feature = "cloud")]
+mod remote_stores;
 mod report;
 mod schema;
 mod series;

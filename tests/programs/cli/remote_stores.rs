@@ -51,7 +51,7 @@ fn a_file_in_azure_gives_the_bits_of_the_file_on_disk() {
 fn a_file_in_google_cloud_storage_gives_the_bits_of_the_file_on_disk() {
     let Some(mut server) = TestServer::google() else { return };
     server.put(project("assets/jacksboro/dem.tif").as_ref(), "dem/terrain.tif");
-    assert_same_height(&server, "unsigned", "gs://terrain/dem/terrain.tif");
+    assert_same_height(&server, "unsigned", "gs://open/dem/terrain.tif");
 
     // An account of a service that names its server and needs no token, as emulators have it.
     let account = format!(
@@ -61,7 +61,7 @@ fn a_file_in_google_cloud_storage_gives_the_bits_of_the_file_on_disk() {
     );
     let account = server.scratch.write("account.json", account);
     server.variables = vec![("GOOGLE_SERVICE_ACCOUNT", account.into()), ("GOOGLE_ALLOW_HTTP", "true".into())];
-    assert_same_height(&server, "account", "gs://terrain/dem/terrain.tif");
+    assert_same_height(&server, "account", "gs://open/dem/terrain.tif");
 }
 
 #[test]
