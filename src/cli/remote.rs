@@ -1,7 +1,6 @@
 //! The option `--allow-remote` of all commands, and the note of what was fetched.
 
 use std::env;
-use std::path::PathBuf;
 
 use crate::cli::error::CliError;
 use crate::cli::limit::check_side;
@@ -17,18 +16,10 @@ use crate::remote::traffic::Traffic;
 pub fn set(hosts: &[AllowedHost]) -> Result<(), CliError> {
     check_side("--allow-remote", hosts.len())?;
     if !hosts.is_empty() {
-        let access = RemoteAccess { hosts: hosts.to_vec(), blocks: cache_folder() };
-        access.set_for_run();
+        let blocks = RemoteAccess::blocks_folder(|name| env::var_os(name));
+        RemoteAccess { hosts: hosts.to_vec(), blocks }.add_to_run();
     }
     Ok(())
-}
-
-/// The folder for blocks of remote files: by the standard variables of the system, `None` where there are none.
-fn cache_folder() -> Option<PathBuf> {
-    let absolute = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let system = if cfg!(windows) { "LOCALAPPDATA" } else { "XDG_CACHE_HOME" };
-    let cache = absolute(system).or_else(|| Some(absolute("HOME")?.join(".cache")));
-    Some(cache?.join("sandtable").join("remote"))
 }
 
 /// Prints what was fetched, if anything was.

@@ -73,6 +73,10 @@ impl<'a> CompanionFiles<'a> {
         if address(self.path).is_none() {
             return files::beside(self.path)(name);
         }
+        // A server that is waited for in vain is not waited for again.
+        if self.fault.borrow().is_some() {
+            return None;
+        }
         let path = self.path.with_file_name(name);
         let found = open::read_companion(path.to_str()?, COMPANION_BYTES.get());
         found.unwrap_or_else(|error| {

@@ -1,7 +1,8 @@
-//! What a run may read by address, and where it keeps what it has read: set once, before anything is read.
+//! What a run may read by address, and where it keeps what it has read.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 
 use crate::remote::address::AllowedHost;
 
@@ -14,18 +15,31 @@ pub struct RemoteAccess {
     pub blocks: Option<PathBuf>,
 }
 
-static ACCESS: OnceLock<RemoteAccess> = OnceLock::new();
+static ACCESS: RwLock<RemoteAccess> = RwLock::new(RemoteAccess { hosts: Vec::new(), blocks: None });
 
 impl RemoteAccess {
-    /// The access of this run: none, unless it was set.
-    pub fn of_run() -> &'static Self {
-        ACCESS.get_or_init(Self::default)
+    /// The access of this run: none, until some is added.
+    pub fn of_run() -> Self {
+        ACCESS.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Sets the access of this run, before anything is read by its address. Returns `false` where it is set or in use already:
-    /// then nothing changes.
-    pub fn set_for_run(self) -> bool {
-        ACCESS.set(self).is_ok()
+    /// Adds the hosts to the access of this run, for all that is opened from now on, and the folder where it has none yet.
+    pub fn add_to_run(self) {
+        let mut access = ACCESS.write().unwrap_or_else(PoisonError::into_inner);
+        for host in self.hosts {
+            if !access.hosts.contains(&host) {
+                access.hosts.push(host);
+            }
+        }
+        access.blocks = access.blocks.take().or(self.blocks);
+    }
+
+    /// The folder for blocks by the standard variables of the system, which `variable` looks up; `None` where they name none.
+    pub fn blocks_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+        let absolute = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+        let system = if cfg!(windows) { "LOCALAPPDATA" } else { "XDG_CACHE_HOME" };
+        let cache = absolute(system).or_else(|| Some(absolute("HOME")?.join(".cache")));
+        Some(cache?.join("sandtable").join("remote"))
     }
 
     /// Whether a host may be read from; it names its port where that is not the default.

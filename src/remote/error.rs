@@ -1,5 +1,7 @@
 //! Why a file cannot be read by its address.
 
+use std::time::Duration;
+
 /// A file that cannot be read by its address. The message follows the address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
@@ -12,7 +14,8 @@ pub enum RemoteError {
     #[error("this address is not read: {0}")]
     Address(&'static str),
     #[error(
-        "it is read from {0}, which this run may not read from; if that is to be trusted, run again with --allow-remote {0}"
+        "it is read from {0}, which this run may not read from; if that is to be trusted, run again with --allow-remote {0}, in \
+         Python with allow_remote=[\"{0}\"]"
     )]
     HostNotAllowed(String),
     #[error(
@@ -37,8 +40,18 @@ pub enum RemoteError {
     TooLong,
     #[error("the server sends a broken reply: {0}")]
     BrokenReply(&'static str),
-    #[error("the server did not answer within {0} s")]
-    Timeout(u64),
+    #[error("the server did not answer within {} s", .0.as_secs_f64())]
+    Timeout(Duration),
+    #[error(
+        "the certificate of {host} is not to be trusted: {reason}; whom to trust is a setting of the system, or a PEM file that \
+         SSL_CERT_FILE names"
+    )]
+    Certificate { host: String, reason: String },
+    #[error(
+        "no connection can be encrypted: {0}; the certificates of authorities are those of the system, or of a PEM file that \
+         SSL_CERT_FILE names"
+    )]
+    NoEncryption(String),
     #[error("it cannot be fetched: {0}")]
     Store(String),
 }

@@ -263,6 +263,7 @@ mod tests {
 
     use super::*;
     use crate::remote::runtime::wait_for;
+    use crate::remote::times::RemoteTimes;
 
     fn content(count: usize, seed: u8) -> Vec<u8> {
         (0..count).map(|at| (at / 7 % 251) as u8 ^ (at >> 11) as u8 ^ seed).collect()
@@ -279,7 +280,8 @@ mod tests {
         let store = Arc::new(InMemory::new());
         put(&store, bytes);
         let shared: Arc<dyn ObjectStore> = Arc::<InMemory>::clone(&store);
-        (store, StoredFile { store: shared, path: StorePath::from("a.tif") })
+        let path = StorePath::from("a.tif");
+        (store, StoredFile { store: shared, path, times: RemoteTimes::default() })
     }
 
     proptest! {

@@ -1,19 +1,15 @@
 //! The one way out: every request of a store goes through this client, those for tokens among them.
 //!
 //! It sends to hosts that are allowed and no others, redirections included; it reads no more of a reply than was asked for,
-//! and waits no longer than [`MOST_SILENCE`] for the next of its bytes.
+//! and waits no longer than [`RemoteTimes`] allow.
 
-use std::error::Error;
 use std::future::Future;
-use std::io;
 use std::pin::Pin;
 use std::sync::Once;
-use std::time::Duration;
 
 use object_store::ClientOptions;
 use object_store::client::{
-    ClientConfigKey, HttpClient, HttpConnector, HttpError, HttpErrorKind, HttpRequest, HttpResponse,
-    HttpService,
+    ClientConfigKey, HttpClient, HttpConnector, HttpError, HttpRequest, HttpResponse, HttpService,
 };
 use reqwest::header::{CONTENT_LENGTH, CONTENT_RANGE, HeaderMap, HeaderValue, RANGE};
 use reqwest::redirect::Policy;
@@ -22,12 +18,10 @@ use reqwest::{Client, Response, StatusCode, Url};
 use crate::message::chain::error_text;
 use crate::remote::access::RemoteAccess;
 use crate::remote::error::RemoteError;
+use crate::remote::request_error::{fault, host_of, plain, request_error};
+use crate::remote::times::RemoteTimes;
 use crate::remote::traffic::Traffic;
 
-/// The longest time to connect: distant servers answer in half a second.
-const MOST_CONNECTING: Duration = Duration::from_secs(5);
-/// The longest time between two parts of a reply.
-const MOST_SILENCE: Duration = Duration::from_secs(10);
 /// The most redirections of a request: one to the bucket's own region, one to a host of its own.
 const MOST_REDIRECTIONS: usize = 4;
 /// The most bytes of a reply that is no part of a file: a token, or the text of an error.
@@ -37,6 +31,7 @@ const OTHER_REPLY_BYTES: u64 = 64 << 10;
 #[derive(Clone, Debug)]
 pub(crate) struct GuardedConnector {
     pub access: RemoteAccess,
+    pub times: RemoteTimes,
 }
 
 /// A client that sends to allowed hosts alone.
@@ -44,6 +39,7 @@ pub(crate) struct GuardedConnector {
 struct GuardedClient {
     client: Client,
     access: RemoteAccess,
+    times: RemoteTimes,
     /// Whether the first address may be one without encryption.
     sends_plain: bool,
 }
@@ -70,52 +66,21 @@ impl HttpConnector for GuardedConnector {
         });
         let client = Client::builder()
             .redirect(redirection)
-            .connect_timeout(MOST_CONNECTING)
-            .read_timeout(MOST_SILENCE)
+            .connect_timeout(self.times.connect)
+            .read_timeout(self.times.silence)
             .user_agent(concat!("sandtable/", env!("CARGO_PKG_VERSION")))
             .build()
+            .map_err(|error| RemoteError::NoEncryption(plain(&error_text(&error))))
             .map_err(|error| object_store::Error::Generic { store: "HTTP client", source: error.into() })?;
         let sends_plain = options.get_config_value(&ClientConfigKey::AllowHttp).as_deref() == Some("true");
-        Ok(HttpClient::new(GuardedClient { client, access: self.access.clone(), sends_plain }))
+        let (access, times) = (self.access.clone(), self.times);
+        Ok(HttpClient::new(GuardedClient { client, access, times, sends_plain }))
     }
-}
-
-/// The host of a URL, with its port where that is not the default.
-fn host_of(url: &Url) -> String {
-    let host = url.host_str().unwrap_or_default();
-    url.port().map_or_else(|| host.to_owned(), |port| format!("{host}:{port}"))
 }
 
 fn check_host(access: &RemoteAccess, url: &Url) -> Result<(), RemoteError> {
     let host = host_of(url);
     if access.allows(&host) { Ok(()) } else { Err(RemoteError::HostNotAllowed(host)) }
-}
-
-fn fault(error: RemoteError) -> HttpError {
-    // It would be the same again.
-    HttpError::new(HttpErrorKind::Unknown, error)
-}
-
-/// The error of a request, with its kind: what is worth another try.
-fn request_error(error: reqwest::Error) -> HttpError {
-    if let Some(own) = cause(&error) {
-        return fault(own);
-    }
-    let kind = if error.is_timeout() {
-        HttpErrorKind::Timeout
-    } else if error.is_connect() {
-        HttpErrorKind::Connect
-    } else {
-        HttpErrorKind::Interrupted
-    };
-    // Others print no cause of theirs.
-    HttpError::new(kind, io::Error::other(error_text(&error.without_url())))
-}
-
-/// The error of this module among the causes of another.
-pub(crate) fn cause(error: &(dyn Error + 'static)) -> Option<RemoteError> {
-    std::iter::successors(Some(error), |&error| error.source())
-        .find_map(|error| error.downcast_ref::<RemoteError>().cloned())
 }
 
 impl HttpService for GuardedClient {
@@ -150,8 +115,8 @@ impl GuardedClient {
             *request.body_mut() = Some(bytes.clone().into());
         }
         Traffic::count_request();
-        let reply = self.client.execute(request).await.map_err(request_error)?;
-        checked_reply(reply, asked).await
+        let reply = self.client.execute(request).await.map_err(|error| request_error(error, &self.times))?;
+        checked_reply(reply, asked, &self.times).await
     }
 }
 
@@ -162,7 +127,11 @@ fn asked_range(headers: &HeaderMap) -> Option<(u64, u64)> {
 }
 
 /// The reply with its body, which has no more bytes than were asked for.
-async fn checked_reply(mut reply: Response, asked: Option<(u64, u64)>) -> Result<HttpResponse, HttpError> {
+async fn checked_reply(
+    mut reply: Response,
+    asked: Option<(u64, u64)>,
+    times: &RemoteTimes,
+) -> Result<HttpResponse, HttpError> {
     let (status, mut headers) = (reply.status(), reply.headers().clone());
     let most = match asked {
         Some(_) if status == StatusCode::OK => return Err(fault(RemoteError::NoRanges)),
@@ -173,7 +142,7 @@ async fn checked_reply(mut reply: Response, asked: Option<(u64, u64)>) -> Result
         _ => OTHER_REPLY_BYTES,
     };
     let mut bytes = Vec::new();
-    while let Some(part) = reply.chunk().await.map_err(request_error)? {
+    while let Some(part) = reply.chunk().await.map_err(|error| request_error(error, times))? {
         Traffic::count_bytes(part.len());
         if bytes.len() as u64 + part.len() as u64 > most {
             return Err(fault(RemoteError::TooLong));
@@ -271,7 +240,12 @@ mod tests {
 
     fn read(host: &str, access: &RemoteAccess) -> Result<Vec<u8>, RemoteError> {
         let address = RemoteAddress::parse(&format!("http://{host}/dem.tif")).expect("an address")?;
-        RemoteFile::open(StoredFile::at(&address, access)?, &address.to_string(), None)?.read_whole(1 << 20)
+        RemoteFile::open(
+            StoredFile::at(&address, access, RemoteTimes::default())?,
+            &address.to_string(),
+            None,
+        )?
+        .read_whole(1 << 20)
     }
 
     fn read_from(host: &str) -> Result<Vec<u8>, RemoteError> {
@@ -381,7 +355,7 @@ mod tests {
             _ => status("500 Broken"),
         });
         let address = RemoteAddress::parse(&format!("http://{host}/dem.tif")).expect("one").expect("sound");
-        let place = StoredFile::at(&address, &allowing(&[&host])).expect("allowed");
+        let place = StoredFile::at(&address, &allowing(&[&host]), RemoteTimes::default()).expect("allowed");
         let mut file = RemoteFile::open(place, &address.to_string(), None).expect("it answers once");
         for at in [10_000, 20_000, 40_000] {
             let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read(&mut [0; 100]));

@@ -24,7 +24,11 @@ pub(crate) mod http_client;
 pub(crate) mod object;
 pub mod open;
 #[cfg(feature = "cloud")]
+pub(crate) mod request_error;
+#[cfg(feature = "cloud")]
 pub(crate) mod runtime;
 #[cfg(feature = "cloud")]
 pub(crate) mod store;
+#[cfg(feature = "cloud")]
+pub(crate) mod times;
 pub mod traffic;

@@ -1,7 +1,6 @@
 //! One version of a file in a store, read by ranges of its bytes.
 
 use std::ops::Range;
-use std::time::Duration;
 
 use object_store::{GetOptions, GetRange, ObjectMeta};
 use tokio::task::JoinSet;
@@ -11,9 +10,6 @@ use crate::remote::error::RemoteError;
 use crate::remote::runtime::wait_for;
 use crate::remote::store::{StoredFile, store_error};
 
-/// The longest time for the bytes of one request with all its tries. A request asks for up to
-/// [`MOST_REQUEST_BYTES`], so that this is enough for a line of 2 Mbit/s.
-const MOST_WAITING: Duration = Duration::from_secs(30);
 /// The most bytes that one request asks for.
 pub(crate) const MOST_REQUEST_BYTES: u64 = 1 << 20;
 /// Requests that are under way at once: few enough for a server of a village, enough to hide the distance of another.
@@ -62,7 +58,7 @@ impl RemoteObject {
     /// The server cannot be reached or refuses, or its reply is wrong.
     pub fn open(file: StoredFile, head: u64) -> Result<(Self, Vec<u8>), RemoteError> {
         let first = file.clone();
-        let (meta, bytes) = wait_for(async move { in_time(read(&first, 0..head, None)).await })??;
+        let (meta, bytes) = wait_for(async move { in_time(&first, read(&first, 0..head, None)).await })??;
         Ok((Self { file, size: meta.size, version: ObjectVersion::of(&meta) }, bytes))
     }
 
@@ -103,7 +99,7 @@ impl RemoteObject {
 
     async fn range(&self, range: Range<u64>) -> Result<Vec<u8>, RemoteError> {
         let asked = range.end - range.start;
-        let (meta, bytes) = in_time(read(&self.file, range, self.version.comparable())).await?;
+        let (meta, bytes) = in_time(&self.file, read(&self.file, range, self.version.comparable())).await?;
         if meta.size != self.size || ObjectVersion::of(&meta) != self.version {
             return Err(RemoteError::Changed);
         }
@@ -112,8 +108,13 @@ impl RemoteObject {
     }
 }
 
-async fn in_time<T>(work: impl Future<Output = Result<T, RemoteError>>) -> Result<T, RemoteError> {
-    timeout(MOST_WAITING, work).await.unwrap_or(Err(RemoteError::Timeout(MOST_WAITING.as_secs())))
+/// The result of a request for bytes of a file, with all its tries.
+async fn in_time<T>(
+    file: &StoredFile,
+    work: impl Future<Output = Result<T, RemoteError>>,
+) -> Result<T, RemoteError> {
+    let longest = file.times.request;
+    timeout(longest, work).await.unwrap_or(Err(RemoteError::Timeout(longest)))
 }
 
 /// The bytes of a range, or of its part before the end of the file.

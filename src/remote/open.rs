@@ -4,7 +4,9 @@ use crate::dem::formats::FileContent;
 use crate::remote::error::RemoteError;
 
 #[cfg(feature = "cloud")]
-use crate::remote::{access::RemoteAccess, address::RemoteAddress, file::RemoteFile, store::StoredFile};
+use crate::remote::{
+    access::RemoteAccess, address::RemoteAddress, file::RemoteFile, store::StoredFile, times::RemoteTimes,
+};
 
 /// A file that is read in parts, and its first bytes.
 pub struct OpenedAddress {
@@ -46,7 +48,8 @@ pub fn version(address: &str) -> Result<String, RemoteError> {
 fn open_file(address: &str) -> Result<RemoteFile, RemoteError> {
     let parsed = RemoteAddress::parse(address).ok_or(RemoteError::Address("it has no known scheme"))??;
     let access = RemoteAccess::of_run();
-    RemoteFile::open(StoredFile::at(&parsed, access)?, &parsed.to_string(), access.blocks.as_deref())
+    let file = StoredFile::at(&parsed, &access, RemoteTimes::default())?;
+    RemoteFile::open(file, &parsed.to_string(), access.blocks.as_deref())
 }
 
 #[cfg(not(feature = "cloud"))]

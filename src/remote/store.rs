@@ -12,14 +12,14 @@ use object_store::path::Path;
 use object_store::{BackoffConfig, ClientConfigKey, ObjectStore, RetryConfig};
 
 use crate::remote::access::RemoteAccess;
-use crate::remote::address::{AddressScheme, RemoteAddress};
+use crate::remote::address::{AddressScheme, AllowedHost, RemoteAddress};
 use crate::remote::error::RemoteError;
-use crate::remote::http_client::{GuardedConnector, cause};
+use crate::remote::http_client::GuardedConnector;
+use crate::remote::request_error::{cause, plain};
+use crate::remote::times::RemoteTimes;
 
 /// Tries after the first of a request: half a second to some seconds apart.
 const RETRIES: usize = 4;
-/// The longest time from the first try to the start of the last.
-const MOST_RETRYING: Duration = Duration::from_secs(15);
 
 /// The hosts that give credentials to programs on machines of a cloud: they are asked where they are allowed.
 const METADATA_HOSTS: [&str; 3] = ["169.254.169.254", "169.254.170.2", "metadata.google.internal"];
@@ -31,6 +31,17 @@ pub(crate) struct StoredFile {
     pub store: Arc<dyn ObjectStore>,
     /// Its name there.
     pub path: Path,
+    /// How long the server is waited for.
+    pub times: RemoteTimes,
+}
+
+/// What a store is made with: others may read from other hosts.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct StoreKey {
+    scheme: AddressScheme,
+    authority: String,
+    hosts: Vec<AllowedHost>,
+    times: RemoteTimes,
 }
 
 impl StoredFile {
@@ -38,9 +49,12 @@ impl StoredFile {
     ///
     /// # Errors
     /// The host is not allowed, or the variables of credentials contradict each other.
-    pub fn at(address: &RemoteAddress, access: &RemoteAccess) -> Result<Self, RemoteError> {
-        static STORES: Mutex<BTreeMap<(AddressScheme, String), Arc<dyn ObjectStore>>> =
-            Mutex::new(BTreeMap::new());
+    pub fn at(
+        address: &RemoteAddress,
+        access: &RemoteAccess,
+        times: RemoteTimes,
+    ) -> Result<Self, RemoteError> {
+        static STORES: Mutex<BTreeMap<StoreKey, Arc<dyn ObjectStore>>> = Mutex::new(BTreeMap::new());
         // Before anything of the environment is looked at.
         if let Some(host) = address.host().filter(|host| !access.allows(host)) {
             return Err(RemoteError::HostNotAllowed(host));
@@ -50,14 +64,15 @@ impl StoredFile {
             false => Path::parse(&address.path),
         };
         let path = path.map_err(|_| RemoteError::Address("its path is none of a file"))?;
-        let key = (address.scheme, address.authority.clone());
+        let (scheme, authority) = (address.scheme, address.authority.clone());
+        let key = StoreKey { scheme, authority, hosts: access.hosts.clone(), times };
         let mut stores = STORES.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(store) = stores.get(&key) {
-            return Ok(Self { store: Arc::clone(store), path });
+            return Ok(Self { store: Arc::clone(store), path, times });
         }
-        let store = new_store(address, access).map_err(|error| store_error(&error))?;
+        let store = new_store(address, access, times).map_err(|error| store_error(&error))?;
         stores.insert(key, Arc::clone(&store));
-        Ok(Self { store, path })
+        Ok(Self { store, path, times })
     }
 }
 
@@ -77,28 +92,18 @@ pub(crate) fn store_error(error: &object_store::Error) -> RemoteError {
     }
 }
 
-/// What a server says, fit for a message: one line of at most 300 characters.
-fn plain(text: &str) -> String {
-    const LONGEST: usize = 300;
-    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut out: String = words.chars().filter(|character| !character.is_control()).take(LONGEST).collect();
-    if words.chars().nth(LONGEST).is_some() {
-        out.push('…');
-    }
-    out
-}
-
 fn new_store(
     address: &RemoteAddress,
     access: &RemoteAccess,
+    times: RemoteTimes,
 ) -> Result<Arc<dyn ObjectStore>, object_store::Error> {
-    let connector = GuardedConnector { access: access.clone() };
+    let connector = GuardedConnector { access: access.clone(), times };
     let backoff = BackoffConfig {
         init_backoff: Duration::from_millis(200),
         max_backoff: Duration::from_secs(4),
         base: 2.0,
     };
-    let retry = RetryConfig { backoff, max_retries: RETRIES, retry_timeout: MOST_RETRYING };
+    let retry = RetryConfig { backoff, max_retries: RETRIES, retry_timeout: times.retry };
     // Who gives credentials to all programs of a machine is not asked unless that is allowed.
     let is_anonymous = !METADATA_HOSTS.iter().any(|host| access.allows(host));
     let name = &address.authority;
@@ -128,7 +133,8 @@ fn new_store(
             let is_stated = |key| builder.get_config_value(&key).is_some();
             let is_signed = is_stated(GoogleConfigKey::ServiceAccount)
                 || is_stated(GoogleConfigKey::ServiceAccountKey)
-                || is_stated(GoogleConfigKey::ApplicationCredentials);
+                || is_stated(GoogleConfigKey::ApplicationCredentials)
+                || is_stated(GoogleConfigKey::BearerToken);
             if is_anonymous && !is_signed {
                 builder = builder.with_skip_signature(true);
             }
@@ -137,11 +143,17 @@ fn new_store(
         AddressScheme::Az => {
             let mut builder = MicrosoftAzureBuilder::from_env().with_container_name(name);
             let is_stated = |key| builder.get_config_value(&key).is_some();
+            // An emulator has an account with a key that all know.
+            let emulator = builder.get_config_value(&AzureConfigKey::UseEmulator);
+            let is_yes =
+                |value: String| matches!(&*value.to_ascii_lowercase(), "1" | "true" | "on" | "yes" | "y");
+            let is_emulator = emulator.is_some_and(is_yes);
             let is_signed = is_stated(AzureConfigKey::AccessKey)
                 || is_stated(AzureConfigKey::SasKey)
                 || is_stated(AzureConfigKey::Token)
                 || is_stated(AzureConfigKey::ClientSecret)
-                || is_stated(AzureConfigKey::FederatedTokenFile);
+                || is_stated(AzureConfigKey::FederatedTokenFile)
+                || is_emulator;
             if is_anonymous && !is_signed {
                 builder = builder.with_skip_signature(true);
             }

@@ -27,6 +27,12 @@ mod pictures;
 mod prints;
 mod profile;
 mod remote;
+#[cfg(feature = "cloud")]
+mod remote_https;
+#[cfg(feature = "cloud")]
+mod remote_servers;
+#[cfg(feature = "cloud")]
+mod remote_stores;
 mod report;
 mod schema;
 mod series;

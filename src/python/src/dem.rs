@@ -27,11 +27,12 @@ pub struct PyDem {
     file: Option<DemSource>,
 }
 
-/// A file and what it does not state: all that another process needs to open it.
+/// A file, what it does not state and the hosts that it may be read from: all that another process needs to open it.
 #[derive(Clone)]
 struct DemSource {
     path: PathBuf,
     stated: StatedDem,
+    allow_remote: Vec<String>,
 }
 
 /// What an elevation file does not state: the system, the value for no data, the vertical datum, meters per value and of value
@@ -40,6 +41,7 @@ type StatedDem = (Option<String>, Option<f64>, Option<String>, Option<f64>, Opti
 
 impl DemSource {
     fn open(self, py: Python<'_>) -> PyResult<PyDem> {
+        crate::remote::allow(&self.allow_remote)?;
         let (crs, nodata, vertical_datum, height_scale, height_offset, cell) = self.stated.clone();
         let crs = crs.map(|text| Crs::parse(&text)).transpose().map_err(wrong_value)?;
         let opened = py.detach(|| {
@@ -65,8 +67,13 @@ impl DemSource {
 
 /// Opens what `Dem.__reduce__` names.
 #[pyfunction(name = "_open_dem")]
-pub fn open_dem(py: Python<'_>, path: PathBuf, stated: StatedDem) -> PyResult<PyDem> {
-    DemSource { path, stated }.open(py)
+pub fn open_dem(
+    py: Python<'_>,
+    path: PathBuf,
+    stated: StatedDem,
+    allow_remote: Vec<String>,
+) -> PyResult<PyDem> {
+    DemSource { path, stated, allow_remote }.open(py)
 }
 
 #[pymethods]
@@ -75,9 +82,13 @@ impl PyDem {
     ///
     /// A file of more than a million samples stays on disk where its format allows that, and queries read what they need.
     /// `crs`, `nodata`, `vertical_datum`, `height_scale` and `height_offset` (meters) and `cell` (meters) state what the file
-    /// does not. Raises SandtableError.
+    /// does not.
+    ///
+    /// `path` may be an address, a str: https://, s3://, gs:// or az://. Its host must be one of `allow_remote`, each HOST or
+    /// HOST:PORT, which are allowed in this process from then on; credentials come from the variables of the clouds. Raises
+    /// SandtableError.
     #[staticmethod]
-    #[pyo3(signature = (path, *, crs = None, nodata = None, vertical_datum = None, height_scale = None, height_offset = None, cell = None))]
+    #[pyo3(signature = (path, *, crs = None, nodata = None, vertical_datum = None, height_scale = None, height_offset = None, cell = None, allow_remote = Vec::new()), text_signature = "(path, *, crs=None, nodata=None, vertical_datum=None, height_scale=None, height_offset=None, cell=None, allow_remote=())")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords of Python")]
     fn open(
         py: Python<'_>,
@@ -88,10 +99,11 @@ impl PyDem {
         height_scale: Option<f64>,
         height_offset: Option<f64>,
         cell: Option<f64>,
+        allow_remote: Vec<String>,
     ) -> PyResult<Self> {
         let crs = crs.map(crate::arguments::crs).transpose()?.map(|crs| crs.name().to_owned());
         let stated = (crs, nodata, vertical_datum, height_scale, height_offset, cell);
-        DemSource { path, stated }.open(py)
+        DemSource { path, stated, allow_remote }.open(py)
     }
 
     /// The elevation model of an array of shape (rows, columns) in meters, from the north-west, which is copied.
@@ -320,9 +332,10 @@ impl PyDem {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         let pickled = match &this.file {
-            Some(DemSource { path, stated }) => {
+            Some(DemSource { path, stated, allow_remote }) => {
                 let opener = py.import("sandtable._sandtable")?.getattr("_open_dem")?;
-                (opener, (path.clone(), stated.clone())).into_pyobject(py)?
+                // As text: a path of Python has no // of an address.
+                (opener, (path.as_os_str(), stated.clone(), allow_remote.clone())).into_pyobject(py)?
             }
             None => {
                 let maker = slf.get_type().getattr("from_array")?;

@@ -16,6 +16,7 @@ mod error;
 mod findings;
 mod plan;
 mod rasters;
+mod remote;
 mod results;
 mod scene;
 

@@ -27,10 +27,13 @@ pub struct PyScene {
 impl PyScene {
     /// Opens a scene file and the files that it names under the parent of its folder, or under the folders `allow`.
     ///
-    /// Raises SandtableError with file, line and column where the scene is wrong; `findings` of the exception are all errors.
+    /// Elevation that has an address is read from the hosts `allow_remote`, each HOST or HOST:PORT, which are allowed in this
+    /// process from then on. Raises SandtableError with file, line and column where the scene is wrong; `findings` of the
+    /// exception are all errors.
     #[staticmethod]
-    #[pyo3(signature = (path, *, allow = Vec::new()), text_signature = "(path, *, allow=())")]
-    fn open(py: Python<'_>, path: PathBuf, allow: Vec<PathBuf>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, allow = Vec::new(), allow_remote = Vec::new()), text_signature = "(path, *, allow=(), allow_remote=())")]
+    fn open(py: Python<'_>, path: PathBuf, allow: Vec<PathBuf>, allow_remote: Vec<String>) -> PyResult<Self> {
+        crate::remote::allow(&allow_remote)?;
         let scene = py.detach(|| Scene::open_with(&path, &options(&allow))).map_err(failed)?;
         Ok(Self { scene, path, allowed: allow, findings: OnceLock::new() })
     }

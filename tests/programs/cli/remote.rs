@@ -28,101 +28,15 @@ fn only_elevation_has_an_address_and_no_output() {
 #[cfg(feature = "cloud")]
 mod with_moto {
     use std::ffi::OsString;
-    use std::io::{BufRead, BufReader};
-    use std::path::{Path, PathBuf};
-    use std::process::{Child, Command, Stdio};
+    use std::path::PathBuf;
 
-    use crate::cli::{Ran, program, ran};
+    use crate::cli::remote_servers::TestServer;
+    use crate::cli::{program, ran};
     use crate::common::data::data;
     use crate::common::scratch::Scratch;
-    use crate::common::skip::skipped;
 
     /// Samples along a side of the raster: 64 tiles.
     const SIDE: u32 = 2048;
-
-    /// A server that speaks S3, with a bucket `terrain`.
-    struct Store {
-        child: Child,
-        host: String,
-        scratch: Scratch,
-    }
-
-    impl Drop for Store {
-        fn drop(&mut self) {
-            let _ = self.child.kill();
-            let _ = self.child.wait();
-        }
-    }
-
-    impl Store {
-        /// Starts the server; `None` where `SANDTABLE_MOTO` names no Python that has `moto` and `boto3`.
-        fn start() -> Option<Self> {
-            let Some(python) = std::env::var_os("SANDTABLE_MOTO") else {
-                skipped("no S3 server: SANDTABLE_MOTO is not set");
-                let is_required = std::env::var_os("SANDTABLE_REQUIRE_VALIDATOR").is_some();
-                assert!(!is_required, "SANDTABLE_REQUIRE_VALIDATOR is set");
-                return None;
-            };
-            let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/s3_server.py");
-            let mut child = Command::new(python)
-                .arg(script)
-                .stdin(Stdio::piped())
-                .stdout(Stdio::piped())
-                .spawn()
-                .expect("Python starts");
-            let mut line = String::new();
-            let out = child.stdout.take().expect("a pipe");
-            BufReader::new(out).read_line(&mut line).expect("the server says its host");
-            let host = line.trim().to_owned();
-            assert!(host.starts_with("127.0.0.1:"), "{host}");
-            Some(Self { child, host, scratch: Scratch::new() })
-        }
-
-        /// Puts a file into the bucket.
-        fn put(&mut self, path: &Path, key: &str) {
-            use std::io::Write;
-            let pipe = self.child.stdin.as_mut().expect("a pipe");
-            writeln!(pipe, "{}\t{key}", path.display())
-                .and_then(|()| pipe.flush())
-                .expect("the server listens");
-            let done = self.scratch.at("put");
-            let _ = std::fs::remove_file(&done);
-            writeln!(pipe, "done\t{}", done.display())
-                .and_then(|()| pipe.flush())
-                .expect("the server listens");
-            while !done.exists() {
-                std::thread::sleep(std::time::Duration::from_millis(10));
-            }
-        }
-
-        /// The program with credentials in the environment, blocks in a folder `cache`, and the server's host allowed.
-        fn command(&self, cache: &str, arguments: &[&str]) -> Command {
-            let mut command = program(self.scratch.folder(), arguments);
-            command
-                .args(["--allow-remote", &self.host])
-                .env("AWS_ENDPOINT_URL", format!("http://{}", self.host))
-                .env("AWS_ALLOW_HTTP", "true")
-                .env("AWS_ACCESS_KEY_ID", "testing")
-                .env("AWS_SECRET_ACCESS_KEY", "testing")
-                .env("AWS_REGION", "us-east-1")
-                .env("XDG_CACHE_HOME", self.scratch.at(cache));
-            command
-        }
-
-        fn run(&self, cache: &str, arguments: &[&str]) -> Ran {
-            ran(self.command(cache, arguments).output().expect("the program starts"))
-        }
-
-        /// What a run prints that must have succeeded, and the bytes that it says it fetched.
-        #[track_caller]
-        fn fetched(&self, cache: &str, arguments: &[&str]) -> (String, u64) {
-            let ran = self.run(cache, arguments);
-            assert_eq!(ran.code, 0, "{ran:?}");
-            let note = ran.err.lines().find(|line| line.starts_with("note:") && line.contains("fetched"));
-            let bytes = note.and_then(|line| line.split_whitespace().rev().nth(1)?.parse().ok());
-            (ran.out, bytes.unwrap_or_else(|| panic!("no note of what was fetched: {}", ran.err)))
-        }
-    }
 
     /// Terrain that packs as real terrain does: hills, and a noise of decimeters.
     fn write_terrain(scratch: &Scratch) -> PathBuf {
@@ -176,7 +90,7 @@ mod with_moto {
 
     #[test]
     fn a_remote_file_gives_the_bits_of_the_file_on_disk() {
-        let Some(mut store) = Store::start() else { return };
+        let Some(mut store) = TestServer::s3() else { return };
         let tif = write_terrain(&store.scratch);
         let local = tif.to_str().expect("UTF-8").to_owned();
         store.put(&tif, "dem/terrain.tif");
@@ -233,7 +147,7 @@ mod with_moto {
 
     #[test]
     fn real_files_on_a_server_are_those_on_disk() {
-        let Some(mut store) = Store::start() else { return };
+        let Some(mut store) = TestServer::s3() else { return };
         for path in ["dem/bigtujunga_utm11_i16_tiled.tif", "dem/eudem_laea_f32_deflate.tif", "dem/n43.dt0"] {
             let Some(file) = data(path) else { return };
             store.put(&file, path);
@@ -260,7 +174,7 @@ mod with_moto {
     }
 
     #[track_caller]
-    fn local_run(store: &Store, arguments: &[&str]) -> (String, String) {
+    fn local_run(store: &TestServer, arguments: &[&str]) -> (String, String) {
         let ran = ran(program(store.scratch.folder(), arguments).output().expect("the program starts"));
         assert_eq!(ran.code, 0, "{ran:?}");
         (ran.out, ran.err)
@@ -268,7 +182,7 @@ mod with_moto {
 
     #[test]
     fn an_address_is_refused_until_its_host_is_allowed() {
-        let Some(store) = Store::start() else { return };
+        let Some(store) = TestServer::s3() else { return };
         let mut command = program(store.scratch.folder(), &["height", "s3://terrain/a.tif", "--at", "1,2"]);
         command.env("AWS_ENDPOINT_URL", format!("http://{}", store.host)).env("AWS_ALLOW_HTTP", "true");
         let refused = ran(command.output().expect("the program starts")).failed(1);

@@ -115,6 +115,7 @@ class Dem:
         height_scale: float | None = None,
         height_offset: float | None = None,
         cell: float | None = None,
+        allow_remote: Sequence[str] = (),
     ) -> Dem: ...
     @staticmethod
     def from_array(
@@ -180,7 +181,12 @@ class Dem:
 @final
 class Scene:
     @staticmethod
-    def open(path: str | PathLike[str], *, allow: Sequence[str | PathLike[str]] = ()) -> Scene: ...
+    def open(
+        path: str | PathLike[str],
+        *,
+        allow: Sequence[str | PathLike[str]] = (),
+        allow_remote: Sequence[str] = (),
+    ) -> Scene: ...
     @property
     def cameras(self) -> tuple[str, ...]: ...
     @property
