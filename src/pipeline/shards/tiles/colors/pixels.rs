@@ -90,7 +90,8 @@ mod tests {
 
     #[test]
     fn heights_are_kept_as_bytes_and_encoded_as_colors() {
-        let height = |pixel: usize| if pixel % 7 == 0 { f32::NAN } else { pixel as f32 * 0.1 - 300.0 };
+        let height =
+            |pixel: usize| if pixel.is_multiple_of(7) { f32::NAN } else { pixel as f32 * 0.1 - 300.0 };
         let heights = PixelHeights::new((0..TILE_PIXELS).map(height).collect()).expect("elevation");
         let bytes = heights_to_bytes(Some(&heights));
         let back = heights_from_bytes(&bytes).and_then(PixelHeights::new).expect("elevation");
@@ -104,7 +105,7 @@ mod tests {
             let mut colors = vec![0; 3 * TILE_PIXELS];
             reader.next_frame(&mut colors).expect("sound pixels");
             for (pixel, color) in colors.as_chunks::<3>().0.iter().enumerate() {
-                let wanted = if pixel % 7 == 0 { 0.0 } else { f64::from(height(pixel)) };
+                let wanted = if pixel.is_multiple_of(7) { 0.0 } else { f64::from(height(pixel)) };
                 assert!((encoding.meters(*color) - wanted).abs() <= 0.05 + 1e-9, "{encoding} {pixel}");
             }
         }
