@@ -8,7 +8,7 @@
 //! | OS OpenMap Local, Open Roads and Open Rivers (Ordnance Survey) | the road classification; `form` |
 //! | BD TOPO (IGN, France) | `NATURE` and the names of its layers |
 //!
-//! A condition names values that no other schema has, so that no two rules take the same feature.
+//! A condition names values that no other schema has, so that no two rules take the same feature, but one of them its name.
 
 /// A table that may be written.
 pub(super) struct TableRule {
