@@ -37,14 +37,14 @@ impl Halo {
     /// A patch of the ground's own tone under letters of `ink`, as far as they stay legible: it breaks what is drawn there.
     pub fn patch(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
         let color = mean(pixels, area)
-            .map_or_else(|| paper(ink), |ground| tinted(ground, ink, (PATCH_TINT, LEAST_CONTRAST)));
+            .map_or_else(|| paper(ink), |ground| tinted(ground, ink, PATCH_TINT, LEAST_CONTRAST));
         let [red, green, blue, _] = color.0;
         Self { reach_px, color: Srgba([red, green, blue, 0xf4]) }
     }
 
     /// The halo of letters of `ink` over `area` of the picture.
     pub fn over(pixels: &Pixels, area: &PixelBox, ink: Srgba, reach_px: f32) -> Self {
-        let tint = |ground| tinted(ground, ink, (MOST_TINT, HALO_CONTRAST));
+        let tint = |ground| tinted(ground, ink, MOST_TINT, HALO_CONTRAST);
         Self { reach_px, color: mean(pixels, area).map_or_else(|| paper(ink), tint) }
     }
 }
@@ -58,8 +58,9 @@ fn paper(ink: Srgba) -> Srgba {
     Srgba([red, green, blue, HALO.0[3]])
 }
 
-/// The most tinted color that leaves the least contrast, whatever single pixel is below it; the paper's where none does.
-fn tinted(ground: Vec3, ink: Srgba, (most, least): (f32, f32)) -> Srgba {
+/// The color with the largest share of the ground, `most` at most, that leaves the contrast `least`, whatever single pixel is
+/// below it; the paper's where none does.
+fn tinted(ground: Vec3, ink: Srgba, most: f32, least: f32) -> Srgba {
     let paper = paper(ink);
     let mixed = |step: usize| {
         let share = most * step as f32 / TINT_STEPS as f32;

@@ -21,7 +21,7 @@ const LEVELS: usize = 12;
 /// The farthest that an entry is put ahead, in ticks; one that is due later is taken early and put back.
 pub const FARTHEST: u64 = (SLOTS - 2) << (SHIFT * (LEVELS as u32 - 1));
 
-/// The head of the list that is taken every time.
+/// The list that is taken every time.
 const NEXT_TIME: usize = LEVELS * SLOTS as usize;
 
 /// The number of a list.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::dem::answer::Answer;
 use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
 use crate::pipeline::shards::record::ShardFile;
@@ -28,8 +29,7 @@ pub fn tile_files(
     let mut sampled = BTreeMap::new();
     for tile in pyramid.sampled_below(root).tiles() {
         let answers = arguments.answers(queried, &pixel_centers(tile))?;
-        let height = |height: Option<f64>| height.map_or(f32::NAN, |height| height as f32);
-        let heights = answers.into_iter().map(|answer| height(answer.height_m())).collect();
+        let heights = answers.into_iter().map(height_m).collect();
         sampled.insert(tile, PixelHeights::new(heights));
     }
     let leaf = |tile: TileAddress| Ok::<_, ShardError>(sampled.get(&tile).cloned().flatten());
@@ -41,4 +41,9 @@ pub fn tile_files(
     let mut files = ShardFile::only(id, EXTENSION, heights_to_bytes(root.heights.as_ref()));
     files.extend(root.made);
     Ok(files)
+}
+
+/// The height of a pixel; NaN without elevation.
+fn height_m(answer: Answer) -> f32 {
+    answer.height_m().map_or(f32::NAN, |height| height as f32)
 }
