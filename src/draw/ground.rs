@@ -10,6 +10,7 @@ use glam::{Vec2, Vec3};
 use crate::draw::color::Srgba;
 use crate::draw::ground_cover::GroundCover;
 use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
+use crate::draw::lighting::ReliefShading;
 use crate::draw::undergrowth::Undergrowth;
 use crate::draw::water::{ShorePixel, WaterColor};
 
@@ -40,6 +41,8 @@ pub struct GroundMap {
     /// By what slopes are multiplied before they are shaded, at least 0: a z-factor, as if heights were exaggerated for
     /// their shading alone.
     pub z_factor: f32,
+    /// The change of brightness with shade; see [`ReliefShading::shade_gain`](crate::draw::lighting::ReliefShading::shade_gain).
+    pub shade_gain: f32,
     /// Whether it is natural ground, with the grain of [`ground_grain`](crate::draw::ground_grain::ground_grain).
     pub has_grain: bool,
 }
@@ -207,6 +210,7 @@ impl GroundMap {
             cover: None,
             form_level: 0,
             z_factor: 1.0,
+            shade_gain: ReliefShading::GAIN,
             has_grain: false,
         }
     }
@@ -306,6 +310,7 @@ mod tests {
             cover: None,
             form_level: 0,
             z_factor: 1.0,
+            shade_gain: ReliefShading::GAIN,
             has_grain: false,
         };
         let fault = |map: GroundMap| map.check().expect_err("unsound").to_string();

@@ -147,6 +147,7 @@ mod tests {
     use super::*;
     use crate::draw::color::Srgba;
     use crate::draw::ground::ColorRamp;
+    use crate::draw::lighting::ReliefShading;
     use glam::Vec2;
 
     fn posts(size: PostCount, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {
@@ -216,6 +217,7 @@ mod tests {
                 cover: None,
                 form_level: 0,
                 z_factor: 1.0,
+                shade_gain: ReliefShading::GAIN,
                 has_grain: false,
             };
             for (number, step_by_step) in (1..).zip(coarser_levels(&map)) {

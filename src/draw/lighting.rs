@@ -100,9 +100,11 @@ impl Lighting {
 /// (Jenny and Patterson 2020), `r = c · (shade − flat)` and
 ///
 /// ```text
-/// lit = albedo · soft(1 + GAIN · r) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1)) · mix(CLOSED, 1, sky visibility)
+/// lit = albedo · soft(1 + gain · r) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1)) · mix(CLOSED, 1, sky visibility)
 /// ```
 ///
+/// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
+/// dark as those of mountains.
 /// `soft` bends what lies beyond [`Self::TOE`] and [`Self::SHOULDER`] toward [`Self::DARKEST`] and [`Self::BRIGHTEST`]
 /// along hyperbolas that it reaches nowhere, so that forms still show in deep shade and on the brightest slopes.
 /// Level ground in the open keeps its albedo, so that the tints of a legend are those of the picture.
@@ -112,6 +114,8 @@ pub struct ReliefShading {
     pub to_sun: Vec3,
     /// Unit vectors toward the side lights: 90° and 45° counterclockwise of the sun, with it, and 45° clockwise of it.
     pub sides: [Vec3; 4],
+    /// The change of brightness with shade on slopes darker than level ground, at least [`Self::GAIN`].
+    pub shade_gain: f32,
 }
 
 /// A place on the ground as relief shading sees it.
@@ -134,10 +138,10 @@ impl ReliefShading {
     pub const SHARES: [f32; 3] = [0.55, 0.20, 0.25];
     /// The shares of the side lights.
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
-    /// The change of brightness with shade: larger is harsher.
+    /// The change of brightness with shade on slopes lighter than level ground: larger is harsher.
     pub const GAIN: f32 = 2.4;
-    /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.2.
-    pub const DARKEST: f32 = 0.08;
+    /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.15.
+    pub const DARKEST: f32 = 0.05;
     /// The brightness below which shade is softened.
     pub const TOE: f32 = 0.5;
     /// The brightness above which light is softened: pale tints would lose their color.
@@ -153,12 +157,16 @@ impl ReliefShading {
     /// The contrast of the lowest ground; that of the highest quarter is 1.
     pub const LOW_CONTRAST: f32 = 0.75;
 
-    /// The shading for a sun in direction `to_sun` (unit vector).
+    /// The shading for a sun in direction `to_sun` (unit vector), with the same gain in shade as in light.
     pub fn new(to_sun: Vec3) -> Self {
         let level = to_sun.truncate().try_normalize().unwrap_or(Vec2::new(-1.0, 1.0) * FRAC_1_SQRT_2);
         let half = Vec2::splat(FRAC_1_SQRT_2);
         let side = |turn: Vec2| (turn.rotate(level) * SIDE_LEVEL).extend(SIDE_RISE);
-        Self { to_sun, sides: [side(Vec2::Y), side(half), side(Vec2::X), side(half * Vec2::new(1.0, -1.0))] }
+        Self {
+            to_sun,
+            sides: [side(Vec2::Y), side(half), side(Vec2::X), side(half * Vec2::new(1.0, -1.0))],
+            shade_gain: Self::GAIN,
+        }
     }
 
     /// The light that level ground in the open receives, on the scale of the shade.
@@ -167,8 +175,8 @@ impl ReliefShading {
         (main + form) * self.to_sun.z.max(0.0) + sides * SIDE_RISE
     }
 
-    /// The light that a place returns, linear, before haze.
-    pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
+    /// How much more light a place receives than level ground, weighted by its contrast: `r` of the formula.
+    pub fn relief(&self, point: &ReliefPoint) -> f32 {
         let facing = |normal: Vec3, light: Vec3| normal.dot(light).max(0.0);
         let [main, sides, form] = Self::SHARES;
         let side_light: f32 = self
@@ -182,8 +190,14 @@ impl ReliefShading {
             + form * facing(point.form, self.to_sun);
         let contrast =
             Self::LOW_CONTRAST + (1.0 - Self::LOW_CONTRAST) * (point.elevation / 0.75).clamp(0.0, 1.0);
-        let relief = contrast * (shade - self.flat());
-        let brightness = Self::soft(1.0 + Self::GAIN * relief);
+        contrast * (shade - self.flat())
+    }
+
+    /// The light that a place returns, linear, before haze.
+    pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
+        let relief = self.relief(point);
+        let gain = if relief < 0.0 { self.shade_gain } else { Self::GAIN };
+        let brightness = Self::soft(1.0 + gain * relief);
         let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * relief).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
@@ -199,6 +213,19 @@ impl ReliefShading {
             Self::BRIGHTEST - shoulder * shoulder / (shoulder + brightness - Self::SHOULDER)
         } else {
             brightness
+        }
+    }
+
+    /// The brightness that [`Self::soft`] bends to `shown`, which is at most [`Self::SHOULDER`]; minus infinity where it reaches
+    /// nothing as dark.
+    pub fn hard(shown: f32) -> f32 {
+        let toe = Self::TOE - Self::DARKEST;
+        if shown <= Self::DARKEST {
+            f32::NEG_INFINITY
+        } else if shown < Self::TOE {
+            Self::TOE + toe - toe * toe / (shown - Self::DARKEST)
+        } else {
+            shown
         }
     }
 }
@@ -257,6 +284,11 @@ mod tests {
         assert!(shown.windows(2).all(|pair| pair[1] - pair[0] > 2e-4 && pair[1] - pair[0] < 0.011));
         assert!(shown[0] > ReliefShading::DARKEST && shown[300] < ReliefShading::BRIGHTEST);
         assert_eq!(ReliefShading::soft(1.0), 1.0);
+        for brightness in [-3.0, 0.0, 0.4, 0.5, 0.8, 1.3] {
+            let back = ReliefShading::hard(ReliefShading::soft(brightness));
+            assert!((back - brightness).abs() < 1e-4, "{brightness}: {back}");
+        }
+        assert_eq!(ReliefShading::hard(ReliefShading::DARKEST), f32::NEG_INFINITY);
     }
 
     #[test]

@@ -67,6 +67,7 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
 mod tests {
     use super::*;
     use crate::draw::ground::{ColorRamp, Contours, GroundPost};
+    use crate::draw::lighting::ReliefShading;
 
     /// Ground that rises eastward, 10 m a post of 20 m, colored dark below and light above.
     fn map(contours: Option<Contours>) -> GroundMap {
@@ -83,6 +84,7 @@ mod tests {
             cover: None,
             form_level: 0,
             z_factor: 1.0,
+            shade_gain: ReliefShading::GAIN,
             has_grain: false,
         }
     }

@@ -93,6 +93,7 @@ fn prepared_mesh(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::draw::lighting::ReliefShading;
     use std::sync::Arc;
 
     use crate::draw::ground::{ColorRamp, GroundMap, GroundPost};
@@ -130,6 +131,7 @@ mod tests {
             cover: None,
             form_level: 0,
             z_factor: 1.0,
+            shade_gain: ReliefShading::GAIN,
             has_grain: false,
         };
         let mut list = DrawList { ground: Some(Arc::new(map)), ..DrawList::default() };

@@ -2,15 +2,15 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::{DVec2, UVec2, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use crate::dem::raster::Samples;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::scene::SceneModel;
+use crate::scene::relief_strength::ReliefStrength;
 use crate::scene::undergrowth::undergrowth;
-use crate::scene::vertical_scale::VerticalScale;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::light::TerrainLight;
 use crate::terrain::terraces::without_terraces;
 use crate::terrain::water_shore::WaterShore;
@@ -89,18 +89,22 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
     };
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
     let GroundLevel { size, posts } = level(all, number, row);
+    let ramp = scene.ramp();
+    let ReliefStrength { z_factor, shade_gain } =
+        ReliefStrength::of(lattice, scene.scale, &ramp, to_sun, is_water);
     GroundMap {
         origin: Vec2::ZERO,
         cell: lattice.cell().as_vec2() * (1u32 << number) as f32,
         columns: size.columns,
         rows: size.rows,
         posts,
-        ramp: scene.ramp(),
+        ramp,
         contours: scene.contours,
         imagery: scene.imagery.clone(),
         cover: scene.cover(),
         form_level: form_level(lattice).saturating_sub(number),
-        z_factor: z_factor(lattice, scene.scale, is_water),
+        z_factor,
+        shade_gain,
         has_grain: true,
     }
 }
@@ -112,41 +116,6 @@ const FORM_SHARE: f64 = 1.0 / 100.0;
 fn form_level(lattice: &Lattice) -> u32 {
     let form_m = lattice.extent().size().max_element() * FORM_SHARE;
     libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
-}
-
-/// The mean slope, meters per meter, to which the slopes of gentle ground are raised for their shading: that of hills. More
-/// of it shows more relief and darker pictures.
-const SHADED_SLOPE: f64 = 0.45;
-
-/// The greatest z-factor: above it the noise of a plain would look like hills.
-const MOST_Z_FACTOR: f64 = 5.0;
-
-/// The slopes that a mean is taken of: about as many squared.
-const SLOPES: u32 = 256;
-
-/// By what the slopes of land are multiplied for their shading, at least 1. It depends on the ground alone, so that all
-/// pictures of a scene are shaded alike.
-fn z_factor(lattice: &Lattice, scale: VerticalScale, is_water: impl Fn(usize) -> bool) -> f32 {
-    let last = UVec2::new(lattice.columns(), lattice.rows()) - 1;
-    let step = (last.max_element() / SLOPES).max(1);
-    let reach_m = lattice.cell() * f64::from(step);
-    let (mut sum, mut count) = (0.0, 0u32);
-    for row in (0..=last.y.saturating_sub(step)).step_by(step as usize) {
-        for column in (0..=last.x.saturating_sub(step)).step_by(step as usize) {
-            let post = Post { column, row };
-            let height = |column: u32, row: u32| {
-                f64::from(lattice.height(Post { column: column.min(last.x), row: row.min(last.y) }))
-            };
-            let own = height(column, row);
-            let rise = DVec2::new(height(column + step, row), height(column, row + step)) - own;
-            let slope = (rise / reach_m).length();
-            if slope.is_finite() && !is_water(lattice.index(post)) {
-                (sum, count) = (sum + slope, count + 1);
-            }
-        }
-    }
-    let mean = f64::from(scale.world_z((sum / f64::from(count.max(1))) as f32));
-    (SHADED_SLOPE / mean.max(1e-9)).clamp(1.0, MOST_Z_FACTOR) as f32
 }
 
 /// Whether all samples that are numbers are whole.

@@ -42,6 +42,7 @@ pub mod planned_pictures;
 pub mod plinth;
 pub mod ramps;
 mod reduced_elevation;
+mod relief_strength;
 pub mod report;
 pub mod roads;
 pub mod scatter;

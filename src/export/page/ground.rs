@@ -97,6 +97,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
         })),
         "formLevel": map.form_level.saturating_sub(number),
         "zFactor": map.z_factor,
+        "shadeGain": map.shade_gain,
         "hasGrain": map.has_grain,
     })
 }

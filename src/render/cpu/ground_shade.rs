@@ -40,7 +40,8 @@ impl<'a> GroundShader<'a> {
     pub fn new(map: &'a GroundMap, to_sun: Vec3) -> Self {
         let coarser = coarser_levels(map).collect();
         let draped = map.imagery.as_deref().map(|imagery| (imagery, Texture::new(&imagery.pixels)));
-        Self { map, posts_per_meter: map.cell.recip(), coarser, draped, relief: ReliefShading::new(to_sun) }
+        let relief = ReliefShading { shade_gain: map.shade_gain, ..ReliefShading::new(to_sun) };
+        Self { map, posts_per_meter: map.cell.recip(), coarser, draped, relief }
     }
 
     /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
@@ -190,6 +191,7 @@ mod tests {
             cover: None,
             form_level: 0,
             z_factor: 1.0,
+            shade_gain: ReliefShading::GAIN,
             has_grain: false,
         }
     }

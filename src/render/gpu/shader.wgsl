@@ -674,7 +674,7 @@ fn facing_sun(normal: vec3f) -> f32 {
 
 // ReliefShading::soft, with the same constants.
 fn soft_brightness(brightness: f32) -> f32 {
-    let toe = 0.08 + 0.42 * 0.42 / (0.42 + max(0.5 - brightness, 0.0));
+    let toe = 0.05 + 0.45 * 0.45 / (0.45 + max(0.5 - brightness, 0.0));
     let shoulder = 1.9 - 0.55 * 0.55 / (0.55 + max(brightness - 1.35, 0.0));
     return select(select(brightness, shoulder, brightness > 1.35), toe, brightness < 0.5);
 }
@@ -695,7 +695,7 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     let high = stop_at(frame.ground_size.x - 1u).w;
     let elevation = select(0.0, (post.height - low) / (high - low), high > low);
     let relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-    let brightness = soft_brightness(1.0 + 2.4 * relief);
+    let brightness = soft_brightness(1.0 + select(2.4, frame.sun.w, relief < 0.0) * relief);
     let cool = vec3f(0.80, 0.90, 1.12);
     let warm = vec3f(1.06, 1.0, 0.90);
     let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);

@@ -123,7 +123,7 @@ impl FrameUniforms {
             forward: with(camera.forward(), 0.0),
             depth: [depth[0], depth[1], width as f32, height as f32],
             to_sun: with(light.to_sun, scene.ground.map_or(1.0, |map| map.z_factor)),
-            sun: with(light.sun, 0.0),
+            sun: with(light.sun, scene.ground.map_or(ReliefShading::GAIN, |map| map.shade_gain)),
             sky: with(light.sky, 0.0),
             bounce: with(light.bounce, 0.0),
             haze: with(light.haze.color, 1.0 / light.haze.distance_m),

@@ -197,6 +197,7 @@ uniform vec4 contour_shape; // interval, width, every how many is heavy, z facto
 uniform vec4 imagery;       // corner, 1 / size
 uniform vec4 imagery_size;  // texel, 1 where there is one, 1 where it is shaded
 uniform sampler2D imagery_texture;
+uniform float shade_gain;
 uniform vec3 sides[4];
 uniform vec4 side_shares;
 out vec4 shown;
@@ -263,7 +264,7 @@ float contour_cover(float height, float per_pixel) {
 }
 
 float soft_brightness(float brightness) {
-  if (brightness < 0.5) return 0.08 + 0.42 * 0.42 / (0.42 + 0.5 - brightness);
+  if (brightness < 0.5) return 0.05 + 0.45 * 0.45 / (0.45 + 0.5 - brightness);
   if (brightness > 1.35) return 1.9 - 0.55 * 0.55 / (0.55 + brightness - 1.35);
   return brightness;
 }
@@ -279,7 +280,7 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float level = 0.80 * max(to_sun.z, 0.0) + 0.10;
   float elevation = (height - ramp_range.x) * ramp_range.y;
   float relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-  float brightness = soft_brightness(1.0 + 2.4 * relief);
+  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : 2.4) * relief);
   vec3 cool = vec3(0.80, 0.90, 1.12);
   vec3 warm = vec3(1.06, 1.0, 0.90);
   vec3 hue = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
