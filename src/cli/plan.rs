@@ -199,7 +199,6 @@ fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
     let (heights, access) = (heights.clone(), access.clone());
     let crs = Some(Crs::wgs84());
     let dataset = DatasetArguments { file: file.clone(), crs, json: arguments.json, heights, access };
-    files::check_on_disk(&dataset.file)?;
     let opened = dataset.open()?;
     files::make_folder(output)?;
     let queried = QueriedDataset { path: file.clone(), crs: dataset.crs(&opened), dataset: opened };
@@ -219,7 +218,6 @@ fn open<'a>(
             "standard input is read once, and a plan reads its points twice; name a file",
         ));
     }
-    files::check_on_disk(&dataset.file)?;
     let opened = dataset.open()?;
     let crs = dataset.crs(&opened);
     files::make_folder(&plan.output)?;
