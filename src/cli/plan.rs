@@ -16,8 +16,7 @@ use crate::description::document::PAPER_DPI;
 use crate::description::words::PaperName;
 use crate::geom::crs::Crs;
 use crate::pipeline::files;
-use crate::pipeline::scene_file::open_scene;
-use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::arguments::{AtlasArguments, atlas_scene, pixel_m};
 use crate::pipeline::shards::atlas::plan::plan as plan_atlas;
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::plan as plan_heights;
@@ -179,7 +178,7 @@ fn run_viewsheds(arguments: &PlanViewshedsArguments) -> Result<(), CliError> {
 
 fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
     let SceneArguments { scene, access } = &arguments.scene;
-    let opened = open_scene(scene, &access.allow, &|_| ())?;
+    let opened = atlas_scene(scene, &access.allow, pixel_m(arguments.scale, arguments.dpi))?;
     let folder = &arguments.output;
     files::make_folder(folder)?;
     let planned = AtlasArguments {
