@@ -7,14 +7,14 @@
 //! ```
 //!
 //! The tiles are joined as those of a folder are, each cropped and brought to the samples of the virtual raster as it states
-//! (`vrt_source`), and what they join to is compared with what the virtual raster states. One that averages, warps or computes
-//! is refused: its samples are another program's to make.
+//! (`vrt_source`), and what they join to is put into the frame that the virtual raster states (`vrt_frame`). One that averages,
+//! warps or computes is refused: its samples are another program's to make.
 //!
 //! Source: GDAL, "VRT -- GDAL Virtual Format".
 
 use std::path::{Path, PathBuf};
 
-use glam::{DAffine2, DVec2};
+use glam::DAffine2;
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
@@ -22,6 +22,7 @@ use quick_xml::reader::Reader;
 use crate::dem::error::DemErrorKind;
 use crate::dem::georef::affine;
 use crate::dem::raster::Raster;
+use crate::dem::vrt_frame::VrtFrame;
 use crate::dem::vrt_source::{VrtRect, VrtSource};
 use crate::dem::windows::Windows;
 use crate::limits::VRT_BYTES;
@@ -35,8 +36,7 @@ pub struct VrtTiles {
     /// Of samples that tiles share the first tile's counts: GDAL draws them in the order of the file, one over the other, so
     /// this is the reverse.
     pub sources: Vec<VrtSource>,
-    size: (u32, u32),
-    map_from_grid: Option<DAffine2>,
+    frame: VrtFrame,
 }
 
 /// Whether a file is a virtual raster, by its name.
@@ -97,26 +97,23 @@ impl VrtTiles {
         }
     }
 
-    /// Checks that the tiles join to what the virtual raster states.
+    /// The joined tiles in the frame that the virtual raster states; without data where no tile is.
     ///
     /// # Errors
-    /// It has another size or place.
-    pub fn check(&self, joined: &Raster) -> Result<(), DemErrorKind> {
-        if self.size != joined.size() {
-            let ((width, height), (columns, rows)) = (self.size, joined.size());
-            let what = format!("{width} x {height} samples of tiles that span {columns} x {rows}");
-            return Err(unsupported(what));
-        }
-        let corners = [DVec2::ZERO, DVec2::new(f64::from(self.size.0), f64::from(self.size.1))];
-        let lies_off = |stated: &DAffine2| {
-            let off = |at: DVec2| (joined.grid_from_map(stated.transform_point2(at)) - at).length();
-            // What is not a number lies off.
-            !corners.into_iter().all(|at| off(at) < PLACE)
-        };
-        match self.map_from_grid.as_ref().is_some_and(lies_off) {
-            true => Err(unsupported("another place than its tiles".to_owned())),
-            false => Ok(()),
-        }
+    /// They reach beyond it or lie between its samples, or it is larger than a raster.
+    pub fn filled(&self, joined: Raster) -> Result<Raster, DemErrorKind> {
+        self.frame.filled(joined)
+    }
+
+    /// [`VrtTiles::filled`] of tiles that are read in windows.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn filled_windows(
+        &self,
+        joined: Box<dyn Windows + Send>,
+    ) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
+        self.frame.filled_windows(joined)
     }
 }
 
@@ -300,7 +297,7 @@ impl VrtReader {
             source.also_nodata = self.nodata.filter(|all| source.nodata.is_some_and(|own| own != *all));
             source.nodata = source.nodata.or(self.nodata);
         }
-        Ok(VrtTiles { sources, size: self.size, map_from_grid: self.map_from_grid })
+        Ok(VrtTiles { sources, frame: VrtFrame { size: self.size, map_from_grid: self.map_from_grid } })
     }
 }
 
@@ -376,12 +373,12 @@ mod tests {
         let files: Vec<&str> = tiles.sources.iter().map(|source| source.file.as_str()).collect();
         assert_eq!(files, ["e/c.tif", "w/a&b.tif"]);
         assert!(tiles.sources.iter().all(|source| source.nodata == Some(-9999.0)));
-        assert!(tiles.check(&small(4, 2, vec![0.0; 8])).is_ok());
-        let error = tiles.check(&small(3, 2, vec![0.0; 6])).expect_err("another size").to_string();
-        assert!(error.contains("VRT"), "{error}");
+        assert!(tiles.filled(small(4, 2, vec![0.0; 8])).is_ok());
+        let error = tiles.filled(small(5, 2, vec![0.0; 10])).expect_err("another size").to_string();
+        assert!(error.contains("VRT") && error.contains("4 x 2 samples of tiles that span 5 x 2"), "{error}");
         let mut moved = small(4, 2, vec![0.0; 8]);
         moved.map_from_grid.translation.x += 1.0;
-        assert!(tiles.check(&moved).is_err());
+        assert!(tiles.filled(moved).is_err());
     }
 
     #[test]

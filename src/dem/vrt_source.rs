@@ -9,7 +9,8 @@
 //!   └─────────────┘              └───────────┘
 //! ```
 //!
-//! What reaches beyond the virtual raster is cut off. Source: GDAL, `VRTSimpleSource` and `GDALRasterBand::IRasterIO`.
+//! What reaches beyond the virtual raster is cut off. Where a tile with overviews is made coarser, GDAL takes its samples of one
+//! of these; here they are always the tile's own. Source: GDAL, `VRTSimpleSource` and `GDALRasterBand::IRasterIO`.
 
 use glam::{DAffine2, DVec2};
 

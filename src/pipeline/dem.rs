@@ -49,9 +49,13 @@ impl OpenDemError {
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
     let Some(tiles) = TileFiles::of(path, options)? else { return open_tiles(&[path], options) };
-    let mosaic =
+    let mut mosaic =
         join(tiles.paths.iter().enumerate().map(|(index, path)| (path, tiles.open_whole(index, options))))?;
-    tiles.check(path, &mosaic.raster)?;
+    if let Some(vrt) = &tiles.vrt {
+        let joined = mosaic.raster.size();
+        mosaic.raster = vrt.filled(mosaic.raster).map_err(FileError::at(path))?;
+        mosaic.gaps += samples(&mosaic.raster) - u64::from(joined.0) * u64::from(joined.1);
+    }
     Ok(mosaic)
 }
 
@@ -115,11 +119,6 @@ impl TileFiles {
             (_, windows) => Ok(windows),
         }
     }
-
-    /// Checks what the tiles of the virtual raster at `path` join to.
-    fn check(&self, path: &Path, joined: &Raster) -> Result<(), OpenDemError> {
-        Ok(self.vrt.as_ref().map_or(Ok(()), |vrt| vrt.check(joined)).map_err(FileError::at(path))?)
-    }
 }
 
 /// The tiles in a folder, at least one, sorted by name.
@@ -145,10 +144,9 @@ pub enum OpenedDem {
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
     let tiles = TileFiles::of(path, options)?;
     let windows = match &tiles {
-        Some(tiles) => open_mosaic(tiles, options).and_then(|windows| {
-            let header = windows.as_ref().map(|windows| windows.metadata());
-            header.map_or(Ok(()), |header| tiles.check(path, header))?;
-            Ok(windows)
+        Some(tiles) => open_mosaic(tiles, options).and_then(|windows| match (&tiles.vrt, windows) {
+            (Some(vrt), Some(windows)) => Ok(Some(vrt.filled_windows(windows).map_err(FileError::at(path))?)),
+            (_, windows) => Ok(windows),
         }),
         None => open_windows(path, options),
     };

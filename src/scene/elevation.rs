@@ -314,8 +314,11 @@ impl TileList {
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
         let mosaic =
             MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
-        self.check(document, mosaic.metadata())?;
-        Ok(Some(Box::new(mosaic)))
+        let mosaic = Box::new(mosaic);
+        match self.frame() {
+            Some(vrt) => vrt.filled_windows(mosaic).map(Some).map_err(|error| document.error(dem, error)),
+            None => Ok(Some(mosaic)),
+        }
     }
 
     /// The files as one raster in memory.
@@ -347,8 +350,10 @@ impl TileList {
             check_tile(name, &mut tile, overridden.take(), document, findings);
             tiles.push(name, tile).map_err(failed)?;
         }
-        let mosaic = tiles.join().map_err(failed)?;
-        self.check(document, &mosaic.raster)?;
+        let mut mosaic = tiles.join().map_err(failed)?;
+        if let Some(vrt) = self.frame() {
+            mosaic.raster = vrt.filled(mosaic.raster).map_err(|error| document.error(dem, error))?;
+        }
         find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
         if 2 * mosaic.in_feet > mosaic.overlaps {
             let message = format!(
@@ -365,16 +370,10 @@ impl TileList {
         Ok(mosaic.raster)
     }
 
-    /// Checks what the tiles join to.
-    fn check(&self, document: &Document, joined: &Raster) -> Result<(), Diagnostic> {
-        // Several are joined to another raster than each states.
-        let [vrt] = &self.vrts[..] else { return Ok(()) };
-        let is_all = self.files.len() == vrt.sources.len();
-        if is_all {
-            vrt.check(joined).map_err(|error| document.error(&document.terrain.dem, error))
-        } else {
-            Ok(())
-        }
+    /// The virtual raster that states the frame of all tiles: several are joined to another raster than each states.
+    fn frame(&self) -> Option<&VrtTiles> {
+        let [vrt] = &self.vrts[..] else { return None };
+        (self.files.len() == vrt.sources.len()).then_some(vrt)
     }
 }
 
