@@ -10,6 +10,8 @@ use crate::cli::output::print_lines;
 use crate::cli::progress::StepTimer;
 use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
 use crate::pipeline::scene_file::open_scene_for;
+use crate::remote::access::RemoteAccess;
+use crate::remote::address::{AllowedHost, is_address_path};
 use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
 
 #[derive(Debug, Args)]
@@ -26,7 +28,7 @@ pub struct NewArguments {
     /// The folder for scene.toml; it is made if it does not exist
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// The elevation file; several are tiles of one raster
+    /// The elevation file, or its address; several are tiles of one raster
     #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
     pub dem: Vec<PathBuf>,
     /// Vector files for the features on the ground
@@ -56,7 +58,11 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let pictures = PlannedPictures::default();
     let scene = open_scene_for(&path, &allowed, None, ElevationNeed::Pictures(&pictures), &progress);
     steps.finish();
-    let command = |verb: &str| command(verb, &path, &allowed);
+    let hosts = match arguments.dem.iter().any(|file| is_address_path(file)) {
+        true => RemoteAccess::of_run().hosts,
+        false => Vec::new(),
+    };
+    let command = |verb: &str| command(verb, &path, &allowed, &hosts);
     let scene = scene.map_err(|error| {
         let (path, check) = (path.display(), command("check"));
         let hint = format!("{path} is written, but cannot be built yet; correct it and try\n  {check}");
@@ -69,9 +75,10 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
 }
 
 /// A command on the scene, as a shell reads it.
-fn command(verb: &str, scene: &Path, allowed: &[PathBuf]) -> String {
+fn command(verb: &str, scene: &Path, allowed: &[PathBuf], hosts: &[AllowedHost]) -> String {
     let allow = allowed.iter().map(|folder| format!(" --allow {}", shell(folder)));
-    format!("sandtable {verb} {}{}", shell(scene), allow.collect::<String>())
+    let hosts = hosts.iter().map(|host| format!(" --allow-remote {}", shell(Path::new(host.name()))));
+    format!("sandtable {verb} {}{}", shell(scene), allow.chain(hosts).collect::<String>())
 }
 
 /// A path as a shell reads it.

@@ -16,8 +16,7 @@ use crate::description::document::PAPER_DPI;
 use crate::description::words::PaperName;
 use crate::geom::crs::Crs;
 use crate::pipeline::files;
-use crate::pipeline::scene_file::open_scene;
-use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::arguments::{AtlasArguments, atlas_scene, pixel_m};
 use crate::pipeline::shards::atlas::plan::plan as plan_atlas;
 use crate::pipeline::shards::heights::arguments::HeightsArguments;
 use crate::pipeline::shards::heights::plan::plan as plan_heights;
@@ -179,7 +178,7 @@ fn run_viewsheds(arguments: &PlanViewshedsArguments) -> Result<(), CliError> {
 
 fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
     let SceneArguments { scene, access } = &arguments.scene;
-    let opened = open_scene(scene, &access.allow, &|_| ())?;
+    let opened = atlas_scene(scene, &access.allow, pixel_m(arguments.scale, arguments.dpi))?;
     let folder = &arguments.output;
     files::make_folder(folder)?;
     let planned = AtlasArguments {
@@ -199,7 +198,6 @@ fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
     let (heights, access) = (heights.clone(), access.clone());
     let crs = Some(Crs::wgs84());
     let dataset = DatasetArguments { file: file.clone(), crs, json: arguments.json, heights, access };
-    files::check_on_disk(&dataset.file)?;
     let opened = dataset.open()?;
     files::make_folder(output)?;
     let queried = QueriedDataset { path: file.clone(), crs: dataset.crs(&opened), dataset: opened };
@@ -219,7 +217,6 @@ fn open<'a>(
             "standard input is read once, and a plan reads its points twice; name a file",
         ));
     }
-    files::check_on_disk(&dataset.file)?;
     let opened = dataset.open()?;
     let crs = dataset.crs(&opened);
     files::make_folder(&plan.output)?;

@@ -34,6 +34,8 @@ pub mod vertical;
 pub mod void_counts;
 pub mod voids;
 pub mod vrt;
+mod vrt_frame;
+pub mod vrt_source;
 pub mod warp;
 pub mod windows;
 pub mod write;

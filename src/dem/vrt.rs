@@ -6,14 +6,15 @@
 //!      └─ SimpleSource, ComplexSource … ── SourceFilename, SourceBand, SrcRect, DstRect, NODATA
 //! ```
 //!
-//! The tiles are joined as those of a folder are, and what they join to is compared with what the virtual raster states. One
-//! that crops, scales, warps or computes is refused: its samples are another program's to make.
+//! The tiles are joined as those of a folder are, each cropped and brought to the samples of the virtual raster as it states
+//! (`vrt_source`), and what they join to is put into the frame that the virtual raster states (`vrt_frame`). One that averages,
+//! warps or computes is refused: its samples are another program's to make.
 //!
 //! Source: GDAL, "VRT -- GDAL Virtual Format".
 
 use std::path::{Path, PathBuf};
 
-use glam::{DAffine2, DVec2};
+use glam::DAffine2;
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
@@ -21,22 +22,21 @@ use quick_xml::reader::Reader;
 use crate::dem::error::DemErrorKind;
 use crate::dem::georef::affine;
 use crate::dem::raster::Raster;
+use crate::dem::vrt_frame::VrtFrame;
+use crate::dem::vrt_source::{VrtRect, VrtSource};
 use crate::dem::windows::Windows;
 use crate::limits::VRT_BYTES;
 
 /// How far, in cells, a virtual raster may lie from the tiles that it names.
-const PLACE: f64 = 1e-3;
+pub(super) const PLACE: f64 = 1e-3;
 
 /// The tiles that a virtual raster names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VrtTiles {
-    /// Their files, `/` between folders, relative to the virtual raster's or absolute. Of samples that tiles share the first
-    /// tile's counts: GDAL draws them in the order of the file, one over the other, so this is the reverse.
-    pub files: Vec<String>,
-    /// The value that means no data.
-    pub nodata: Option<f64>,
-    size: (u32, u32),
-    map_from_grid: Option<DAffine2>,
+    /// Of samples that tiles share the first tile's counts: GDAL draws them in the order of the file, one over the other, so
+    /// this is the reverse.
+    pub sources: Vec<VrtSource>,
+    frame: VrtFrame,
 }
 
 /// Whether a file is a virtual raster, by its name.
@@ -73,7 +73,14 @@ impl VrtTiles {
 
     /// The places of the files of the virtual raster at `path`.
     pub fn paths(&self, path: &Path) -> Vec<PathBuf> {
-        self.files.iter().map(|file| path.with_file_name(file)).collect()
+        self.sources.iter().map(|source| path.with_file_name(&source.file)).collect()
+    }
+
+    /// Takes what the user states of missing data in place of what the virtual raster states.
+    pub fn state_nodata(&mut self, nodata: Option<f64>) {
+        if nodata.is_some() {
+            self.sources.iter_mut().for_each(|source| (source.nodata, source.also_nodata) = (nodata, None));
+        }
     }
 
     /// Checks that the files are named relative to the virtual raster: one on a server names no file of this machine.
@@ -82,7 +89,7 @@ impl VrtTiles {
     /// A file is named otherwise.
     pub fn check_beside(&self) -> Result<(), DemErrorKind> {
         let elsewhere = |file: &&String| file.starts_with('/') || file.split('/').any(|part| part == "..");
-        match self.files.iter().find(elsewhere) {
+        match self.sources.iter().map(|source| &source.file).find(elsewhere) {
             Some(file) => {
                 Err(unsupported(format!("a file that does not lie beside it ('{}')", shortened(file))))
             }
@@ -90,26 +97,23 @@ impl VrtTiles {
         }
     }
 
-    /// Checks that the tiles join to what the virtual raster states.
+    /// The joined tiles in the frame that the virtual raster states; without data where no tile is.
     ///
     /// # Errors
-    /// It has another size or place.
-    pub fn check(&self, joined: &Raster) -> Result<(), DemErrorKind> {
-        if self.size != joined.size() {
-            let ((width, height), (columns, rows)) = (self.size, joined.size());
-            let what = format!("{width} x {height} samples of tiles that span {columns} x {rows}");
-            return Err(unsupported(what));
-        }
-        let corners = [DVec2::ZERO, DVec2::new(f64::from(self.size.0), f64::from(self.size.1))];
-        let lies_off = |stated: &DAffine2| {
-            let off = |at: DVec2| (joined.grid_from_map(stated.transform_point2(at)) - at).length();
-            // What is not a number lies off.
-            !corners.into_iter().all(|at| off(at) < PLACE)
-        };
-        match self.map_from_grid.as_ref().is_some_and(lies_off) {
-            true => Err(unsupported("another place than its tiles".to_owned())),
-            false => Ok(()),
-        }
+    /// They reach beyond it or lie between its samples, or it is larger than a raster.
+    pub fn filled(&self, joined: Raster) -> Result<Raster, DemErrorKind> {
+        self.frame.filled(joined)
+    }
+
+    /// [`VrtTiles::filled`] of tiles that are read in windows.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn filled_windows(
+        &self,
+        joined: Box<dyn Windows + Send>,
+    ) -> Result<Box<dyn Windows + Send>, DemErrorKind> {
+        self.frame.filled_windows(joined)
     }
 }
 
@@ -120,15 +124,26 @@ struct VrtReader {
     path: Vec<String>,
     /// The text since the last tag.
     text: String,
-    size: Option<(u32, u32)>,
+    size: (u32, u32),
     map_from_grid: Option<DAffine2>,
-    files: Vec<String>,
+    sources: Vec<VrtSource>,
+    /// Of the band.
     nodata: Option<f64>,
     bands: usize,
     is_relative: bool,
-    source: [f64; 4],
+    /// The source that is being read.
+    source: SourceReader,
     /// Whether the bands after the first are being read.
     is_later_band: bool,
+}
+
+/// A source as far as it is read.
+#[derive(Default)]
+struct SourceReader {
+    source: VrtSource,
+    from: Option<VrtRect>,
+    to: Option<VrtRect>,
+    resampling: Option<String>,
 }
 
 impl VrtReader {
@@ -144,17 +159,14 @@ impl VrtReader {
         match name.as_str() {
             "VRTDataset" | "VRTRasterBand" => self.open_raster(&name, start)?,
             "SourceFilename" => self.is_relative = attribute(start, "relativeToVRT").as_deref() == Some("1"),
-            "SrcRect" => self.source = rect(start)?,
-            "DstRect" if !self.is_later_band => {
-                let target = rect(start)?;
-                if (self.source[2] - target[2]).abs() > PLACE || (self.source[3] - target[3]).abs() > PLACE {
-                    return Err(unsupported("a tile in another resolution".to_owned()));
-                }
-                if self.source[0].abs() > PLACE || self.source[1].abs() > PLACE {
-                    return Err(unsupported("a part of a tile".to_owned()));
-                }
+            "SimpleSource" | "ComplexSource" => {
+                let resampling = attribute(start, "resampling");
+                self.source = SourceReader { resampling, ..SourceReader::default() };
             }
+            "SrcRect" => self.source.from = Some(rect(start)?),
+            "DstRect" => self.source.to = Some(rect(start)?),
             "KernelFilteredSource"
+            | "NoDataFromMaskSource"
             | "AveragedSource"
             | "ArraySource"
             | "ScaleRatio"
@@ -190,7 +202,7 @@ impl VrtReader {
         let (Some(width), Some(height)) = size else {
             return Err(broken("it states no rasterXSize and rasterYSize".to_owned()));
         };
-        self.size = Some((width, height));
+        self.size = (width, height);
         Ok(())
     }
 
@@ -207,7 +219,7 @@ impl VrtReader {
                     numbers.ok_or_else(|| broken("its GeoTransform is not six numbers".to_owned()))?;
                 self.map_from_grid = Some(affine(numbers));
             }
-            "SourceFilename" if !self.is_later_band => {
+            "SourceFilename" if !self.is_later_band && self.is_in_source() => {
                 let file = text.replace('\\', "/");
                 if file.is_empty() {
                     return Err(broken("a SourceFilename is empty".to_owned()));
@@ -221,21 +233,42 @@ impl VrtReader {
                         shortened(&file)
                     )));
                 }
-                self.files.push(file);
+                self.source.source.file = file;
             }
+            "SimpleSource" | "ComplexSource" if !self.is_later_band => self.take_source()?,
             "SourceBand" if !self.is_later_band && text != "1" => {
                 return Err(unsupported(format!("band '{}' of a tile", shortened(text))));
             }
-            "NoDataValue" | "NODATA" if !self.is_later_band => {
-                let value: f64 =
-                    text.parse().map_err(|_| broken("its no-data value is no number".to_owned()))?;
-                // Declared by every sample that is not a number.
-                if !value.is_nan() && self.nodata.replace(value).is_some_and(|known| known != value) {
-                    return Err(unsupported("several values for no data".to_owned()));
-                }
-            }
+            "NoDataValue" if !self.is_later_band => self.nodata = no_data(text)?,
+            "NODATA" if !self.is_later_band => self.source.source.nodata = no_data(text)?,
             _ => {}
         }
+        Ok(())
+    }
+
+    /// Whether the last closed element was one of a source: an overview names files as well.
+    fn is_in_source(&self) -> bool {
+        self.path.last().is_some_and(|parent| matches!(parent.as_str(), "SimpleSource" | "ComplexSource"))
+    }
+
+    /// Takes the source that was read, unless all of it lies beyond the raster.
+    fn take_source(&mut self) -> Result<(), DemErrorKind> {
+        let SourceReader { mut source, from, to, resampling } = std::mem::take(&mut self.source);
+        if source.file.is_empty() {
+            return Err(broken("a source names no file".to_owned()));
+        }
+        let is_there = match from.zip(to) {
+            Some((from, to)) => {
+                let is_scaled = (from[2] - to[2]).abs() > PLACE || (from[3] - to[3]).abs() > PLACE;
+                let other = resampling.filter(|word| !word.to_ascii_lowercase().starts_with("near"));
+                if let Some(word) = other.filter(|_| is_scaled) {
+                    return Err(unsupported(format!("a tile that is resampled ({})", shortened(&word))));
+                }
+                source.place(from, to, self.size)?
+            }
+            None => true,
+        };
+        self.sources.extend(is_there.then_some(source));
         Ok(())
     }
 
@@ -250,16 +283,28 @@ impl VrtReader {
     }
 
     fn finish(self) -> Result<VrtTiles, DemErrorKind> {
-        let size = self.size.ok_or_else(|| broken("it holds no VRTDataset".to_owned()))?;
+        if self.size == (0, 0) {
+            return Err(broken("it holds no VRTDataset".to_owned()));
+        }
         if !self.path.is_empty() {
             return Err(broken("it ends within an element".to_owned()));
         }
-        if self.files.is_empty() {
+        if self.sources.is_empty() {
             return Err(broken("it names no files".to_owned()));
         }
-        let files = self.files.into_iter().rev().collect();
-        Ok(VrtTiles { files, nodata: self.nodata, size, map_from_grid: self.map_from_grid })
+        let mut sources: Vec<VrtSource> = self.sources.into_iter().rev().collect();
+        for source in &mut sources {
+            source.also_nodata = self.nodata.filter(|all| source.nodata.is_some_and(|own| own != *all));
+            source.nodata = source.nodata.or(self.nodata);
+        }
+        Ok(VrtTiles { sources, frame: VrtFrame { size: self.size, map_from_grid: self.map_from_grid } })
     }
+}
+
+/// A value that means no data; `None` of one that is not a number, which all samples that are none declare.
+fn no_data(text: &str) -> Result<Option<f64>, DemErrorKind> {
+    let value: f64 = text.parse().map_err(|_| broken("its no-data value is no number".to_owned()))?;
+    Ok(Some(value).filter(|value| !value.is_nan()))
 }
 
 fn attribute(start: &BytesStart<'_>, name: &str) -> Option<String> {
@@ -280,15 +325,15 @@ fn rect(start: &BytesStart<'_>) -> Result<[f64; 4], DemErrorKind> {
     Ok(numbers)
 }
 
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     text.chars().take(80).collect()
 }
 
-fn broken(reason: String) -> DemErrorKind {
+pub(super) fn broken(reason: String) -> DemErrorKind {
     DemErrorKind::Broken { format: "VRT", reason }
 }
 
-fn unsupported(what: String) -> DemErrorKind {
+pub(super) fn unsupported(what: String) -> DemErrorKind {
     DemErrorKind::Unsupported {
         format: "VRT",
         what: what.into(),
@@ -325,26 +370,47 @@ mod tests {
             source("e\\c.tif", 2)
         );
         let tiles = vrt(&two).expect("two tiles");
-        assert_eq!(tiles.files, ["e/c.tif", "w/a&b.tif"]);
-        assert_eq!(tiles.nodata, Some(-9999.0));
-        assert!(tiles.check(&small(4, 2, vec![0.0; 8])).is_ok());
-        let error = tiles.check(&small(3, 2, vec![0.0; 6])).expect_err("another size").to_string();
-        assert!(error.contains("VRT"), "{error}");
+        let files: Vec<&str> = tiles.sources.iter().map(|source| source.file.as_str()).collect();
+        assert_eq!(files, ["e/c.tif", "w/a&b.tif"]);
+        assert!(tiles.sources.iter().all(|source| source.nodata == Some(-9999.0)));
+        assert!(tiles.filled(small(4, 2, vec![0.0; 8])).is_ok());
+        let error = tiles.filled(small(5, 2, vec![0.0; 10])).expect_err("another size").to_string();
+        assert!(error.contains("VRT") && error.contains("4 x 2 samples of tiles that span 5 x 2"), "{error}");
         let mut moved = small(4, 2, vec![0.0; 8]);
         moved.map_from_grid.translation.x += 1.0;
-        assert!(tiles.check(&moved).is_err());
+        assert!(tiles.filled(moved).is_err());
+    }
+
+    #[test]
+    fn tiles_have_their_own_values_for_no_data_and_later_bands_none() {
+        let own = source("a.tif", 0).replace("</SimpleSource>", "<NODATA>-1</NODATA></SimpleSource>");
+        let overview = "<Overview><SourceFilename relativeToVRT=\"1\">o.tif</SourceFilename></Overview>";
+        let later = source("z.tif", 0).replace("<SourceBand>1", "<SourceBand>2");
+        let band = format!(
+            "<NoDataValue>-9999</NoDataValue>{own}{}{overview}</VRTRasterBand><VRTRasterBand band=\"2\">{later}",
+            source("b.tif", 2)
+        );
+        let mut tiles = vrt(&band).expect("two tiles");
+        let values = |tiles: &VrtTiles| {
+            tiles.sources.iter().map(|source| (source.nodata, source.also_nodata)).collect::<Vec<_>>()
+        };
+        assert_eq!(values(&tiles), [(Some(-9999.0), None), (Some(-1.0), Some(-9999.0))]);
+        tiles.state_nodata(Some(7.0));
+        assert_eq!(values(&tiles), [(Some(7.0), None); 2]);
     }
 
     #[test]
     fn what_computes_samples_is_refused() {
         let scaled =
             source("a.tif", 0).replace("</SimpleSource>", "<ScaleRatio>2</ScaleRatio></SimpleSource>");
-        let cut = source("a.tif", 0).replacen("xOff=\"0\"", "xOff=\"1\"", 1);
-        let coarse = source("a.tif", 0).replacen("xSize=\"2\"", "xSize=\"4\"", 1);
+        let between = source("a.tif", 0).replacen("DstRect xOff=\"0\"", "DstRect xOff=\"0.5\"", 1);
+        let coarse = source("a.tif", 0)
+            .replacen("xSize=\"2\"", "xSize=\"4\"", 1)
+            .replace("<SimpleSource>", "<SimpleSource resampling=\"bilinear\">");
         let remote = source("/vsicurl/https://example.org/a.tif", 0);
         let anywhere = source("a.tif", 0).replace("relativeToVRT=\"1\"", "relativeToVRT=\"0\"");
         let second = source("a.tif", 0).replace("<SourceBand>1", "<SourceBand>2");
-        for band in [scaled, cut, coarse, remote, anywhere, second] {
+        for band in [scaled, between, coarse, remote, anywhere, second] {
             let error = vrt(&band).expect_err(&band);
             assert!(matches!(error, DemErrorKind::Unsupported { .. }), "{band}: {error}");
         }

@@ -8,7 +8,9 @@ use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::vrt::{self, VrtTiles};
-use crate::dem::windows::{WINDOW_CACHE_BYTES, Windows};
+use crate::dem::vrt_source::VrtSource;
+use crate::dem::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
+use crate::limits::RASTER_SAMPLES;
 use crate::pipeline::elevation_files::{self, CompanionFiles};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
@@ -47,12 +49,18 @@ impl OpenDemError {
 /// See [`OpenDemError`].
 pub fn open(path: &Path, options: &DemOptions) -> Result<Mosaic, OpenDemError> {
     let Some(tiles) = TileFiles::of(path, options)? else { return open_tiles(&[path], options) };
-    let mosaic = open_tiles(&tiles.paths, &tiles.options(options))?;
-    tiles.check(path, &mosaic.raster)?;
+    let mut mosaic =
+        join(tiles.paths.iter().enumerate().map(|(index, path)| (path, tiles.open_whole(index, options))))?;
+    if let Some(vrt) = &tiles.vrt {
+        let joined = mosaic.raster.size();
+        mosaic.raster = vrt.filled(mosaic.raster).map_err(FileError::at(path))?;
+        mosaic.gaps += samples(&mosaic.raster) - u64::from(joined.0) * u64::from(joined.1);
+    }
     Ok(mosaic)
 }
 
 /// The tiles that a path stands for.
+#[derive(Clone)]
 struct TileFiles {
     paths: Vec<PathBuf>,
     /// The virtual raster that lists them, where one does.
@@ -68,22 +76,48 @@ impl TileFiles {
         if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
             return Ok(None);
         }
-        let vrt = VrtTiles::read(&elevation_files::read(path)?).map_err(FileError::at(path))?;
+        let mut vrt = VrtTiles::read(&elevation_files::read(path)?).map_err(FileError::at(path))?;
         if is_address_path(path) {
             vrt.check_beside().map_err(FileError::at(path))?;
         }
+        vrt.state_nodata(options.nodata);
         Ok(Some(Self { paths: vrt.paths(path), vrt: Some(vrt) }))
     }
 
-    /// The options for the tiles: what the caller states of missing data counts, else what the virtual raster does.
-    fn options(&self, options: &DemOptions) -> DemOptions {
-        let nodata = options.nodata.or(self.vrt.as_ref().and_then(|vrt| vrt.nodata));
+    /// How the virtual raster takes a tile; `None` of one in a folder.
+    fn source(&self, tile: usize) -> Option<&VrtSource> {
+        self.vrt.as_ref().map(|vrt| &vrt.sources[tile])
+    }
+
+    /// The options for a tile: what the caller states of missing data counts, else what the virtual raster does.
+    fn options(&self, tile: usize, options: &DemOptions) -> DemOptions {
+        let nodata = options.nodata.or(self.source(tile).and_then(|source| source.nodata));
         DemOptions { nodata, ..options.clone() }
     }
 
-    /// Checks what the tiles of the virtual raster at `path` join to.
-    fn check(&self, path: &Path, joined: &Raster) -> Result<(), OpenDemError> {
-        Ok(self.vrt.as_ref().map_or(Ok(()), |vrt| vrt.check(joined)).map_err(FileError::at(path))?)
+    /// A tile in memory.
+    fn open_whole(&self, tile: usize, options: &DemOptions) -> Result<Raster, OpenDemError> {
+        let path = &self.paths[tile];
+        let raster = open_file(path, &self.options(tile, options))?;
+        match self.source(tile) {
+            Some(source) => Ok(source.taken_from(raster).map_err(FileError::at(path))?),
+            None => Ok(raster),
+        }
+    }
+
+    /// A tile in windows; `None` where its format is read whole.
+    fn open_windows(
+        &self,
+        tile: usize,
+        options: &DemOptions,
+    ) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
+        let path = &self.paths[tile];
+        match (self.source(tile), open_windows(path, &self.options(tile, options))?) {
+            (Some(source), Some(windows)) => {
+                Ok(Some(source.taken_windows(windows).map_err(FileError::at(path))?))
+            }
+            (_, windows) => Ok(windows),
+        }
     }
 }
 
@@ -108,16 +142,23 @@ pub enum OpenedDem {
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_either(path: &Path, options: &DemOptions, most_kept: u64) -> Result<OpenedDem, OpenDemError> {
-    let windows = match TileFiles::of(path, options)? {
-        Some(tiles) => open_mosaic(&tiles.paths, &tiles.options(options)).and_then(|windows| {
-            let header = windows.as_ref().map(|windows| windows.metadata());
-            header.map_or(Ok(()), |header| tiles.check(path, header))?;
-            Ok(windows)
+    let tiles = TileFiles::of(path, options)?;
+    let windows = match &tiles {
+        Some(tiles) => open_mosaic(tiles, options).and_then(|windows| match (&tiles.vrt, windows) {
+            (Some(vrt), Some(windows)) => Ok(Some(vrt.filled_windows(windows).map_err(FileError::at(path))?)),
+            (_, windows) => Ok(windows),
         }),
         None => open_windows(path, options),
     };
     let fault = match windows {
         Ok(Some(windows)) if samples(&*windows) > most_kept => return Ok(OpenedDem::Windows(windows)),
+        // What was fetched with the header is not fetched again.
+        Ok(Some(windows))
+            if tiles.is_none() && is_address_path(path) && samples(&*windows) <= RASTER_SAMPLES.get() =>
+        {
+            let whole = join([(path, whole(path, windows))].into_iter())?;
+            return Ok(OpenedDem::Kept(Box::new(whole)));
+        }
         // It would be the same again, and a server may take half a minute for it.
         Err(error @ OpenDemError::File(_)) => return Err(error),
         windows => windows.err(),
@@ -142,6 +183,12 @@ pub fn open_large(path: &Path, options: &DemOptions, most_kept: u64) -> Option<B
     open_windows(path, options).ok().flatten().filter(|windows| samples(&**windows) > most_kept)
 }
 
+/// All samples of windows in memory.
+fn whole(path: &Path, mut windows: Box<dyn Windows + Send>) -> Result<Raster, OpenDemError> {
+    let samples = windows.samples(RasterWindow::all(windows.size())).map_err(FileError::at(path))?;
+    Ok(Raster { samples, ..windows.metadata().without_samples() })
+}
+
 fn samples(windows: &dyn Windows) -> u64 {
     let (width, height) = windows.size();
     u64::from(width) * u64::from(height)
@@ -149,16 +196,16 @@ fn samples(windows: &dyn Windows) -> u64 {
 
 /// The windows of the mosaic of tiles, opened by their headers; `None` where one has none.
 fn open_mosaic(
-    paths: &[PathBuf],
+    tiles: &TileFiles,
     options: &DemOptions,
 ) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let mut headers = Vec::new();
-    for path in paths {
-        let Some(tile) = open_windows(path, options)? else { return Ok(None) };
+    for (index, path) in tiles.paths.iter().enumerate() {
+        let Some(tile) = tiles.open_windows(index, options)? else { return Ok(None) };
         headers.push((files::file_name(path), tile.metadata().without_samples()));
     }
-    let (paths, options) = (paths.to_vec(), options.clone());
-    let opener = move |index: usize| match open_windows(&paths[index], &options) {
+    let (tiles, options) = (tiles.clone(), options.clone());
+    let opener = move |index: usize| match tiles.open_windows(index, &options) {
         Ok(Some(tile)) => Ok(tile),
         Err(OpenDemError::Format(error)) => Err(error.cause),
         Err(OpenDemError::File(error)) if is_address_path(&error.path) => {
@@ -184,10 +231,16 @@ fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Wind
 /// # Errors
 /// See [`OpenDemError`].
 pub fn open_tiles<P: AsRef<Path>>(paths: &[P], options: &DemOptions) -> Result<Mosaic, OpenDemError> {
+    join(paths.iter().map(|path| (path, open_file(path.as_ref(), options))))
+}
+
+/// Joins tiles, each opened when the ones before it are.
+fn join<P: AsRef<Path>>(
+    opened: impl Iterator<Item = (P, Result<Raster, OpenDemError>)>,
+) -> Result<Mosaic, OpenDemError> {
     let mut tiles = Tiles::default();
-    for path in paths {
-        let path = path.as_ref();
-        tiles.push(files::file_name(path), open_file(path, options)?)?;
+    for (path, raster) in opened {
+        tiles.push(files::file_name(path.as_ref()), raster?)?;
     }
     Ok(tiles.join()?)
 }

@@ -10,7 +10,7 @@ use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address;
 use crate::remote::error::RemoteError;
-use crate::remote::open;
+use crate::remote::open::{self, AddressVersion};
 
 /// The address that a path is, if it is one.
 fn address(path: &Path) -> Option<&str> {
@@ -54,6 +54,15 @@ pub fn version(path: &Path) -> Result<String, ReadFileError> {
     let address =
         address(path).ok_or(RemoteError::Address("it has no known scheme")).map_err(failed(path))?;
     Ok(format!("{address} {}", open::version(address).map_err(failed(path))?))
+}
+
+/// Which version of an elevation file with an address its server has.
+///
+/// # Errors
+/// It has no address; the server's.
+pub fn stated_version(path: &Path) -> Result<AddressVersion, ReadFileError> {
+    let address = address(path).ok_or(RemoteError::Address("it has no known scheme"));
+    address.and_then(open::stated_version).map_err(failed(path))
 }
 
 /// The companions of an elevation file. A file that is not there is none; a server that does not answer is an error of all.

@@ -29,8 +29,13 @@ pub enum ReadFileCause {
     TooLarge(u64),
     #[error("byte {0} is not UTF-8 text")]
     NotText(usize),
-    #[error("this is an address: elevation alone is read by its address, and not for plans; fetch the file")]
+    #[error("this is an address: elevation alone is read by its address; fetch the file")]
     Address,
+    #[error(
+        "its server states neither an ETag nor a time of change, so that no worker would know whether it is the file that was \
+         planned with; fetch the file"
+    )]
+    NoVersion,
     #[error(transparent)]
     Remote(#[from] RemoteError),
     #[error(transparent)]

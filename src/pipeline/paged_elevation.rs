@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::DemHints;
-use crate::dem::reduced::reduced;
+use crate::dem::reduced::reduced_by_overview;
 use crate::dem::tiff::windows::GeoTiffWindows;
 use crate::dem::warp;
 use crate::dem::windows::{RasterWindow, Windows};
@@ -111,11 +111,16 @@ impl<W: Windows> Windows for WatchedWindows<W> {
     fn announce(&mut self, windows: &[RasterWindow]) {
         self.windows.announce(windows);
     }
+
+    fn overview(&self, step: u32) -> Option<(u32, Box<dyn Windows + Send + '_>)> {
+        let (times, windows) = self.windows.overview(step)?;
+        Some((times, Box::new(WatchedWindows { windows, watch: Arc::clone(&self.watch) })))
+    }
 }
 
 impl PagedElevation {
-    /// Opens the file at `path` where it is a GeoTIFF in meters of more than `most_samples`, and reads all of it once for its
-    /// overview; `None` of others, which are held in memory or refused by their reader.
+    /// Opens the file at `path` where it is a GeoTIFF in meters of more than `most_samples`, and makes its overview: of one
+    /// that the file holds, or else of all its samples; `None` of others, which are held in memory or refused by their reader.
     ///
     /// # Errors
     /// See [`PagedElevationError`].
@@ -141,7 +146,8 @@ impl PagedElevation {
         let (questions, near) = (fitting(second)?, fitting(third)?);
         let (columns, rows) = terrain.size();
         let step = (columns.max(rows) - 1).div_ceil(OVERVIEW_CELLS).next_power_of_two();
-        let overview = reduced(&mut terrain, step).map_err(FileError::<DemErrorKind>::at(path))?;
+        let overview =
+            reduced_by_overview(&mut terrain, step).map_err(FileError::<DemErrorKind>::at(path))?;
         Ok(Some(Self { terrain, questions, near, overview: Arc::new(overview) }))
     }
 }

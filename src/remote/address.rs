@@ -155,6 +155,11 @@ impl AllowedHost {
         Ok(Self(text.to_ascii_lowercase()))
     }
 
+    /// The host, with its port where one was named.
+    pub fn name(&self) -> &str {
+        &self.0
+    }
+
     /// Whether this is `host`, which names its port where that is not the default.
     pub fn is(&self, host: &str) -> bool {
         self.0.eq_ignore_ascii_case(host)

@@ -15,6 +15,7 @@ use crate::dem::formats::FileContent;
 use crate::remote::blocks_on_disk::BlocksOnDisk;
 use crate::remote::error::RemoteError;
 use crate::remote::object::{MOST_REQUEST_BYTES, RemoteObject};
+use crate::remote::open::AddressVersion;
 use crate::remote::store::StoredFile;
 
 /// Bytes of a block. A tile of a GeoTIFF has some ten of them, so that the parts of blocks around it that are not read are a
@@ -76,6 +77,11 @@ impl RemoteFile {
     /// What tells this version of the file from others: its size, and what the server says.
     pub fn version(&self) -> String {
         format!("{} {}", self.object.size, self.object.version().text().unwrap_or_default())
+    }
+
+    /// Which version of the file the server has.
+    pub fn stated_version(&self) -> AddressVersion {
+        AddressVersion { bytes: self.object.size, tag: self.object.version().tag() }
     }
 
     /// All bytes of a file that has at most `most`.

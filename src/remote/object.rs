@@ -45,6 +45,12 @@ impl ObjectVersion {
         }
     }
 
+    /// The ETag, or else the time of change; `None` where the server says neither.
+    pub fn tag(&self) -> Option<String> {
+        let modified = (self.modified != 0).then(|| format!("modified {}", self.modified));
+        self.e_tag.clone().or(modified)
+    }
+
     /// The ETag that a server compares; a weak one it does not.
     fn comparable(&self) -> Option<String> {
         self.e_tag.clone().filter(|tag| !tag.starts_with("W/"))

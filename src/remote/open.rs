@@ -16,6 +16,15 @@ pub struct OpenedAddress {
     pub content: Box<dyn FileContent>,
 }
 
+/// Which version of a file its server has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AddressVersion {
+    /// Bytes of the file.
+    pub bytes: u64,
+    /// Its ETag, or else its time of change; `None` where the server says neither.
+    pub tag: Option<String>,
+}
+
 /// Opens the file at an address, to be read in parts.
 ///
 /// # Errors
@@ -44,6 +53,15 @@ pub fn version(address: &str) -> Result<String, RemoteError> {
     Ok(open_file(address)?.version())
 }
 
+/// Which version of the file at an address its server has.
+///
+/// # Errors
+/// [`RemoteError`].
+#[cfg(feature = "cloud")]
+pub fn stated_version(address: &str) -> Result<AddressVersion, RemoteError> {
+    Ok(open_file(address)?.stated_version())
+}
+
 #[cfg(feature = "cloud")]
 fn open_file(address: &str) -> Result<RemoteFile, RemoteError> {
     let parsed = RemoteAddress::parse(address).ok_or(RemoteError::Address("it has no known scheme"))??;
@@ -67,6 +85,12 @@ pub fn read(_: &str, _: u64) -> Result<Vec<u8>, RemoteError> {
 #[cfg(not(feature = "cloud"))]
 #[allow(missing_docs, reason = "see the other build")]
 pub fn version(_: &str) -> Result<String, RemoteError> {
+    Err(RemoteError::NotBuilt)
+}
+
+#[cfg(not(feature = "cloud"))]
+#[allow(missing_docs, reason = "see the other build")]
+pub fn stated_version(_: &str) -> Result<AddressVersion, RemoteError> {
     Err(RemoteError::NotBuilt)
 }
 

@@ -20,6 +20,7 @@ use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::vrt::{self, VrtTiles};
+use crate::dem::vrt_source::VrtSource;
 use crate::dem::warp::metric_crs::{OffScale, metric_crs, off_scale};
 use crate::dem::warp::metric_windows::MetricSystem;
 use crate::dem::windows::{MOST_KEPT_SAMPLES, RasterWindow, WINDOW_CACHE_BYTES, Windows};
@@ -183,24 +184,46 @@ fn stated_extent(
 
 /// The elevation files that a document names: those that it lists, those in a folder, and those that a virtual raster lists.
 struct TileList {
-    names: Vec<String>,
+    files: Vec<TileFile>,
     vrts: Vec<VrtTiles>,
     stated: DemOptions,
+}
+
+/// An elevation file of a document.
+#[derive(Clone)]
+struct TileFile {
+    name: String,
+    /// How the virtual raster takes it that lists it, where one does.
+    source: Option<VrtSource>,
+}
+
+impl TileFile {
+    /// A file that no virtual raster lists.
+    fn alone(name: String) -> Self {
+        Self { name, source: None }
+    }
+
+    /// What is stated of the file, by the document and by the virtual raster.
+    fn options(&self, stated: &DemOptions) -> DemOptions {
+        let nodata = stated.nodata.or(self.source.as_ref().and_then(|source| source.nodata));
+        DemOptions { nodata, ..stated.clone() }
+    }
 }
 
 impl TileList {
     /// The files of the document; `None` where other elevation takes their place.
     fn of(document: &Document, assets: &Assets) -> Result<Option<Self>, Diagnostic> {
         let dem = &document.terrain.dem;
-        let mut list = Self { names: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
+        let mut list = Self { files: Vec::new(), vrts: Vec::new(), stated: stated(document)? };
         for name in dem.iter() {
             if assets.elevation(name).map_err(|error| document.error(dem, error))?.is_some() {
                 return Ok(None);
             }
             if let Some(files) = assets.folder(name).map_err(|error| document.error(dem, error))? {
-                let before = list.names.len();
-                list.names.extend(files.into_iter().filter(|file| read::is_tile_name(file)));
-                if list.names.len() == before {
+                let before = list.files.len();
+                let tiles = files.into_iter().filter(|file| read::is_tile_name(file));
+                list.files.extend(tiles.map(TileFile::alone));
+                if list.files.len() == before {
                     return Err(
                         document.error(dem, format!("'{}' is a folder without elevation", quoted(name)))
                     );
@@ -208,20 +231,21 @@ impl TileList {
                 continue;
             }
             if !vrt::is_vrt(name) {
-                list.names.push(name.clone());
+                list.files.push(TileFile::alone(name.clone()));
                 continue;
             }
             let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
-            let vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
+            let mut vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
             if is_address(name) {
                 vrt.check_beside().map_err(|error| document.error(dem, error))?;
             }
             let slashed = name.replace('\\', "/");
             let folder = slashed.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-            let place =
-                |file: &String| if file.starts_with('/') { file.clone() } else { format!("{folder}{file}") };
-            list.names.extend(vrt.files.iter().map(place));
-            list.stated.nodata = list.stated.nodata.or(vrt.nodata);
+            vrt.state_nodata(list.stated.nodata);
+            list.files.extend(vrt.sources.iter().map(|source| {
+                let folder = if source.file.starts_with('/') { "" } else { &folder };
+                TileFile { name: format!("{folder}{}", source.file), source: Some(source.clone()) }
+            }));
             list.vrts.push(vrt);
         }
         Ok(Some(list))
@@ -243,14 +267,14 @@ impl TileList {
             (None, ElevationNeed::AllThatFit) => RASTER_SAMPLES.get(),
             (None, ElevationNeed::All) => return Ok(None),
         };
-        let (names, stated) = (self.names.clone(), self.stated.clone());
+        let (files, stated) = (self.files.clone(), self.stated.clone());
         let mut tiles = Vec::new();
-        for name in &names {
+        for file in &files {
             // What the file states is compared with what the scene does.
             let own = DemOptions { vertical_datum: None, ..stated.clone() };
             let overridden = RefCell::new(None);
             let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
-            let windows = match open_windows(name, assets, &own, &note) {
+            let windows = match open_windows(file, assets, &own, &note) {
                 Ok(Some(windows)) => windows,
                 // It would be the same again, and a server may take half a minute for it.
                 Err(TileError::Asset(error @ AssetError::Remote { .. })) => {
@@ -266,13 +290,13 @@ impl TileList {
             return Ok(None);
         }
         let mut headers = Vec::new();
-        for (name, (mut tile, overridden)) in names.iter().zip(tiles) {
+        for (TileFile { name, .. }, (mut tile, overridden)) in files.iter().zip(tiles) {
             check_tile(name, &mut tile, overridden, document, findings);
             headers.push((name.clone(), tile));
         }
         let stating = headers.iter().filter(|(_, tile)| tile.vertical_datum.is_some()).count();
         let (count, is_alone, assets) = (headers.len(), self.vrts.is_empty(), assets.clone());
-        let open = move |tile: usize| match open_windows(&names[tile], &assets, &stated, &|_| ()) {
+        let open = move |tile: usize| match open_windows(&files[tile], &assets, &stated, &|_| ()) {
             Ok(Some(windows)) => Ok(windows),
             Err(TileError::Dem(error)) => Err(error.kind),
             Err(TileError::Asset(error @ AssetError::Remote { .. })) => {
@@ -290,8 +314,11 @@ impl TileList {
         findings.add(FindingCode::TilesJoined, dem.span().unwrap_or_default(), message);
         let mosaic =
             MosaicWindows::new(headers, Box::new(open)).map_err(|error| document.error(dem, error))?;
-        self.check(document, mosaic.metadata())?;
-        Ok(Some(Box::new(mosaic)))
+        let mosaic = Box::new(mosaic);
+        match self.frame() {
+            Some(vrt) => vrt.filled_windows(mosaic).map(Some).map_err(|error| document.error(dem, error)),
+            None => Ok(Some(mosaic)),
+        }
     }
 
     /// The files as one raster in memory.
@@ -307,19 +334,26 @@ impl TileList {
         let companions = CompanionAssets::of(assets);
         let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
         // What the file states is compared with what the scene does.
-        let options = DemOptions { vertical_datum: None, ..self.stated.clone() };
-        let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
+        let own = DemOptions { vertical_datum: None, ..self.stated.clone() };
         let mut tiles = Tiles::default();
-        for name in &self.names {
+        for file in &self.files {
+            let name = &file.name;
+            let options = file.options(&own);
+            let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
             let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
             let tile = read::read(name, &bytes, &hints);
             companions.check().map_err(|error| document.error(dem, error))?;
             let mut tile = tile.map_err(|error| document.error(dem, error))?;
+            if let Some(source) = &file.source {
+                tile = source.taken_from(tile).map_err(|error| document.error(dem, error))?;
+            }
             check_tile(name, &mut tile, overridden.take(), document, findings);
             tiles.push(name, tile).map_err(failed)?;
         }
-        let mosaic = tiles.join().map_err(failed)?;
-        self.check(document, &mosaic.raster)?;
+        let mut mosaic = tiles.join().map_err(failed)?;
+        if let Some(vrt) = self.frame() {
+            mosaic.raster = vrt.filled(mosaic.raster).map_err(|error| document.error(dem, error))?;
+        }
         find_missing_datums(mosaic.without_datum, mosaic.tiles, document, findings);
         if 2 * mosaic.in_feet > mosaic.overlaps {
             let message = format!(
@@ -336,16 +370,10 @@ impl TileList {
         Ok(mosaic.raster)
     }
 
-    /// Checks what the tiles join to.
-    fn check(&self, document: &Document, joined: &Raster) -> Result<(), Diagnostic> {
-        // Several are joined to another raster than each states.
-        let [vrt] = &self.vrts[..] else { return Ok(()) };
-        let is_all = self.names.len() == vrt.files.len();
-        if is_all {
-            vrt.check(joined).map_err(|error| document.error(&document.terrain.dem, error))
-        } else {
-            Ok(())
-        }
+    /// The virtual raster that states the frame of all tiles: several are joined to another raster than each states.
+    fn frame(&self) -> Option<&VrtTiles> {
+        let [vrt] = &self.vrts[..] else { return None };
+        (self.files.len() == vrt.sources.len()).then_some(vrt)
     }
 }
 
@@ -360,17 +388,25 @@ enum TileError {
 
 /// The windows of an elevation file; `None` where its format is read whole.
 fn open_windows(
-    name: &str,
+    file: &TileFile,
     assets: &Assets,
     stated: &DemOptions,
     overridden: &dyn Fn(&Crs),
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
+    let TileFile { name, source } = file;
     let (head, content) = assets.open_elevation(name, read::HEAD_BYTES)?;
     let companions = CompanionAssets::of(assets);
-    let hints = DemHints { options: stated.clone(), overridden, companions: &|name| companions.get(name) };
+    let options = file.options(stated);
+    let hints = DemHints { options, overridden, companions: &|name| companions.get(name) };
     let windows = read::open_windows(name, &head, content, &hints, WINDOW_CACHE_BYTES);
     companions.check()?;
-    Ok(windows?)
+    match (source, windows?) {
+        (Some(source), Some(windows)) => {
+            let failed = |kind| DemError { name: name.clone(), kind };
+            Ok(Some(source.taken_windows(windows).map_err(failed)?))
+        }
+        (_, windows) => Ok(windows),
+    }
 }
 
 /// The companions of elevation files. One that is not there is none; a server that does not answer is an error.

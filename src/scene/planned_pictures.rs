@@ -30,4 +30,6 @@ pub enum PlannedCameras {
     Named(String),
     /// All.
     All,
+    /// None of the scene: plans of any part of the ground whose pixels are so many meters wide.
+    Plans(f64),
 }

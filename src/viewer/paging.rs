@@ -102,6 +102,8 @@ pub struct PagedTerrain {
     requests: Sender<PagingRequest>,
     news: Receiver<PagingNews>,
     watch: Arc<ReadingWatch>,
+    /// Samples that were read before it is measured.
+    read_before: u64,
     heights: Option<PageHeights>,
     questions: Arc<Mutex<DiskGround<ElevationWindows>>>,
     /// The camera of the last request.
@@ -123,6 +125,7 @@ impl PagedTerrain {
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, LatticeError> {
         let (size, watch) = (terrain.size(), Arc::clone(terrain.watch()));
+        let read_before = watch.samples();
         let questions = Arc::new(Mutex::new(DiskGround::new(questions)?));
         let (requests, asked) = channel();
         let (sender, news) = channel();
@@ -141,6 +144,7 @@ impl PagedTerrain {
             requests,
             news,
             watch,
+            read_before,
             heights: None,
             questions,
             asked: None,
@@ -156,8 +160,9 @@ impl PagedTerrain {
         match &self.stage {
             PagingStage::Measuring(_) => {
                 // Each piece is read with its surroundings: 1.6 times the samples, at most.
-                let all = f64::from(self.size.0) * f64::from(self.size.1) * 2.6;
-                PagingStage::Measuring((self.watch.samples() as f64 / all).min(1.0) as f32)
+                let all = f64::from(self.size.0) * f64::from(self.size.1) * 1.6;
+                let read = self.watch.samples() - self.read_before;
+                PagingStage::Measuring((read as f64 / all).min(1.0) as f32)
             }
             known => known.clone(),
         }

@@ -93,10 +93,107 @@ fn a_scene_names_a_virtual_raster_and_may_read_its_tiles_alone() {
     let refused = scene("out.vrt").err().expect("outside");
     assert!(refused.contains("leads to") && refused.contains("--allow"), "{refused}");
     scratch.write("vrt/cut.vrt", vrt.replace("rasterXSize=\"110\"", "rasterXSize=\"100\""));
-    let refused = scene("cut.vrt").err().expect("cropped");
+    let built = scene("cut.vrt").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((built.lattice.columns(), built.lattice.rows()), (100, 40), "what lies beyond is cut off");
+    scratch.write("vrt/wide.vrt", vrt.replace("rasterXSize=\"110\"", "rasterXSize=\"120\""));
+    let built = scene("wide.vrt").unwrap_or_else(|error| panic!("{error}"));
+    let source = built.heights.snapshot().source().clone();
+    assert_eq!(source.size(), (120, 40), "what no tile covers is no data");
+    assert!(source.at(109, 3) == 349.0 && source.at(110, 3).is_nan());
+    scratch.write("vrt/moved.vrt", vrt.replace("5.0000000000000000e+05", "5.0000700000000000e+05"));
+    let refused = scene("moved.vrt").err().expect("another place");
     assert!(
-        refused.contains("100 x 40 samples of tiles that span 110 x 40")
-            && refused.contains("gdal_translate"),
+        refused.contains("another place than its tiles") && refused.contains("gdal_translate"),
         "{refused}"
     );
+}
+
+/// A virtual raster of `columns` × `rows` cells of `cell` meters, of tiles by name, source rectangle and target rectangle.
+fn written(
+    (columns, rows): (u32, u32),
+    (west, north, cell): (f64, f64, f64),
+    tiles: &[(&str, [f64; 4], [f64; 4])],
+) -> String {
+    let rect = |[x, y, width, height]: [f64; 4]| {
+        format!("xOff=\"{x}\" yOff=\"{y}\" xSize=\"{width}\" ySize=\"{height}\"")
+    };
+    let source = |(file, from, to): &(&str, [f64; 4], [f64; 4])| {
+        format!(
+            "<ComplexSource><SourceFilename relativeToVRT=\"1\">{file}</SourceFilename><SourceBand>1</SourceBand>\
+             <SrcRect {}/><DstRect {}/><NODATA>-9999</NODATA></ComplexSource>",
+            rect(*from),
+            rect(*to)
+        )
+    };
+    format!(
+        "<VRTDataset rasterXSize=\"{columns}\" rasterYSize=\"{rows}\"><GeoTransform>{west}, {cell}, 0, {north}, 0, -{cell}\
+         </GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"><NoDataValue>-9999</NoDataValue>{}</VRTRasterBand>\
+         </VRTDataset>",
+        tiles.iter().map(source).collect::<String>()
+    )
+}
+
+#[test]
+fn tiles_are_cropped_and_brought_to_the_samples_of_the_virtual_raster() {
+    let scratch = scratch();
+    let whole = [0.0, 0.0, 60.0, 40.0];
+    // As `gdalbuildvrt -te` writes it, the last tile over the first.
+    let cropped = written(
+        (80, 30),
+        (500_200.0, 4_099_900.0, 20.0),
+        &[
+            ("tiles/w.tif", [10.0, 5.0, 50.0, 30.0], [0.0, 0.0, 50.0, 30.0]),
+            ("tiles/e.tif", [0.0, 5.0, 40.0, 30.0], [40.0, 0.0, 40.0, 30.0]),
+        ],
+    );
+    scratch.write("vrt/te.vrt", cropped);
+    // As `gdalbuildvrt -resolution user -tr 10 10` and `gdal_translate -outsize 40 25` do.
+    let finer = written(
+        (220, 80),
+        (500_000.0, 4_100_000.0, 10.0),
+        &[("tiles/w.tif", whole, [0.0, 0.0, 120.0, 80.0]), ("tiles/e.tif", whole, [100.0, 0.0, 120.0, 80.0])],
+    );
+    scratch.write("vrt/finer.vrt", finer);
+    let coarser =
+        written((40, 25), (500_000.0, 4_100_000.0, 30.0), &[("tiles/w.tif", whole, [0.0, 0.0, 40.0, 25.0])])
+            .replace("0, -30", "0, -32");
+    scratch.write("vrt/coarser.vrt", coarser);
+    let tiles = [tile(0, 0.0), tile(50, 1.0)];
+    // The tile of the place and its sample there; the second tile lies over the first.
+    let value = |x: f64, y: f64| -> f64 {
+        let (column, row) = ((x / 20.0) as u32, (y / 20.0) as u32);
+        let east = (50..110).contains(&column).then(|| tiles[1].at(column - 50, row));
+        let value =
+            east.filter(|value| *value != -9999.0).or((column < 60).then(|| tiles[0].at(column, row)));
+        value.filter(|value| *value != -9999.0).unwrap_or(f64::NAN)
+    };
+    for (name, size, west, north, cell) in [
+        ("vrt/te.vrt", (80, 30), 200.0, 100.0, DVec2::new(20.0, 20.0)),
+        ("vrt/finer.vrt", (220, 80), 0.0, 0.0, DVec2::new(10.0, 10.0)),
+        ("vrt/coarser.vrt", (40, 25), 0.0, 0.0, DVec2::new(30.0, 32.0)),
+    ] {
+        let joined = open(&scratch.at(name), &DemOptions::default());
+        let mut whole = joined.unwrap_or_else(|error| panic!("{name}: {}", error_text(&error))).raster;
+        assert_eq!((whole.size(), whole.spacing()), (size, cell), "{name}");
+        let is_west_alone = name == "vrt/coarser.vrt";
+        for (column, row) in (0..size.1).flat_map(|row| (0..size.0).map(move |column| (column, row))) {
+            let (x, y) = (west + (f64::from(column) + 0.5) * cell.x, north + (f64::from(row) + 0.5) * cell.y);
+            let wanted = match is_west_alone {
+                true => tiles[0].at((x / 20.0) as u32, (y / 20.0) as u32),
+                false => value(x, y),
+            };
+            let found = whole.at(column, row);
+            assert!(
+                found == wanted || (found.is_nan() && wanted.is_nan()),
+                "{name} {column} {row}: {found} {wanted}"
+            );
+        }
+        let opened = open_either(&scratch.at(name), &DemOptions::default(), 0);
+        let Ok(OpenedDem::Windows(mut windows)) = opened else { panic!("{name} is read whole") };
+        let part = RasterWindow { column: 7, row: 3, width: size.0 - 9, height: size.1 - 5 };
+        let bits = |samples: Samples| samples.iter().map(f64::to_bits).collect::<Vec<_>>();
+        let (windowed, whole) =
+            (windows.samples(part).expect("there"), whole.samples(part).expect("in memory"));
+        assert_eq!(bits(windowed), bits(whole), "{name}");
+    }
 }

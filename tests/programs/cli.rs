@@ -30,6 +30,8 @@ mod remote;
 #[cfg(feature = "cloud")]
 mod remote_https;
 #[cfg(feature = "cloud")]
+mod remote_plans;
+#[cfg(feature = "cloud")]
 mod remote_servers;
 #[cfg(feature = "cloud")]
 mod remote_stores;

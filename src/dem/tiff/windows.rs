@@ -161,7 +161,8 @@ impl<R: FileContent> GeoTiffWindows<R> {
         let map_from_grid = self.header.raster.map_from_grid * DAffine2::from_scale(times);
         let raster = Raster { width, height, map_from_grid, ..self.header.raster.without_samples() };
         let header = GeoTiffHeader { raster, ..self.header };
-        let images = LaterImages { masks: self.images.masks.clone(), ..LaterImages::default() };
+        let coarser = self.images.overviews.iter().filter(|other| other.width < width).copied().collect();
+        let images = LaterImages { masks: self.images.masks.clone(), overviews: coarser };
         Self::new(&self.name, self.file.clone(), header, heights, images, self.cache_bytes)
     }
 

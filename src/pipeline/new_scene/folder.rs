@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::SystemError;
-use crate::remote::address::is_address_path;
+use crate::remote::address::{is_address, is_address_path};
 
 /// The folder of a new scene file.
 pub(super) struct SceneFolder {
@@ -27,7 +27,7 @@ pub enum FolderCause {
     Nowhere,
     #[error("there is no such file")]
     NoFile,
-    #[error("this is an address; a new scene is made of files: fetch it")]
+    #[error("this is an address: elevation alone is read by its address; fetch the file")]
     Address,
     #[error("this is not a file")]
     NotAFile,
@@ -55,6 +55,15 @@ impl SceneFolder {
             return Err(FileError::new(path, FolderCause::Parent));
         }
         Ok(Self { folder: real.join(rest) })
+    }
+
+    /// The name of an elevation file in the scene file: that of [`SceneFolder::relative`], or its address.
+    ///
+    /// # Errors
+    /// See [`FolderCause`].
+    pub fn elevation(&self, file: &Path) -> Result<String, FolderError> {
+        let address = file.to_str().filter(|name| is_address(name));
+        address.map_or_else(|| self.relative(file), |address| Ok(address.to_owned()))
     }
 
     /// The name of `file` in the scene file: relative to its folder, with `/`.

@@ -33,6 +33,7 @@ use crate::pipeline::new_scene::folder::{FolderError, SceneFolder};
 use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
 use crate::pipeline::scene_file::OpenSceneError;
+use crate::remote::address::is_address_path;
 use crate::scene::assets::Assets;
 use crate::scene::build::build_with;
 use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
@@ -48,7 +49,7 @@ const CONTOURS: f64 = 12.0;
 pub struct NewSceneOptions {
     /// The folder for the scene file; it is made where it does not exist.
     pub folder: PathBuf,
-    /// Elevation files, tiles of one raster; at least one.
+    /// Elevation files, tiles of one raster, or their addresses; at least one.
     pub dem: Vec<PathBuf>,
     /// Vector files.
     pub vectors: Vec<PathBuf>,
@@ -98,10 +99,11 @@ pub fn write(
         return Err(NewSceneError::Exists(path));
     }
     let folder = SceneFolder::new(&options.folder)?;
-    let dem = options.dem.iter().map(|file| folder.relative(file)).collect::<Result<Vec<_>, _>>()?;
+    let dem = options.dem.iter().map(|file| folder.elevation(file)).collect::<Result<Vec<_>, _>>()?;
     let vectors =
         options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
-    let allowed = folder.folders_to_allow(options.dem.iter().chain(&options.vectors))?;
+    let on_disk = options.dem.iter().filter(|file| !is_address_path(file));
+    let allowed = folder.folders_to_allow(on_disk.chain(&options.vectors))?;
 
     progress("reading elevation");
     let draft = SceneDraft { dem, crs: options.crs.clone(), ..SceneDraft::default() };

@@ -2,7 +2,8 @@
 //!
 //! Files that are not large together are compared by their content. Of others, which every worker would have to read for that,
 //! the size, the time of the last change and both ends are compared: what a program writes anew differs in one of them, and
-//! what it changes in place in the second.
+//! what it changes in place in the second. Of a file with an address the size and what its server calls its version, its ETag,
+//! are compared: nothing of it is read for that but its beginning.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -16,9 +17,14 @@ use sha2::{Digest, Sha256};
 
 use crate::dem::read::is_tile_name;
 use crate::dem::vrt::{VrtTiles, is_vrt};
+use crate::pipeline::elevation_files;
 use crate::pipeline::files::{self, ReadFileCause, ReadFileError, SystemError};
 use crate::pipeline::fingerprint::hexadecimal;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
+use crate::pipeline::shards::plan_path::place;
+use crate::remote::address::is_address_path;
+use crate::remote::error::RemoteError;
+use crate::remote::open::AddressVersion;
 
 /// The most bytes of files that are compared by their content: a tenth of a second.
 const MOST_CONTENT: u64 = 64 << 20;
@@ -29,19 +35,25 @@ const CHUNK: usize = 1 << 20;
 
 /// Extensions of files beside an elevation file that belong to it: its system, headers, masks and places.
 const COMPANIONS: [&str; 4] = ["prj", "hdr", "msk", "wld"];
+/// Those of world files, of which a server is asked by name.
+const WORLD_FILES: [&str; 3] = ["tfw", "blw", "pgw"];
 
 /// An input of a plan, as it was then.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanInput {
-    /// Where it is, from the folder of the plan.
+    /// Where it is, from the folder of the plan; or its address.
     pub path: PathBuf,
     /// Its size.
     pub bytes: u64,
     /// What `sha256` is made of.
     pub check: InputCheck,
-    /// In hexadecimal digits.
+    /// In hexadecimal digits; empty of a file with an address.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub sha256: String,
+    /// What the server of a file with an address calls its version: its ETag, or else its time of change.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub version: Option<String>,
     /// Nanoseconds from 1970 to its last change, where only its ends are hashed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modified: Option<u64>,
@@ -55,6 +67,8 @@ pub enum InputCheck {
     Content,
     /// The first and the last 64 KiB.
     Ends,
+    /// None: the version that the server states is compared.
+    Version,
 }
 
 impl PlanInput {
@@ -70,18 +84,31 @@ impl PlanInput {
     }
 
     fn new(path: &Path, stated: PathBuf, check: InputCheck) -> Result<Self, ReadFileError> {
+        if is_address_path(path) {
+            return Self::at_address(path);
+        }
         let failed = |error: io::Error| ReadFileError::new(path, SystemError::from(error));
         let mut file = files::open(path)?;
         let metadata = file.metadata().map_err(failed)?;
         let bytes = metadata.len();
         if check == InputCheck::Content || bytes <= 2 * END {
             let sha256 = hash(&mut file, bytes).map_err(failed)?;
-            return Ok(Self { path: stated, bytes, check: InputCheck::Content, sha256, modified: None });
+            let check = InputCheck::Content;
+            return Ok(Self { path: stated, bytes, check, sha256, version: None, modified: None });
         }
         let sha256 = hash_of_ends(&mut file, bytes).map_err(failed)?;
         let since = metadata.modified().map_err(failed)?.duration_since(SystemTime::UNIX_EPOCH);
         let modified = since.map_or(0, |since| u64::try_from(since.as_nanos()).unwrap_or(u64::MAX));
-        Ok(Self { path: stated, bytes, check: InputCheck::Ends, sha256, modified: Some(modified) })
+        let check = InputCheck::Ends;
+        Ok(Self { path: stated, bytes, check, sha256, version: None, modified: Some(modified) })
+    }
+
+    /// A file with an address.
+    fn at_address(path: &Path) -> Result<Self, ReadFileError> {
+        let AddressVersion { bytes, tag } = elevation_files::stated_version(path)?;
+        let version = Some(tag.ok_or_else(|| ReadFileError::new(path, ReadFileCause::NoVersion))?);
+        let (path, check) = (path.to_owned(), InputCheck::Version);
+        Ok(Self { path, bytes, check, sha256: String::new(), version, modified: None })
     }
 
     /// Checks that the file is what it was.
@@ -89,7 +116,7 @@ impl PlanInput {
     /// # Errors
     /// [`PlanFault::Stale`], or it cannot be read.
     pub fn verify(&self, folder: &Path) -> Result<(), ShardError> {
-        let path = folder.join(&self.path);
+        let path = place(&self.path, folder);
         let stale = |what: String| ShardError::from(PlanError::new(&path, PlanFault::Stale(what)));
         let bytes = fs::metadata(&path).map_or(0, |metadata| metadata.len());
         if path.is_file() && bytes != self.bytes {
@@ -99,13 +126,23 @@ impl PlanInput {
             )));
         }
         let now = Self::new(&path, self.path.clone(), self.check).map_err(|error| match error.cause {
-            ReadFileCause::System(SystemError::NotFound) | ReadFileCause::NotAFile => {
+            ReadFileCause::System(SystemError::NotFound)
+            | ReadFileCause::NotAFile
+            | ReadFileCause::Remote(RemoteError::Missing) => {
                 stale("this input of the plan is not there".into())
             }
             cause => ReadFileError { path: error.path, cause }.into(),
         })?;
         if now == *self {
             return Ok(());
+        }
+        if is_address_path(&path) {
+            let known = |input: &Self| {
+                let version = input.version.as_deref().unwrap_or("none");
+                format!("{} bytes and the version {version}", input.bytes)
+            };
+            let (before, now) = (known(self), known(&now));
+            return Err(stale(format!("it had {before} when it was planned with, and has {now}")));
         }
         Err(stale(match now.sha256 == self.sha256 {
             false => "its content is not the one that was planned with".into(),
@@ -123,7 +160,9 @@ impl PlanInput {
 /// # Errors
 /// A file or a folder cannot be read.
 pub fn elevation_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
-    files::check_on_disk(path)?;
+    if is_address_path(path) {
+        return addressed_files(path);
+    }
     if path.is_dir() {
         let all = files::list_folder(path)?;
         let tiles: BTreeSet<String> =
@@ -148,6 +187,30 @@ pub fn elevation_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
         let all = files::list_folder(folder)?.into_iter().map(|file| folder.join(files::file_name(&file)));
         let others = with_companions(all.collect(), tiles).into_iter();
         found.extend(others.filter(|file| files::file_name(file) != own));
+    }
+    Ok(found)
+}
+
+/// The same of elevation with an address: the file, the tiles of a virtual raster, and the companions of either that are there
+/// of those that the readers look for. A folder on a server has no list.
+fn addressed_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
+    let mut found = vec![path.to_owned()];
+    if is_vrt(&files::file_name(path)) {
+        // What it says wrong was an error of opening it.
+        found.extend(
+            VrtTiles::read(&elevation_files::read(path)?).map(|vrt| vrt.paths(path)).unwrap_or_default(),
+        );
+        return Ok(found);
+    }
+    let name = files::file_name(path);
+    let companions = COMPANIONS.iter().chain(&WORLD_FILES).map(|extension| path.with_extension(extension));
+    let after_name = ["hdr", "msk"].map(|extension| path.with_file_name(format!("{name}.{extension}")));
+    for companion in companions.chain(after_name).filter(|companion| companion != path) {
+        match elevation_files::stated_version(&companion) {
+            Ok(_) => found.push(companion),
+            Err(ReadFileError { cause: ReadFileCause::Remote(error), .. }) if error.is_absence() => {}
+            Err(error) => return Err(error),
+        }
     }
     Ok(found)
 }

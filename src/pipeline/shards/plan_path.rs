@@ -1,6 +1,9 @@
-//! Paths in a plan: relative to its folder where they were stated relative, so that a tree may be mounted elsewhere.
+//! Paths in a plan: relative to its folder where they were stated relative, so that a tree may be mounted elsewhere. Addresses
+//! stay as they are.
 
 use std::path::{Component, Path, PathBuf};
+
+use crate::remote::address::is_address_path;
 
 /// The path to a file as it is written into a plan in `folder`, which is there. A relative one is so to `folder` then, with
 /// `/` between its parts.
@@ -8,8 +11,16 @@ pub fn written(path: &Path, folder: &Path) -> PathBuf {
     if path.is_absolute() { path.to_owned() } else { relative(path, folder) }
 }
 
-/// The way from `folder`, which is there, to a file; the file's own path where there is none.
+/// Where a file is that a plan in `folder` calls `written`.
+pub fn place(written: &Path, folder: &Path) -> PathBuf {
+    if is_address_path(written) { written.to_owned() } else { folder.join(written) }
+}
+
+/// The way from `folder`, which is there, to a file; the file's own path where there is none, and an address.
 pub fn relative(path: &Path, folder: &Path) -> PathBuf {
+    if is_address_path(path) {
+        return path.to_owned();
+    }
     let (Some(folder), Some(path)) = (folder.canonicalize().ok(), resolved(path)) else {
         return path.to_owned();
     };
@@ -44,5 +55,13 @@ mod tests {
         assert_eq!(written(Path::new("src/../tests"), Path::new("src")), Path::new("../tests"));
         assert_eq!(written(Path::new("src"), Path::new("src")), Path::new("."));
         assert_eq!(written(Path::new("/a/b.tif"), Path::new("src")), Path::new("/a/b.tif"));
+    }
+
+    #[test]
+    fn an_address_is_the_same_in_every_folder() {
+        let address = Path::new("https://example.org/a/b.tif");
+        assert_eq!(written(address, Path::new("src")), address);
+        assert_eq!(place(address, Path::new("src")), address);
+        assert_eq!(place(Path::new("../lib.rs"), Path::new("src/cli")), Path::new("src/cli/../lib.rs"));
     }
 }

@@ -10,7 +10,7 @@ use crate::message::choice::Choice;
 use crate::pipeline::dataset::{Dataset, DatasetOptions};
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
 use crate::pipeline::shards::input::{PlanInput, elevation_files};
-use crate::pipeline::shards::plan_path::{relative, written};
+use crate::pipeline::shards::plan_path::{place, relative, written};
 
 /// A dataset as a plan states it: what [`DatasetOptions`] says, in words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ impl PlannedDataset {
 
     /// Where the file is, of a plan in `folder`.
     pub fn path(&self, folder: &Path) -> PathBuf {
-        folder.join(&self.file)
+        place(&self.file, folder)
     }
 
     /// Opens the dataset of a plan in `folder`.
@@ -119,7 +119,7 @@ impl PlannedDataset {
 /// # Errors
 /// One cannot be read.
 pub fn scene_inputs(stated: &Path, files: &[PathBuf], folder: &Path) -> Result<Vec<PlanInput>, ShardError> {
-    let files: Vec<PathBuf> = [folder.join(stated)].into_iter().chain(files.iter().cloned()).collect();
+    let files: Vec<PathBuf> = [place(stated, folder)].into_iter().chain(files.iter().cloned()).collect();
     inputs(stated, &files, folder)
 }
 

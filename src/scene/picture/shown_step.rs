@@ -91,6 +91,7 @@ fn widest_square(pictures: &PlannedPictures, document: &Document, ground: &Unrea
         PlannedCameras::All if !cameras.is_empty() => cameras.iter().map(Some).collect(),
         PlannedCameras::All | PlannedCameras::First => vec![cameras.first()],
         PlannedCameras::Named(name) => vec![Some(cameras.iter().find(|table| *table.name == *name)?)],
+        PlannedCameras::Plans(pixel_m) => return Some(pixel_m * SQUARE_PX / cell_m),
     };
     let mut pixel_m = f64::INFINITY;
     for table in planned {

@@ -110,3 +110,20 @@ fn atlases_of_nothing_and_of_too_much_are_refused() {
     let message = run_in(scratch.folder(), &["work", "plan", "--shard", "0"]).failed(1);
     assert!(message.contains("`scale` is not 1 to 1e9"), "{message}");
 }
+
+#[test]
+fn sheets_at_a_small_scale_are_made_of_as_many_samples_as_they_show() {
+    let scratch = Scratch::new();
+    let heights = (0..1100 * 1100u32).flat_map(|at| ((at % 1100 + at / 1100 * 2 % 777) as f32).to_le_bytes());
+    scratch.write("dem.flt", heights.collect::<Vec<u8>>());
+    let header =
+        "ncols 1100\nnrows 1100\nxllcorner 700000\nyllcorner 4000000\ncellsize 30\nbyteorder LSBFIRST\n";
+    scratch.write("dem.hdr", header);
+    scratch.write("scene.toml", "[terrain]\ndem = \"dem.flt\"\ncrs = \"EPSG:32616\"\n");
+    let posts = |limit: &[&str]| -> f64 {
+        let shards = planned(&scratch, &[&["--scale", "1000000", "--dpi", "60"], limit].concat());
+        shards.iter().map(|shard| shard["cost"].as_f64().expect("a number")).sum()
+    };
+    let (all, shown) = (posts(&[]), posts(&["--limit", "pictured-samples=100k"]));
+    assert!(shown > 0.0 && all > 15.0 * shown, "{all} posts, of which sheets show {shown}");
+}

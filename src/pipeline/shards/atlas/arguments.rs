@@ -8,11 +8,28 @@ use serde::{Deserialize, Serialize};
 use crate::description::document::paper_mm;
 use crate::description::words::PaperName;
 use crate::geom::rect::Rect;
-use crate::pipeline::scene_file::open_scene;
+use crate::pipeline::scene_file::{OpenSceneError, open_scene_for};
 use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::planned_dataset::PlannedWord;
 use crate::scene::paper_sheet::PaperSheet;
+use crate::scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
 use crate::scene::{ParallelView, SceneModel, SceneView, ViewAim};
+use crate::view::camera::INCH_M;
+
+/// The width of a pixel of a sheet at the scale 1:`scale` on the ground, meters.
+pub fn pixel_m(scale: f64, dpi: f64) -> f64 {
+    INCH_M * scale / dpi
+}
+
+/// Opens the scene at `path` for sheets whose pixels are `pixel_m` meters wide: a large elevation model has as many samples as
+/// they show, as in any picture.
+///
+/// # Errors
+/// See [`OpenSceneError`].
+pub fn atlas_scene(path: &Path, allowed: &[PathBuf], pixel_m: f64) -> Result<SceneModel, OpenSceneError> {
+    let pictures = PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None };
+    open_scene_for(path, allowed, None, ElevationNeed::Pictures(&pictures), &|_| ())
+}
 
 /// What each sheet shows, and on which paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +66,7 @@ impl AtlasArguments {
     /// It cannot be opened.
     pub fn open(&self, folder: &Path) -> Result<SceneModel, ShardError> {
         let allowed: Vec<PathBuf> = self.allow.iter().map(|allowed| folder.join(allowed)).collect();
-        Ok(open_scene(&folder.join(&self.scene), &allowed, &|_| ())?)
+        Ok(atlas_scene(&folder.join(&self.scene), &allowed, pixel_m(self.scale, self.dpi))?)
     }
 
     /// The paper of each sheet.

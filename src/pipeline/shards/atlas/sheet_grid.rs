@@ -4,11 +4,10 @@ use glam::DVec2;
 
 use crate::geom::rect::Rect;
 use crate::pipeline::picture::{PictureSize, page_frame};
-use crate::pipeline::shards::atlas::arguments::AtlasArguments;
+use crate::pipeline::shards::atlas::arguments::{AtlasArguments, pixel_m};
 use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
-use crate::view::camera::INCH_M;
 
 /// Sheets of one size around the ground, whose middle is theirs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +26,7 @@ impl SheetGrid {
         let (width, height) = arguments.paper().size_px();
         let frame = page_frame(scene, PictureSize { width, height });
         let (width, height) = frame.map_or((width, height), |frame| frame.picture_size());
-        let m_per_px = INCH_M * arguments.scale / arguments.dpi;
+        let m_per_px = pixel_m(arguments.scale, arguments.dpi);
         Self::around(scene.lattice.extent(), DVec2::new(f64::from(width), f64::from(height)) * m_per_px)
     }
 

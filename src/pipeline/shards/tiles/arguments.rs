@@ -18,7 +18,8 @@ pub struct TilesArguments {
     pub dataset: PlannedDataset,
     /// The finest level, 0 to 22.
     pub max_zoom: u32,
-    /// West, south, east and north of the elevation in degrees.
+    /// West, south, east and north of the elevation in degrees; its west is east of its east where it crosses the meridian of
+    /// 180 degrees.
     pub bounds: [f64; 4],
     /// What the encoding needs besides.
     #[serde(flatten)]
@@ -80,7 +81,10 @@ impl TilesArguments {
         let [west, south, east, north] = self.bounds;
         match self.max_zoom {
             _ if self.max_zoom > MOST_LEVEL => Some("`max_zoom` is not 0 to 22"),
-            _ if !(-180.0 <= west && west < east && east <= 180.0) => Some("`bounds` are none"),
+            _ if ![west, east].iter().all(|side| (-180.0..=180.0).contains(side)) => {
+                Some("`bounds` are none")
+            }
+            _ if west == east => Some("`bounds` are none"),
             _ if !(-90.0 <= south && south < north && north <= 90.0) => Some("`bounds` are none"),
             max_zoom => match &self.content {
                 TileContent::QuantizedMesh(MeshTileArguments { height_range: [low, high], .. }) => {

@@ -2,6 +2,7 @@
 
 pub mod arguments;
 mod colors;
+mod degree_bounds;
 pub mod encoding;
 pub mod gather;
 mod meshes;

@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-
 use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::PLAN_SHARDS;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
@@ -15,12 +12,11 @@ use crate::pipeline::shards::shard::{Shard, ShardWindow};
 use crate::pipeline::shards::tiles::arguments::{
     ColorTileArguments, TileContent, TilePyramid, TilesArguments,
 };
+use crate::pipeline::shards::tiles::degree_bounds::degree_bounds;
 use crate::pipeline::shards::tiles::encoding::TileEncoding;
 use crate::pipeline::shards::tiles::tiling::{TileAddress, TileScheme};
 use crate::pipeline::shards::tiles::{colors, meshes};
 
-/// Points along each side of the elevation that are brought to longitude and latitude for its bounds.
-const SIDE_POINTS: u32 = 64;
 /// Meters of a degree along a meridian, about.
 const DEGREE_M: f64 = 111_320.0;
 
@@ -47,7 +43,8 @@ pub fn plan(
     let refused = |fault| PlanError::new(&queried.path, fault);
     let header = queried.dataset.header();
     let crs = header.crs.clone().ok_or_else(|| refused(PlanFault::NoPlace))?;
-    let bounds = bounds(&crs, &header.extent(), &queried.crs).ok_or_else(|| refused(PlanFault::NoPlace))?;
+    let bounds =
+        degree_bounds(&crs, &header.extent(), &queried.crs).ok_or_else(|| refused(PlanFault::NoPlace))?;
     let cell = header.spacing().min_element();
     let arguments = match encoding {
         TileEncoding::QuantizedMesh => {
@@ -97,19 +94,4 @@ pub fn tile_shard(id: usize, scheme: TileScheme, root: TileAddress, name: String
     let window = ShardWindow::Map([min.x, min.y, max.x, max.y]);
     let tile = Some([u64::from(root.level), root.x, root.y]);
     Shard { tile, ..Shard::new(id, name, tiles as f64, window) }
-}
-
-/// West, south, east and north of a rectangle in `crs` in degrees; `None` where it has no place.
-fn bounds(crs: &Crs, rect: &Rect, degrees: &Crs) -> Option<[f64; 4]> {
-    let share = |step: u32| f64::from(step) / f64::from(SIDE_POINTS);
-    let sides = (0..=SIDE_POINTS).flat_map(|step| {
-        let at = share(step);
-        [DVec2::new(at, 0.0), DVec2::new(at, 1.0), DVec2::new(0.0, at), DVec2::new(1.0, at)]
-    });
-    let placed = sides.map(|at| crs.transform(degrees, rect.min + at * rect.size()).ok());
-    let Rect { min, max } = Rect::around(placed.collect::<Option<Vec<DVec2>>>()?);
-    // What crosses the meridian of 180 degrees lies at both ends of the map.
-    let (west, east) = if min.x < -180.0 || max.x > 180.0 { (-180.0, 180.0) } else { (min.x, max.x) };
-    let (south, north) = (min.y.max(-90.0), max.y.min(90.0));
-    (west < east && south < north).then_some([west, south, east, north])
 }

@@ -40,7 +40,8 @@ pub struct TileAddress {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TileRange {
     pub level: u32,
-    pub x: RangeInclusive<u64>,
+    /// From the west, apart from each other: two where the rectangle crosses the meridian of 180 degrees.
+    pub x: Vec<RangeInclusive<u64>>,
     pub y: RangeInclusive<u64>,
 }
 
@@ -97,10 +98,22 @@ impl TileScheme {
         (0..MOST_LEVEL).find(|&level| spacing(level) <= cell_deg * 1.05).unwrap_or(MOST_LEVEL)
     }
 
-    /// The tiles of a level that meet `[west, south, east, north]` in degrees. Level 0 has all tiles: a globe is made of them.
+    /// The tiles of a level that meet `[west, south, east, north]` in degrees, which crosses the meridian of 180 degrees where
+    /// its west is east of its east. Level 0 has all tiles: a globe is made of them.
     pub fn tiles_meeting(self, level: u32, [west, south, east, north]: [f64; 4]) -> TileRange {
         if level == 0 {
-            return TileRange { level, x: 0..=self.columns() - 1, y: 0..=0 };
+            return TileRange { level, x: vec![0..=self.columns() - 1], y: 0..=0 };
+        }
+        if west > east {
+            let TileRange { x: mut first, y, .. } = self.tiles_meeting(level, [-180.0, south, east, north]);
+            let last = self.tiles_meeting(level, [west, south, 180.0, north]).x;
+            match (first.pop(), last.first()) {
+                (Some(low), Some(high)) if low.end() + 1 >= *high.start() => {
+                    first.push(*low.start()..=*high.end());
+                }
+                (low, _) => first = low.into_iter().chain(last).collect(),
+            }
+            return TileRange { level, x: first, y };
         }
         let corners = [DVec2::new(west, south), DVec2::new(east, north)];
         let Rect { min, max } = Rect::around(corners.map(|corner| self.tiles_from_degrees(corner)));
@@ -110,7 +123,8 @@ impl TileScheme {
             let last = (libm::ceil(high * rows as f64) as u64).saturating_sub(1).clamp(first, count - 1);
             first..=last
         };
-        TileRange { level, x: range(min.x, max.x, self.columns() * rows), y: range(min.y, max.y, rows) }
+        let x = vec![range(min.x, max.x, self.columns() * rows)];
+        TileRange { level, x, y: range(min.y, max.y, rows) }
     }
 }
 
@@ -129,7 +143,7 @@ impl TileAddress {
     pub fn below(self, level: u32) -> TileRange {
         let shift = level - self.level;
         let range = |first: u64| (first << shift)..=((first + 1) << shift) - 1;
-        TileRange { level, x: range(self.x), y: range(self.y) }
+        TileRange { level, x: vec![range(self.x)], y: range(self.y) }
     }
 
     /// Its path in a folder of tiles.
@@ -147,23 +161,33 @@ impl TileRange {
 
     /// Whether it has a tile.
     pub fn contains(&self, tile: TileAddress) -> bool {
-        tile.level == self.level && self.x.contains(&tile.x) && self.y.contains(&tile.y)
+        let is_column = self.x.iter().any(|columns| columns.contains(&tile.x));
+        tile.level == self.level && is_column && self.y.contains(&tile.y)
     }
 
     /// The number of its tiles.
     pub fn count(&self) -> u64 {
-        (self.x.end() - self.x.start() + 1).saturating_mul(self.y.end() - self.y.start() + 1)
+        self.columns().saturating_mul(self.y.end() - self.y.start() + 1)
+    }
+
+    /// Tiles per row.
+    fn columns(&self) -> u64 {
+        self.x.iter().map(|columns| columns.end() - columns.start() + 1).sum()
     }
 
     /// Its tiles, row by row from the first.
     pub fn tiles(&self) -> impl Iterator<Item = TileAddress> + use<> {
         let (level, x) = (self.level, self.x.clone());
-        self.y.clone().flat_map(move |y| x.clone().map(move |x| TileAddress { level, x, y }))
+        self.y
+            .clone()
+            .flat_map(move |y| x.clone().into_iter().flatten().map(move |x| TileAddress { level, x, y }))
     }
 
     /// The number of one of its tiles among [`TileRange::tiles`].
     pub fn index(&self, tile: TileAddress) -> u64 {
-        (tile.y - self.y.start()) * (self.x.end() - self.x.start() + 1) + tile.x - self.x.start()
+        let west_of =
+            |columns: &RangeInclusive<u64>| (tile.x.min(columns.end() + 1)).saturating_sub(*columns.start());
+        (tile.y - self.y.start()) * self.columns() + self.x.iter().map(west_of).sum::<u64>()
     }
 
     /// The tiles of both ranges, which are of one level.
@@ -171,7 +195,9 @@ impl TileRange {
         let both = |a: &RangeInclusive<u64>, b: &RangeInclusive<u64>| {
             *a.start().max(b.start())..=*a.end().min(b.end())
         };
-        Self { level: self.level, x: both(&self.x, &other.x), y: both(&self.y, &other.y) }
+        let columns = self.x.iter().flat_map(|a| other.x.iter().map(move |b| both(a, b)));
+        let x = columns.filter(|columns| !columns.is_empty()).collect();
+        Self { level: self.level, x, y: both(&self.y, &other.y) }
     }
 }
 
@@ -183,9 +209,9 @@ mod tests {
     fn tiles_of_the_geographic_scheme_meet_what_they_share_more_than_an_edge_with() {
         let meeting = |level, bounds| TileScheme::Geographic.tiles_meeting(level, bounds);
         let all = meeting(2, [-180.0, -90.0, 180.0, 90.0]);
-        assert_eq!((all.x, all.y), (0..=7, 0..=3));
+        assert_eq!((all.x, all.y), (vec![0..=7], 0..=3));
         let edge = meeting(1, [0.0, 0.0, 90.0, 90.0]);
-        assert_eq!((edge.x, edge.y), (2..=2, 1..=1));
+        assert_eq!((edge.x, edge.y), (vec![2..=2], 1..=1));
     }
 
     #[test]
@@ -199,18 +225,43 @@ mod tests {
             let x = ((lon + 180.0) / 360.0 * tiles).floor() as u64;
             let y = ((1.0 - (angle.tan() + 1.0 / angle.cos()).ln() / PI) / 2.0 * tiles).floor() as u64;
             let range = TileScheme::WebMercator.tiles_meeting(level, [lon, lat, lon + 1e-9, lat + 1e-9]);
-            assert_eq!((range.x.clone(), range.y.clone()), (x..=x, y..=y), "{lon} {lat} {level}");
+            assert_eq!((range.x, range.y), (vec![x..=x], y..=y), "{lon} {lat} {level}");
             let extent = TileScheme::WebMercator.extent(TileAddress { level, x, y });
             assert!(extent.contains(DVec2::new(lon, lat)), "{extent:?}");
         }
         // The Matterhorn, as in the addresses of map services.
         let matterhorn = TileScheme::WebMercator.tiles_meeting(10, [7.6586, 45.9764, 7.6587, 45.9765]);
-        assert_eq!((matterhorn.x, matterhorn.y), (533..=533, 364..=364));
+        assert_eq!((matterhorn.x, matterhorn.y), (vec![533..=533], 364..=364));
         let end = TileScheme::WebMercator.extent(TileAddress { level: 0, x: 0, y: 0 });
         assert!((end.max - DVec2::new(180.0, 85.051_128_779_806_59)).length() < 1e-9, "{end:?}");
         assert_eq!(end.min.y, -end.max.y);
         let whole = TileScheme::WebMercator.tiles_meeting(1, [-180.0, -90.0, 180.0, 90.0]);
-        assert_eq!((whole.x, whole.y), (0..=1, 0..=1));
+        assert_eq!((whole.x, whole.y), (vec![0..=1], 0..=1));
+    }
+
+    #[test]
+    fn what_crosses_the_meridian_of_180_degrees_meets_the_tiles_at_both_ends_alone() {
+        // Fiji: from 176.8 degrees east to 178.2 degrees west.
+        let fiji = [176.8, -19.3, -178.2, -16.0];
+        for scheme in [TileScheme::Geographic, TileScheme::WebMercator] {
+            let range = scheme.tiles_meeting(7, fiji);
+            let count = scheme.columns() << 7;
+            let [low, high] = &range.x[..] else { panic!("{range:?}") };
+            assert_eq!((*low.start(), *high.end()), (0, count - 1));
+            assert!(range.count() < count, "{} of {count} columns", range.count());
+            let tiles: Vec<TileAddress> = range.tiles().collect();
+            assert_eq!(tiles.len() as u64, range.count());
+            for (index, &tile) in (0..).zip(&tiles) {
+                assert_eq!((range.index(tile), range.contains(tile)), (index, true), "{tile:?}");
+                let Rect { min, max } = scheme.extent(tile);
+                assert!(max.x > fiji[0] || min.x < fiji[2], "{tile:?}");
+            }
+            assert!(!range.contains(TileAddress { x: count / 2, ..tiles[0] }));
+            let below = tiles[0].below(7);
+            assert_eq!(range.intersection(&below), below);
+        }
+        let halves = TileScheme::WebMercator.tiles_meeting(1, fiji);
+        assert_eq!(halves.x, [0..=1], "tiles that meet are listed once");
     }
 
     #[test]

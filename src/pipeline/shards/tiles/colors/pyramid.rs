@@ -19,7 +19,7 @@ pub struct ColorPyramid {
     pub max_zoom: u32,
     /// The level at whose pixels the elevation is queried, `max_zoom` or finer.
     pub sampled_zoom: u32,
-    /// West, south, east and north of the elevation in degrees.
+    /// West, south, east and north of the elevation in degrees, as the plan states them.
     pub bounds: [f64; 4],
 }
 

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::dem::formats::height_encoding::HeightEncoding;
 use crate::pipeline::shards::tiles::colors::pyramid::{ColorPyramid, PIXELS};
+use crate::pipeline::shards::tiles::degree_bounds::described_bounds;
 
 /// The description of all tiles, with the keys `encoding` and `tileSize` of a source `raster-dem` of MapLibre and Mapbox.
 pub fn tilejson(pyramid: &ColorPyramid) -> Value {
@@ -17,7 +18,7 @@ pub fn tilejson(pyramid: &ColorPyramid) -> Value {
         "version": "1.0.0",
         "scheme": "xyz",
         "tiles": ["{z}/{x}/{y}.png"],
-        "bounds": pyramid.bounds,
+        "bounds": described_bounds(pyramid.bounds),
         "minzoom": 0,
         "maxzoom": pyramid.max_zoom,
         "encoding": encoding,

@@ -3,14 +3,18 @@
 use serde_json::{Value, json};
 
 use crate::pipeline::shards::tiles::arguments::TilesArguments;
+use crate::pipeline::shards::tiles::degree_bounds::described_bounds;
 use crate::pipeline::shards::tiles::meshes::groups;
 use crate::pipeline::shards::tiles::tiling::TileRange;
 
 /// The description of all tiles.
 pub fn layer(arguments: &TilesArguments) -> Value {
-    let available = |level: u32| {
+    let available = |level: u32| -> Value {
         let TileRange { x, y, .. } = groups::meeting(level, arguments.bounds);
-        json!([{ "startX": x.start(), "startY": y.start(), "endX": x.end(), "endY": y.end() }])
+        let ranges = x
+            .iter()
+            .map(|x| json!({ "startX": x.start(), "startY": y.start(), "endX": x.end(), "endY": y.end() }));
+        ranges.collect()
     };
     let levels: Vec<Value> = (0..=arguments.max_zoom).map(available).collect();
     json!({
@@ -21,7 +25,7 @@ pub fn layer(arguments: &TilesArguments) -> Value {
         "scheme": "tms",
         "projection": "EPSG:4326",
         "tiles": ["{z}/{x}/{y}.terrain"],
-        "bounds": arguments.bounds,
+        "bounds": described_bounds(arguments.bounds),
         "minzoom": 0,
         "maxzoom": arguments.max_zoom,
         "available": levels,

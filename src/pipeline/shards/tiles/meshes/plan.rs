@@ -5,6 +5,7 @@ use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::planned_dataset::QueriedDataset;
 use crate::pipeline::shards::shard::{Shard, ShardWindow};
 use crate::pipeline::shards::tiles::arguments::{MeshTileArguments, TilesArguments};
+use crate::pipeline::shards::tiles::degree_bounds::described_bounds;
 use crate::pipeline::shards::tiles::meshes::groups::{
     group_starts, meeting, shard_roots, tiles_of, top_levels,
 };
@@ -53,7 +54,7 @@ fn shard(id: usize, root: Option<TileAddress>, arguments: &TilesArguments) -> Sh
         Some(root) => tile_shard(id, TileScheme::Geographic, root, root.path("terrain"), tiles),
         None => {
             let name = format!("levels 0 to {}", top_levels(arguments.max_zoom) - 1);
-            Shard::new(id, name, tiles as f64, ShardWindow::Map(arguments.bounds))
+            Shard::new(id, name, tiles as f64, ShardWindow::Map(described_bounds(arguments.bounds)))
         }
     }
 }
