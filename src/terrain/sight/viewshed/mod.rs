@@ -12,6 +12,7 @@
 //! Where a lattice holds only some of its posts, these are the posts that are looked at; they must reach as far as the range,
 //! or to the lattice's border.
 
+mod bucket;
 mod frame;
 mod horizon;
 mod near;

@@ -51,6 +51,13 @@ impl PostRing {
         index.and_then(|index| self.is_prominent.get(index)).is_some_and(|&is_prominent| is_prominent)
     }
 
+    /// Whether the edge from a post to the next, given by the first's index, has data and an end that is prominent.
+    #[inline]
+    pub fn is_prominent_edge(&self, index: usize) -> bool {
+        let (is_prominent, v) = (&self.is_prominent[index..index + 2], &self.v[index..index + 2]);
+        (is_prominent[0] || is_prominent[1]) && !(v[0] + v[1]).is_nan()
+    }
+
     /// Whether post `j` exists without data.
     pub fn is_gap(&self, j: i64) -> bool {
         self.get(j).is_some_and(|post| post.v.is_nan())

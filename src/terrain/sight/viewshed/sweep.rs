@@ -22,8 +22,9 @@ use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::horizon::{Doubt, Horizon, HorizonEdge};
+use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge};
 use crate::terrain::sight::viewshed::ring::{PostRing, RingChunk, RingPost};
 use crate::terrain::stop_flag::StopFlag;
 
@@ -294,27 +295,64 @@ impl Sweep<'_> {
 
     /// Adds the ring's own edges to the horizon.
     fn ring_edges(&mut self) {
-        let ray_error = self.ray_error(self.ring.x);
-        // Rungs and diagonals to a post are cut short of it by the error of the strip before.
-        let strip_ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
-        let error = self.ring.error;
+        self.doubt_beside_gaps();
+        let edges = self.ring.v.len().saturating_sub(1);
+        let mut index = 0;
+        while index < edges {
+            let first = index;
+            while index < edges && self.ring.is_prominent_edge(index) {
+                index += 1;
+            }
+            if first < index {
+                self.ring_run(first, index);
+            }
+            index += 1;
+        }
+    }
+
+    /// Adds the ring's edges from one post to another, given by their indices.
+    fn ring_run(&mut self, mut first: usize, mut last: usize) {
+        let (error, cut) = (self.ring.error, self.ray_error(self.ring.x));
+        let is_gap = |index: Option<usize>| {
+            index.and_then(|index| self.ring.v.get(index)).is_some_and(|height| height.is_nan())
+        };
+        // Beside a gap a ray may just miss the edge.
+        let cut_at = |is_gap: bool| if is_gap { cut } else { 0.0 };
+        let cuts = [cut_at(is_gap(first.checked_sub(1))), cut_at(is_gap(Some(last + 1)))];
+        let post = |index: usize| RingPost { u: self.ring.u[index], v: self.ring.v[index] };
+        let (start, end) = ([post(first), post(first + 1)], [post(last - 1), post(last)]);
+        if first + 1 == last {
+            return self.insert(start[0], start[1], cuts, error);
+        }
+        if cuts[0] > 0.0 {
+            self.insert(start[0], start[1], [cuts[0], 0.0], error);
+            first += 1;
+        }
+        if cuts[1] > 0.0 {
+            self.insert(end[0], end[1], [0.0, cuts[1]], error);
+            last -= 1;
+        }
+        if first < last {
+            let posts = first..=last;
+            let (u, v) = (&self.ring.u[posts.clone()], &self.ring.v[posts]);
+            self.horizon.insert_chain(&EdgeChain { u, v, error });
+        }
+    }
+
+    /// Leaves the rays to prominent posts beside gaps to lines of sight: rungs and diagonals to such a post are cut short of it
+    /// by the error of the strip before.
+    fn doubt_beside_gaps(&mut self) {
+        if !self.ring.v.iter().any(|v| v.is_nan()) {
+            return;
+        }
+        let ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
         for j in self.ring.first..self.ring.end() {
-            let (is_prominent, next_is_prominent) =
-                (self.ring.is_prominent(j), self.ring.is_prominent(j + 1));
-            if !is_prominent && !next_is_prominent {
-                continue;
-            }
-            let Some(post) = self.ring.get(j) else { continue };
-            if is_prominent && (self.ring.is_gap(j - 1) || self.ring.is_gap(j + 1)) {
-                let (u0, u1) = (post.u - strip_ray_error, post.u + strip_ray_error);
-                self.horizon.doubt(Doubt { u0, u1, v: post.v + error });
-            }
-            let Some(next) = self.ring.get(j + 1) else { continue };
-            if !(post.v + next.v).is_nan() {
-                // Beside a gap a ray may just miss the edge.
-                let cut = |is_gap: bool| if is_gap { ray_error } else { 0.0 };
-                let cuts = [cut(self.ring.is_gap(j - 1)), cut(self.ring.is_gap(j + 2))];
-                self.insert(post, next, cuts, error);
+            if self.ring.is_prominent(j)
+                && (self.ring.is_gap(j - 1) || self.ring.is_gap(j + 1))
+                && let Some(post) = self.ring.get(j)
+            {
+                let (u0, u1) = (post.u - ray_error, post.u + ray_error);
+                self.horizon.doubt(Doubt { u0, u1, v: post.v + self.ring.error });
             }
         }
     }
