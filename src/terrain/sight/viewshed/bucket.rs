@@ -40,6 +40,8 @@ pub(super) struct Doubt {
 pub(super) struct EdgeChain<'a> {
     pub u: &'a [f64],
     pub v: &'a [f64],
+    /// One over the step of `u` from each point to the next, which is the same for all.
+    pub per_step: f64,
     /// The error of `v` on them.
     pub error: f64,
 }
@@ -54,8 +56,7 @@ impl EdgeChain<'_> {
     #[inline]
     pub fn line(&self, edge: usize) -> HorizonPiece {
         let (u, v) = (self.u[edge], self.v[edge]);
-        let slope = (self.v[edge + 1] - v) / (self.u[edge + 1] - u);
-        HorizonPiece { u, v, slope, error: self.error }
+        HorizonPiece { u, v, slope: (self.v[edge + 1] - v) * self.per_step, error: self.error }
     }
 }
 

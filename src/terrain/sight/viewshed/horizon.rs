@@ -160,8 +160,13 @@ impl Horizon {
     /// of `u`.
     pub fn span(&self, u: f64, v: f64, ray_error: f64) -> Option<HorizonSpan> {
         let bucket = &self.buckets[self.bucket_of(u)];
-        let after = bucket.pieces.iter().take_while(|piece| piece.u <= u).count();
-        let piece = bucket.pieces[after.saturating_sub(1)];
+        let mut piece = &bucket.pieces[0];
+        for next in &bucket.pieces[1..] {
+            if next.u > u {
+                break;
+            }
+            piece = next;
+        }
         let at = piece.at(u);
         let span = HorizonSpan { low: at - piece.error, high: at + piece.error };
         let applies = |doubt: &Doubt| {
@@ -324,6 +329,38 @@ mod tests {
                 over.map(|edge| edge.v0 + edge.slope() * (u - edge.u0)).fold(f64::NEG_INFINITY, f64::max);
             let span = horizon.span(u, 0.0, 0.0).expect("no doubts");
             assert!(span.low <= true_v && true_v <= span.high, "{u}: {true_v} not in {span:?}");
+        }
+    }
+
+    #[test]
+    fn edges_that_join_end_to_end_change_the_horizon_as_one_by_one() {
+        for (from, to) in [(0.0, 1.0), (0.25, 0.5), (0.75, 1.0)] {
+            let mut seeded = Seeded(11);
+            let (mut together, mut apart) = (Horizon::new(from, to), Horizon::new(from, to));
+            for turn in 1..=120_u32 {
+                let x = f64::from(turn + 3);
+                [&mut together, &mut apart].map(|horizon| horizon.grow(x));
+                // Slopes that face the observer, walls and hollows.
+                let rise = [0.01, 0.0, -0.2][turn as usize % 3] * f64::from(turn);
+                let first = (from * x) as usize + (seeded.part() * 3.0) as usize;
+                let last = (to * x) as usize + (seeded.part() * 3.0) as usize;
+                let u: Vec<f64> = (first..=last.max(first + 1)).map(|j| j as f64 / x).collect();
+                let v: Vec<f64> = u.iter().map(|u| rise + u + seeded.part()).collect();
+                let error = 1e-9 / x;
+                together.insert_chain(&EdgeChain { u: &u, v: &v, per_step: x, error });
+                for edge in 0..u.len() - 1 {
+                    let (u0, v0, u1, v1) = (u[edge], v[edge], u[edge + 1], v[edge + 1]);
+                    apart.insert(&HorizonEdge { u0, v0, u1, v1, error });
+                }
+                check(&together);
+            }
+            for _ in 0..2000 {
+                let u = from + seeded.part() * (to - from);
+                let spans = [&together, &apart].map(|horizon| horizon.span(u, 0.0, 0.0).expect("no doubts"));
+                let [one, other] = spans.map(|span| (span.low, span.high));
+                let is_same = |a: f64, b: f64| a == b || (a - b).abs() < 1e-12;
+                assert!(is_same(one.0, other.0) && is_same(one.1, other.1), "{u}: {spans:?}");
+            }
         }
     }
 

@@ -106,18 +106,23 @@ impl RingChunk {
         self.heights.clear();
         self.heights.resize(self.rings * self.width, f32::NAN);
         if frame.ring_step.unsigned_abs() == 1 {
+            // The rings lie side by side: a post and those behind it are neighbors.
             for at in 0..self.width {
-                let first = frame.index(ring, self.first + at as i64) as i64;
-                for k in 0..self.rings {
-                    let index = first + k as i64 * frame.ring_step;
-                    self.heights[k * self.width + at] = heights[index as usize];
+                let (post, end) = (self.first + at as i64, self.rings - 1);
+                let (start, stop) = (frame.index(ring, post), frame.index(ring + end, post));
+                let line = &heights[start.min(stop)..=start.max(stop)];
+                for (k, &height) in line.iter().enumerate() {
+                    let k = if start <= stop { k } else { end - k };
+                    self.heights[k * self.width + at] = height;
                 }
             }
         } else {
             for (k, row) in self.heights.chunks_exact_mut(self.width.max(1)).enumerate() {
-                let first = frame.index(ring + k, self.first) as i64;
-                for (at, height) in row.iter_mut().enumerate() {
-                    *height = heights[(first + at as i64 * frame.cross_step) as usize];
+                let (first, end) = (frame.index(ring + k, self.first), self.first + self.width as i64 - 1);
+                let last = frame.index(ring + k, end);
+                row.copy_from_slice(&heights[first.min(last)..=first.max(last)]);
+                if last < first {
+                    row.reverse();
                 }
             }
         }
