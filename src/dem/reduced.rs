@@ -51,21 +51,26 @@ pub fn reduced(windows: &mut (impl Windows + Send), step: u32) -> Result<Raster,
             fill_means(&heights[from..to], columns as usize, &spans, means);
         });
     })?;
-    let whole = windows.metadata();
+    Ok(Raster { samples: Samples::F32(means), ..reduced_header(windows.metadata(), step) })
+}
+
+/// What [`reduced`] makes of a raster, without its samples.
+pub fn reduced_header(whole: &Raster, step: u32) -> Raster {
+    let (width, height) = reduced_size((whole.width, whole.height), step);
     let matrix2 = DMat2::from_cols(whole.map_from_grid.matrix2.x_axis, whole.map_from_grid.matrix2.y_axis)
         * f64::from(step);
-    let south_west = whole.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(rows) - 0.5));
+    let south_west = whole.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(whole.height) - 0.5));
     let translation = south_west - matrix2 * DVec2::new(0.5, f64::from(height) - 0.5);
-    Ok(Raster {
+    Raster {
         data_type: "Float32",
         width,
         height,
-        samples: Samples::F32(means),
+        samples: Samples::F32(Vec::new()),
         meters_per_z: 1.0,
         map_from_grid: DAffine2 { matrix2, translation },
         nodata: None,
         ..whole.without_samples()
-    })
+    }
 }
 
 /// Samples per row, and rows, of every `step`-th sample of a raster of `size`.
@@ -92,13 +97,22 @@ pub fn reduced_part(
     let (west, east) = (spans[0].start, spans[width - 1].end);
     let spans: Vec<Range<usize>> = spans.iter().map(|span| span.start - west..span.end - west).collect();
     let (mut means, mut lines) = (vec![0f32; width * rows.len()], Vec::new());
-    for (row, means) in rows.zip(means.chunks_mut(width)) {
-        // Rasters are counted from the north.
-        let own = around(size.1 - 1 - row * step, step, size.1);
-        let (column, row) = (west as u32, own.start as u32);
-        let window = RasterWindow { column, row, width: (east - west) as u32, height: own.len() as u32 };
-        windows.read(window, &mut lines)?;
-        fill_means(&lines, east - west, &spans, means);
+    // Rasters are counted from the north.
+    let lines_of = |row: u32| around(size.1 - 1 - row * step, step, size.1);
+    let across = east - west;
+    let per_band = (BAND_SAMPLES as usize / across / step as usize).max(1);
+    for (first, means) in rows.step_by(per_band).zip(means.chunks_mut(width * per_band)) {
+        let last = first + (means.len() / width) as u32 - 1;
+        let (top, end) = (lines_of(last).start, lines_of(first).end);
+        let (column, row) = (west as u32, top as u32);
+        windows.read(
+            RasterWindow { column, row, width: across as u32, height: (end - top) as u32 },
+            &mut lines,
+        )?;
+        means.par_chunks_mut(width).enumerate().for_each(|(at, means)| {
+            let own = lines_of(first + at as u32);
+            fill_means(&lines[(own.start - top) * across..(own.end - top) * across], across, &spans, means);
+        });
     }
     Ok(means)
 }

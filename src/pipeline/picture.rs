@@ -3,14 +3,17 @@
 use crate::annotate::paint::{ComposedSheet, compose_sheet};
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet_frame::SheetFrame;
+use crate::description::diagnostic::Diagnostic;
 use crate::description::words::StylePreset;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
-use crate::pipeline::labels;
+use crate::pipeline::labels::{self, AnnotatedGround};
 use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
+use crate::scene::nested_ground::{NestedHeights, nested_grounds};
 use crate::scene::paper_sheet::SCREEN_PX;
+use crate::scene::picture::nested::build_nested_draw_list;
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
@@ -70,6 +73,9 @@ pub enum PictureError {
     /// The scene cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The samples of ground near the eye cannot be had.
+    #[error(transparent)]
+    Elevation(#[from] Diagnostic),
 }
 
 /// The annotated picture of a view, drawn on the current `rayon` pool. `progress` is called with the name of each step
@@ -98,8 +104,19 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
-    let (camera, frame) = framed_camera(scene, view, size)?;
-    let drawn = build_draw_list(scene, &camera, progress);
+    let (mut camera, frame) = framed_camera(scene, view, size)?;
+    let nested = match backend {
+        RenderBackend::Cpu => nested_grounds(scene, &camera, progress)?,
+        RenderBackend::Gpu => Vec::new(),
+    };
+    let drawn = if nested.is_empty() {
+        build_draw_list(scene, &camera, progress)
+    } else {
+        let lifted = NestedHeights::new(&nested).lifted_view(scene, view);
+        (camera, _) = framed_camera(scene, &lifted, size)?;
+        build_nested_draw_list(scene, &nested, &camera, progress)
+    };
+    drop(nested);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend)?;
     apply_look(scene, &camera, &mut picture);
@@ -149,7 +166,8 @@ pub struct ComposedView {
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
     let DrawnView { camera, picture, drawn, frame } = view;
-    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
+    let shown = AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested };
+    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &shown);
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {
         sheet.recolor(&night_ink);

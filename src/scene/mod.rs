@@ -34,6 +34,8 @@ pub mod military;
 pub mod misplacement;
 pub mod models;
 pub mod near;
+pub mod nested_ground;
+mod nested_plan;
 pub mod overridden_crs;
 pub mod paper_sheet;
 pub mod picture;
@@ -94,6 +96,7 @@ use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
 use crate::scene::military::SceneSymbol;
+use crate::scene::nested_ground::{FinerElevation, NestedHeights};
 use crate::scene::paper_sheet::PaperSheet;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
@@ -124,6 +127,8 @@ pub struct SceneModel {
     pub stated_crs: Crs,
     /// The elevations of the ground, true to scale.
     pub lattice: Arc<Lattice>,
+    /// What has more samples than the lattice has posts.
+    finer: Option<FinerElevation>,
     /// The lowest and the highest of them, meters.
     pub height_range_m: (f32, f32),
     /// How they are drawn.
@@ -399,6 +404,15 @@ pub struct SceneLabel {
     pub kind: LabelKind,
     /// The lower, the more important; never NaN.
     pub rank: f64,
+}
+
+impl SceneLabel {
+    /// The label on the finest ground of a picture of `scene`.
+    pub fn lifted(&self, scene: &SceneModel, nested: &NestedHeights) -> Self {
+        let ground = nested.lifted(scene, self.ground);
+        let course = self.course.map(|at| nested.lifted(scene, at));
+        Self { ground, anchor: self.anchor + (ground - self.ground), course, ..self.clone() }
+    }
 }
 
 /// A view of the scene.
