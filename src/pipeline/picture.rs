@@ -11,7 +11,7 @@ use crate::pipeline::labels::{self, AnnotatedGround};
 use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
-use crate::scene::nested_ground::{NestedHeights, nested_grounds};
+use crate::scene::nested_ground::{NestedGround, NestedHeights, nested_grounds};
 use crate::scene::paper_sheet::SCREEN_PX;
 use crate::scene::picture::nested::build_nested_draw_list;
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
@@ -112,8 +112,7 @@ pub fn draw_view(
     let drawn = if nested.is_empty() {
         build_draw_list(scene, &camera, progress)
     } else {
-        let lifted = NestedHeights::new(&nested).lifted_view(scene, view);
-        (camera, _) = framed_camera(scene, &lifted, size)?;
+        camera = nested_camera(scene, &nested, view, size)?;
         build_nested_draw_list(scene, &nested, &camera, progress)
     };
     drop(nested);
@@ -144,6 +143,24 @@ pub fn framed_camera(
     let page = (size.width, size.height);
     let camera = camera(scene, view, frame.as_ref().map_or(page, SheetFrame::picture_size))?;
     Ok((camera, frame))
+}
+
+/// The camera of a view of a scene with nested grounds: its eye is above the finest ground, and what it is fitted to is the finest
+/// that holds all of it.
+fn nested_camera(
+    scene: &SceneModel,
+    nested: &[NestedGround],
+    view: &SceneView,
+    size: PictureSize,
+) -> Result<Camera, CameraError> {
+    let shown =
+        |ground: &&NestedGround| view.shown().is_some_and(|shown| ground.rect().contains_rect(&shown));
+    if let Some(ground) = nested.iter().rev().find(shown) {
+        let (camera, _) = framed_camera(&ground.scene, &view.moved(-ground.origin), size)?;
+        return Ok(camera.moved(ground.origin.as_vec2().extend(0.0)));
+    }
+    let lifted = NestedHeights::new(nested).lifted_view(scene, view);
+    Ok(framed_camera(scene, &lifted, size)?.0)
 }
 
 /// The second half of [`render_view`]: paints the annotations.

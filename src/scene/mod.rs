@@ -436,6 +436,32 @@ impl SceneView {
             _ => self.paper.map(|paper| paper.dpi),
         }
     }
+
+    /// The part of the ground that it is fitted to, world X and Y; `None` where that is all, and where it has an eye.
+    pub fn shown(&self) -> Option<Rect> {
+        match self.aim {
+            ViewAim::At { .. } => None,
+            ViewAim::Fitted(FittedView { shown, .. }) | ViewAim::Parallel(ParallelView { shown, .. }) => {
+                shown
+            }
+        }
+    }
+
+    /// This view with all of its places moved.
+    pub fn moved(&self, by: DVec2) -> Self {
+        let rect = |rect: Rect| Rect { min: rect.min + by, max: rect.max + by };
+        let point = |at: Vec3| at + by.as_vec2().extend(0.0);
+        let aim = match self.aim {
+            ViewAim::At { eye, target } => ViewAim::At { eye: point(eye), target: point(target) },
+            ViewAim::Fitted(view) => ViewAim::Fitted(FittedView { shown: view.shown.map(rect), ..view }),
+            ViewAim::Parallel(view) => ViewAim::Parallel(ParallelView {
+                shown: view.shown.map(rect),
+                middle: view.middle.map(|middle| middle + by),
+                ..view
+            }),
+        };
+        Self { aim, ..self.clone() }
+    }
 }
 
 /// From where a view looks, and whereto.

@@ -14,6 +14,9 @@ use crate::scene::picture::shown_step::{UnreadGround, depends_on_samples, shown_
 use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
 use crate::scene::scene_findings::SceneFindings;
 
+/// Means of samples are held everywhere where they are fewer than this many times the samples that pictures read whole.
+const MOST_MEANS: u64 = 2;
+
 /// A smaller raster.
 pub(super) struct ReducedElevation {
     /// The raster.
@@ -38,7 +41,8 @@ pub(super) fn reduced_as_needed(
         ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => 1,
     };
     let fitting = fitting_step((width, height));
-    let nests = nests(need, document) && samples((width, height), shown) > PICTURED_SAMPLES.get();
+    let nests = nests(need, document)
+        && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
     let step = if nests { least_step((width, height), level_samples()) } else { shown.max(fitting) };
     if step == 1 {
         return Ok(None);

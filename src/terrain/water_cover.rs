@@ -212,6 +212,8 @@ mod tests {
         let ground = lattice(bowl);
         let shore = (0..600).find(|&x| !cover.is_under(&ground, DVec2::new(300.0 + f64::from(x), 250.0)));
         assert_eq!(shore, Some(105), "between the tenth post, which is water, and the next");
+        let beside = [106.0, 112.0].map(|x| cover.is_beside(&ground, DVec2::new(300.0 + x, 250.0)));
+        assert_eq!(beside, [true, false], "in the cell of the shore, and in the next");
         assert!(!cover.is_under(&ground, DVec2::new(-9.0, 250.0)));
         assert!(!WaterCover::default().is_under(&ground, DVec2::new(300.0, 250.0)));
     }

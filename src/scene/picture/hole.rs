@@ -120,7 +120,7 @@ fn cut_mesh(mesh: &DrawMesh, triangles: &[[VertexId; 3]], hole: &Rect) -> DrawMe
             cut.triangles.push(*triangle);
             continue;
         }
-        if hole.contains(around.min) && hole.contains(around.max) {
+        if hole.contains_rect(&around) {
             continue;
         }
         let corners = triangle.map(|id| mesh.vertices[id.index()]);
