@@ -21,7 +21,8 @@ use crate::pipeline::picture_statistics::PictureStatistics;
 use crate::pipeline::scene_file::{open_scene_for, phases};
 use crate::pipeline::sheet_file::{picture_description, write_sheet};
 use crate::pipeline::sidecar::SidecarDraft;
-use crate::scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
+use crate::render::RenderBackend;
+use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use crate::scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
@@ -247,7 +248,11 @@ fn planned_pictures(arguments: &RenderArguments) -> PlannedPictures {
         Some(name) => PlannedCameras::Named(name.clone()),
         None => PlannedCameras::First,
     };
-    PlannedPictures { cameras, size: arguments.size.map(|size| (size.width, size.height)) }
+    let near = match arguments.backend {
+        RenderBackend::Cpu => NearGround::Nested,
+        RenderBackend::Gpu => NearGround::Whole,
+    };
+    PlannedPictures { cameras, size: arguments.size.map(|size| (size.width, size.height)), near }
 }
 
 /// The size of a contact sheet where none is stated.

@@ -23,6 +23,7 @@ pub mod raster;
 pub mod read;
 pub(crate) mod read_ahead;
 pub mod reduced;
+pub mod reduced_windows;
 pub mod sample;
 mod sample_type;
 pub mod stats;

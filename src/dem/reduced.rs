@@ -46,7 +46,7 @@ pub fn reduced_by_overview(windows: &mut (impl Windows + Send), step: u32) -> Re
 /// [`reduced`] of `whole`, of which `windows` are the samples or an overview.
 fn means_of(whole: &Raster, windows: &mut (impl Windows + Send), step: u32) -> Result<Raster, DemErrorKind> {
     let squares = SampleSquares::new(whole.size(), windows, step);
-    let (columns, rows) = (squares.held.0 as usize, whole.height);
+    let columns = squares.held.0 as usize;
     let (width, height) = reduced_size(squares.whole, step);
     let spans: Vec<Range<usize>> = (0..width).map(|column| squares.columns(column)).collect();
     // The last row holds the southernmost sample.
@@ -72,20 +72,26 @@ fn means_of(whole: &Raster, windows: &mut (impl Windows + Send), step: u32) -> R
             fill_means(&heights[from..to], columns, &spans, means);
         });
     })?;
+    Ok(Raster { samples: Samples::F32(means), ..reduced_header(whole, step) })
+}
+
+/// What [`reduced`] makes of a raster, without its samples.
+pub fn reduced_header(whole: &Raster, step: u32) -> Raster {
+    let (width, height) = reduced_size(whole.size(), step);
     let matrix2 = DMat2::from_cols(whole.map_from_grid.matrix2.x_axis, whole.map_from_grid.matrix2.y_axis)
         * f64::from(step);
-    let south_west = whole.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(rows) - 0.5));
+    let south_west = whole.map_from_grid.transform_point2(DVec2::new(0.5, f64::from(whole.height) - 0.5));
     let translation = south_west - matrix2 * DVec2::new(0.5, f64::from(height) - 0.5);
-    Ok(Raster {
+    Raster {
         data_type: "Float32",
         width,
         height,
-        samples: Samples::F32(means),
+        samples: Samples::F32(Vec::new()),
         meters_per_z: 1.0,
         map_from_grid: DAffine2 { matrix2, translation },
         nodata: None,
         ..whole.without_samples()
-    })
+    }
 }
 
 /// Samples per row, and rows, of every `step`-th sample of a raster of `size`.
@@ -125,12 +131,21 @@ fn part_means(
     let (west, east) = (spans[0].start, spans[width - 1].end);
     let spans: Vec<Range<usize>> = spans.iter().map(|span| span.start - west..span.end - west).collect();
     let (mut means, mut lines) = (vec![0f32; width * rows.len()], Vec::new());
-    for (row, means) in rows.zip(means.chunks_mut(width)) {
-        let own = squares.rows(row);
-        let (column, row) = (west as u32, own.start as u32);
-        let window = RasterWindow { column, row, width: (east - west) as u32, height: own.len() as u32 };
-        windows.read(window, &mut lines)?;
-        fill_means(&lines, east - west, &spans, means);
+    let across = east - west;
+    let per_band = (BAND_SAMPLES as usize / across / step as usize).max(1);
+    for (first, means) in rows.step_by(per_band).zip(means.chunks_mut(width * per_band)) {
+        // Rasters are counted from the north.
+        let last = first + (means.len() / width) as u32 - 1;
+        let (top, end) = (squares.rows(last).start, squares.rows(first).end);
+        let (column, row) = (west as u32, top as u32);
+        windows.read(
+            RasterWindow { column, row, width: across as u32, height: (end - top) as u32 },
+            &mut lines,
+        )?;
+        means.par_chunks_mut(width).enumerate().for_each(|(at, means)| {
+            let own = squares.rows(first + at as u32);
+            fill_means(&lines[(own.start - top) * across..(own.end - top) * across], across, &spans, means);
+        });
     }
     Ok(means)
 }

@@ -132,8 +132,8 @@ finding_codes! {
          picture is that of a coarser model. `extent` under `[terrain]` names a part, which is taken in full.";
     SamplesAveraged = "samples-averaged", Note,
         "The pictures show no square of so many samples of the elevation model wider than half a pixel, so that it was read as \
-         means of them: faster, and in less memory. What lies on the ground lies on these. A camera near the ground, heights on \
-         labels and lines of sight have all samples read, as all other commands have.";
+         means of them: faster, and in less memory. What lies on the ground lies on these. Near the eye pictures show windows of all \
+         samples with what lies there. Heights on labels and lines of sight have all samples read, as all other commands have.";
     PostsAdded = "posts-added", Note,
         "More posts were put between those of the elevation model, for what is finer than its cells. The ground stays as it was.";
     TooFine = "too-fine", Note,

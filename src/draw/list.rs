@@ -13,6 +13,7 @@ use glam::Mat4;
 
 use crate::draw::color::Srgba;
 use crate::draw::ground::{GroundMap, GroundMapError};
+use crate::draw::ground_inset::GroundInset;
 use crate::draw::lighting::Lighting;
 use crate::draw::material::{Material, TextureId};
 use crate::draw::pixels::Pixels;
@@ -141,6 +142,8 @@ pub struct DrawList {
     pub items: Vec<DrawItem>,
     /// The map that ground materials read.
     pub ground: Option<Arc<GroundMap>>,
+    /// Finer maps of parts of the ground, each within the one before; only the processor draws them.
+    pub insets: Vec<GroundInset>,
     /// Light, haze and sky.
     pub lighting: Lighting,
 }
@@ -225,7 +228,8 @@ impl DrawList {
         if let Some(index) = self.items.windows(2).position(|pair| pair[0].layer > pair[1].layer) {
             return Err(DrawListError::LayerOrder(index + 1));
         }
-        Ok(self.ground.as_deref().map_or(Ok(()), GroundMap::check)?)
+        let insets = self.insets.iter().map(|inset| &*inset.map);
+        Ok(self.ground.as_deref().into_iter().chain(insets).try_for_each(GroundMap::check)?)
     }
 
     fn check_item(&self, index: usize, item: &DrawItem) -> Result<(), DrawListError> {

@@ -9,6 +9,7 @@ pub mod ground;
 pub mod ground_cover;
 pub mod ground_grain;
 pub mod ground_imagery;
+pub mod ground_inset;
 pub mod ground_levels;
 pub mod ground_window;
 pub mod hatching;

@@ -52,6 +52,11 @@ impl Rect {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
+    /// Whether all of `other` lies inside or on the border.
+    pub fn contains_rect(&self, other: &Self) -> bool {
+        self.contains(other.min) && self.contains(other.max)
+    }
+
     /// Whether the two have at least a border point in common.
     pub fn meets(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()

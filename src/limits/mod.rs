@@ -50,7 +50,7 @@ limits! {
             "that pictures show of an elevation model with more than a raster in memory has: means of squares of its samples",
             "name an `extent`";
         PICTURED_SAMPLES = 1 << 25 => POSTS, "samples",
-            "of an elevation model that pictures read whole although they show fewer, 5,793 a side, in about a second; of a larger one they read means of squares of samples, no wider than half a pixel",
+            "of an elevation model that pictures read whole although they show fewer, 5,793 a side, in about a second; of a larger one they read means of squares of samples, no wider than half a pixel, and windows of all near the eye",
             "name an `extent`";
         TILE_SAMPLES = 2 * 16_385 * 16_385 => To(1 << 31), "samples",
             "of all tiles that are joined, which overlap",

@@ -12,7 +12,7 @@ use crate::draw::list::FeatureId;
 use crate::geom::isolines::{Isoline, ValueGrid, isolines};
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
-use crate::terrain::query::{Interpolation, ground_height};
+use crate::scene::nested_ground::NestedHeights;
 use crate::view::camera::Camera;
 
 /// The rows of elevations read from a picture: on fewer, lines leave the drawn ones; on more, time is spent.
@@ -30,9 +30,14 @@ const TICK_PX: f32 = 5.0;
 const LEAST_HOLLOW_PX: f32 = 14.0;
 
 /// The marks of the scene's contour lines; `None` where it has none.
-pub fn contour_marks(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Option<ContourMarks> {
+pub fn contour_marks(
+    scene: &SceneModel,
+    nested: &NestedHeights,
+    camera: &Camera,
+    picture: &Rendering,
+) -> Option<ContourMarks> {
     let contours = scene.contours.filter(|contours| contours.interval_m > 0.0)?;
-    let read = ReadGround::new(scene, camera, picture);
+    let read = ReadGround::new(scene, nested, camera, picture);
     let numbered_m = contours.interval_m * contours.major_every.max(1) as f32;
     let grid = ValueGrid { columns: read.columns, values: &read.elevations_m };
     let is_open = |column: usize, row: usize| read.is_one_hill(column, row);
@@ -56,7 +61,7 @@ struct ReadGround {
 }
 
 impl ReadGround {
-    fn new(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Self {
+    fn new(scene: &SceneModel, nested: &NestedHeights, camera: &Camera, picture: &Rendering) -> Self {
         let (width, height) = (picture.pixels.width() as usize, picture.pixels.height() as usize);
         let step = (height / ROWS).max(LEAST_STEP);
         let (columns, rows) = (width.div_ceil(step), height.div_ceil(step));
@@ -68,7 +73,9 @@ impl ReadGround {
             depths_m.push(depth);
             let is_ground = picture.features[index] == FeatureId::GROUND && depth.is_finite();
             let pixel = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-            elevations_m.push(if is_ground { elevation_m(scene, camera, pixel, depth) } else { f32::NAN });
+            let map = || scene.lattice.map_point(camera.point_at(pixel, depth));
+            let height_m = is_ground.then(|| nested.height_m(&scene.lattice, map())).flatten();
+            elevations_m.push(height_m.map_or(f32::NAN, |height_m| height_m as f32));
         }
         Self { columns, step, elevations_m, depths_m }
     }
@@ -99,14 +106,6 @@ impl ReadGround {
             path_px: self.on_picture(line),
         }
     }
-}
-
-/// The elevation of the ground that a pixel shows, meters; NaN off the model.
-fn elevation_m(scene: &SceneModel, camera: &Camera, pixel: Vec2, depth_m: f32) -> f32 {
-    let map = scene.lattice.map_point(camera.point_at(pixel, depth_m));
-    ground_height(&scene.lattice, Interpolation::Planar, map)
-        .height_m()
-        .map_or(f32::NAN, |height| height as f32)
 }
 
 /// Whether the higher ground is outside a ring: the ring has it on its left as seen on the picture, so it runs

@@ -21,9 +21,18 @@ use crate::pipeline::military::picture_symbols;
 use crate::pipeline::rim::rim_marks;
 use crate::render::picture::Rendering;
 use crate::scene::label_course::LabelCourse;
+use crate::scene::nested_ground::NestedHeights;
 use crate::scene::picture::placed_text::PlacedText;
 use crate::scene::{SceneLabel, SceneModel};
 use crate::view::camera::Camera;
+
+/// What a picture shows that its scene alone does not tell.
+pub struct AnnotatedGround<'a> {
+    /// The texts of tactical graphics.
+    pub graphics: &'a [PlacedText],
+    /// The heights of its nested grounds.
+    pub nested: &'a NestedHeights,
+}
 
 /// The annotations of a picture: labels with their positions on it, and furniture, round it where `frame` says so.
 pub fn annotations(
@@ -31,34 +40,36 @@ pub fn annotations(
     camera: &Camera,
     picture: &Rendering,
     frame: Option<&SheetFrame>,
-    graphics: &[PlacedText],
+    shown: &AnnotatedGround<'_>,
 ) -> Annotations {
+    let nested = shown.nested;
     let furniture = &scene.furniture;
     let is_bare = furniture.layout == SheetLayout::None;
     let shows = |is_wanted: bool| is_wanted && !is_bare;
     let has_classes = shows(furniture.classes.unwrap_or(frame.is_some()));
     let grid = grid_over(scene, camera, picture);
     let (mut labels, mut line_labels) = (Vec::new(), Vec::new());
-    for label in &scene.labels {
+    let lifted: Vec<SceneLabel> = scene.labels.iter().map(|label| label.lifted(scene, nested)).collect();
+    for label in &lifted {
         let at_place = project(label, camera, picture);
         match label.course {
             LabelCourse::Place => labels.extend(at_place),
             _ => line_labels.extend(line_label(label, at_place, camera, picture)),
         }
     }
-    let GraphicTexts { fixed, along } = graphic_texts(graphics, camera, picture);
+    let GraphicTexts { fixed, along } = graphic_texts(shown.graphics, camera, picture);
     line_labels.extend(along);
     Annotations {
         labels,
         line_labels,
-        contours: contour_marks(scene, camera, picture),
+        contours: contour_marks(scene, nested, camera, picture),
         fixed_texts: fixed,
         font: scene.font.clone(),
-        symbols: picture_symbols(scene, camera, picture),
+        symbols: picture_symbols(scene, nested, camera, picture),
         rim: rim_marks(scene, camera, grid.as_ref()),
         margin: frame
             .map(|frame| margin_notes(scene, camera, frame, grid.as_ref().map(|grid| grid.note.as_str()))),
-        grid: grid.map(|grid| picture_grid(&grid, scene, camera, picture)),
+        grid: grid.map(|grid| picture_grid(&grid, scene, nested, camera, picture)),
         title: scene.title.clone().filter(|_| shows(furniture.title)),
         subtitle: scene.subtitle.clone().filter(|_| shows(furniture.title)),
         north: shows(furniture.north_arrow).then(|| NorthArrow::from_camera(camera)),

@@ -8,6 +8,7 @@ use crate::pipeline::line_labels::is_seen;
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
 use crate::scene::military::{SceneSymbol, SymbolSize};
+use crate::scene::nested_ground::NestedHeights;
 use crate::view::camera::Camera;
 
 /// The heights in pixels between which a symbol of a size on the ground stays: legible, and not in the way.
@@ -16,8 +17,16 @@ const HEIGHTS_PX: [f32; 2] = [16.0, 120.0];
 const STEP_SHARE: f32 = 0.01;
 
 /// The symbols in front of the camera, with their places on the picture.
-pub fn picture_symbols(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Vec<PictureSymbol> {
-    let symbols = scene.military.iter().filter_map(|symbol| picture_symbol(symbol, camera, picture));
+pub fn picture_symbols(
+    scene: &SceneModel,
+    nested: &NestedHeights,
+    camera: &Camera,
+    picture: &Rendering,
+) -> Vec<PictureSymbol> {
+    let symbols = scene.military.iter().filter_map(|symbol| {
+        let ground = nested.lifted(scene, symbol.ground);
+        picture_symbol(symbol, ground, camera, picture)
+    });
     match scene.preset {
         Some(StylePreset::Print) => symbols.map(in_black_and_white).collect(),
         _ => symbols.collect(),
@@ -28,8 +37,13 @@ fn in_black_and_white(symbol: PictureSymbol) -> PictureSymbol {
     PictureSymbol { symbol: symbol.symbol.in_black_and_white(), ..symbol }
 }
 
-fn picture_symbol(symbol: &SceneSymbol, camera: &Camera, picture: &Rendering) -> Option<PictureSymbol> {
-    let ground = camera.project(symbol.ground)?;
+fn picture_symbol(
+    symbol: &SceneSymbol,
+    place: Vec3,
+    camera: &Camera,
+    picture: &Rendering,
+) -> Option<PictureSymbol> {
+    let ground = camera.project(place)?;
     let height = match symbol.size {
         SymbolSize::Design(height) => SymbolHeight::Design(height),
         SymbolSize::Ground(meters) => {
@@ -40,7 +54,7 @@ fn picture_symbol(symbol: &SceneSymbol, camera: &Camera, picture: &Rendering) ->
     let toward = symbol.direction_rad.and_then(|direction| {
         let step =
             Vec3::new(libm::sinf(direction), libm::cosf(direction), 0.0) * ground.depth_m.abs() * STEP_SHARE;
-        (camera.project(symbol.ground + step)?.pixel - ground.pixel).try_normalize()
+        (camera.project(place + step)?.pixel - ground.pixel).try_normalize()
     });
     Some(PictureSymbol {
         symbol: symbol.symbol.clone(),

@@ -3,14 +3,17 @@
 use crate::annotate::paint::{ComposedSheet, compose_sheet};
 use crate::annotate::report::AnnotationReport;
 use crate::annotate::sheet_frame::SheetFrame;
+use crate::description::diagnostic::Diagnostic;
 use crate::description::words::StylePreset;
 use crate::draw::pixels::Pixels;
 use crate::message::choice::{Choice, ChoiceWord, word};
-use crate::pipeline::labels;
+use crate::pipeline::labels::{self, AnnotatedGround};
 use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
+use crate::scene::nested_ground::{NestedGround, NestedHeights, nested_grounds};
 use crate::scene::paper_sheet::SCREEN_PX;
+use crate::scene::picture::nested::build_nested_draw_list;
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
@@ -70,6 +73,9 @@ pub enum PictureError {
     /// The scene cannot be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The samples of ground near the eye cannot be had.
+    #[error(transparent)]
+    Elevation(#[from] Diagnostic),
 }
 
 /// The annotated picture of a view, drawn on the current `rayon` pool. `progress` is called with the name of each step
@@ -98,8 +104,18 @@ pub fn draw_view(
     backend: RenderBackend,
     progress: &dyn Fn(&'static str),
 ) -> Result<DrawnView, PictureError> {
-    let (camera, frame) = framed_camera(scene, view, size)?;
-    let drawn = build_draw_list(scene, &camera, progress);
+    let (mut camera, frame) = framed_camera(scene, view, size)?;
+    let nested = match backend {
+        RenderBackend::Cpu => nested_grounds(scene, &camera, progress)?,
+        RenderBackend::Gpu => Vec::new(),
+    };
+    let drawn = if nested.is_empty() {
+        build_draw_list(scene, &camera, progress)
+    } else {
+        camera = nested_camera(scene, &nested, view, size)?;
+        build_nested_draw_list(scene, &nested, &camera, progress)
+    };
+    drop(nested);
     progress("drawing");
     let mut picture = render(&drawn.list, &camera, backend)?;
     apply_look(scene, &camera, &mut picture);
@@ -129,6 +145,24 @@ pub fn framed_camera(
     Ok((camera, frame))
 }
 
+/// The camera of a view of a scene with nested grounds: its eye is above the finest ground, and what it is fitted to is the finest
+/// that holds all of it.
+fn nested_camera(
+    scene: &SceneModel,
+    nested: &[NestedGround],
+    view: &SceneView,
+    size: PictureSize,
+) -> Result<Camera, CameraError> {
+    let shown =
+        |ground: &&NestedGround| view.shown().is_some_and(|shown| ground.rect().contains_rect(&shown));
+    if let Some(ground) = nested.iter().rev().find(shown) {
+        let (camera, _) = framed_camera(&ground.scene, &view.moved(-ground.origin), size)?;
+        return Ok(camera.moved(ground.origin.as_vec2().extend(0.0)));
+    }
+    let lifted = NestedHeights::new(nested).lifted_view(scene, view);
+    Ok(framed_camera(scene, &lifted, size)?.0)
+}
+
 /// The second half of [`render_view`]: paints the annotations.
 pub fn annotate_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> RenderedView {
     let ComposedView { sheet, drawn, annotations } = compose_view(scene, view, progress);
@@ -149,7 +183,8 @@ pub struct ComposedView {
 pub fn compose_view(scene: &SceneModel, view: DrawnView, progress: &dyn Fn(&'static str)) -> ComposedView {
     progress("annotating");
     let DrawnView { camera, picture, drawn, frame } = view;
-    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &drawn.graphic_texts);
+    let shown = AnnotatedGround { graphics: &drawn.graphic_texts, nested: &drawn.nested };
+    let annotations = labels::annotations(scene, &camera, &picture, frame.as_ref(), &shown);
     let (mut sheet, annotations) = compose_sheet(picture.pixels, &annotations);
     if scene.preset == Some(StylePreset::Night) {
         sheet.recolor(&night_ink);

@@ -33,6 +33,7 @@ use crate::scene::ground;
 use crate::scene::imagery;
 use crate::scene::military;
 use crate::scene::models;
+use crate::scene::nested_ground::FinerElevation;
 use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::roads::centerline::{self, Centerline};
 use crate::scene::roads::{conform, network};
@@ -159,6 +160,7 @@ pub fn build_with(
         water: OnceLock::new(),
         has_voids: OnceLock::new(),
         lattice,
+        finer: loaded.nests_step.map(|step| FinerElevation::new(document, assets, step)),
         height_range_m,
         scale,
         bounds,

@@ -19,6 +19,7 @@ use crate::dem::mosaic::Tiles;
 use crate::dem::mosaic_windows::MosaicWindows;
 use crate::dem::raster::Raster;
 use crate::dem::read::{self, DemHints, DemOptions};
+use crate::dem::reduced_windows::ReducedWindows;
 use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::vrt_source::VrtSource;
 use crate::dem::warp::metric_crs::{OffScale, metric_crs, off_scale};
@@ -36,7 +37,7 @@ use crate::remote::address::is_address;
 use crate::scene::assets::{AssetError, Assets};
 use crate::scene::overridden_crs::OverriddenCrs;
 use crate::scene::planned_pictures::ElevationNeed;
-use crate::scene::reduced_elevation::reduced_as_needed;
+use crate::scene::reduced_elevation::{ReducedElevation, reduced_as_needed};
 use crate::scene::scene_findings::SceneFindings;
 
 /// Samples beside an extent that are read of large files, so that voids on its border are known to end.
@@ -57,6 +58,8 @@ pub(super) struct ReadElevation {
     pub off_scale: Option<OffScale>,
     /// The part of the whole that the scene is made of; `None` where that is all.
     pub extent: Option<StatedExtent>,
+    /// As [`ReducedElevation::nests_step`].
+    pub nests_step: Option<u32>,
 }
 
 /// An extent in two systems.
@@ -82,6 +85,7 @@ impl ReadElevation {
         need: ElevationNeed<'_>,
         findings: &mut SceneFindings,
     ) -> Result<Self, Diagnostic> {
+        let mut nests_step = None;
         let held = match TileList::of(document, assets)? {
             None => replaced(document, assets, findings)?,
             Some(list) => {
@@ -90,15 +94,15 @@ impl ReadElevation {
                 let reduced = match windows {
                     Some(windows) if document.terrain.extent.is_some() => {
                         *findings = of_windows;
-                        return Self::around_extent(document, windows);
+                        return Self::around_extent(document, windows, need);
                     }
                     Some(windows) => reduced_as_needed(document, windows, need, &mut of_windows)?,
                     None => None,
                 };
                 match reduced {
-                    Some(reduced) => {
-                        *findings = of_windows;
-                        reduced
+                    Some(ReducedElevation { raster, nests_step: step }) => {
+                        (*findings, nests_step) = (of_windows, step);
+                        raster
                     }
                     None => list.joined(document, assets, findings)?,
                 }
@@ -114,12 +118,21 @@ impl ReadElevation {
             }
             false => None,
         };
-        Ok(Self { held, whole, window, off_scale, extent })
+        Ok(Self { held, whole, window, off_scale, extent, nests_step })
     }
 
-    /// Reads what the extent needs, and [`MARGIN`].
-    fn around_extent(document: &Document, mut windows: Box<dyn Windows + Send>) -> Result<Self, Diagnostic> {
+    /// Reads what the extent needs, and [`MARGIN`]; of a nested ground its means, and [`BESIDE`].
+    fn around_extent(
+        document: &Document,
+        windows: Box<dyn Windows + Send>,
+        need: ElevationNeed<'_>,
+    ) -> Result<Self, Diagnostic> {
         let terrain = &document.terrain;
+        let (mut windows, margin): (Box<dyn Windows + Send>, u32) = match need {
+            ElevationNeed::Nested { step: 1 } => (windows, BESIDE),
+            ElevationNeed::Nested { step } => (Box::new(ReducedWindows::new(windows, step)), BESIDE),
+            ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Pictures(_) => (windows, MARGIN),
+        };
         let whole = windows.metadata().without_samples();
         let MetricSystem { crs, off_scale } = MetricSystem::of(&mut windows, document.crs.as_ref())
             .map_err(|error| document.error(&terrain.dem, error))?;
@@ -130,7 +143,7 @@ impl ReadElevation {
         };
         let is_small = |window: &RasterWindow| window.samples() as u64 <= RASTER_SAMPLES.get();
         // The margin is given up where there is no room for it.
-        let window = Some(window(MARGIN)?).filter(is_small).map_or_else(|| window(BESIDE), Ok)?;
+        let window = Some(window(margin)?).filter(is_small).map_or_else(|| window(BESIDE), Ok)?;
         if !is_small(&window) {
             let message = format!(
                 "the extent holds {} x {} samples of the elevation model, more than the {RASTER_SAMPLES} of a scene; name a \
@@ -141,7 +154,8 @@ impl ReadElevation {
                 .error_at(terrain.extent.as_ref().and_then(|it| it.span()).unwrap_or_default(), message));
         }
         let samples = windows.samples(window).map_err(|error| document.error(&terrain.dem, error))?;
-        Ok(Self { held: part(&whole, window, samples), whole, window, off_scale, extent })
+        let held = part(&whole, window, samples);
+        Ok(Self { held, whole, window, off_scale, extent, nests_step: None })
     }
 
     /// The part of the raster with its samples in `rect`, in its own system, and `margin` more on each side, from `held` or one
@@ -262,6 +276,7 @@ impl TileList {
     ) -> Result<Option<Box<dyn Windows + Send>>, Diagnostic> {
         let dem = &document.terrain.dem;
         let most_kept = match (&document.terrain.extent, need) {
+            (_, ElevationNeed::Nested { .. }) => 0,
             (Some(_), _) => MOST_KEPT_SAMPLES.min(RASTER_SAMPLES.get()),
             (None, ElevationNeed::Pictures(_)) => PICTURED_SAMPLES.get().min(RASTER_SAMPLES.get()),
             (None, ElevationNeed::AllThatFit) => RASTER_SAMPLES.get(),

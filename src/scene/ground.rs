@@ -38,6 +38,8 @@ pub struct LoadedGround {
     pub scale_note: Option<String>,
     /// What was found, for the user.
     pub findings: SceneFindings,
+    /// The side of the squares of samples that its heights are means of, where pictures show nested grounds of more samples.
+    pub nests_step: Option<u32>,
 }
 
 /// Reads the document's elevation files, as far as they are needed, and brings them to a metric system.
@@ -83,7 +85,8 @@ pub fn load(
         findings.add(FindingCode::LengthsNotTrue, span, note.as_str());
     }
     let stated_crs = read.off_scale.map_or_else(|| crs.clone(), |off| off.stated);
-    Ok(LoadedGround { source: Arc::new(read.held), lattice, crs, stated_crs, scale_note, findings })
+    let (source, nests_step) = (Arc::new(read.held), read.nests_step);
+    Ok(LoadedGround { source, lattice, crs, stated_crs, scale_note, findings, nests_step })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system; `source` is what is read of it, without voids.

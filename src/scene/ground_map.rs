@@ -53,7 +53,10 @@ impl GroundMapCache {
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
 /// before, smoothed.
-fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
+pub(super) fn ground_map(
+    scene: &SceneModel,
+    GroundMapKey { level: number, to_sun }: GroundMapKey,
+) -> GroundMap {
     let lattice = &scene.lattice;
     let beside_light =
         || (&scene.water().is_water, WaterShore::new(lattice, scene.water()), undergrowth(scene));
@@ -113,7 +116,7 @@ fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: Ground
 const FORM_SHARE: f64 = 1.0 / 100.0;
 
 /// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
-fn form_level(lattice: &Lattice) -> u32 {
+pub(super) fn form_level(lattice: &Lattice) -> u32 {
     let form_m = lattice.extent().size().max_element() * FORM_SHARE;
     libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
 }

@@ -24,6 +24,20 @@ pub enum LabelCourse {
     Across(Vec<Vec<Vec3>>),
 }
 
+impl LabelCourse {
+    /// The course with each of its places as `place` gives it.
+    pub fn map(&self, place: impl Fn(Vec3) -> Vec3) -> Self {
+        let moved = |lines: &[Vec<Vec3>]| -> Vec<Vec<Vec3>> {
+            lines.iter().map(|line| line.iter().map(|&at| place(at)).collect()).collect()
+        };
+        match self {
+            Self::Place => Self::Place,
+            Self::Along(lines) => Self::Along(moved(lines)),
+            Self::Across(rings) => Self::Across(moved(rings)),
+        }
+    }
+}
+
 /// World lines on the ground, joined where they share an end; parts off the ground are left out.
 pub fn along(lines: Vec<Vec<DVec2>>, frame: &WorldFrame<'_>, lattice: &Lattice) -> LabelCourse {
     let extent = lattice.extent();

@@ -9,6 +9,11 @@ pub enum ElevationNeed<'a> {
     AllThatFit,
     /// As many as pictures show, for these and for nothing else.
     Pictures(&'a PlannedPictures),
+    /// Means of `step` × `step` of them within the extent of the scene file: a nested ground of a picture.
+    Nested {
+        /// A power of two.
+        step: u32,
+    },
 }
 
 /// The pictures that a scene is built for.
@@ -18,6 +23,18 @@ pub struct PlannedPictures {
     pub cameras: PlannedCameras,
     /// Their greatest size, pixels; `None` for that of each camera's paper, or of a screen.
     pub size: Option<(u32, u32)>,
+    /// How they show ground near the eye.
+    pub near: NearGround,
+}
+
+/// What pictures show of ground near the eye where its samples are too many to be read everywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NearGround {
+    /// A [nested ground](crate::scene::nested_ground) in the part of the scene's that needs more samples.
+    #[default]
+    Nested,
+    /// The scene's, which has all samples that fit.
+    Whole,
 }
 
 /// The cameras of planned pictures.

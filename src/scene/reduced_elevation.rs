@@ -8,10 +8,23 @@ use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
 use crate::geom::crs::Crs;
-use crate::limits::{RASTER_SAMPLES, REDUCED_SAMPLES};
-use crate::scene::picture::shown_step::{UnreadGround, shown_step};
-use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
+use crate::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
+use crate::scene::nested_plan::level_samples;
+use crate::scene::picture::shown_step::{UnreadGround, depends_on_samples, shown_step};
+use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
 use crate::scene::scene_findings::SceneFindings;
+
+/// Means of samples are held everywhere where they are fewer than this many times the samples that pictures read whole.
+const MOST_MEANS: u64 = 2;
+
+/// A smaller raster.
+pub(super) struct ReducedElevation {
+    /// The raster.
+    pub raster: Raster,
+    /// The side of the squares of samples that each of its samples is the mean of, where pictures show nested grounds of
+    /// more samples in it.
+    pub nests_step: Option<u32>,
+}
 
 /// The smaller raster of one that is too large for the memory, or for what pictures show of it; `None` where all of it is
 /// needed and fits.
@@ -20,15 +33,17 @@ pub(super) fn reduced_as_needed(
     mut windows: Box<dyn Windows + Send>,
     need: ElevationNeed<'_>,
     findings: &mut SceneFindings,
-) -> Result<Option<Raster>, Diagnostic> {
+) -> Result<Option<ReducedElevation>, Diagnostic> {
     let dem = &document.terrain.dem;
     let (width, height) = windows.size();
     let shown = match need {
         ElevationNeed::Pictures(pictures) => shown_by(pictures, document, &mut windows)?,
-        ElevationNeed::All | ElevationNeed::AllThatFit => 1,
+        ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => 1,
     };
     let fitting = fitting_step((width, height));
-    let step = shown.max(fitting);
+    let nests = nests(need, document)
+        && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
+    let step = if nests { least_step((width, height), level_samples()) } else { shown.max(fitting) };
     if step == 1 {
         return Ok(None);
     }
@@ -36,7 +51,13 @@ pub(super) fn reduced_as_needed(
     let raster = of_overview.unwrap_or_else(|| reduced(&mut windows, step));
     let raster = raster.map_err(|error| document.error(dem, error))?;
     let span = dem.span().unwrap_or_default();
-    if fitting > shown {
+    if nests {
+        let message = format!(
+            "of the {width} x {height} samples of the elevation model pictures take all that they show near the eye; beyond, each \
+             height is the mean of up to {step} x {step} of them"
+        );
+        findings.add(FindingCode::SamplesAveraged, span, message);
+    } else if fitting > shown {
         let message = format!(
             "the elevation model has {width} x {height} samples, more than the {RASTER_SAMPLES} of a scene: each height is \
              that of {step} x {step} of them"
@@ -50,17 +71,33 @@ pub(super) fn reduced_as_needed(
         );
         findings.add(FindingCode::SamplesAveraged, span, message);
     }
-    Ok(Some(raster))
+    Ok(Some(ReducedElevation { raster, nests_step: nests.then_some(step) }))
+}
+
+/// Whether pictures may show nested grounds of more samples than the scene's.
+fn nests(need: ElevationNeed<'_>, document: &Document) -> bool {
+    match need {
+        ElevationNeed::Pictures(pictures) => {
+            pictures.near == NearGround::Nested && !depends_on_samples(document)
+        }
+        ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => false,
+    }
+}
+
+/// The number of means of `step` × `step` samples of a raster.
+fn samples((width, height): (u32, u32), step: u32) -> u64 {
+    u64::from(width / step) * u64::from(height / step)
+}
+
+/// The side of the smallest squares of samples of which a raster has no more than `most`, a power of two.
+fn least_step(size: (u32, u32), most: u64) -> u32 {
+    (0..31).map(|power| 1 << power).find(|step| samples(size, *step) <= most).unwrap_or(1 << 31)
 }
 
 /// The side of the squares of samples of which a raster of `size` has no more than pictures show of one that is too large for
 /// the memory; 1 for one that is not.
-fn fitting_step((width, height): (u32, u32)) -> u32 {
-    let samples = |step: u32| u64::from(width / step) * u64::from(height / step);
-    if samples(1) <= RASTER_SAMPLES.get() {
-        return 1;
-    }
-    (1..31).map(|power| 1 << power).find(|step| samples(*step) <= REDUCED_SAMPLES.get()).unwrap_or(1 << 31)
+fn fitting_step(size: (u32, u32)) -> u32 {
+    if samples(size, 1) <= RASTER_SAMPLES.get() { 1 } else { least_step(size, REDUCED_SAMPLES.get()).max(2) }
 }
 
 /// [`shown_step`] of elevation that is not read yet.

@@ -41,9 +41,20 @@ impl WaterCover {
     /// Whether the point at `world` of `lattice`, whose cover this is, lies under water: the shore runs where half of what
     /// the posts around a point say is water.
     pub fn is_under(&self, lattice: &Lattice, world: DVec2) -> bool {
-        let Some((cell, part)) = lattice.cell_at(world).filter(|_| !self.is_water.is_empty()) else {
-            return false;
-        };
+        let Some((shares, part)) = self.corner_shares(lattice, world) else { return false };
+        let [south, north] = shares.map(|[west, east]| west + (east - west) * part.x);
+        south + (north - south) * part.y > 0.5
+    }
+
+    /// Whether any post around the point at `world` of `lattice`, whose cover this is, lies under water.
+    pub fn is_beside(&self, lattice: &Lattice, world: DVec2) -> bool {
+        self.corner_shares(lattice, world).is_some_and(|(shares, _)| shares.as_flattened().contains(&1.0))
+    }
+
+    /// 1 for each corner of a point's cell that is under water, in rows from the south, and the place in the cell; `None`
+    /// outside, and where no post is under water.
+    fn corner_shares(&self, lattice: &Lattice, world: DVec2) -> Option<([[f64; 2]; 2], DVec2)> {
+        let (cell, part) = lattice.cell_at(world).filter(|_| !self.is_water.is_empty())?;
         let share = |column: u32, row: u32| {
             let post = cell.offset(
                 column.min(lattice.columns() - 1 - cell.column),
@@ -51,8 +62,7 @@ impl WaterCover {
             );
             f64::from(u8::from(self.is_water[lattice.index(post)]))
         };
-        let [south, north] = [0, 1].map(|row| share(0, row) + (share(1, row) - share(0, row)) * part.x);
-        south + (north - south) * part.y > 0.5
+        Some(([0, 1].map(|row| [0, 1].map(|column| share(column, row))), part))
     }
 }
 
@@ -202,6 +212,8 @@ mod tests {
         let ground = lattice(bowl);
         let shore = (0..600).find(|&x| !cover.is_under(&ground, DVec2::new(300.0 + f64::from(x), 250.0)));
         assert_eq!(shore, Some(105), "between the tenth post, which is water, and the next");
+        let beside = [106.0, 112.0].map(|x| cover.is_beside(&ground, DVec2::new(300.0 + x, 250.0)));
+        assert_eq!(beside, [true, false], "in the cell of the shore, and in the next");
         assert!(!cover.is_under(&ground, DVec2::new(-9.0, 250.0)));
         assert!(!WaterCover::default().is_under(&ground, DVec2::new(300.0, 250.0)));
     }

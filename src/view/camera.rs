@@ -135,6 +135,11 @@ impl Camera {
         Ok(Self { eye, right, up, forward, projection, width, height, near, far })
     }
 
+    /// This camera with its eye moved.
+    pub fn moved(&self, by: Vec3) -> Self {
+        Self { eye: self.eye + by, ..*self }
+    }
+
     /// How rays reach the picture.
     pub fn projection(&self) -> ViewProjection {
         self.projection

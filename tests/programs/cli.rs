@@ -21,6 +21,7 @@ mod manners;
 #[cfg(target_os = "linux")]
 mod memory;
 mod meshes;
+mod near_ground;
 mod new;
 mod pages;
 mod pictures;

@@ -22,6 +22,7 @@ use crate::pipeline::grid::squares::square_names;
 use crate::pipeline::grid::trace::LineTracer;
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
+use crate::scene::nested_ground::NestedHeights;
 use crate::view::camera::Camera;
 
 /// How far apart lines are in the middle of a picture 1080 pixels high where no interval is stated, in pixels: nearer
@@ -46,10 +47,11 @@ pub fn grid_over(scene: &SceneModel, camera: &Camera, picture: &Rendering) -> Op
 pub fn picture_grid(
     grid: &GroundGrid,
     scene: &SceneModel,
+    nested: &NestedHeights,
     camera: &Camera,
     picture: &Rendering,
 ) -> PictureGrid {
-    let tracer = LineTracer::new(scene, camera, picture);
+    let tracer = LineTracer::new(scene, nested, camera, picture);
     let lines = grid.lines.par_iter().map(|line| GridLine {
         axis: line.axis,
         runs: tracer.runs(line, grid),

@@ -11,8 +11,7 @@ use crate::geom::simplify::simplified;
 use crate::pipeline::grid::lines::{GroundGrid, GroundLine};
 use crate::render::picture::Rendering;
 use crate::scene::SceneModel;
-use crate::terrain::full_resolution::FullResolution;
-use crate::terrain::triangle_surface::TriangleSurface;
+use crate::scene::nested_ground::NestedHeights;
 use crate::view::camera::{Camera, Projected};
 
 /// The length of a piece on the picture in pixels: shorter ones cost more and show no more of the ground's shape.
@@ -34,7 +33,8 @@ const MISS_PX: f64 = 0.2;
 pub struct LineTracer<'a> {
     camera: &'a Camera,
     picture: &'a Rendering,
-    ground: FullResolution<'a>,
+    scene: &'a SceneModel,
+    nested: &'a NestedHeights,
     longest_m: f64,
     least_apart_px: f32,
     frame: Rect,
@@ -56,14 +56,19 @@ struct TracedRuns {
 }
 
 impl<'a> LineTracer<'a> {
-    pub fn new(scene: &'a SceneModel, camera: &'a Camera, picture: &'a Rendering) -> Self {
+    pub fn new(
+        scene: &'a SceneModel,
+        nested: &'a NestedHeights,
+        camera: &'a Camera,
+        picture: &'a Rendering,
+    ) -> Self {
         let (width, height) = camera.size();
-        let lattice = scene.ground().lattice();
         Self {
             camera,
             picture,
-            ground: FullResolution { lattice },
-            longest_m: lattice.cell().max_element() * PIECE_CELLS,
+            scene,
+            nested,
+            longest_m: nested.finest(&scene.lattice).cell().max_element() * PIECE_CELLS,
             least_apart_px: LEAST_APART_PX * (height as f32 / 1080.0).max(0.4),
             frame: Rect { min: DVec2::ZERO, max: DVec2::new(width.into(), height.into()) },
         }
@@ -86,7 +91,8 @@ impl<'a> LineTracer<'a> {
     }
 
     fn point(&self, at: DVec2) -> TracedPoint {
-        let seen = self.ground.displayed_z(at).and_then(|z| self.camera.project(at.extend(z).as_vec3()));
+        let seen =
+            self.nested.drawn_z(self.scene, at).and_then(|z| self.camera.project(at.extend(z).as_vec3()));
         TracedPoint { at, seen }
     }
 
@@ -147,7 +153,7 @@ impl<'a> LineTracer<'a> {
     fn is_apart(&self, from: TracedPoint, to: TracedPoint, start: &Projected, apart_m: f64) -> bool {
         let along = to.at - from.at;
         let Some(across) = along.perp().try_normalize() else { return false };
-        let z = self.ground.displayed_z(from.at).unwrap_or_default();
+        let z = self.nested.drawn_z(self.scene, from.at).unwrap_or_default();
         let project = |at: DVec2| self.camera.project(at.extend(z).as_vec3()).map(|seen| seen.pixel);
         let (Some(next), Some(ahead)) = (project(from.at + across * apart_m), project(to.at)) else {
             return true;

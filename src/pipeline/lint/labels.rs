@@ -9,11 +9,12 @@ use crate::annotate::report::AnnotationReport;
 use crate::description::finding_code::FindingCode;
 use crate::draw::list::FeatureId;
 use crate::message::suggest::quoted;
-use crate::pipeline::labels::annotations;
+use crate::pipeline::labels::{AnnotatedGround, annotations};
 use crate::pipeline::lint::context::LintContext;
 use crate::pipeline::lint::label_sight::{LabelSight, label_sight};
 use crate::pipeline::lint::sink::FindingSink;
 use crate::pipeline::picture::{PictureSize, framed_camera};
+use crate::scene::nested_ground::NestedHeights;
 use crate::scene::{SceneModel, SceneView};
 
 /// The most texts that a message quotes.
@@ -109,7 +110,8 @@ fn by_standing(
 fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, BTreeMap<String, FeatureId>)> {
     let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
     let LabelSight { picture, behind } = label_sight(scene, &camera);
-    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &[]);
+    let shown = AnnotatedGround { graphics: &[], nested: &NestedHeights::default() };
+    let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &shown);
     let report = compose_sheet(picture.pixels, &annotations).1;
     Some((report, behind))
 }

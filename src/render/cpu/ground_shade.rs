@@ -45,10 +45,14 @@ impl<'a> GroundShader<'a> {
     }
 
     /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
-    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, hit: &FacePoint, received: ReceivedLight) -> Vec3 {
-        let mut form = GroundPoint::default();
-        let level = self.coarser.len().min(self.map.form_level as usize);
-        self.add_bilinear(&mut form, hit.world.truncate(), level, 1.0);
+    /// `form` is the [generalized ground](Self::form) there.
+    pub fn lit(
+        &self,
+        albedo: Vec3,
+        point: &GroundPoint,
+        form: &GroundPoint,
+        received: ReceivedLight,
+    ) -> Vec3 {
         let point = ReliefPoint {
             normal: self.map.shaded_normal(&point.post),
             form: self.map.shaded_normal(&form.post),
@@ -57,6 +61,14 @@ impl<'a> GroundShader<'a> {
             elevation: self.map.ramp.elevation(point.post.height_m),
         };
         self.relief.shade(albedo, &point)
+    }
+
+    /// The generalized ground at a world position.
+    pub fn form(&self, at: Vec2) -> GroundPoint {
+        let mut form = GroundPoint::default();
+        let level = self.coarser.len().min(self.map.form_level as usize);
+        self.add_bilinear(&mut form, at, level, 1.0);
+        form
     }
 
     pub fn at(&self, hit: &FacePoint, most_taps: u32) -> GroundPoint {

@@ -2,9 +2,10 @@
 
 use std::cell::LazyCell;
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::draw::ground_inset::GroundInset;
 use crate::draw::hatching::hatching_cover;
 use crate::draw::lighting::ReceivedLight;
 use crate::draw::list::{DrawItem, DrawList, DrawVertex};
@@ -27,7 +28,17 @@ pub struct Shader<'a> {
     shadows: &'a Shadows,
     textures: Vec<Texture<'a>>,
     ground: Option<GroundShader<'a>>,
+    /// Those of finer maps, the finest first.
+    insets: Vec<InsetShader<'a>>,
     most_taps: u32,
+}
+
+/// The shader of a finer map.
+#[derive(Debug)]
+struct InsetShader<'a> {
+    ground: GroundShader<'a>,
+    origin: Vec2,
+    corners: [Vec2; 2],
 }
 
 struct FaceVertices<'a> {
@@ -46,12 +57,14 @@ pub struct Shaded {
 impl<'a> Shader<'a> {
     /// The shader of a checked list. `most_taps` bounds the readings of a texture along a grazing pixel.
     pub fn new(list: &'a DrawList, screen: &'a Screen, shadows: &'a Shadows, most_taps: u32) -> Self {
+        let to_sun = list.lighting.to_sun;
         Self {
             list,
             screen,
             shadows,
             textures: list.textures.par_iter().map(Texture::new).collect(),
-            ground: list.ground.as_deref().map(|map| GroundShader::new(map, list.lighting.to_sun)),
+            ground: list.ground.as_deref().map(|map| GroundShader::new(map, to_sun)),
+            insets: list.insets.iter().rev().map(|inset| InsetShader::new(inset, to_sun)).collect(),
             most_taps,
         }
     }
@@ -76,14 +89,15 @@ impl<'a> Shader<'a> {
         let item = self.item(face);
         let material = self.material(item);
         let hit = FacePoint::new(face, self.screen, at);
-        let ground = self.ground.as_ref().filter(|_| material.reads_ground_map());
-        let ground = ground.map(|ground| (ground, ground.at(&hit, self.most_taps)));
+        let outer = self.ground.as_ref().filter(|_| material.reads_ground_map());
+        let (finest, map_hit) = outer.map_or((None, hit), |outer| self.finest_ground(outer, hit));
+        let ground = finest.map(|ground| (ground, ground.at(&map_hit, self.most_taps)));
         let vertices = LazyCell::new(|| FaceVertices {
             corners: self.corners(item, face),
             weights: Barycentric::new(face, at),
         });
         let (mut albedo, alpha) = match (material.albedo, &ground) {
-            (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &hit), 1.0),
+            (Albedo::GroundMap, Some((ground, point))) => (ground.albedo(point, &map_hit), 1.0),
             (Albedo::Hatching, _) => {
                 let Material { base_color, .. } = material;
                 (base_color.linear(), base_color.alpha() * hatching_cover(at))
@@ -91,7 +105,7 @@ impl<'a> Shader<'a> {
             _ => self.surface_color(material, &vertices),
         };
         if let (true, Some((ground, point))) = (material.is_natural, &ground) {
-            albedo *= ground.grain(point, &hit);
+            albedo *= ground.grain(point, &map_hit);
         }
         let lighting = &self.list.lighting;
         let mut color = match (material.normals, &ground) {
@@ -100,7 +114,8 @@ impl<'a> Shader<'a> {
                     if material.albedo == Albedo::GroundMap { ground.unlit_share(point) } else { 0.0 };
                 if unlit < 1.0 {
                     let received = self.received(&hit, ShadowReceiver::Ground, true);
-                    ground.lit(albedo, point, &hit, received).lerp(albedo, unlit)
+                    let form = outer.unwrap_or(ground).form(hit.world.truncate());
+                    ground.lit(albedo, point, &form, received).lerp(albedo, unlit)
                 } else {
                     albedo
                 }
@@ -119,7 +134,7 @@ impl<'a> Shader<'a> {
         };
         let water = match (material.albedo, &ground) {
             (Albedo::GroundMap, Some((ground, point))) => {
-                ground.water_cover(point, &hit) * (1.0 - point.draped.share)
+                ground.water_cover(point, &map_hit) * (1.0 - point.draped.share)
             }
             _ => f32::from(u8::from(material.is_water)),
         };
@@ -143,6 +158,26 @@ impl<'a> Shader<'a> {
         // Clamped before samples are averaged, as in a picture with 8-bit samples: an overexposed surface would
         // otherwise spoil the smooth border of its neighbor.
         Shaded { color: color.max(Vec3::ZERO).min(Vec3::ONE), alpha }
+    }
+
+    /// The finest map at a place, and the place in its world space.
+    fn finest_ground<'b>(
+        &'b self,
+        outer: &'b GroundShader<'a>,
+        hit: FacePoint,
+    ) -> (Option<&'b GroundShader<'a>>, FacePoint) {
+        let at = hit.world.truncate();
+        let holds = |inset: &&InsetShader<'_>| {
+            let [min, max] = inset.corners;
+            min.cmple(at).all() && at.cmple(max).all()
+        };
+        match self.insets.iter().find(holds) {
+            Some(inset) => {
+                let world = hit.world - inset.origin.extend(0.0);
+                (Some(&inset.ground), FacePoint { world, ..hit })
+            }
+            None => (Some(outer), hit),
+        }
     }
 
     /// The light that reaches a point past solids; the sun is looked for only where the surface turns to it.
@@ -202,6 +237,13 @@ impl<'a> Shader<'a> {
         let weighting =
             if material.alpha == AlphaMode::Opaque { Weighting::Even } else { Weighting::ByAlpha };
         texture.sample(uv, &footprint, weighting)
+    }
+}
+
+impl<'a> InsetShader<'a> {
+    fn new(inset: &'a GroundInset, to_sun: Vec3) -> Self {
+        let ground = GroundShader::new(&inset.map, to_sun);
+        Self { ground, origin: inset.origin, corners: inset.corners() }
     }
 }
 

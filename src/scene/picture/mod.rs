@@ -11,10 +11,13 @@ mod graphic_lines;
 mod graphics;
 mod ground;
 mod haze;
+mod hole;
 mod lake_tint;
 mod line_scale;
 mod markings;
 pub mod models;
+pub mod nested;
+mod nested_surface;
 mod overlay;
 mod parallel_view;
 pub mod placed_text;
@@ -41,6 +44,7 @@ use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, Mat
 use crate::geom::aabb::Aabb;
 use crate::roam::displayed::DisplayedTerrain;
 use crate::scene::ground_map::GroundMapKey;
+use crate::scene::nested_ground::NestedHeights;
 use crate::scene::picture::detail::Viewer;
 use crate::scene::picture::fitted_view::fitted_aim;
 use crate::scene::picture::parallel_view::parallel_camera;
@@ -59,6 +63,8 @@ pub struct ViewDraw {
     pub ground_triangles: usize,
     /// The texts of tactical graphics.
     pub graphic_texts: Vec<PlacedText>,
+    /// The heights of the nested grounds among them.
+    pub nested: NestedHeights,
 }
 
 /// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
@@ -95,7 +101,7 @@ fn drawn_for(
     let displayed = Arc::new(display(scene, camera));
     let ListedScene { list, ground_triangles, graphic_texts } =
         listed(scene, &displayed, Viewer::Camera(camera), purpose, progress);
-    ViewDraw { list, displayed, ground_triangles, graphic_texts }
+    ViewDraw { list, displayed, ground_triangles, graphic_texts, nested: NestedHeights::default() }
 }
 
 /// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as

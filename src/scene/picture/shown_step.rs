@@ -35,7 +35,7 @@ use crate::scene::{FittedView, ParallelView, ViewAim};
 use crate::view::axes::DirectionAxes;
 
 /// The width of a square of samples, in pixels of level ground.
-const SQUARE_PX: f64 = 0.5;
+pub(in crate::scene) const SQUARE_PX: f64 = 0.5;
 
 /// Higher than any ground on Earth, meters.
 const HIGHEST_GROUND_M: f64 = 9000.0;
@@ -54,8 +54,8 @@ pub(in crate::scene) struct UnreadGround<'a> {
 }
 
 /// The greatest power of two so that squares of as many by as many samples are no wider than [`SQUARE_PX`] in all of
-/// `pictures` of `document`; 1 where a camera may come near the ground, and where the scene prints heights or shows what is
-/// seen from a place, which depend on single samples.
+/// `pictures` of `document`; 1 where a camera may come near the ground, and where the scene [depends on
+/// samples](depends_on_samples).
 pub(in crate::scene) fn shown_step(
     pictures: &PlannedPictures,
     document: &Document,
@@ -67,8 +67,8 @@ pub(in crate::scene) fn shown_step(
     1 << (step as u32).ilog2()
 }
 
-/// Whether pictures of a scene show heights of places in numbers, or lines of sight.
-fn depends_on_samples(document: &Document) -> bool {
+/// Whether pictures of a scene show heights of places in numbers, or what is seen from a place, which depend on single samples.
+pub(in crate::scene) fn depends_on_samples(document: &Document) -> bool {
     let prints_heights = document.labels.iter().any(|label| label.text.contains("{height}"));
     prints_heights
         || document.style.spot_heights > 0

@@ -12,7 +12,7 @@ use crate::pipeline::scene_file::{OpenSceneError, open_scene_for};
 use crate::pipeline::shards::error::ShardError;
 use crate::pipeline::shards::planned_dataset::PlannedWord;
 use crate::scene::paper_sheet::PaperSheet;
-use crate::scene::planned_pictures::{ElevationNeed, PlannedCameras, PlannedPictures};
+use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
 use crate::scene::{ParallelView, SceneModel, SceneView, ViewAim};
 use crate::view::camera::INCH_M;
 
@@ -27,7 +27,8 @@ pub fn pixel_m(scale: f64, dpi: f64) -> f64 {
 /// # Errors
 /// See [`OpenSceneError`].
 pub fn atlas_scene(path: &Path, allowed: &[PathBuf], pixel_m: f64) -> Result<SceneModel, OpenSceneError> {
-    let pictures = PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None };
+    let pictures =
+        PlannedPictures { cameras: PlannedCameras::Plans(pixel_m), size: None, near: NearGround::default() };
     open_scene_for(path, allowed, None, ElevationNeed::Pictures(&pictures), &|_| ())
 }
 
