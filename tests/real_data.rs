@@ -27,7 +27,7 @@ use glam::DVec2;
 use sandtable::annotate::paint::annotate;
 use sandtable::description::parse::parse_bytes;
 use sandtable::draw::list::{DepthLayer, FeatureId};
-use sandtable::pipeline::labels::annotations;
+use sandtable::pipeline::labels::{AnnotatedGround, annotations};
 use sandtable::render::cpu;
 use sandtable::scene::assets::Assets;
 use sandtable::scene::build::build;
@@ -71,7 +71,8 @@ fn picture(scene: &SceneModel, view: &str, name: &str, size: (u32, u32)) -> Pict
     };
     let pixels = scene.census().into_iter().map(|(kind, _)| of_kind(kind)).collect();
     let ground_pixels = showing(&|id| id == FeatureId::GROUND.0);
-    let annotations = annotations(scene, &camera, &picture, None, &shot.graphic_texts);
+    let shown = AnnotatedGround { graphics: &shot.graphic_texts, nested: &shot.nested };
+    let annotations = annotations(scene, &camera, &picture, None, &shown);
     annotate(&mut picture.pixels, &annotations);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("real_{name}.png"));
     image::save_buffer(&path, picture.pixels.bytes(), size.0, size.1, image::ColorType::Rgba8)

@@ -24,7 +24,7 @@ fn drawn(scene: &SceneModel, camera: &str) -> DrawnView {
 
 fn grid(scene: &SceneModel, view: &DrawnView) -> PictureGrid {
     let lines = grid_over(scene, &view.camera, &view.picture).expect("the scene has a grid");
-    picture_grid(&lines, scene, &view.camera, &view.picture)
+    picture_grid(&lines, scene, &view.drawn.nested, &view.camera, &view.picture)
 }
 
 /// The coordinate that a line's number stands for, meters.
