@@ -16,8 +16,8 @@
 //! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`HeightTiles`], once they
 //! are made, where a cell lies in one line.
 //!
-//! Only instructions that every x86-64 has are used (SSE2): choosing wider ones at run time needs `unsafe` calls, which
-//! this crate forbids. Rounding down is therefore done by adding and subtracting a large number.
+//! The passes are compiled for the widest vectors that the processor has ([`vectorized`]), and for those that every
+//! processor has: there rounding down would be a call, so it is done by adding and subtracting a large number.
 
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
@@ -29,6 +29,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::query::source::raster_height;
 use crate::terrain::query::tiles::{HeightTiles, TileSlot};
 use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::vectorized::vectorized;
 
 /// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
 /// above 512 the arrays leave the cache.
@@ -42,6 +43,11 @@ const PARTS: usize = 4 * CHUNK;
 
 /// A chunk whose positions span more rows than this is scattered: each position then has pages of its own.
 const COHERENT_ROWS: f64 = 64.0;
+
+/// Every so-manieth position of a chunk tells whether it is scattered: a look at all of them takes as long as a tenth of the
+/// work, and those of a scattered chunk lie apart wherever they are taken. No divisor of a row's length or of a tile's side,
+/// so that positions in the order of a grid are not all taken from one column.
+const LOOKED_AT: usize = 17;
 
 /// 1.5 · 2⁵²: a number added to it is rounded to a whole one, held in its lowest bits.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
@@ -108,9 +114,10 @@ impl CellPositions {
     const EMPTY: Self = Self { column: [0.0; CHUNK], row: [0.0; CHUNK], x: [0.0; CHUNK], y: [0.0; CHUNK] };
 
     /// Whether the positions lie so far apart that each has cache lines of its own.
+    #[inline(always)]
     fn are_scattered(&self) -> bool {
         let (mut low, mut high) = (self.row[0], self.row[0]);
-        for &row in &self.row {
+        for &row in self.row.iter().step_by(LOOKED_AT) {
             low = if row < low { row } else { low };
             high = if row > high { row } else { high };
         }
@@ -163,22 +170,39 @@ pub fn bilinear_ground(
     at: &[DVec2],
     out: HeightSlices<'_>,
 ) -> usize {
+    vectorized(
+        #[inline(always)]
+        || ground_passes(lattice, tiles, at, out),
+    )
+}
+
+#[inline(always)]
+fn ground_passes(
+    lattice: &Lattice,
+    tiles: Option<&HeightTiles>,
+    at: &[DVec2],
+    out: HeightSlices<'_>,
+) -> usize {
     let axes = [0, 1].map(|axis| LatticeAxis::new(lattice, axis));
     let mut positions = CellPositions::EMPTY;
     let mut corners = CellCorners { first: [[0f32; 2]; CHUNK], next: [[0f32; 2]; CHUNK] };
     let mut scattered = 0;
-    let passes = |at: &[DVec2; CHUNK], heights_m: &mut [f64; CHUNK]| {
-        axes[0].place::<0>(at, &mut positions.column, &mut positions.x);
-        axes[1].place::<1>(at, &mut positions.row, &mut positions.y);
-        let is_scattered = positions.are_scattered();
-        scattered += CHUNK * usize::from(is_scattered);
-        match tiles.filter(|_| is_scattered) {
-            Some(tiles) => gather_tiles(tiles, &positions, &mut corners),
-            None => gather(lattice.heights(), lattice.columns(), &positions, &mut corners),
-        }
-        mix(&positions, &corners, heights_m);
-    };
-    in_chunks(at, out, passes, |at| ground_height(lattice, Interpolation::Bilinear, at));
+    in_chunks(
+        at,
+        out,
+        #[inline(always)]
+        |at, heights_m| {
+            place_in_cells(&axes, at, &mut positions);
+            let is_scattered = positions.are_scattered();
+            scattered += CHUNK * usize::from(is_scattered);
+            match tiles.filter(|_| is_scattered) {
+                Some(tiles) => gather_tiles(tiles, &positions, &mut corners),
+                None => gather(lattice.heights(), lattice.columns(), &positions, &mut corners),
+            }
+            mix(&positions, &corners, heights_m);
+        },
+        |at| ground_height(lattice, Interpolation::Bilinear, at),
+    );
     scattered
 }
 
@@ -199,19 +223,36 @@ fn bilinear_samples<S: Copy + Default + Into<f64>>(
     at: &[DVec2],
     mut out: HeightSlices<'_>,
 ) {
-    let single = |at: DVec2| raster_height(raster, Interpolation::Bilinear, at);
     if raster.width < 2 || raster.height < 2 {
-        return out.fill(at, single);
+        return out.fill(at, |at| raster_height(raster, Interpolation::Bilinear, at));
     }
+    vectorized(
+        #[inline(always)]
+        || sample_passes(raster, samples, at, out),
+    );
+}
+
+#[inline(always)]
+fn sample_passes<S: Copy + Default + Into<f64>>(
+    raster: &Raster,
+    samples: &[S],
+    at: &[DVec2],
+    out: HeightSlices<'_>,
+) {
     let grid_from_map = raster.map_from_grid.matrix2.inverse();
     let mut positions = CellPositions::EMPTY;
     let mut corners = CellCorners { first: [[S::default(); 2]; CHUNK], next: [[S::default(); 2]; CHUNK] };
-    let passes = |at: &[DVec2; CHUNK], heights_m: &mut [f64; CHUNK]| {
-        place_between_samples(raster, grid_from_map, at, &mut positions);
-        gather(samples, raster.width, &positions, &mut corners);
-        mix_by_weights(&positions, &corners, raster.meters_per_z, heights_m);
-    };
-    in_chunks(at, out, passes, single);
+    in_chunks(
+        at,
+        out,
+        #[inline(always)]
+        |at, heights_m| {
+            place_between_samples(raster, grid_from_map, at, &mut positions);
+            gather(samples, raster.width, &positions, &mut corners);
+            mix_by_weights(&positions, &corners, raster.meters_per_z, heights_m);
+        },
+        |at| raster_height(raster, Interpolation::Bilinear, at),
+    );
 }
 
 /// Runs `passes` over every full chunk, and `single` for each height that they leave NaN and for the positions after the
@@ -249,26 +290,29 @@ impl LatticeAxis {
         }
     }
 
-    /// The cell of each position on this axis, 0 or 1, and the part of it, by the steps of [`Lattice::cell_at`].
+    /// The cell of a coordinate on this axis, and the part of it, by the steps of [`Lattice::cell_at`].
     #[inline(always)]
-    fn place<const AXIS: usize>(
-        &self,
-        at: &[DVec2; CHUNK],
-        cell: &mut [f64; CHUNK],
-        part: &mut [f64; CHUNK],
-    ) {
-        for (index, at) in at.iter().enumerate() {
-            let grid = (at.to_array()[AXIS] - self.origin) / self.cell - self.skipped;
-            let inside = clamped(grid, self.last);
-            let corner = lower_of_pair(inside, self.last);
-            cell[index] = corner;
-            part[index] = if grid == inside { inside - corner } else { f64::NAN };
-        }
+    fn place(&self, at: f64) -> (f64, f64) {
+        let grid = (at - self.origin) / self.cell - self.skipped;
+        let inside = clamped(grid, self.last);
+        let corner = lower_of_pair(inside, self.last);
+        (corner, if grid == inside { inside - corner } else { f64::NAN })
+    }
+}
+
+/// The cells of positions on a lattice and the parts of them, both axes in one loop: each alone would read every other number,
+/// which vectors do for all but the last.
+#[inline(always)]
+fn place_in_cells(axes: &[LatticeAxis; 2], at: &[DVec2; CHUNK], positions: &mut CellPositions) {
+    for (index, at) in at.iter().enumerate() {
+        (positions.column[index], positions.x[index]) = axes[0].place(at.x);
+        (positions.row[index], positions.y[index]) = axes[1].place(at.y);
     }
 }
 
 /// The samples west and north of each position and the part of the way to the next, by the steps of
 /// [`crate::dem::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
+#[inline(always)]
 fn place_between_samples(
     raster: &Raster,
     grid_from_map: DMat2,
@@ -277,17 +321,20 @@ fn place_between_samples(
 ) {
     let translation = raster.map_from_grid.translation;
     let last = [f64::from(raster.width - 1), f64::from(raster.height - 1)];
-    let part_of = |grid: f64, last: f64| {
-        let from_first = clamped(grid - 0.5, last);
-        let first = lower_of_pair(from_first, last);
-        let part = from_first - first;
-        (first, if part > ON_CENTER && part < 1.0 - ON_CENTER { part } else { f64::NAN })
-    };
     for (index, &at) in at.iter().enumerate() {
         let grid = grid_from_map * (at - translation);
-        (positions.column[index], positions.x[index]) = part_of(grid.x, last[0]);
-        (positions.row[index], positions.y[index]) = part_of(grid.y, last[1]);
+        (positions.column[index], positions.x[index]) = between_centers(grid.x, last[0]);
+        (positions.row[index], positions.y[index]) = between_centers(grid.y, last[1]);
     }
+}
+
+/// The sample before a grid coordinate and the part of the way to the next; `last` is the last sample.
+#[inline(always)]
+fn between_centers(grid: f64, last: f64) -> (f64, f64) {
+    let from_first = clamped(grid - 0.5, last);
+    let first = lower_of_pair(from_first, last);
+    let part = from_first - first;
+    (first, if part > ON_CENTER && part < 1.0 - ON_CENTER { part } else { f64::NAN })
 }
 
 /// `value` clamped to 0..=`last`; 0 for NaN.
@@ -314,10 +361,12 @@ pub(in crate::terrain::query) fn rounded(value: f64) -> f64 {
 /// A whole number from 0 to 2⁵¹ as an index.
 #[inline(always)]
 pub(in crate::terrain::query) fn index_of(whole: f64) -> usize {
-    (whole + WHOLE).to_bits().wrapping_sub(WHOLE.to_bits()) as usize
+    // The mask also proves to the compiler that nothing overflows where something is added.
+    ((whole + WHOLE).to_bits() & ((1 << 51) - 1)) as usize
 }
 
 /// Reads the corners from rows of `columns` samples.
+#[inline(always)]
 fn gather<S: Copy>(samples: &[S], columns: u32, positions: &CellPositions, corners: &mut CellCorners<S>) {
     let stride = columns as usize;
     let mut indices = [0usize; CHUNK];
@@ -332,6 +381,7 @@ fn gather<S: Copy>(samples: &[S], columns: u32, positions: &CellPositions, corne
 }
 
 /// Reads the corners from tiles.
+#[inline(always)]
 fn gather_tiles(tiles: &HeightTiles, positions: &CellPositions, corners: &mut CellCorners<f32>) {
     let mut slots = [TileSlot::default(); CHUNK];
     for (slot, (&column, &row)) in slots.iter_mut().zip(positions.column.iter().zip(&positions.row)) {
@@ -343,6 +393,7 @@ fn gather_tiles(tiles: &HeightTiles, positions: &CellPositions, corners: &mut Ce
 }
 
 /// The formula of [`crate::terrain::query::cell::bilinear`].
+#[inline(always)]
 fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64; CHUNK]) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
         let [[sw, se], [nw, ne]] = [corners.first[index].map(f64::from), corners.next[index].map(f64::from)];
@@ -352,6 +403,7 @@ fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f
 }
 
 /// The formula of [`crate::dem::sample`], where all four corners count.
+#[inline(always)]
 fn mix_by_weights<S: Copy + Into<f64>>(
     positions: &CellPositions,
     corners: &CellCorners<S>,
@@ -370,6 +422,7 @@ fn mix_by_weights<S: Copy + Into<f64>>(
 }
 
 /// Sets the statuses of a chunk, and queries every position whose height is NaN by itself.
+#[inline(always)]
 fn mend(at: &[DVec2], out: &mut HeightSlices<'_>, answer: impl Fn(DVec2) -> Answer) {
     out.statuses.fill(Status::Ok);
     // Counted rather than searched: a loop that may end early is not vectorized.
