@@ -5,6 +5,8 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use glam::{DAffine2, DMat2, DVec2};
+use rayon::iter::repeat_n;
+use rayon::prelude::*;
 
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
@@ -49,6 +51,9 @@ pub enum Samples {
     /// From wider integers, 64-bit floats, and values with a scale or an offset.
     F64(Vec<f64>),
 }
+
+/// Samples up to which one thread fills memory sooner than all: some milliseconds.
+const FILLED_ALONE: usize = 1 << 20;
 
 /// A float type of [`Samples`].
 pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq + Send + Sync {
@@ -111,7 +116,13 @@ impl Samples {
 
     /// Samples without data, of 64 bits where `is_wide`.
     pub(crate) fn absent(count: usize, is_wide: bool) -> Self {
-        if is_wide { Self::F64(vec![f64::NAN; count]) } else { Self::F32(vec![f32::NAN; count]) }
+        // Of a large raster the first touch of the memory takes longer than the filling: all threads do it.
+        match (is_wide, count > FILLED_ALONE) {
+            (true, true) => Self::F64(repeat_n(f64::NAN, count).collect()),
+            (false, true) => Self::F32(repeat_n(f32::NAN, count).collect()),
+            (true, false) => Self::F64(vec![f64::NAN; count]),
+            (false, false) => Self::F32(vec![f32::NAN; count]),
+        }
     }
 
     /// Whether they take 64 bits.

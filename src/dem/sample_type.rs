@@ -75,41 +75,58 @@ impl SampleType {
         }
     }
 
+    /// The least and the greatest value; of 64 bits, as the nearest float.
     pub fn range(self) -> (f64, f64) {
-        let bits = self.bytes() as i32 * 8;
-        match self.kind() {
-            NumberKind::Unsigned => (0.0, 2f64.powi(bits) - 1.0),
-            NumberKind::Signed => (-2f64.powi(bits - 1), 2f64.powi(bits - 1) - 1.0),
-            NumberKind::Float if bits == 64 => (f64::MIN, f64::MAX),
-            NumberKind::Float => (f32::MIN.into(), f32::MAX.into()),
+        match self {
+            Self::U8 => (0.0, u8::MAX.into()),
+            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
+            Self::U16 => (0.0, u16::MAX.into()),
+            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
+            Self::U32 => (0.0, u32::MAX.into()),
+            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
+            Self::U64 => (0.0, u64::MAX as f64),
+            Self::I64 => (i64::MIN as f64, i64::MAX as f64),
+            Self::F16 | Self::F32 => (f32::MIN.into(), f32::MAX.into()),
+            Self::F64 => (f64::MIN, f64::MAX),
         }
     }
 
     /// Whether `value` comes back from this type to the last bit.
     pub fn keeps(self, value: f64) -> bool {
         let (least, greatest) = self.range();
-        let is_minus_zero = value == 0.0 && value.is_sign_negative();
+        // Of equal bits, so that minus zero is not kept.
+        let comes_back = |stored: f64| stored.to_bits() == value.to_bits();
         match self {
             Self::F64 => true,
             Self::F32 => f64::from(value as f32) == value,
-            _ => (least..=greatest).contains(&value) && value.fract() == 0.0 && !is_minus_zero,
+            Self::U64 => (least..=greatest).contains(&value) && comes_back(value as u64 as f64),
+            _ => (least..=greatest).contains(&value) && comes_back(value as i64 as f64),
         }
     }
 
-    /// Appends `value`, the least significant byte first.
-    pub fn write(self, value: f64, out: &mut Vec<u8>) {
+    /// Appends values, the least significant byte of each first.
+    pub fn write(self, values: &[f64], out: &mut Vec<u8>) {
         match self {
-            Self::U8 => out.push(value as u8),
-            Self::I8 => out.extend((value as i8).to_le_bytes()),
-            Self::U16 => out.extend((value as u16).to_le_bytes()),
-            Self::I16 => out.extend((value as i16).to_le_bytes()),
-            Self::U32 => out.extend((value as u32).to_le_bytes()),
-            Self::I32 => out.extend((value as i32).to_le_bytes()),
-            Self::U64 => out.extend((value as u64).to_le_bytes()),
-            Self::I64 => out.extend((value as i64).to_le_bytes()),
-            Self::F16 => out.extend(half::f16::from_f64(value).to_le_bytes()),
-            Self::F32 => out.extend((value as f32).to_le_bytes()),
-            Self::F64 => out.extend(value.to_le_bytes()),
+            Self::U8 => append(values, out, |value| (value as u8).to_le_bytes()),
+            Self::I8 => append(values, out, |value| (value as i8).to_le_bytes()),
+            Self::U16 => append(values, out, |value| (value as u16).to_le_bytes()),
+            Self::I16 => append(values, out, |value| (value as i16).to_le_bytes()),
+            Self::U32 => append(values, out, |value| (value as u32).to_le_bytes()),
+            Self::I32 => append(values, out, |value| (value as i32).to_le_bytes()),
+            Self::U64 => append(values, out, |value| (value as u64).to_le_bytes()),
+            Self::I64 => append(values, out, |value| (value as i64).to_le_bytes()),
+            Self::F16 => append(values, out, |value| half::f16::from_f64(value).to_le_bytes()),
+            Self::F32 => append(values, out, |value| (value as f32).to_le_bytes()),
+            Self::F64 => append(values, out, f64::to_le_bytes),
         }
+    }
+}
+
+/// Appends the bytes of each value.
+fn append<const N: usize>(values: &[f64], out: &mut Vec<u8>, bytes: impl Fn(f64) -> [u8; N]) {
+    let start = out.len();
+    out.resize(start + values.len() * N, 0);
+    for (place, &value) in out[start..].chunks_exact_mut(N).zip(values) {
+        place.copy_from_slice(&bytes(value));
     }
 }

@@ -4,8 +4,13 @@
 //! minus zero), floats otherwise. Readers return integers of 16 bits and 32-bit floats in 32 bits and the others in 64,
 //! so the choice depends on the raster's own precision: what is read back has the same.
 
+use rayon::prelude::*;
+
 use crate::dem::raster::{Raster, SampleFloat, Samples};
 use crate::dem::sample_type::SampleType;
+
+/// Samples that a thread looks at together: some tens of microseconds.
+const SURVEYED_TOGETHER: usize = 1 << 16;
 
 /// A type, and its value for no data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,13 +78,17 @@ impl SampleSurvey {
 
     fn add_values<T: SampleFloat>(&mut self, values: &[T]) {
         self.samples += values.len() as u64;
-        self.valid += values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
+        let chunks = || values.par_chunks(SURVEYED_TOGETHER);
+        let valid = |values: &[T]| values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
+        self.valid += chunks().map(valid).sum::<u64>();
         for (sample, kept) in self.integers.iter().zip(&mut self.kept).filter(|(_, kept)| **kept) {
             let keeps = |value: f64| value.is_nan() || sample.keeps(value);
-            *kept = values.iter().all(|&value| keeps(value.into()));
+            *kept = chunks().all(|values| values.iter().all(|&value| keeps(value.into())));
         }
         for (candidate, taken) in self.taken.iter_mut().filter(|(_, taken)| !*taken) {
-            *taken = values.iter().any(|&value| value.into() == *candidate);
+            // Counted rather than searched: a loop that may end early is not vectorized.
+            let equal = |values: &[T]| values.iter().filter(|&&value| value.into() == *candidate).count();
+            *taken = chunks().any(|values| equal(values) > 0);
         }
     }
 

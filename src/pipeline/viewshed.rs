@@ -37,11 +37,10 @@ impl ViewshedSummary {
 
 /// The viewshed as a raster: 1 in sight, 0 hidden, no data elsewhere.
 pub fn raster(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> Raster {
-    let value = |post: &PostVisibility| match post {
+    let value = |index: usize| match viewshed.posts[index] {
         PostVisibility::Visible => 1.0,
         PostVisibility::Hidden => 0.0,
         PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
-    let values = viewshed.posts.iter().map(value).collect();
-    PostBytes { name: "viewshed", values, nodata: NO_DATA }.raster(lattice, crs)
+    PostBytes { name: "viewshed", value, nodata: NO_DATA }.raster(lattice, crs)
 }

@@ -252,7 +252,7 @@ fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     for column in 0..raster.width {
         for row in (0..raster.height).rev() {
             let value = raster.at(column, row);
-            sample.write(if value.is_nan() { NODATA } else { value }, &mut bytes);
+            sample.write(&[if value.is_nan() { NODATA } else { value }], &mut bytes);
         }
     }
     let companions = projection_file_of(raster).into_iter().collect();

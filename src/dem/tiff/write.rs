@@ -101,29 +101,49 @@ fn tile(raster: &Raster, StoredSamples { sample, nodata }: StoredSamples, column
     let size = sample.bytes();
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
     let mut line = Vec::with_capacity(TILE as usize * size);
+    let mut values = [0.0; TILE as usize];
     for y in row..row + TILE {
+        tile_row(raster, column, y.min(raster.height - 1), &mut values);
+        values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = nodata);
         line.clear();
-        for x in column..column + TILE {
-            let value = raster.at(x.min(raster.width - 1), y.min(raster.height - 1));
-            sample.write(if value.is_nan() { nodata } else { value }, &mut line);
-        }
+        sample.write(&values, &mut line);
         let predicted = if sample.is_float() { float_bytes(&line, size) } else { differences(&line, size) };
         packer.write_all(&predicted).expect("memory takes what is written");
     }
     packer.finish().expect("memory takes what is written")
 }
 
+/// The samples of a row from a column on, the last of them repeated.
+fn tile_row(raster: &Raster, column: u32, row: u32, values: &mut [f64; TILE as usize]) {
+    let count = TILE.min(raster.width - column) as usize;
+    let start = row as usize * raster.width as usize + column as usize;
+    let (held, beyond) = values.split_at_mut(count);
+    match &raster.samples {
+        Samples::F32(samples) => {
+            let samples = &samples[start..start + count];
+            held.iter_mut().zip(samples).for_each(|(value, &sample)| *value = f64::from(sample));
+        }
+        Samples::F64(samples) => held.copy_from_slice(&samples[start..start + count]),
+    }
+    beyond.fill(held[count - 1]);
+}
+
 /// Predictor 2: each value less the one before, in the type's own arithmetic.
 fn differences(line: &[u8], size: usize) -> Vec<u8> {
+    match size {
+        1 => subtracted(line, |a, b| u8::from_le_bytes(a).wrapping_sub(u8::from_le_bytes(b)).to_le_bytes()),
+        2 => subtracted(line, |a, b| u16::from_le_bytes(a).wrapping_sub(u16::from_le_bytes(b)).to_le_bytes()),
+        4 => subtracted(line, |a, b| u32::from_le_bytes(a).wrapping_sub(u32::from_le_bytes(b)).to_le_bytes()),
+        _ => subtracted(line, |a, b| u64::from_le_bytes(a).wrapping_sub(u64::from_le_bytes(b)).to_le_bytes()),
+    }
+}
+
+/// The values of `N` bytes of a line, each less the one before as `subtract` has it; the first as it is.
+fn subtracted<const N: usize>(line: &[u8], subtract: impl Fn([u8; N], [u8; N]) -> [u8; N]) -> Vec<u8> {
     let mut out = line.to_vec();
-    for at in (size..line.len()).step_by(size).rev() {
-        let mut borrow = 0u16;
-        for byte in 0..size {
-            let difference =
-                u16::from(line[at + byte]).wrapping_sub(u16::from(line[at - size + byte]) + borrow);
-            out[at + byte] = difference as u8;
-            borrow = u16::from(difference > 0xff);
-        }
+    let values = line.as_chunks().0;
+    for (out, pair) in out.as_chunks_mut().0.iter_mut().skip(1).zip(values.windows(2)) {
+        *out = subtract(pair[1], pair[0]);
     }
     out
 }

@@ -142,12 +142,20 @@ fn posts_of(window: RasterWindow, rows: u32) -> PostRect {
     PostRect { first: Post { column, row: south }, last: Post { column: column + width - 1, row: north } }
 }
 
+/// Heights up to which one thread swaps rows sooner than all.
+const SWAPPED_ALONE: usize = 1 << 18;
+
 /// Puts the last row first, in place.
 fn reverse_rows(values: &mut [f32], width: usize) {
-    let rows = values.len() / width;
-    for row in 0..rows / 2 {
-        let (above, below) = values.split_at_mut((rows - 1 - row) * width);
-        above[row * width..][..width].swap_with_slice(&mut below[..width]);
+    let half = values.len() / width / 2 * width;
+    let (first, rest) = values.split_at_mut(half);
+    let second = rest.len() - half;
+    let rest = &mut rest[second..];
+    let swap = |(row, opposite): (&mut [f32], &mut [f32])| row.swap_with_slice(opposite);
+    if half > SWAPPED_ALONE {
+        first.par_chunks_mut(width).zip(rest.par_chunks_mut(width).rev()).for_each(swap);
+    } else {
+        first.chunks_mut(width).zip(rest.chunks_mut(width).rev()).for_each(swap);
     }
 }
 

@@ -28,9 +28,8 @@ pub(super) struct OctantFrame {
     pub last: i64,
     /// How far the observer stands beyond post 0 of a ring, in posts: 0..1.
     pub offset: f64,
-    /// The distance between rings, and between posts of a ring, in the order of the lattice's held heights.
+    /// The distance between rings in the order of the lattice's held heights.
     pub ring_step: i64,
-    pub cross_step: i64,
     pub ring_cell_m: f64,
     pub cross_cell_m: f64,
 }
@@ -70,7 +69,6 @@ impl OctantFrame {
             last: left(cross_start, cross_sign, cross),
             offset: (eye[cross] - cross_start as f64).abs(),
             ring_step: steps[ring] * ring_sign,
-            cross_step: steps[cross] * cross_sign,
             ring_cell_m: cell[ring],
             cross_cell_m: cell[cross],
         }

@@ -16,6 +16,10 @@
 //! Every piece carries its error. Where one edge hides another by less than that, the greater error is kept, so that
 //! `v ± error` always contains the true horizon.
 
+use std::ops::RangeInclusive;
+
+use crate::terrain::sight::viewshed::bucket::{Bucket, ChainStanding, Doubt, EdgeChain, HorizonPiece};
+
 /// A terrain edge as the observer sees it, `u0` < `u1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HorizonEdge {
@@ -31,41 +35,6 @@ impl HorizonEdge {
     fn slope(&self) -> f64 {
         (self.v1 - self.v0) / (self.u1 - self.u0)
     }
-}
-
-/// A stretch of the horizon from `u` to the next piece's, or to the end of the bucket.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct HorizonPiece {
-    u: f64,
-    v: f64,
-    slope: f64,
-    error: f64,
-}
-
-impl HorizonPiece {
-    fn at(&self, u: f64) -> f64 {
-        self.v + self.slope * (u - self.u)
-    }
-
-    /// This piece from `u` on.
-    fn from(&self, u: f64) -> Self {
-        if u == self.u { *self } else { Self { u, v: self.at(u), ..*self } }
-    }
-}
-
-/// Rays on which ground may reach `v`, which only a line of sight decides: at an edge almost along the rays, or at a post
-/// beside a gap in the data.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Doubt {
-    pub u0: f64,
-    pub u1: f64,
-    pub v: f64,
-}
-
-#[derive(Clone, Debug, Default)]
-struct Bucket {
-    pieces: Vec<HorizonPiece>,
-    doubts: Vec<Doubt>,
 }
 
 /// Bounds of the horizon on one ray.
@@ -156,12 +125,7 @@ impl Horizon {
         if end <= self.from || self.border(index) >= self.to {
             return f64::INFINITY;
         }
-        let pieces = &self.buckets[index].pieces;
-        let ends = pieces.iter().skip(1).map(|next| next.u).chain([end]);
-        pieces
-            .iter()
-            .zip(ends)
-            .fold(f64::INFINITY, |least, (piece, end)| least.min(piece.v.min(piece.at(end)) - piece.error))
+        self.buckets[index].least(end)
     }
 
     /// For each of the equal buckets of 0..=1 a lower bound of the horizon, in it and as far around as an edge reaches that
@@ -171,9 +135,18 @@ impl Horizon {
             self.floor_is_stale = false;
             // Beyond the reach of the wedge's edges, lows are infinite, and so are floors.
             let (first, last) = (self.bucket_of(self.from), self.bucket_of(self.to));
-            for index in first.saturating_sub(REACH)..(last + REACH + 1).min(self.count) {
-                let around = index.saturating_sub(REACH)..(index + REACH + 1).min(self.count);
-                self.floor[index] = self.low[around].iter().fold(f64::INFINITY, |least, &low| least.min(low));
+            let (first, end) = (first.saturating_sub(REACH), (last + REACH + 1).min(self.count));
+            self.floor[first..end].copy_from_slice(&self.low[first..end]);
+            for by in 1..=REACH {
+                // The lows of the buckets after each, and before.
+                let last = (end + by).min(self.count);
+                if first + by < last {
+                    lower(&mut self.floor[first..last - by], &self.low[first + by..last]);
+                }
+                let start = first.max(by);
+                if start < end {
+                    lower(&mut self.floor[start..end], &self.low[start - by..end - by]);
+                }
             }
         }
         &mut self.floor
@@ -187,8 +160,13 @@ impl Horizon {
     /// of `u`.
     pub fn span(&self, u: f64, v: f64, ray_error: f64) -> Option<HorizonSpan> {
         let bucket = &self.buckets[self.bucket_of(u)];
-        let after = bucket.pieces.iter().take_while(|piece| piece.u <= u).count();
-        let piece = bucket.pieces[after.saturating_sub(1)];
+        let mut piece = &bucket.pieces[0];
+        for next in &bucket.pieces[1..] {
+            if next.u > u {
+                break;
+            }
+            piece = next;
+        }
         let at = piece.at(u);
         let span = HorizonSpan { low: at - piece.error, high: at + piece.error };
         let applies = |doubt: &Doubt| {
@@ -220,123 +198,89 @@ impl Horizon {
         let line = HorizonPiece { u: edge.u0, v: edge.v0, slope: edge.slope(), error: edge.error };
         let high = edge.v0.max(edge.v1) + edge.error;
         for index in self.bucket_of(edge.u0)..=self.bucket_of(edge.u1) {
-            // An edge may end where a bucket begins.
-            let (start, end) = (edge.u0.max(self.border(index)), edge.u1.min(self.border(index + 1)));
-            if start < end && high > self.low[index] && self.changes(index, &line, start, end) {
-                self.insert_in(index, &line, start, end);
-            }
+            self.insert_in(index, &line, (edge.u0, edge.u1), high);
         }
     }
 
-    /// Whether a line changes a bucket from `start` to `end`; most do not, and need no merge.
-    fn changes(&self, index: usize, line: &HorizonPiece, start: f64, end: f64) -> bool {
-        let pieces = &self.buckets[index].pieces;
-        let (line_start, line_end) = (line.at(start), line.at(end));
-        let ends = pieces.iter().skip(1).map(|next| next.u).chain([f64::INFINITY]);
-        pieces.iter().zip(ends).any(|(old, stop)| {
-            if stop <= start || old.u >= end {
-                return false;
-            }
-            let first = if old.u <= start { line_start - old.at(start) } else { line.at(old.u) - old.v };
-            let last = if stop >= end { line_end - old.at(end) } else { line.at(stop) - old.at(stop) };
-            let above = first.max(last);
-            above > 0.0 || line.error > old.error && -above < line.error
-        })
-    }
-
-    fn insert_in(&mut self, index: usize, line: &HorizonPiece, start: f64, end: f64) {
-        let last = self.border(index + 1);
-        let pieces = std::mem::take(&mut self.scratch);
-        let mut merged = MergedBucket { pieces, origin: PieceOrigin::None, is_changed: false };
-        let new = Contender { origin: PieceOrigin::New, piece: line };
-        let pieces = &self.buckets[index].pieces;
-        for (at, old) in pieces.iter().enumerate() {
-            let origin = PieceOrigin::Old(at);
-            let stop = pieces.get(at + 1).map_or(last, |next| next.u);
-            if stop <= start || old.u >= end {
-                merged.push(origin, old, old.u);
-                continue;
-            }
-            if old.u < start {
-                merged.push(origin, old, old.u);
-            }
-            merged.push_greater(Contender { origin, piece: old }, new, old.u.max(start), stop.min(end));
-            if stop > end {
-                merged.push(origin, old, end);
-            }
-        }
-        let MergedBucket { mut pieces, is_changed, .. } = merged;
-        // A crossing may be rounded to the end of the bucket. A piece there covers nothing, and on the last ray, which belongs
-        // to the last bucket, it would hide the pieces that end there.
-        while pieces.len() > 1 && pieces.last().is_some_and(|piece| piece.u >= last) {
-            pieces.pop();
-        }
-        if is_changed {
-            std::mem::swap(&mut pieces, &mut self.buckets[index].pieces);
+    /// Adds the part of an edge that lies within a bucket; `high` is an upper bound of the edge.
+    fn insert_in(&mut self, index: usize, line: &HorizonPiece, (u0, u1): (f64, f64), high: f64) {
+        // An edge may end where a bucket begins.
+        let border = self.border(index + 1);
+        let part = (u0.max(self.border(index)), u1.min(border));
+        if part.0 < part.1
+            && high > self.low[index]
+            && self.buckets[index].insert(line, part, border, &mut self.scratch)
+        {
             self.low[index] = self.least(index);
             self.floor_is_stale = true;
         }
-        pieces.clear();
-        self.scratch = pieces;
     }
-}
 
-/// Where the last stretch of a merged bucket comes from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum PieceOrigin {
-    None,
-    Old(usize),
-    New,
-}
-
-/// A piece or the new line, of which the greater becomes part of a merged bucket.
-#[derive(Clone, Copy)]
-struct Contender<'a> {
-    origin: PieceOrigin,
-    piece: &'a HorizonPiece,
-}
-
-/// A bucket under construction, from its old pieces and a new line.
-struct MergedBucket {
-    pieces: Vec<HorizonPiece>,
-    origin: PieceOrigin,
-    is_changed: bool,
-}
-
-impl MergedBucket {
-    /// Lets `piece` apply from `u` on; the last stretch continues if it is the same line with the same error.
-    fn push(&mut self, origin: PieceOrigin, piece: &HorizonPiece, u: f64) {
-        match self.pieces.last_mut() {
-            Some(last) if self.origin == origin && last.error == piece.error => {}
-            Some(last) if last.u == u => *last = HorizonPiece { u, v: piece.at(u), ..*piece },
-            _ => self.pieces.push(piece.from(u)),
+    /// Adds edges that join end to end; their parts off the wedge have no effect. The horizon is as after
+    /// [`Horizon::insert`] of each, but most buckets of a slope that faces the observer are decided at once: they hold the new
+    /// edges, or what they held.
+    pub fn insert_chain(&mut self, chain: &EdgeChain<'_>) {
+        let last = chain.edges();
+        let (start, end) = (chain.u[0].max(self.from), chain.u[last].min(self.to));
+        if start >= end {
+            return;
         }
-        self.origin = origin;
-        self.is_changed |= origin == PieceOrigin::New;
-    }
-
-    /// Pushes the greater of an old piece and the new line, from `start` to `end`.
-    fn push_greater(&mut self, old: Contender<'_>, new: Contender<'_>, start: f64, end: f64) {
-        let above = |u: f64| new.piece.at(u) - old.piece.at(u);
-        let (first, last) = (above(start), above(end));
-        if first <= 0.0 && last <= 0.0 {
-            self.push_winner(old, new, -first.max(last), start);
-        } else if first >= 0.0 && last >= 0.0 {
-            self.push_winner(new, old, first.min(last), start);
-        } else {
-            let middle = (start + (end - start) * (first / (first - last))).clamp(start, end);
-            let (early, late) = if first > 0.0 { (new, old) } else { (old, new) };
-            self.push_winner(early, late, 0.0, start);
-            self.push_winner(late, early, 0.0, middle);
+        let mut first = 0;
+        for index in self.bucket_of(start)..=self.bucket_of(end) {
+            let borders = (self.border(index), self.border(index + 1));
+            while first < last && chain.u[first + 1] <= borders.0 {
+                first += 1;
+            }
+            if first == last || chain.u[first] >= borders.1 {
+                return;
+            }
+            let mut through = first;
+            while through + 1 < last && chain.u[through + 1] < borders.1 {
+                through += 1;
+            }
+            self.insert_part(index, chain, first..=through, borders);
+            first = through;
         }
     }
 
-    /// Pushes the greater piece from `u` on; where it wins by less than the loser's error, it takes on the greater error.
-    fn push_winner(&mut self, winner: Contender<'_>, loser: Contender<'_>, gap: f64, u: f64) {
-        let (piece, loser_error) = (winner.piece, loser.piece.error);
-        let error = if gap < loser_error { piece.error.max(loser_error) } else { piece.error };
-        self.is_changed |= error != piece.error;
-        self.push(winner.origin, &HorizonPiece { error, ..*piece }, u);
+    /// Adds those edges of a chain that meet a bucket.
+    fn insert_part(
+        &mut self,
+        index: usize,
+        chain: &EdgeChain<'_>,
+        edges: RangeInclusive<usize>,
+        borders: (f64, f64),
+    ) {
+        if self.low[index] == f64::INFINITY {
+            return;
+        }
+        let covers = chain.u[*edges.start()] <= borders.0 && chain.u[*edges.end() + 1] >= borders.1;
+        let standing = match covers {
+            true => self.buckets[index].standing(chain, edges.clone(), borders),
+            false => ChainStanding::Mixed,
+        };
+        match standing {
+            ChainStanding::Behind => {}
+            ChainStanding::Ahead => {
+                self.buckets[index].replace(chain, edges, borders.0);
+                self.low[index] = self.least(index);
+                self.floor_is_stale = true;
+            }
+            ChainStanding::Mixed => {
+                for edge in edges {
+                    let ends = (chain.u[edge], chain.u[edge + 1]);
+                    let high = chain.v[edge].max(chain.v[edge + 1]) + chain.error;
+                    self.insert_in(index, &chain.line(edge), ends, high);
+                }
+            }
+        }
+    }
+}
+
+/// Lowers each of `floor` to the value beside it.
+fn lower(floor: &mut [f64], lows: &[f64]) {
+    for (floor, &low) in floor.iter_mut().zip(lows) {
+        *floor = if low < *floor { low } else { *floor };
     }
 }
 
@@ -385,6 +329,39 @@ mod tests {
                 over.map(|edge| edge.v0 + edge.slope() * (u - edge.u0)).fold(f64::NEG_INFINITY, f64::max);
             let span = horizon.span(u, 0.0, 0.0).expect("no doubts");
             assert!(span.low <= true_v && true_v <= span.high, "{u}: {true_v} not in {span:?}");
+        }
+    }
+
+    #[test]
+    fn edges_that_join_end_to_end_change_the_horizon_as_one_by_one() {
+        for (from, to) in [(0.0, 1.0), (0.25, 0.5), (0.75, 1.0)] {
+            let mut seeded = Seeded(11);
+            let (mut together, mut apart) = (Horizon::new(from, to), Horizon::new(from, to));
+            for turn in 1..=120_u32 {
+                let x = f64::from(turn + 3);
+                together.grow(x);
+                apart.grow(x);
+                // Slopes that face the observer, walls and hollows.
+                let rise = [0.01, 0.0, -0.2][turn as usize % 3] * f64::from(turn);
+                let first = (from * x) as usize + (seeded.part() * 3.0) as usize;
+                let last = (to * x) as usize + (seeded.part() * 3.0) as usize;
+                let u: Vec<f64> = (first..=last.max(first + 1)).map(|j| j as f64 / x).collect();
+                let v: Vec<f64> = u.iter().map(|u| rise + u + seeded.part()).collect();
+                let error = 1e-9 / x;
+                together.insert_chain(&EdgeChain { u: &u, v: &v, per_step: x, error });
+                for edge in 0..u.len() - 1 {
+                    let (u0, v0, u1, v1) = (u[edge], v[edge], u[edge + 1], v[edge + 1]);
+                    apart.insert(&HorizonEdge { u0, v0, u1, v1, error });
+                }
+                check(&together);
+            }
+            for _ in 0..2000 {
+                let u = from + seeded.part() * (to - from);
+                let spans = [&together, &apart].map(|horizon| horizon.span(u, 0.0, 0.0).expect("no doubts"));
+                let [one, other] = spans.map(|span| (span.low, span.high));
+                let is_same = |a: f64, b: f64| a == b || (a - b).abs() < 1e-12;
+                assert!(is_same(one.0, other.0) && is_same(one.1, other.1), "{u}: {spans:?}");
+            }
         }
     }
 

@@ -12,6 +12,7 @@
 //! Where a lattice holds only some of its posts, these are the posts that are looked at; they must reach as far as the range,
 //! or to the lattice's border.
 
+mod bucket;
 mod frame;
 mod horizon;
 mod near;
@@ -113,15 +114,23 @@ pub struct ViewshedCounts {
     pub beyond: usize,
 }
 
+/// Posts that a thread counts together: some microseconds.
+const COUNTED_TOGETHER: usize = 1 << 16;
+
 impl Viewshed {
     /// The number of posts of each kind.
     pub fn counts(&self) -> ViewshedCounts {
-        let mut by_kind = [0; 4];
-        for &visibility in &self.posts {
-            by_kind[visibility as usize] += 1;
+        // Kind by kind: a loop that counts all of them at once waits for its own sums.
+        let count = |kind: PostVisibility| {
+            let count = |posts: &[PostVisibility]| posts.iter().filter(|&&post| post == kind).count();
+            self.posts.par_chunks(COUNTED_TOGETHER).map(count).sum()
+        };
+        ViewshedCounts {
+            visible: count(PostVisibility::Visible),
+            hidden: count(PostVisibility::Hidden),
+            no_data: count(PostVisibility::NoData),
+            beyond: count(PostVisibility::Beyond),
         }
-        let [beyond, no_data, hidden, visible] = by_kind;
-        ViewshedCounts { visible, hidden, no_data, beyond }
     }
 }
 
@@ -154,7 +163,9 @@ pub fn viewshed_until(
     let visible: Vec<AtomicBool> =
         lattice.held_heights().par_iter().map(|_| AtomicBool::new(false)).collect();
     let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
-    let is_clear_of_diagonals = |post: Post| !observer.may_meet_a_diagonal_at(post);
+    // Lines from a post meet no diagonal but at its ends.
+    let is_on_post = observer.grid.fract() == DVec2::ZERO;
+    let is_clear_of_diagonals = |post: Post| is_on_post || !observer.may_meet_a_diagonal_at(post);
     let tests = PostTests { sees: &sees, is_clear_of_diagonals: &is_clear_of_diagonals };
     let scene = observer.scene(stop);
     let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
@@ -227,9 +238,9 @@ impl<'a> Observer<'a> {
     }
 
     /// Whether rounding may leave a diagonal that ends at a post, where it is as high as the target, just before the end of
-    /// the line to it: then only the line itself decides.
+    /// the line to it: then only the line itself decides. Of an observer that stands on no post.
     fn may_meet_a_diagonal_at(&self, post: Post) -> bool {
-        if self.grid.fract() == DVec2::ZERO || post.column % 2 != post.row % 2 {
+        if post.column % 2 != post.row % 2 {
             return false;
         }
         let to = post.grid();

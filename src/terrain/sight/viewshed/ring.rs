@@ -51,6 +51,13 @@ impl PostRing {
         index.and_then(|index| self.is_prominent.get(index)).is_some_and(|&is_prominent| is_prominent)
     }
 
+    /// Whether the edge from a post to the next, given by the first's index, has data and an end that is prominent.
+    #[inline]
+    pub fn is_prominent_edge(&self, index: usize) -> bool {
+        let (is_prominent, v) = (&self.is_prominent[index..index + 2], &self.v[index..index + 2]);
+        (is_prominent[0] || is_prominent[1]) && !(v[0] + v[1]).is_nan()
+    }
+
     /// Whether post `j` exists without data.
     pub fn is_gap(&self, j: i64) -> bool {
         self.get(j).is_some_and(|post| post.v.is_nan())
@@ -99,18 +106,23 @@ impl RingChunk {
         self.heights.clear();
         self.heights.resize(self.rings * self.width, f32::NAN);
         if frame.ring_step.unsigned_abs() == 1 {
+            // The rings lie side by side: a post and those behind it are neighbors.
             for at in 0..self.width {
-                let first = frame.index(ring, self.first + at as i64) as i64;
-                for k in 0..self.rings {
-                    let index = first + k as i64 * frame.ring_step;
-                    self.heights[k * self.width + at] = heights[index as usize];
+                let (post, end) = (self.first + at as i64, self.rings - 1);
+                let (start, stop) = (frame.index(ring, post), frame.index(ring + end, post));
+                let line = &heights[start.min(stop)..=start.max(stop)];
+                for (k, &height) in line.iter().enumerate() {
+                    let k = if start <= stop { k } else { end - k };
+                    self.heights[k * self.width + at] = height;
                 }
             }
         } else {
             for (k, row) in self.heights.chunks_exact_mut(self.width.max(1)).enumerate() {
-                let first = frame.index(ring + k, self.first) as i64;
-                for (at, height) in row.iter_mut().enumerate() {
-                    *height = heights[(first + at as i64 * frame.cross_step) as usize];
+                let (first, end) = (frame.index(ring + k, self.first), self.first + self.width as i64 - 1);
+                let last = frame.index(ring + k, end);
+                row.copy_from_slice(&heights[first.min(last)..=first.max(last)]);
+                if last < first {
+                    row.reverse();
                 }
             }
         }

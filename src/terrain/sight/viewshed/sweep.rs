@@ -22,8 +22,9 @@ use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::horizon::{Doubt, Horizon, HorizonEdge};
+use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge};
 use crate::terrain::sight::viewshed::ring::{PostRing, RingChunk, RingPost};
 use crate::terrain::stop_flag::StopFlag;
 
@@ -131,6 +132,26 @@ pub(super) struct Sweep<'a> {
     lines: usize,
 }
 
+/// Whether the corners of a cell are prominent: `a` and `d` on the ring before, `b` and `c` on the ring, as they join end to
+/// end.
+#[derive(Clone, Copy)]
+struct CellProminence {
+    a: bool,
+    b: bool,
+    c: bool,
+    d: bool,
+}
+
+/// Posts that are passed over together where none is prominent.
+const SKIPPED: usize = 16;
+
+/// Whether any of [`SKIPPED`] flags from `index` on is set, or the one after them.
+#[inline]
+fn any(flags: &[bool], index: usize) -> bool {
+    let flags = &flags[index..flags.len().min(index + SKIPPED + 1)];
+    flags.iter().fold(false, |any, &flag| any | flag)
+}
+
 impl Sweep<'_> {
     fn run(&mut self) {
         let far = (self.scene.range_m / self.frame.ring_cell_m + 1.0).min(self.frame.rings as f64) as usize;
@@ -234,7 +255,14 @@ impl Sweep<'_> {
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
         let is_ground = lift == 0.0 && !is_near;
-        for index in 0..self.ring.v.len() {
+        let mut next = 0;
+        while next < self.ring.v.len() {
+            let index = next;
+            if is_ground && index % SKIPPED == 0 && !any(&self.ring.is_prominent, index) {
+                next += SKIPPED;
+                continue;
+            }
+            next += 1;
             if is_ground && !self.ring.is_prominent[index] {
                 continue;
             }
@@ -294,27 +322,68 @@ impl Sweep<'_> {
 
     /// Adds the ring's own edges to the horizon.
     fn ring_edges(&mut self) {
-        let ray_error = self.ray_error(self.ring.x);
-        // Rungs and diagonals to a post are cut short of it by the error of the strip before.
-        let strip_ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
-        let error = self.ring.error;
-        for j in self.ring.first..self.ring.end() {
-            let (is_prominent, next_is_prominent) =
-                (self.ring.is_prominent(j), self.ring.is_prominent(j + 1));
-            if !is_prominent && !next_is_prominent {
+        self.doubt_beside_gaps();
+        let edges = self.ring.v.len().saturating_sub(1);
+        let mut index = 0;
+        while index < edges {
+            if index % SKIPPED == 0 && !any(&self.ring.is_prominent, index) {
+                index += SKIPPED;
                 continue;
             }
-            let Some(post) = self.ring.get(j) else { continue };
-            if is_prominent && (self.ring.is_gap(j - 1) || self.ring.is_gap(j + 1)) {
-                let (u0, u1) = (post.u - strip_ray_error, post.u + strip_ray_error);
-                self.horizon.doubt(Doubt { u0, u1, v: post.v + error });
+            let first = index;
+            while index < edges && self.ring.is_prominent_edge(index) {
+                index += 1;
             }
-            let Some(next) = self.ring.get(j + 1) else { continue };
-            if !(post.v + next.v).is_nan() {
-                // Beside a gap a ray may just miss the edge.
-                let cut = |is_gap: bool| if is_gap { ray_error } else { 0.0 };
-                let cuts = [cut(self.ring.is_gap(j - 1)), cut(self.ring.is_gap(j + 2))];
-                self.insert(post, next, cuts, error);
+            if first < index {
+                self.ring_run(first, index);
+            }
+            index += 1;
+        }
+    }
+
+    /// Adds the ring's edges from one post to another, given by their indices.
+    fn ring_run(&mut self, mut first: usize, mut last: usize) {
+        let (error, cut) = (self.ring.error, self.ray_error(self.ring.x));
+        let is_gap = |index: Option<usize>| {
+            index.and_then(|index| self.ring.v.get(index)).is_some_and(|height| height.is_nan())
+        };
+        // Beside a gap a ray may just miss the edge.
+        let cut_at = |is_gap: bool| if is_gap { cut } else { 0.0 };
+        let cuts = [cut_at(is_gap(first.checked_sub(1))), cut_at(is_gap(Some(last + 1)))];
+        let post = |index: usize| RingPost { u: self.ring.u[index], v: self.ring.v[index] };
+        let (start, end) = ([post(first), post(first + 1)], [post(last - 1), post(last)]);
+        if first + 1 == last {
+            return self.insert(start[0], start[1], cuts, error);
+        }
+        if cuts[0] > 0.0 {
+            self.insert(start[0], start[1], [cuts[0], 0.0], error);
+            first += 1;
+        }
+        if cuts[1] > 0.0 {
+            self.insert(end[0], end[1], [0.0, cuts[1]], error);
+            last -= 1;
+        }
+        if first < last {
+            let posts = first..=last;
+            let (u, v) = (&self.ring.u[posts.clone()], &self.ring.v[posts]);
+            self.horizon.insert_chain(&EdgeChain { u, v, per_step: self.ring.x, error });
+        }
+    }
+
+    /// Leaves the rays to prominent posts beside gaps to lines of sight: rungs and diagonals to such a post are cut short of it
+    /// by the error of the strip before.
+    fn doubt_beside_gaps(&mut self) {
+        if !self.ring.v.iter().any(|v| v.is_nan()) {
+            return;
+        }
+        let ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
+        for j in self.ring.first..self.ring.end() {
+            if self.ring.is_prominent(j)
+                && (self.ring.is_gap(j - 1) || self.ring.is_gap(j + 1))
+                && let Some(post) = self.ring.get(j)
+            {
+                let (u0, u1) = (post.u - ray_error, post.u + ray_error);
+                self.horizon.doubt(Doubt { u0, u1, v: post.v + self.ring.error });
             }
         }
     }
@@ -340,27 +409,46 @@ impl Sweep<'_> {
     fn strip(&mut self, ring: usize) {
         let parity = self.frame.parity(ring - 1);
         let first = self.ring.first;
-        let (mut near, mut far) = (self.before.is_prominent(first), self.ring.is_prominent(first));
-        for j in first..self.ring.end().min(self.before.end()) {
-            let (next_near, next_far) = (self.before.is_prominent(j + 1), self.ring.is_prominent(j + 1));
-            let (a_prominent, b_prominent) =
-                (std::mem::replace(&mut near, next_near), std::mem::replace(&mut far, next_far));
-            if !(a_prominent || b_prominent || next_far || next_near) {
+        let (near, far) =
+            (std::mem::take(&mut self.before.is_prominent), std::mem::take(&mut self.ring.is_prominent));
+        let near_first = (first - self.before.first).max(0) as usize;
+        let near_here = near.get(near_first..).unwrap_or(&[]);
+        let count = near_here.len().min(far.len());
+        let mut index = 0;
+        while index < count {
+            if index % SKIPPED == 0 && !any(near_here, index) && !any(&far, index) {
+                index += SKIPPED;
                 continue;
             }
-            let (Some(a), Some(b)) = (self.before.get(j), self.ring.get(j)) else { continue };
-            let xs = (self.before.x, self.ring.x);
-            if (a_prominent || b_prominent) && !self.is_rung_under(j, a, b) {
-                self.cross(b, a, xs, self.ring.error);
+            let at = |flags: &[bool], index: usize| flags.get(index).copied().unwrap_or(false);
+            let prominent = CellProminence {
+                a: near_here[index],
+                b: far[index],
+                c: at(&far, index + 1),
+                d: at(near_here, index + 1),
+            };
+            if prominent.a || prominent.b || prominent.c || prominent.d {
+                self.cell(first + index as i64, parity, prominent);
             }
-            let (Some(d), Some(c)) = (self.before.get(j + 1), self.ring.get(j + 1)) else { continue };
-            if (j + parity) % 2 == 0 {
-                if (a_prominent || next_far) && !self.is_outward_under(j, a, c) {
-                    self.cross(a, c, xs, self.ring.error);
-                }
-            } else if (b_prominent || next_near) && !self.is_inward_under(j, [a, b, c, d]) {
-                self.cross(b, d, xs, self.ring.error);
+            index += 1;
+        }
+        (self.before.is_prominent, self.ring.is_prominent) = (near, far);
+    }
+
+    /// Adds the rung at post `j` and the diagonal of the cell that begins there.
+    fn cell(&mut self, j: i64, parity: i64, prominent: CellProminence) {
+        let (Some(a), Some(b)) = (self.before.get(j), self.ring.get(j)) else { return };
+        let xs = (self.before.x, self.ring.x);
+        if (prominent.a || prominent.b) && !self.is_rung_under(j, a, b) {
+            self.cross(b, a, xs, self.ring.error);
+        }
+        let (Some(d), Some(c)) = (self.before.get(j + 1), self.ring.get(j + 1)) else { return };
+        if (j + parity) % 2 == 0 {
+            if (prominent.a || prominent.c) && !self.is_outward_under(j, a, c) {
+                self.cross(a, c, xs, self.ring.error);
             }
+        } else if (prominent.b || prominent.d) && !self.is_inward_under(j, [a, b, c, d]) {
+            self.cross(b, d, xs, self.ring.error);
         }
     }
 

@@ -1,0 +1,262 @@
+//! The horizon over a few rays, piece by piece, and how edges change it.
+//!
+//! An edge is merged with the pieces that it meets, or, where edges that join end to end are higher everywhere, they take
+//! the place of all pieces: on a slope that faces the observer each ring of posts hides the one before.
+
+use std::ops::RangeInclusive;
+
+/// A stretch of the horizon from `u` to the next piece's, or to the end of the bucket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HorizonPiece {
+    pub u: f64,
+    pub v: f64,
+    pub slope: f64,
+    pub error: f64,
+}
+
+impl HorizonPiece {
+    #[inline]
+    pub fn at(&self, u: f64) -> f64 {
+        self.v + self.slope * (u - self.u)
+    }
+
+    /// This piece from `u` on.
+    pub fn from(&self, u: f64) -> Self {
+        if u == self.u { *self } else { Self { u, v: self.at(u), ..*self } }
+    }
+}
+
+/// Rays on which ground may reach `v`, which only a line of sight decides: at an edge almost along the rays, or at a post
+/// beside a gap in the data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Doubt {
+    pub u0: f64,
+    pub u1: f64,
+    pub v: f64,
+}
+
+/// Edges of the same error that join end to end: the points where they do, `u` ascending, two or more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EdgeChain<'a> {
+    pub u: &'a [f64],
+    pub v: &'a [f64],
+    /// One over the step of `u` from each point to the next, which is the same for all.
+    pub per_step: f64,
+    /// The error of `v` on them.
+    pub error: f64,
+}
+
+impl EdgeChain<'_> {
+    /// How many there are.
+    pub fn edges(&self) -> usize {
+        self.u.len() - 1
+    }
+
+    /// The line of an edge.
+    #[inline]
+    pub fn line(&self, edge: usize) -> HorizonPiece {
+        let (u, v) = (self.u[edge], self.v[edge]);
+        HorizonPiece { u, v, slope: (self.v[edge + 1] - v) * self.per_step, error: self.error }
+    }
+}
+
+/// How edges stand to the pieces of a bucket.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ChainStanding {
+    /// They hide all pieces, and the bucket then holds the edges with their own error.
+    Ahead,
+    /// They change nothing.
+    Behind,
+    /// They hide some.
+    Mixed,
+}
+
+/// The pieces of the horizon over some rays, the first at their begin, and what is in doubt there.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bucket {
+    pub pieces: Vec<HorizonPiece>,
+    pub doubts: Vec<Doubt>,
+}
+
+impl Bucket {
+    /// A lower bound of the horizon up to the bucket's `end`.
+    pub fn least(&self, end: f64) -> f64 {
+        let ends = self.pieces.iter().skip(1).map(|next| next.u).chain([end]);
+        let least = |piece: &HorizonPiece, end: f64| piece.v.min(piece.at(end)) - piece.error;
+        self.pieces.iter().zip(ends).fold(f64::INFINITY, |low, (piece, end)| low.min(least(piece, end)))
+    }
+
+    /// How edges of a chain stand that cover the bucket, whose borders are `begin` and `end`.
+    pub fn standing(
+        &self,
+        chain: &EdgeChain<'_>,
+        edges: RangeInclusive<usize>,
+        (begin, end): (f64, f64),
+    ) -> ChainStanding {
+        let (mut is_ahead, mut is_behind) = (true, true);
+        let (mut edge, mut start) = (*edges.start(), begin);
+        let mut line = chain.line(edge);
+        let mut pieces = self.pieces.iter();
+        let Some(mut old) = pieces.next() else { return ChainStanding::Mixed };
+        let mut next = pieces.next();
+        // Stretch by stretch on which both are straight.
+        loop {
+            let (old_stop, line_stop) = (next.map_or(end, |next| next.u), chain.u[edge + 1].min(end));
+            let stop = old_stop.min(line_stop);
+            let (first, last) = (line.at(start) - old.at(start), line.at(stop) - old.at(stop));
+            let (lead, most) = (first.min(last), first.max(last));
+            // As the merge of a single edge decides it.
+            is_ahead &= lead >= 0.0 && (lead >= old.error || old.error <= chain.error);
+            is_behind &= most <= 0.0 && (chain.error <= old.error || -most >= chain.error);
+            if stop >= end || !(is_ahead || is_behind) {
+                break;
+            }
+            if let Some(piece) = next.filter(|_| stop == old_stop) {
+                (old, next) = (piece, pieces.next());
+            }
+            if stop == line_stop {
+                edge += 1;
+                line = chain.line(edge);
+            }
+            start = stop;
+        }
+        match (is_ahead, is_behind) {
+            (_, true) => ChainStanding::Behind,
+            (true, _) => ChainStanding::Ahead,
+            _ => ChainStanding::Mixed,
+        }
+    }
+
+    /// Lets edges of a chain take the place of all pieces, from the bucket's `begin` on.
+    pub fn replace(&mut self, chain: &EdgeChain<'_>, edges: RangeInclusive<usize>, begin: f64) {
+        self.pieces.clear();
+        self.pieces.extend(edges.map(|edge| chain.line(edge).from(chain.u[edge].max(begin))));
+    }
+
+    /// Merges a line with the pieces from `part.0` to `part.1`; returns whether that changed any. The bucket ends at `last`;
+    /// what `scratch` holds does not matter.
+    pub fn insert(
+        &mut self,
+        line: &HorizonPiece,
+        part: (f64, f64),
+        last: f64,
+        scratch: &mut Vec<HorizonPiece>,
+    ) -> bool {
+        self.changes(line, part) && self.merge(line, part, last, scratch)
+    }
+
+    /// Whether a line changes a piece from `start` to `end`; most do not, and need no merge.
+    fn changes(&self, line: &HorizonPiece, (start, end): (f64, f64)) -> bool {
+        let pieces = &self.pieces;
+        let (line_start, line_end) = (line.at(start), line.at(end));
+        let ends = pieces.iter().skip(1).map(|next| next.u).chain([f64::INFINITY]);
+        pieces.iter().zip(ends).any(|(old, stop)| {
+            if stop <= start || old.u >= end {
+                return false;
+            }
+            let first = if old.u <= start { line_start - old.at(start) } else { line.at(old.u) - old.v };
+            let last = if stop >= end { line_end - old.at(end) } else { line.at(stop) - old.at(stop) };
+            let above = first.max(last);
+            above > 0.0 || line.error > old.error && -above < line.error
+        })
+    }
+
+    fn merge(
+        &mut self,
+        line: &HorizonPiece,
+        (start, end): (f64, f64),
+        last: f64,
+        scratch: &mut Vec<HorizonPiece>,
+    ) -> bool {
+        let mut pieces = std::mem::take(scratch);
+        pieces.clear();
+        let mut merged = MergedBucket { pieces, origin: PieceOrigin::None, is_changed: false };
+        let new = Contender { origin: PieceOrigin::New, piece: line };
+        let pieces = &self.pieces;
+        for (at, old) in pieces.iter().enumerate() {
+            let origin = PieceOrigin::Old(at);
+            let stop = pieces.get(at + 1).map_or(last, |next| next.u);
+            if stop <= start || old.u >= end {
+                merged.push(origin, old, old.u);
+                continue;
+            }
+            if old.u < start {
+                merged.push(origin, old, old.u);
+            }
+            merged.push_greater(Contender { origin, piece: old }, new, old.u.max(start), stop.min(end));
+            if stop > end {
+                merged.push(origin, old, end);
+            }
+        }
+        let MergedBucket { mut pieces, is_changed, .. } = merged;
+        // A crossing may be rounded to the end of the bucket. A piece there covers nothing, and on the last ray, which belongs
+        // to the last bucket, it would hide the pieces that end there.
+        while pieces.len() > 1 && pieces.last().is_some_and(|piece| piece.u >= last) {
+            pieces.pop();
+        }
+        if is_changed {
+            std::mem::swap(&mut pieces, &mut self.pieces);
+        }
+        *scratch = pieces;
+        is_changed
+    }
+}
+
+/// Where the last stretch of a merged bucket comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum PieceOrigin {
+    None,
+    Old(usize),
+    New,
+}
+
+/// A piece or the new line, of which the greater becomes part of a merged bucket.
+#[derive(Clone, Copy)]
+struct Contender<'a> {
+    origin: PieceOrigin,
+    piece: &'a HorizonPiece,
+}
+
+/// A bucket under construction, from its old pieces and a new line.
+struct MergedBucket {
+    pieces: Vec<HorizonPiece>,
+    origin: PieceOrigin,
+    is_changed: bool,
+}
+
+impl MergedBucket {
+    /// Lets `piece` apply from `u` on; the last stretch continues if it is the same line with the same error.
+    fn push(&mut self, origin: PieceOrigin, piece: &HorizonPiece, u: f64) {
+        match self.pieces.last_mut() {
+            Some(last) if self.origin == origin && last.error == piece.error => {}
+            Some(last) if last.u == u => *last = HorizonPiece { u, v: piece.at(u), ..*piece },
+            _ => self.pieces.push(piece.from(u)),
+        }
+        self.origin = origin;
+        self.is_changed |= origin == PieceOrigin::New;
+    }
+
+    /// Pushes the greater of an old piece and the new line, from `start` to `end`.
+    fn push_greater(&mut self, old: Contender<'_>, new: Contender<'_>, start: f64, end: f64) {
+        let above = |u: f64| new.piece.at(u) - old.piece.at(u);
+        let (first, last) = (above(start), above(end));
+        if first <= 0.0 && last <= 0.0 {
+            self.push_winner(old, new, -first.max(last), start);
+        } else if first >= 0.0 && last >= 0.0 {
+            self.push_winner(new, old, first.min(last), start);
+        } else {
+            let middle = (start + (end - start) * (first / (first - last))).clamp(start, end);
+            let (early, late) = if first > 0.0 { (new, old) } else { (old, new) };
+            self.push_winner(early, late, 0.0, start);
+            self.push_winner(late, early, 0.0, middle);
+        }
+    }
+
+    /// Pushes the greater piece from `u` on; where it wins by less than the loser's error, it takes on the greater error.
+    fn push_winner(&mut self, winner: Contender<'_>, loser: Contender<'_>, gap: f64, u: f64) {
+        let (piece, loser_error) = (winner.piece, loser.piece.error);
+        let error = if gap < loser_error { piece.error.max(loser_error) } else { piece.error };
+        self.is_changed |= error != piece.error;
+        self.push(winner.origin, &HorizonPiece { error, ..*piece }, u);
+    }
+}
