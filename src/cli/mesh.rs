@@ -15,6 +15,7 @@ use crate::cli::progress::StepTimer;
 use crate::cli::values::number;
 use crate::dem::raster::Raster;
 use crate::dem::read::DemOptions;
+use crate::dem::windows::MOST_KEPT_SAMPLES;
 use crate::geom::crs::Crs;
 use crate::mesh::write::{self, MeshFormat, Remarks};
 use crate::pipeline::bounded_mesh::BoundedMesh;
@@ -22,6 +23,7 @@ use crate::pipeline::dem;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files;
 use crate::pipeline::ground::{GroundError, MetricGround};
+use crate::pipeline::windowed_elevation::WindowedElevation;
 use crate::roam::bound::Deviation;
 use crate::terrain::lattice::Lattice;
 
@@ -57,13 +59,8 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     steps.begin("reading");
     let options =
         DemOptions { cell: arguments.cell, crs: arguments.crs.clone(), ..arguments.heights.dem_options() };
-    let mosaic = dem::open(&arguments.file, &options)?;
-    let warning = dem::warning(&arguments.file, &mosaic);
-    let MetricGround { lattice, crs } =
-        MetricGround::from_raster(&mosaic.raster).map_err(|error| match error {
-            GroundError::Warp(error) => place_error(&arguments.file, &error, "--crs"),
-            other => FileError::at(&arguments.file)(other).into(),
-        })?;
+    let MeshedGround { ground, header, warning } = MeshedGround::open(arguments, &options)?;
+    let MetricGround { lattice, crs } = ground;
     let lattice = Arc::new(lattice);
     steps.begin("building the mesh");
     let bounded = BoundedMesh::new(&lattice, arguments.max_error).map_err(FileError::at(&arguments.file))?;
@@ -72,10 +69,41 @@ pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
     files::write_with(out, |out| write::write(format, &bounded.mesh, &remarks, out))?;
     steps.finish();
     warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
-    if let Some(note) = resampled(&mosaic.raster, &lattice, &crs) {
+    if let Some(note) = resampled(&header, &lattice, &crs) {
         warn(&format!("note: {}: {note}", arguments.file.display()));
     }
     print_lines(&summary(arguments, &lattice, &crs, &bounded))
+}
+
+/// The ground that a mesh is made of.
+struct MeshedGround {
+    ground: MetricGround,
+    /// The raster without its samples, which are not held.
+    header: Raster,
+    /// A warning for the user about the files, where there is one.
+    warning: Option<String>,
+}
+
+impl MeshedGround {
+    /// The ground of the elevation file. Of a large one only the heights of posts are held, not the file.
+    fn open(arguments: &MeshArguments, options: &DemOptions) -> Result<Self, CliError> {
+        let file = &arguments.file;
+        if let Some(windows) = dem::open_large(file, options, MOST_KEPT_SAMPLES) {
+            let elevation = WindowedElevation::new(windows);
+            let ground = elevation.whole_ground().map_err(|error| match &*error {
+                GroundError::Warp(error) => place_error(file, error, "--crs"),
+                _ => FileError::at(file)(error).into(),
+            })?;
+            return Ok(Self { ground, header: elevation.header().without_samples(), warning: None });
+        }
+        let mosaic = dem::open(file, options)?;
+        let warning = dem::warning(file, &mosaic);
+        let ground = MetricGround::from_raster(&mosaic.raster).map_err(|error| match error {
+            GroundError::Warp(error) => place_error(file, &error, "--crs"),
+            other => FileError::at(file)(other).into(),
+        })?;
+        Ok(Self { ground, header: mosaic.raster.without_samples(), warning })
+    }
 }
 
 /// A note that the elevations were resampled; `None` if the posts are the file's.

@@ -18,14 +18,17 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::memory::check_memory;
-use crate::pipeline::ground::{GroundError, QueriedGround};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::pipeline::ground::{GroundError, MetricGround, QueriedGround};
+use crate::terrain::lattice::{Lattice, LatticeError, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::windowed::{lattice_part, windowed_ground_heights, windowed_source_heights};
 use crate::terrain::query::{Interpolation, Surface};
 
 /// Posts around the positions of a query: those of the cells that these lie in, and a few for rounding.
 const HALO: f64 = 4.0;
+
+/// The memory that ground takes while something is made of all of it: its heights, and a number beside each.
+const BYTES_PER_POST: u64 = 8;
 
 /// Elevation whose samples are read when a query needs them.
 pub struct WindowedElevation {
@@ -159,6 +162,33 @@ impl WindowedElevation {
         let lattice = lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))?;
         let vertical_datum = self.header.vertical_datum.clone();
         Ok(QueriedGround { lattice: Arc::new(lattice), crs, vertical_datum })
+    }
+
+    /// The ground of all of the elevation, which is then in memory: a number for each post, and nothing of the file. The same as
+    /// [`MetricGround::from_raster`] makes of the raster in memory, to the last bit.
+    ///
+    /// # Errors
+    /// As [`WindowedElevation::ground`]; and where there is not the memory for it.
+    pub fn whole_ground(&self) -> Result<MetricGround, Arc<GroundError>> {
+        let (plan, crs) = (self.plan()?, self.ground_crs()?);
+        let (width, height) = (plan.header().width, plan.header().height);
+        let posts = u64::from(width) * u64::from(height);
+        if posts > RASTER_SAMPLES.get() {
+            let size = U64Vec2::new(width.into(), height.into());
+            return Err(Arc::new(DemErrorKind::TooLarge { size, most: &RASTER_SAMPLES }.into()));
+        }
+        check_memory(posts * BYTES_PER_POST, "the raster", "cut or coarsen it")
+            .map_err(|refused| Arc::new(LatticeError::from(refused).into()))?;
+        let last = Post { column: width - 1, row: height - 1 };
+        let held = PostRect { first: Post { column: 0, row: 0 }, last };
+        let mut source = self.source();
+        let mut metric = MetricWindows::new(&mut **source, plan);
+        let lattice = lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))?;
+        let (low, high) = lattice.height_range();
+        match low <= high {
+            true => Ok(MetricGround { lattice, crs }),
+            false => Err(Arc::new(LatticeError::Empty.into())),
+        }
     }
 
     fn source(&self) -> MutexGuard<'_, Box<dyn Windows + Send>> {

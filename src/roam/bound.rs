@@ -1,7 +1,10 @@
 //! The vertical distances of a mesh over the lattice's posts from the ground, measured at every post.
 //!
 //! This checks the promise of an error bound, so it shares nothing with what made the mesh except the lattice: it takes the
-//! triangles as they are written, in f64.
+//! triangles as they are written, in f64. Distances are held for some rows at a time: the largest of a post is known when all
+//! triangles that meet its row were looked at.
+
+use std::cmp::Reverse;
 
 use glam::{DVec2, DVec3};
 
@@ -53,22 +56,73 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
     let posts: Vec<Post> = (0..mesh.positions.len())
         .map(|vertex| post_of(lattice, mesh, vertex).ok_or(BoundError::OffPosts(vertex)))
         .collect::<Result<_, _>>()?;
-    let mut distances = vec![f64::NAN; lattice.heights().len()];
-    for (triangle, corners) in mesh.triangles.iter().enumerate() {
-        let corner_posts = corners.map(|id| posts[id.index()]);
-        let corners = corners.map(|id| mesh.positions[id.index()].as_dvec3());
-        for span in RowSpans::new(corner_posts) {
-            for post in (span.first..=span.last).map(|column| Post { column, row: span.row }) {
-                let distance = distance(lattice, &corners, &corner_posts, post);
-                if distance.is_nan() {
-                    return Err(BoundError::OverHole { triangle, column: post.column, row: post.row });
+    let corners_of = |triangle: u32| mesh.triangles[triangle as usize].map(|id| posts[id.index()]);
+    let rows_of = |triangle: u32| {
+        let rows = corners_of(triangle).map(|post| post.row);
+        (rows[0].min(rows[1]).min(rows[2]), rows[0].max(rows[1]).max(rows[2]))
+    };
+    let mut waiting: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    waiting.sort_by_key(|&triangle| Reverse(rows_of(triangle).0));
+    // The first triangle over a hole, and the post there.
+    let mut over_hole: Option<(u32, Post)> = None;
+    let (mut sums, mut met) = (DeviationSums::default(), Vec::new());
+    for band in RowBand::all(lattice) {
+        while let Some(triangle) = waiting.pop_if(|triangle| rows_of(*triangle).0 <= band.last) {
+            met.push(triangle);
+        }
+        let mut distances = vec![f64::NAN; band.posts(lattice)];
+        for &triangle in &met {
+            let corner_posts = corners_of(triangle);
+            let corners = mesh.triangles[triangle as usize].map(|id| mesh.positions[id.index()].as_dvec3());
+            for span in RowSpans::new(corner_posts).within(band.first, band.last) {
+                for post in (span.first..=span.last).map(|column| Post { column, row: span.row }) {
+                    let distance = distance(lattice, &corners, &corner_posts, post);
+                    if distance.is_nan() && over_hole.is_none_or(|(first, _)| triangle < first) {
+                        over_hole = Some((triangle, post));
+                    }
+                    let slot = &mut distances[lattice.index(post) - band.start(lattice)];
+                    *slot = slot.max(distance);
                 }
-                let slot = &mut distances[lattice.index(post)];
-                *slot = slot.max(distance);
             }
         }
+        met.retain(|&triangle| rows_of(triangle).1 > band.last);
+        sums.add(lattice, &band, &distances);
     }
-    Ok(summary(lattice, &distances))
+    match over_hole {
+        Some((triangle, Post { column, row })) => {
+            Err(BoundError::OverHole { triangle: triangle as usize, column, row })
+        }
+        None => Ok(sums.deviation()),
+    }
+}
+
+/// Posts whose distances are held at a time: 32 MiB.
+const BAND_POSTS: u32 = 1 << 22;
+
+/// Some rows of posts.
+struct RowBand {
+    first: u32,
+    last: u32,
+}
+
+impl RowBand {
+    /// All rows of a lattice in bands, from the south.
+    fn all(lattice: &Lattice) -> impl Iterator<Item = Self> {
+        let (rows, at_once) = (lattice.rows(), (BAND_POSTS / lattice.columns()).max(1));
+        (0..rows)
+            .step_by(at_once as usize)
+            .map(move |first| Self { first, last: (first + (at_once - 1).min(rows - 1 - first)) })
+    }
+
+    /// The index of its first post.
+    fn start(&self, lattice: &Lattice) -> usize {
+        lattice.index(Post { column: 0, row: self.first })
+    }
+
+    /// How many posts it has.
+    fn posts(&self, lattice: &Lattice) -> usize {
+        (self.last - self.first + 1) as usize * lattice.columns() as usize
+    }
 }
 
 fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
@@ -92,20 +146,40 @@ fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Po
     (height - (a.z + (toward_b * ab.z + toward_c * ac.z) / doubled_area)).abs()
 }
 
-fn summary(lattice: &Lattice, distances: &[f64]) -> Deviation {
-    let (mut worst, mut max_m, mut sum, mut squares, mut measured) = (None, 0.0, 0.0, 0.0, 0);
-    for (post, &distance) in lattice.posts().zip(distances).filter(|(_, distance)| !distance.is_nan()) {
-        if worst.is_none() || distance > max_m {
-            (worst, max_m) = (Some(post), distance);
+/// What a deviation is made of, row by row from the south.
+#[derive(Default)]
+struct DeviationSums {
+    worst: Option<Post>,
+    max_m: f64,
+    sum: f64,
+    squares: f64,
+    measured: usize,
+    with_data: usize,
+}
+
+impl DeviationSums {
+    /// Adds the distances of a band's posts, NaN where no triangle covers one.
+    fn add(&mut self, lattice: &Lattice, band: &RowBand, distances: &[f64]) {
+        let start = band.start(lattice);
+        let heights = &lattice.heights()[start..start + distances.len()];
+        self.with_data += heights.iter().filter(|height| !height.is_nan()).count();
+        for (index, &distance) in distances.iter().enumerate().filter(|(_, distance)| !distance.is_nan()) {
+            if self.worst.is_none() || distance > self.max_m {
+                let (row, column) = (index as u32 / lattice.columns(), index as u32 % lattice.columns());
+                (self.worst, self.max_m) = (Some(Post { column, row: band.first + row }), distance);
+            }
+            self.sum += distance;
+            self.squares += distance * distance;
+            self.measured += 1;
         }
-        sum += distance;
-        squares += distance * distance;
-        measured += 1;
     }
-    let with_data = lattice.heights().iter().filter(|height| !height.is_nan()).count();
-    let count = measured.max(1) as f64;
-    let rms_m = (squares / count).sqrt();
-    Deviation { max_m, mean_m: sum / count, rms_m, worst, measured, left_out: with_data - measured }
+
+    fn deviation(self) -> Deviation {
+        let Self { worst, max_m, sum, squares, measured, with_data } = self;
+        let count = measured.max(1) as f64;
+        let rms_m = (squares / count).sqrt();
+        Deviation { max_m, mean_m: sum / count, rms_m, worst, measured, left_out: with_data - measured }
+    }
 }
 
 #[cfg(test)]
