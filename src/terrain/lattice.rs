@@ -17,11 +17,11 @@
 //! ```
 
 use glam::{DVec2, Vec2, Vec3};
-use rayon::prelude::*;
 
 use crate::dem::raster::{Raster, Samples};
 use crate::geom::rect::Rect;
 use crate::limits::memory::{MemoryRefused, check_memory};
+use crate::terrain::height_scan;
 use crate::terrain::post_rect::PostRect;
 
 /// Posts of a regular grid with their heights.
@@ -52,9 +52,6 @@ const BYTES_PER_POST: u64 = 16;
 
 /// Ground may be drawn this many meters off a pinned post: rounding of f32 heights, invisible in a picture.
 const PIN_SLACK_M: f32 = 1e-3;
-
-/// Posts that a thread scans together: some tens of microseconds.
-const SCANNED_TOGETHER: usize = 1 << 16;
 
 /// Why a raster cannot become the ground.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -108,20 +105,6 @@ impl Post {
     pub fn offset(self, columns: u32, rows: u32) -> Self {
         Self { column: self.column + columns, row: self.row + rows }
     }
-}
-
-/// What `scan` finds in heights, joined in their order where threads share them.
-fn scanned<T: Send>(
-    heights: &[f32],
-    scan: impl Fn(&[f32]) -> T + Sync,
-    join: impl Fn(T, T) -> T + Sync,
-) -> T {
-    // Small parts, as walks read them by the thousand, are scanned before another thread wakes.
-    if heights.len() <= SCANNED_TOGETHER {
-        return scan(heights);
-    }
-    let parts = heights.par_chunks(SCANNED_TOGETHER).map(&scan);
-    parts.reduce_with(|first, next| join(first, next)).unwrap_or_else(|| scan(&[]))
 }
 
 impl Lattice {
@@ -233,9 +216,7 @@ impl Lattice {
         held: PostRect,
         heights: Vec<f32>,
     ) -> Result<Self, LatticeError> {
-        let is_beyond = |height: &&f32| height.abs() > HIGHEST_M;
-        let beyond = |heights: &[f32]| heights.iter().find(is_beyond).copied();
-        if let Some(height) = scanned(&heights, beyond, Option::or) {
+        if let Some(height) = height_scan::first_beyond(&heights, HIGHEST_M) {
             return Err(LatticeError::TooHigh { height });
         }
         let pinned = vec![false; heights.len()];
@@ -470,24 +451,7 @@ impl Lattice {
 
     /// The lowest and highest height of the held posts; finite unless these are a part without data.
     pub fn height_range(&self) -> (f32, f32) {
-        let none = (f32::INFINITY, f32::NEG_INFINITY);
-        let wider = |range: (f32, f32), other: (f32, f32)| {
-            // Comparisons with NaN are false; unlike `min` and `max` they are vectorized.
-            let low = if other.0 < range.0 { other.0 } else { range.0 };
-            (low, if other.1 > range.1 { other.1 } else { range.1 })
-        };
-        let range_of = |heights: &[f32]| {
-            let mut ranges = [none; 8];
-            let (eights, rest) = heights.as_chunks::<8>();
-            for eight in eights {
-                ranges
-                    .iter_mut()
-                    .zip(eight)
-                    .for_each(|(range, &height)| *range = wider(*range, (height, height)));
-            }
-            rest.iter().map(|&height| (height, height)).chain(ranges).fold(none, wider)
-        };
-        scanned(&self.heights, range_of, wider)
+        height_scan::range(&self.heights)
     }
 
     /// Map coordinates of a post.

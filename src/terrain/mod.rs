@@ -3,6 +3,7 @@
 pub mod cell_triangle;
 pub mod densify;
 pub mod full_resolution;
+mod height_scan;
 pub mod hillshade;
 pub mod lattice;
 pub mod light;

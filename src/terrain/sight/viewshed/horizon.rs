@@ -339,7 +339,8 @@ mod tests {
             let (mut together, mut apart) = (Horizon::new(from, to), Horizon::new(from, to));
             for turn in 1..=120_u32 {
                 let x = f64::from(turn + 3);
-                [&mut together, &mut apart].map(|horizon| horizon.grow(x));
+                together.grow(x);
+                apart.grow(x);
                 // Slopes that face the observer, walls and hollows.
                 let rise = [0.01, 0.0, -0.2][turn as usize % 3] * f64::from(turn);
                 let first = (from * x) as usize + (seeded.part() * 3.0) as usize;

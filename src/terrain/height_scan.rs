@@ -1,0 +1,72 @@
+//! What is known of heights when each was looked at once, by all threads where there are many.
+
+use rayon::prelude::*;
+
+/// Heights that a thread scans together: some tens of microseconds.
+const SCANNED_TOGETHER: usize = 1 << 16;
+
+/// Ranges that are widened in turn, so that none waits for the one before.
+const LANES: usize = 8;
+
+/// The least and the greatest height; (∞, −∞) where all are NaN.
+pub(in crate::terrain) fn range(heights: &[f32]) -> (f32, f32) {
+    scanned(heights, range_of, wider)
+}
+
+/// The first height above `limit` or below `-limit`.
+pub(in crate::terrain) fn first_beyond(heights: &[f32], limit: f32) -> Option<f32> {
+    scanned(heights, |heights| heights.iter().find(|height| height.abs() > limit).copied(), Option::or)
+}
+
+/// What `scan` finds, joined in the order of the heights where threads share them.
+fn scanned<T: Send>(
+    heights: &[f32],
+    scan: impl Fn(&[f32]) -> T + Sync,
+    join: impl Fn(T, T) -> T + Sync,
+) -> T {
+    // Small parts, as walks read them by the thousand, are scanned before another thread wakes.
+    if heights.len() <= SCANNED_TOGETHER {
+        return scan(heights);
+    }
+    let parts = heights.par_chunks(SCANNED_TOGETHER).map(&scan);
+    parts.reduce_with(|first, next| join(first, next)).unwrap_or_else(|| scan(&[]))
+}
+
+fn range_of(heights: &[f32]) -> (f32, f32) {
+    let none = (f32::INFINITY, f32::NEG_INFINITY);
+    let mut ranges = [none; LANES];
+    let (groups, rest) = heights.as_chunks::<LANES>();
+    for group in groups {
+        ranges.iter_mut().zip(group).for_each(|(range, &height)| *range = wider(*range, (height, height)));
+    }
+    rest.iter().map(|&height| (height, height)).chain(ranges).fold(none, wider)
+}
+
+/// A range that holds both. Comparisons with NaN are false; unlike `min` and `max` they are vectorized.
+fn wider(range: (f32, f32), other: (f32, f32)) -> (f32, f32) {
+    let low = if other.0 < range.0 { other.0 } else { range.0 };
+    (low, if other.1 > range.1 { other.1 } else { range.1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_heights_are_scanned_as_few_and_nan_is_none() {
+        for count in [0, 1, 7, 8, 9, 1000, SCANNED_TOGETHER, SCANNED_TOGETHER * 3 + 5] {
+            let height = |index: usize| match index.wrapping_mul(2_654_435_761) % 1000 {
+                part if part < 100 => f32::NAN,
+                part => part as f32 - 500.0,
+            };
+            let heights: Vec<f32> = (0..count).map(height).collect();
+            let plain = heights.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), &height| {
+                (low.min(height), high.max(height))
+            });
+            assert_eq!(range(&heights), plain, "{count}");
+            let found = heights.iter().find(|height| height.abs() > 450.0).copied();
+            assert_eq!(first_beyond(&heights, 450.0), found, "{count}");
+        }
+        assert_eq!(range(&[f32::NAN; 20]), (f32::INFINITY, f32::NEG_INFINITY));
+    }
+}
