@@ -97,7 +97,7 @@ use crate::scene::ground_map::{GroundMapCache, GroundMapKey};
 use crate::scene::label_course::LabelCourse;
 use crate::scene::land_cover::CoverLines;
 use crate::scene::military::SceneSymbol;
-use crate::scene::nested_ground::{FinerElevation, NestedHeights};
+use crate::scene::nested_ground::FinerElevation;
 use crate::scene::paper_sheet::PaperSheet;
 use crate::scene::ramps::TintedGround;
 use crate::scene::report::SceneReport;
@@ -407,15 +407,6 @@ pub struct SceneLabel {
     pub rank: f64,
 }
 
-impl SceneLabel {
-    /// The label on the finest ground of a picture of `scene`.
-    pub fn lifted(&self, scene: &SceneModel, nested: &NestedHeights) -> Self {
-        let ground = nested.lifted(scene, self.ground);
-        let course = self.course.map(|at| nested.lifted(scene, at));
-        Self { ground, anchor: self.anchor + (ground - self.ground), course, ..self.clone() }
-    }
-}
-
 /// A view of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneView {
@@ -436,32 +427,6 @@ impl SceneView {
             ViewAim::Parallel(ParallelView { dpi, .. }) => Some(dpi),
             _ => self.paper.map(|paper| paper.dpi),
         }
-    }
-
-    /// The part of the ground that it is fitted to, world X and Y; `None` where that is all, and where it has an eye.
-    pub fn shown(&self) -> Option<Rect> {
-        match self.aim {
-            ViewAim::At { .. } => None,
-            ViewAim::Fitted(FittedView { shown, .. }) | ViewAim::Parallel(ParallelView { shown, .. }) => {
-                shown
-            }
-        }
-    }
-
-    /// This view with all of its places moved.
-    pub fn moved(&self, by: DVec2) -> Self {
-        let rect = |rect: Rect| Rect { min: rect.min + by, max: rect.max + by };
-        let point = |at: Vec3| at + by.as_vec2().extend(0.0);
-        let aim = match self.aim {
-            ViewAim::At { eye, target } => ViewAim::At { eye: point(eye), target: point(target) },
-            ViewAim::Fitted(view) => ViewAim::Fitted(FittedView { shown: view.shown.map(rect), ..view }),
-            ViewAim::Parallel(view) => ViewAim::Parallel(ParallelView {
-                shown: view.shown.map(rect),
-                middle: view.middle.map(|middle| middle + by),
-                ..view
-            }),
-        };
-        Self { aim, ..self.clone() }
     }
 }
 

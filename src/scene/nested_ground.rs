@@ -18,7 +18,7 @@ use crate::scene::build::build_with;
 use crate::scene::nested_plan::{NestedPlan, nested_plans};
 use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneModel, SceneView, ViewAim};
+use crate::scene::{FittedView, ParallelView, SceneLabel, SceneModel, SceneView, ViewAim};
 use crate::terrain::full_resolution::FullResolution;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::{Interpolation, ground_height};
@@ -198,5 +198,42 @@ impl NestedHeights {
         let has_elevation = table.is_some_and(|table| table.eye_elevation.is_some());
         let eye = if has_elevation { eye } else { self.lifted(scene, eye) };
         SceneView { aim: ViewAim::At { eye, target: self.lifted(scene, target) }, ..view.clone() }
+    }
+}
+
+impl SceneLabel {
+    /// The label on the finest ground of a picture of `scene`.
+    pub fn lifted(&self, scene: &SceneModel, nested: &NestedHeights) -> Self {
+        let ground = nested.lifted(scene, self.ground);
+        let course = self.course.map(|at| nested.lifted(scene, at));
+        Self { ground, anchor: self.anchor + (ground - self.ground), course, ..self.clone() }
+    }
+}
+
+impl SceneView {
+    /// The part of the ground that it is fitted to, world X and Y; `None` where that is all, and where it has an eye.
+    pub fn shown(&self) -> Option<Rect> {
+        match self.aim {
+            ViewAim::At { .. } => None,
+            ViewAim::Fitted(FittedView { shown, .. }) | ViewAim::Parallel(ParallelView { shown, .. }) => {
+                shown
+            }
+        }
+    }
+
+    /// This view with all of its places moved.
+    pub fn moved(&self, by: DVec2) -> Self {
+        let rect = |rect: Rect| Rect { min: rect.min + by, max: rect.max + by };
+        let point = |at: Vec3| at + by.as_vec2().extend(0.0);
+        let aim = match self.aim {
+            ViewAim::At { eye, target } => ViewAim::At { eye: point(eye), target: point(target) },
+            ViewAim::Fitted(view) => ViewAim::Fitted(FittedView { shown: view.shown.map(rect), ..view }),
+            ViewAim::Parallel(view) => ViewAim::Parallel(ParallelView {
+                shown: view.shown.map(rect),
+                middle: view.middle.map(|middle| middle + by),
+                ..view
+            }),
+        };
+        Self { aim, ..self.clone() }
     }
 }
