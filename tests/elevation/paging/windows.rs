@@ -6,6 +6,7 @@ use std::path::Path;
 
 use sandtable::dem::raster::Raster;
 use sandtable::dem::read::{DemHints, read};
+use sandtable::dem::reduced::{reduced, reduced_by_overview, reduced_part};
 use sandtable::dem::tiff::windows::GeoTiffWindows;
 use sandtable::dem::windows::{RasterWindow, Windows};
 
@@ -88,6 +89,41 @@ fn windows_of_tiles_and_of_their_overviews_hold_what_the_whole_file_holds() {
             .collect();
         assert_eq!(bits(&found), bits(&wanted));
     }
+}
+
+#[test]
+fn a_smaller_raster_is_made_of_an_overview_and_lies_where_that_of_all_samples_does() {
+    let full = Image::of(1537, 1025, hilly);
+    let half = full.halved();
+    let quarter = half.halved();
+    let mut bytes = file(&[full, half, quarter], 256, Packing::Deflate);
+    let open = |bytes: &[u8]| {
+        GeoTiffWindows::open("a.tif", Cursor::new(bytes.to_vec()), &DemHints::default(), 1 << 20)
+            .expect("sound")
+    };
+    let mut sound = open(&bytes);
+    // A block of the file's own samples that cannot be read: only what reads it fails.
+    bytes[8..40].fill(0xff);
+    let mut damaged = open(&bytes);
+    for step in [4, 8, 16] {
+        let wanted = reduced(&mut sound, step).expect("sound");
+        assert!(reduced(&mut damaged, step).is_err());
+        let found = reduced_by_overview(&mut damaged, step).expect("its overviews are sound");
+        assert_eq!((found.size(), found.geotransform()), (wanted.size(), wanted.geotransform()));
+        let pairs = found.samples.iter().zip(wanted.samples.iter()).collect::<Vec<_>>();
+        let off: Vec<f64> = pairs.iter().map(|(a, b)| (a - b).abs()).filter(|off| !off.is_nan()).collect();
+        assert!(off.len() * 10 > pairs.len() * 9, "{} of {}", off.len(), pairs.len());
+        // The overview has every second or fourth sample, 3 m apart in height.
+        assert!(
+            off.iter().all(|off| *off < 9.0),
+            "every {step}th: {:?}",
+            off.iter().copied().fold(0.0, f64::max)
+        );
+        let part = reduced_part(&mut damaged, step, 3..9, 2..5).expect("its overviews are sound");
+        assert_eq!(part[0].to_bits(), (found.at(3, found.height - 3) as f32).to_bits());
+    }
+    let half = sound.at_overview(&sound.overviews()[0]).expect("sound");
+    assert_eq!(half.overviews(), &sound.overviews()[1..], "an overview has the coarser ones");
 }
 
 #[test]
