@@ -15,7 +15,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use sandtable::draw::lighting::{Haze, Lighting};
+use sandtable::draw::lighting::{Haze, Lighting, ReliefShading};
 use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable::draw::pixels::Pixels;
@@ -171,6 +171,7 @@ fn ground_map() -> GroundMap {
         cover: None,
         form_level: 0,
         z_factor: 1.0,
+        shade_gain: ReliefShading::GAIN,
         has_grain: false,
     }
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, Mat4, Vec2, Vec3};
 use sandtable::draw::color::Srgba;
 use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use sandtable::draw::lighting::{Haze, Lighting};
+use sandtable::draw::lighting::{Haze, Lighting, ReliefShading};
 use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable::draw::pixels::Pixels;
@@ -108,6 +108,7 @@ pub fn ground_map(side: u32, half_m: f32, contours: bool, height: impl Fn(f32, f
         cover: None,
         form_level: 3,
         z_factor: 1.0,
+        shade_gain: ReliefShading::GAIN,
         has_grain: false,
     }
 }
