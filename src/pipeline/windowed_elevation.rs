@@ -170,15 +170,11 @@ impl WindowedElevation {
     /// # Errors
     /// As [`WindowedElevation::ground`]; and where there is not the memory for it.
     pub fn whole_ground(&self) -> Result<MetricGround, Arc<GroundError>> {
+        // What is too large is not looked at.
+        check_whole(&self.header).map_err(Arc::new)?;
         let (plan, crs) = (self.plan()?, self.ground_crs()?);
+        check_whole(plan.header()).map_err(Arc::new)?;
         let (width, height) = (plan.header().width, plan.header().height);
-        let posts = u64::from(width) * u64::from(height);
-        if posts > RASTER_SAMPLES.get() {
-            let size = U64Vec2::new(width.into(), height.into());
-            return Err(Arc::new(DemErrorKind::TooLarge { size, most: &RASTER_SAMPLES }.into()));
-        }
-        check_memory(posts * BYTES_PER_POST, "the raster", "cut or coarsen it")
-            .map_err(|refused| Arc::new(LatticeError::from(refused).into()))?;
         let last = Post { column: width - 1, row: height - 1 };
         let held = PostRect { first: Post { column: 0, row: 0 }, last };
         let mut source = self.source();
@@ -195,6 +191,16 @@ impl WindowedElevation {
         // A reader that panicked left whole blocks in its cache, and nothing else.
         self.source.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Checks that all of a raster may be ground in memory.
+fn check_whole(raster: &Raster) -> Result<(), GroundError> {
+    let size = U64Vec2::new(raster.width.into(), raster.height.into());
+    if size.x * size.y > RASTER_SAMPLES.get() {
+        return Err(DemErrorKind::TooLarge { size, most: &RASTER_SAMPLES }.into());
+    }
+    let checked = check_memory(size.x * size.y * BYTES_PER_POST, "the raster", "cut or coarsen it");
+    Ok(checked.map_err(LatticeError::from)?)
 }
 
 /// The posts of the ground within reach; those nearest to it where it lies beyond the border.

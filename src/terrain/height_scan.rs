@@ -22,14 +22,14 @@ pub(in crate::terrain) fn first_beyond(heights: &[f32], limit: f32) -> Option<f3
 fn scanned<T: Send>(
     heights: &[f32],
     scan: impl Fn(&[f32]) -> T + Sync,
-    join: impl Fn(T, T) -> T + Sync,
+    join: impl Fn(T, T) -> T + Send + Sync,
 ) -> T {
     // Small parts, as walks read them by the thousand, are scanned before another thread wakes.
     if heights.len() <= SCANNED_TOGETHER {
         return scan(heights);
     }
     let parts = heights.par_chunks(SCANNED_TOGETHER).map(&scan);
-    parts.reduce_with(|first, next| join(first, next)).unwrap_or_else(|| scan(&[]))
+    parts.reduce_with(join).unwrap_or_else(|| scan(&[]))
 }
 
 fn range_of(heights: &[f32]) -> (f32, f32) {
