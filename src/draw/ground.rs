@@ -36,12 +36,12 @@ pub struct GroundMap {
     /// What grows and lies on it; `None` shows the ramp alone.
     pub cover: Option<GroundCover>,
     /// How often the distance between posts is doubled in the generalized ground whose large forms are shaded; see
-    /// [`ReliefShading`](crate::draw::lighting::ReliefShading).
+    /// [`ReliefShading`].
     pub form_level: u32,
     /// By what slopes are multiplied before they are shaded, at least 0: a z-factor, as if heights were exaggerated for
     /// their shading alone.
     pub z_factor: f32,
-    /// The change of brightness with shade; see [`ReliefShading::shade_gain`](crate::draw::lighting::ReliefShading::shade_gain).
+    /// The change of brightness with shade; see [`ReliefShading::shade_gain`].
     pub shade_gain: f32,
     /// Whether it is natural ground, with the grain of [`ground_grain`](crate::draw::ground_grain::ground_grain).
     pub has_grain: bool,

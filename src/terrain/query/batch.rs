@@ -16,7 +16,7 @@
 //! them; scattered over a large ground, each costs two misses. Scattered chunks therefore read [`HeightTiles`], once they
 //! are made, where a cell lies in one line.
 //!
-//! The passes are compiled for the widest vectors that the processor has ([`vectorized`]), and for those that every
+//! The passes are compiled for the widest vectors that the processor has (`terrain::vectorized`), and for those that every
 //! processor has: there rounding down would be a call, so it is done by adding and subtracting a large number.
 
 use glam::{DMat2, DVec2};
