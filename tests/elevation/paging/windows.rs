@@ -55,12 +55,12 @@ fn assert_windows_match(windows: &mut impl Windows, whole: &mut Raster, seed: u6
 }
 
 fn hilly(column: u32, row: u32) -> f32 {
+    if (column / 7 + row / 5).is_multiple_of(31) { -9999.0 } else { slopes(column, row) }
+}
+
+fn slopes(column: u32, row: u32) -> f32 {
     let (x, y) = (f64::from(column), f64::from(row));
-    if (column / 7 + row / 5).is_multiple_of(31) {
-        -9999.0
-    } else {
-        (libm::sin(x * 0.031) * 90.0 + libm::cos(y * 0.017) * 70.0) as f32
-    }
+    (libm::sin(x * 0.031) * 90.0 + libm::cos(y * 0.017) * 70.0) as f32
 }
 
 #[test]
@@ -93,7 +93,8 @@ fn windows_of_tiles_and_of_their_overviews_hold_what_the_whole_file_holds() {
 
 #[test]
 fn a_smaller_raster_is_made_of_an_overview_and_lies_where_that_of_all_samples_does() {
-    let full = Image::of(1537, 1025, hilly);
+    // Without holes, beside which means are those of other samples.
+    let full = Image::of(1537, 1025, slopes);
     let half = full.halved();
     let quarter = half.halved();
     let mut bytes = file(&[full, half, quarter], 256, Packing::Deflate);
@@ -110,15 +111,11 @@ fn a_smaller_raster_is_made_of_an_overview_and_lies_where_that_of_all_samples_do
         assert!(reduced(&mut damaged, step).is_err());
         let found = reduced_by_overview(&mut damaged, step).expect("its overviews are sound");
         assert_eq!((found.size(), found.geotransform()), (wanted.size(), wanted.geotransform()));
-        let pairs = found.samples.iter().zip(wanted.samples.iter()).collect::<Vec<_>>();
-        let off: Vec<f64> = pairs.iter().map(|(a, b)| (a - b).abs()).filter(|off| !off.is_nan()).collect();
-        assert!(off.len() * 10 > pairs.len() * 9, "{} of {}", off.len(), pairs.len());
-        // The overview has every second or fourth sample, 3 m apart in height.
-        assert!(
-            off.iter().all(|off| *off < 9.0),
-            "every {step}th: {:?}",
-            off.iter().copied().fold(0.0, f64::max)
-        );
+        let pairs = found.samples.iter().zip(wanted.samples.iter());
+        let most = pairs.map(|(found, wanted)| (found - wanted).abs()).fold(0.0, f64::max);
+        // The overview has every second or fourth sample: its means lie up to three samples aside, over which the ground rises
+        // by 2.8 m eastward and 1.2 m northward each.
+        assert!(most < 12.0, "every {step}th: {most}");
         let part = reduced_part(&mut damaged, step, 3..9, 2..5).expect("its overviews are sound");
         assert_eq!(part[0].to_bits(), (found.at(3, found.height - 3) as f32).to_bits());
     }
