@@ -66,8 +66,8 @@ impl<'a> PreparedLabel<'a> {
     ) {
         let halo = self.halo(candidate, ground);
         if let Some(line) = candidate.leader {
-            let (line, width) = (uprighted(line), sheet.px(1.2).max(0.9));
-            drawing.line(line, width + sheet.px(2.4).max(1.6), halo.color);
+            let (line, width) = (uprighted(line), sheet.px(1.2).max(1.0));
+            drawing.line(line, width + sheet.px(2.4).max(2.0), halo.color);
             drawing.line(line, width, self.style.ink);
         }
         if candidate.symbol.is_some() {

@@ -96,15 +96,16 @@ impl Lighting {
 /// Of the light, 55 % comes from the sun and is subject to cast shadows, 20 % from four side lights 30° high (which
 /// model slopes that lie along the sun's rays; after the multidirectional hillshade of Mark 1992), and 25 % is that of
 /// the sun on generalized ground, which holds the large forms together (Leonowicz, Jenny and Hurni 2010). With `shade`
-/// their sum, `flat` that of level ground, and `c` the contrast, which grows with elevation as in aerial perspective
-/// (Jenny and Patterson 2020), `r = c · (shade − flat)` and
+/// their sum where no shadow falls, `flat` that of level ground, `lost` what cast shadows take of it, and `c` the contrast,
+/// which grows with elevation as in aerial perspective (Jenny and Patterson 2020), `r = c · (shade − flat)`, `s = c · lost` and
 ///
 /// ```text
-/// lit = albedo · soft(1 + gain · r) · mix(COOL, WARM, clamp(0.5 + 1.2 · r, 0, 1)) · mix(CLOSED, 1, sky visibility)
+/// lit = albedo · soft(1 + gain · r − GAIN · s) · mix(COOL, WARM, clamp(0.5 + 1.2 · (r − s), 0, 1))
+///     · mix(CLOSED, 1, sky visibility)
 /// ```
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
-/// dark as those of mountains.
+/// dark as those of mountains. Shadows need no such help: they are as dark on every ground.
 /// `soft` bends what lies beyond [`Self::TOE`] and [`Self::SHOULDER`] toward [`Self::DARKEST`] and [`Self::BRIGHTEST`]
 /// along hyperbolas that it reaches nowhere, so that forms still show in deep shade and on the brightest slopes.
 /// Level ground in the open keeps its albedo, so that the tints of a legend are those of the picture.
@@ -138,7 +139,7 @@ impl ReliefShading {
     pub const SHARES: [f32; 3] = [0.55, 0.20, 0.25];
     /// The shares of the side lights.
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
-    /// The change of brightness with shade on slopes lighter than level ground: larger is harsher.
+    /// The change of brightness with light on slopes lighter than level ground, and with cast shadows: larger is harsher.
     pub const GAIN: f32 = 2.4;
     /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.15.
     pub const DARKEST: f32 = 0.05;
@@ -175,8 +176,9 @@ impl ReliefShading {
         (main + form) * self.to_sun.z.max(0.0) + sides * SIDE_RISE
     }
 
-    /// How much more light a place receives than level ground, weighted by its contrast: `r` of the formula.
-    pub fn relief(&self, point: &ReliefPoint) -> f32 {
+    /// How much more light a place receives than level ground, no shadow being cast on it, and how much cast shadows take,
+    /// both weighted by its contrast: `r` and `s` of the formula.
+    pub fn relief(&self, point: &ReliefPoint) -> (f32, f32) {
         let facing = |normal: Vec3, light: Vec3| normal.dot(light).max(0.0);
         let [main, sides, form] = Self::SHARES;
         let side_light: f32 = self
@@ -185,20 +187,19 @@ impl ReliefShading {
             .zip(Self::SIDE_SHARES)
             .map(|(&side, share)| facing(point.normal, side) * share)
             .sum();
-        let shade = main * facing(point.normal, self.to_sun) * point.sun_visibility
-            + sides * side_light
-            + form * facing(point.form, self.to_sun);
+        let sun = main * facing(point.normal, self.to_sun);
+        let shade = sun + sides * side_light + form * facing(point.form, self.to_sun);
         let contrast =
             Self::LOW_CONTRAST + (1.0 - Self::LOW_CONTRAST) * (point.elevation / 0.75).clamp(0.0, 1.0);
-        contrast * (shade - self.flat())
+        (contrast * (shade - self.flat()), contrast * sun * (1.0 - point.sun_visibility))
     }
 
     /// The light that a place returns, linear, before haze.
     pub fn shade(&self, albedo: Vec3, point: &ReliefPoint) -> Vec3 {
-        let relief = self.relief(point);
+        let (relief, shadow) = self.relief(point);
         let gain = if relief < 0.0 { self.shade_gain } else { Self::GAIN };
-        let brightness = Self::soft(1.0 + gain * relief);
-        let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * relief).clamp(0.0, 1.0));
+        let brightness = Self::soft(1.0 + gain * relief - Self::GAIN * shadow);
+        let tint = Self::COOL.lerp(Self::WARM, (0.5 + 1.2 * (relief - shadow)).clamp(0.0, 1.0));
         let level = Self::COOL.lerp(Self::WARM, 0.5);
         let sky = Self::CLOSED + (1.0 - Self::CLOSED) * point.sky_visibility;
         albedo * tint / level * (brightness * sky)
@@ -276,6 +277,14 @@ mod tests {
         let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
         assert!(green(shadow) < green(ReliefPoint { elevation: 0.0, ..shadow }));
         assert!(green(ReliefPoint { sky_visibility: 0.5, ..LEVEL }) < 0.8);
+    }
+
+    #[test]
+    fn a_cast_shadow_on_level_ground_is_as_dark_under_every_gain_of_shade() {
+        let shadow = ReliefPoint { sun_visibility: 0.0, ..LEVEL };
+        let deeper = ReliefShading { shade_gain: 5.0, ..shading() };
+        assert_eq!(deeper.shade(Vec3::ONE, &shadow), shading().shade(Vec3::ONE, &shadow));
+        assert!(deeper.shade(Vec3::ONE, &shadow).y < 0.5);
     }
 
     #[test]

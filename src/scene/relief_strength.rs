@@ -24,11 +24,11 @@ const SLOPES: u32 = 256;
 /// One place of the land of so many is darker than [`DARK`].
 const DARKER: usize = 33;
 
-/// The luminance of the darkest places: CIE lightness 34.
-const DARK: f32 = 0.08;
+/// The luminance of the darkest places: CIE lightness 33.
+const DARK: f32 = 0.0755;
 
 /// The greatest gain of shade: above it every dent of a plain would be a hole.
-const MOST_SHADE_GAIN: f32 = 5.0;
+const MOST_SHADE_GAIN: f32 = 6.0;
 
 /// How strongly the relief of a ground is shaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,10 +94,8 @@ fn shade_gain(slopes: &[LandSlope], z_factor: f32, ramp: &ColorRamp, shading: &R
         let elevation = ramp.elevation(*height_m);
         let point = ReliefPoint { normal, form: normal, sun_visibility: 1.0, sky_visibility: 1.0, elevation };
         let brightness = ReliefShading::hard(DARK / luminance(ramp.linear_at(*height_m)).max(DARK));
-        match shading.relief(&point) {
-            relief if relief < 0.0 => (brightness - 1.0) / relief,
-            _ => f32::INFINITY,
-        }
+        let (relief, _) = shading.relief(&point);
+        if relief < 0.0 { (brightness - 1.0) / relief } else { f32::INFINITY }
     };
     let mut gains: Vec<f32> = slopes.iter().map(darkening_gain).collect();
     if gains.is_empty() {
@@ -140,7 +138,7 @@ mod tests {
             let slopes = land_slopes(&lattice, VerticalScale(1.0), |_| false);
             let is_dark = |slope: &&LandSlope| {
                 let normal = (-slope.rise * z_factor).extend(1.0).normalize();
-                let relief = shading.relief(&ReliefPoint {
+                let (relief, _) = shading.relief(&ReliefPoint {
                     normal,
                     form: normal,
                     sun_visibility: 1.0,

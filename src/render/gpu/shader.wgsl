@@ -689,16 +689,19 @@ fn relief_lit(albedo: vec3f, post: Post, at: vec2f, received: vec2f) -> vec3f {
     for (var side = 0; side < 4; side += 1) {
         sides += max(dot(normal, frame.sides[side].xyz), 0.0) * frame.sides[side].w;
     }
-    let shade = dot(shares, vec3f(facing_sun(normal) * post.visibility.x * received.x, sides, facing_sun(form)));
+    let shade = dot(shares, vec3f(facing_sun(normal), sides, facing_sun(form)));
+    let lost = shares.x * facing_sun(normal) * (1.0 - post.visibility.x * received.x);
     let level = dot(shares, vec3f(facing_sun(vec3f(0.0, 0.0, 1.0)), 0.5, facing_sun(vec3f(0.0, 0.0, 1.0))));
     let low = stop_at(0u).w;
     let high = stop_at(frame.ground_size.x - 1u).w;
     let elevation = select(0.0, (post.height - low) / (high - low), high > low);
-    let relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-    let brightness = soft_brightness(1.0 + select(2.4, frame.sun.w, relief < 0.0) * relief);
+    let contrast = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
+    let relief = contrast * (shade - level);
+    let shadow = contrast * lost;
+    let brightness = soft_brightness(1.0 + select(2.4, frame.sun.w, relief < 0.0) * relief - 2.4 * shadow);
     let cool = vec3f(0.80, 0.90, 1.12);
     let warm = vec3f(1.06, 1.0, 0.90);
-    let tint = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
+    let tint = mix(cool, warm, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(cool, warm, 0.5);
     return albedo * tint * (brightness * mix(0.5, 1.0, post.visibility.y * received.y));
 }
 

@@ -276,14 +276,17 @@ vec3 relief_lit(vec3 albedo, float height, vec4 post, float sky_share, vec2 plac
   float side_light = 0.0;
   for (int index = 0; index < 4; index += 1) side_light += max(dot(normal, sides[index]), 0.0) * side_shares[index];
   float facing = max(dot(normal, to_sun), 0.0);
-  float shade = 0.55 * facing * post.z * received + 0.20 * side_light + 0.25 * max(dot(form, to_sun), 0.0);
+  float shade = 0.55 * facing + 0.20 * side_light + 0.25 * max(dot(form, to_sun), 0.0);
+  float lost = 0.55 * facing * (1.0 - post.z * received);
   float level = 0.80 * max(to_sun.z, 0.0) + 0.10;
   float elevation = (height - ramp_range.x) * ramp_range.y;
-  float relief = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0)) * (shade - level);
-  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : 2.4) * relief);
+  float contrast = mix(0.75, 1.0, clamp(elevation / 0.75, 0.0, 1.0));
+  float relief = contrast * (shade - level);
+  float shadow = contrast * lost;
+  float brightness = soft_brightness(1.0 + (relief < 0.0 ? shade_gain : 2.4) * relief - 2.4 * shadow);
   vec3 cool = vec3(0.80, 0.90, 1.12);
   vec3 warm = vec3(1.06, 1.0, 0.90);
-  vec3 hue = mix(cool, warm, clamp(0.5 + 1.2 * relief, 0.0, 1.0)) / mix(cool, warm, 0.5);
+  vec3 hue = mix(cool, warm, clamp(0.5 + 1.2 * (relief - shadow), 0.0, 1.0)) / mix(cool, warm, 0.5);
   return albedo * hue * (brightness * mix(0.5, 1.0, sky_share));
 }
 
