@@ -70,8 +70,8 @@ pub fn linear_from_srgb(channel: u8) -> f32 {
 /// conversion.
 pub fn srgb_from_linear(light: f32) -> u8 {
     const STEPS: f32 = 4095.0;
-    static TABLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
-        let channel = |step: usize| {
+    static TABLE: LazyLock<[u8; STEPS as usize + 1]> = LazyLock::new(|| {
+        std::array::from_fn(|step| {
             let root = step as f32 / STEPS;
             let light = root * root;
             let value = if light <= 0.003_130_8 {
@@ -80,11 +80,11 @@ pub fn srgb_from_linear(light: f32) -> u8 {
                 1.055 * libm::powf(light, 1.0 / 2.4) - 0.055
             };
             (value * 255.0 + 0.5) as u8
-        };
-        (0..=STEPS as usize).map(channel).collect()
+        })
     });
     let root = light.clamp(0.0, 1.0).sqrt();
-    TABLE[(root * STEPS + 0.5) as usize]
+    // At most the last step, which the mask leaves as it is.
+    TABLE[(root * STEPS + 0.5) as i32 as usize & STEPS as usize]
 }
 
 #[cfg(test)]

@@ -243,7 +243,9 @@ impl GroundMap {
     pub fn albedo(&self, post: &GroundPost, change: PixelChange, detail: &GroundDetail) -> Vec3 {
         let tint = self.ramp.linear_at(post.height_m);
         let land = self.cover.map_or(tint, |cover| cover.over(tint, post, detail.uneven));
-        let land = Undergrowth::over(land, Undergrowth::cover(post.water)) * detail.grain;
+        // Nearly everywhere there are no trees, and no share of undergrowth changes nothing.
+        let woods = Undergrowth::cover(post.water);
+        let land = if woods > 0.0 { Undergrowth::over(land, woods) } else { land } * detail.grain;
         let shore = ShorePixel::new(post.water, change.water);
         let is_dry = shore.cover <= 0.0 && shore.line <= 0.0;
         let bare = if is_dry { land } else { WaterColor::over(land, post.height_m, &shore) };

@@ -63,6 +63,9 @@ impl GroundCover {
         let own = luminance(tint);
         let mut color = tint;
         for ((hue, light), share) in [(MEADOW, meadow), (SCREE, scree), (ROCK, rock), (SNOW, snow)] {
+            if share == 0.0 {
+                continue;
+            }
             color = color.lerp(hue * (own * light / luminance(hue)), MOST * share);
         }
         color

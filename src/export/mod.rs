@@ -111,8 +111,10 @@ pub fn encode_png(pixels: &Pixels) -> Vec<u8> {
     let encoder = image::codecs::png::PngEncoder::new(&mut png);
     let (width, height) = (pixels.width(), pixels.height());
     let written = if pixels.data().iter().all(|color| color.0[3] == 255) {
-        let rgb: Vec<u8> =
-            pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
+        let mut rgb = vec![0; pixels.data().len() * 3];
+        for (channels, color) in rgb.chunks_exact_mut(3).zip(pixels.data()) {
+            channels.copy_from_slice(&color.0[..3]);
+        }
         encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8)
     } else {
         encoder.write_image(pixels.bytes(), width, height, ExtendedColorType::Rgba8)

@@ -5,6 +5,7 @@
 
 use glam::Vec2;
 
+use crate::model::Model;
 use crate::scene::SceneModel;
 
 /// The radius of a cone in radii of its crown: litter lies beyond the boughs.
@@ -26,14 +27,9 @@ pub fn undergrowth(scene: &SceneModel) -> Vec<f32> {
     if !scene.placements.iter().any(|placement| grows(placement.model)) {
         return Vec::new();
     }
-    let reach = |model: usize| {
-        let bounds = scene.models[model].bounds().unwrap_or_default();
-        bounds.min.abs().max(bounds.max.abs()).truncate().max_element() * CROWN_PART
-    };
-    let reaches: Vec<f32> = (0..scene.models.len()).map(reach).collect();
-    let (columns, rows) = (scene.lattice.columns(), scene.lattice.rows());
-    let mut ground = CrownGround { cell: scene.lattice.cell().as_vec2(), columns, rows, shares: Vec::new() };
-    ground.shares.resize(columns as usize * rows as usize, 0.0);
+    let reaches: Vec<f32> = scene.models.iter().map(crown_reach).collect();
+    let size = [scene.lattice.columns(), scene.lattice.rows()];
+    let mut ground = CrownGround::new(scene.lattice.cell().as_vec2(), size);
     for placement in scene.placements.iter().filter(|placement| grows(placement.model)) {
         ground.add(placement.at, reaches[placement.model] * placement.scale);
     }
@@ -42,23 +38,47 @@ pub fn undergrowth(scene: &SceneModel) -> Vec<f32> {
     ground.shares
 }
 
-struct CrownGround {
+/// The radius of a model's crown, in its own units.
+pub(in crate::scene) fn crown_reach(model: &Model) -> f32 {
+    let bounds = model.bounds().unwrap_or_default();
+    bounds.min.abs().max(bounds.max.abs()).truncate().max_element() * CROWN_PART
+}
+
+/// The share of the ground that crowns cover at the posts of a grid.
+pub(in crate::scene) struct CrownGround {
     cell: Vec2,
-    columns: u32,
-    rows: u32,
-    shares: Vec<f32>,
+    /// Posts per row.
+    pub columns: u32,
+    /// Rows of posts.
+    pub rows: u32,
+    /// The shares, row by row from the south-west, 0..=1.
+    pub shares: Vec<f32>,
 }
 
 impl CrownGround {
+    /// Open ground, of posts in columns and rows `cell` meters apart.
+    pub fn new(cell: Vec2, [columns, rows]: [u32; 2]) -> Self {
+        Self { cell, columns, rows, shares: vec![0.0; columns as usize * rows as usize] }
+    }
+
     /// Adds a crown around a place, in meters from the south-west post.
-    fn add(&mut self, at: Vec2, radius_m: f32) {
-        let reach_m = (radius_m * REACH).max(self.cell.max_element());
+    pub fn add(&mut self, at: Vec2, radius_m: f32) {
+        let reach_m = self.reach_m(radius_m);
+        // The cone's volume is the crown's area.
+        let height = 3.0 * (radius_m / reach_m) * (radius_m / reach_m);
+        let mut shares = std::mem::take(&mut self.shares);
+        self.visit(at, radius_m, |index, near| shares[index] = (shares[index] + height * near).min(1.0));
+        self.shares = shares;
+    }
+
+    /// Calls `visit` with the number of each post around a crown and how near it lies: 1 at the crown's center, 0 where
+    /// its cone ends.
+    pub fn visit(&self, at: Vec2, radius_m: f32, mut visit: impl FnMut(usize, f32)) {
+        let reach_m = self.reach_m(radius_m);
         let (at, reach) = (at / self.cell, Vec2::splat(reach_m) / self.cell);
         if !(at.is_finite() && radius_m > 0.0 && reach.max_element() * 2.0 < MOST_POSTS) {
             return;
         }
-        // The cone's volume is the crown's area.
-        let height = 3.0 * (radius_m / reach_m) * (radius_m / reach_m);
         let within = |low: f32, high: f32, count: u32| {
             let first = low.ceil().clamp(0.0, count as f32) as u32;
             first..(high.floor() + 1.0).clamp(0.0, count as f32) as u32
@@ -66,10 +86,13 @@ impl CrownGround {
         for row in within(at.y - reach.y, at.y + reach.y, self.rows) {
             for column in within(at.x - reach.x, at.x + reach.x, self.columns) {
                 let away_m = ((Vec2::new(column as f32, row as f32) - at) * self.cell).length();
-                let share = &mut self.shares[(row * self.columns + column) as usize];
-                *share = (*share + height * (1.0 - away_m / reach_m).max(0.0)).min(1.0);
+                visit((row * self.columns + column) as usize, (1.0 - away_m / reach_m).max(0.0));
             }
         }
+    }
+
+    fn reach_m(&self, radius_m: f32) -> f32 {
+        (radius_m * REACH).max(self.cell.max_element())
     }
 }
 
@@ -78,7 +101,7 @@ mod tests {
     use super::*;
 
     fn ground(cell: f32) -> CrownGround {
-        CrownGround { cell: Vec2::splat(cell), columns: 41, rows: 31, shares: vec![0.0; 41 * 31] }
+        CrownGround::new(Vec2::splat(cell), [41, 31])
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::common::forest::{forest, overlook, seen_from};
+use crate::common::forest::{SIDE_M, forest, overlook, seen_from};
 use glam::Vec3;
-use sandtable::draw::list::DrawList;
+use sandtable::draw::list::{DrawItem, DrawList, FeatureId};
 use sandtable::geom::aabb::Aabb;
 use sandtable::mesh::sink::VertexId;
 use sandtable::model::error::CompanionError;
@@ -15,6 +15,7 @@ use sandtable::render::cpu::{RenderQuality, render};
 use sandtable::render::picture::Rendering;
 use sandtable::scene::SceneModel;
 use sandtable::scene::picture::{build_draw_list, display, draw_list};
+use sandtable::terrain::triangle_surface::TriangleSurface;
 use sandtable::view::camera::Camera;
 
 struct Assets;
@@ -111,6 +112,73 @@ fn a_scene_of_few_models_is_drawn_in_full() {
     let ([seen, full], pictures) = pictures(&scene, &camera);
     assert!(seen.items.len() <= full.items.len());
     assert!(pictures[0].pixels == pictures[1].pixels && pictures[0].features == pictures[1].features);
+}
+
+/// A wood of conifers over 600 m of the ground, one feature.
+fn wood(count: usize) -> SceneModel {
+    let mut scene = forest(count, &["conifer"]);
+    for placement in &mut scene.placements {
+        placement.at = placement.at * (600.0 / SIDE_M) + 980.0;
+        placement.feature = FeatureId(2);
+    }
+    scene
+}
+
+/// The canopies of a list and the trees that are drawn one by one.
+fn canopies_and_trees(list: &DrawList) -> [Vec<&DrawItem>; 2] {
+    let is_canopy = |item: &&DrawItem| list.materials[item.material.0 as usize].name == "canopy";
+    let (canopies, trees) =
+        list.items.iter().filter(|item| item.feature == FeatureId(2)).partition(is_canopy);
+    [canopies, trees]
+}
+
+#[test]
+fn a_wood_of_specks_is_drawn_as_a_canopy_of_the_same_tone() {
+    let scene = wood(4000);
+    let camera =
+        seen_from(&scene, Vec3::new(1280.0, -8000.0, 3600.0), Vec3::new(1280.0, 1280.0, 300.0), (640, 360));
+    let (lists, pictures) = pictures(&scene, &camera);
+    let [canopies, trees] = canopies_and_trees(&lists[0]);
+    assert!(canopies.len() == 1 && trees.is_empty(), "{} canopies, {} trees", canopies.len(), trees.len());
+    assert!(lists[0].triangle_count() * 20 < lists[1].triangle_count());
+    let colors = mean_colors(&pictures);
+    let shown = pictures.each_ref().map(|picture| picture.features.iter().filter(|id| id.0 == 2).count());
+    println!("mean colors {colors:?}, {shown:?} pixels");
+    assert!((colors[0] - colors[1]).abs().max_element() < 10.0, "{colors:?}");
+    assert!(shown[0] > 200 && shown[0].abs_diff(shown[1]) * 5 < shown[1], "{shown:?}");
+}
+
+#[test]
+fn a_canopy_lies_over_the_ground_no_higher_than_the_trees_below() {
+    let scene = wood(4000);
+    let camera =
+        seen_from(&scene, Vec3::new(1280.0, -8000.0, 3600.0), Vec3::new(1280.0, 1280.0, 300.0), (640, 360));
+    let view = build_draw_list(&scene, &camera, &|_| ());
+    let [canopies, _] = canopies_and_trees(&view.list);
+    let tallest = 1.5 * scene.models[0].bounds().expect("a tree").max.z;
+    let mut highest = 0f32;
+    for vertex in &view.list.meshes[canopies[0].mesh.0 as usize].vertices {
+        let at = Vec3::from(vertex.position);
+        let ground = view.displayed.displayed_z(at.truncate().as_dvec2()).expect("ground") as f32;
+        assert!((-0.01..=tallest).contains(&(at.z - ground)), "{} m over the ground at {at}", at.z - ground);
+        highest = highest.max(at.z - ground);
+    }
+    assert!(highest > 0.4 * tallest, "{highest} m of {tallest} m");
+}
+
+#[test]
+fn near_trees_are_drawn_one_by_one_and_lone_ones_have_no_canopy() {
+    let near = wood(4000);
+    let camera = overlook(&near, (960, 540));
+    let list = build_draw_list(&near, &camera, &|_| ()).list;
+    let [canopies, trees] = canopies_and_trees(&list).map(|all| all.len());
+    assert!(canopies == 0 && trees > 1000, "{canopies} canopies, {trees} trees");
+    let few = wood(20);
+    let camera =
+        seen_from(&few, Vec3::new(1280.0, -20_000.0, 7000.0), Vec3::new(1280.0, 1280.0, 300.0), (640, 360));
+    let list = build_draw_list(&few, &camera, &|_| ()).list;
+    let [canopies, trees] = canopies_and_trees(&list).map(|all| all.len());
+    assert!(canopies == 0 && trees == 0, "{canopies} canopies, {trees} trees");
 }
 
 fn vertices(parts: &[ModelPart]) -> impl Iterator<Item = Vec3> + '_ {

@@ -25,8 +25,7 @@ pub fn draw_band<const N: usize>(frame: &TileContext<N>, number: u32, rows: Band
     let [width, height] = frame.screen.size;
     let (top, bottom) = (number * TILE, (number * TILE + TILE).min(height));
     let band = PixelWindow { from: [0, top], to: [width, bottom] };
-    let touches_band = |piece: &&FacePiece| !piece.window.intersection(band).is_empty();
-    let pieces: Vec<FacePiece> = frame.geometry.pieces().filter(touches_band).copied().collect();
+    let pieces: Vec<FacePiece> = frame.geometry.pieces_in(band).copied().collect();
     let window =
         |tile: u32| PixelWindow { from: [tile * TILE, top], to: [(tile * TILE + TILE).min(width), bottom] };
     let tiles: Vec<_> = (0..width.div_ceil(TILE))

@@ -65,10 +65,12 @@ pub struct FacePiece {
 }
 
 /// The faces of up to [`CHUNK`] consecutive triangles of the list.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct FaceChunk {
     faces: Vec<ScreenFace>,
     pieces: Vec<FacePiece>,
+    /// The rows of pixels that its pieces may touch.
+    rows: Range<u32>,
 }
 
 #[derive(Debug)]
@@ -110,15 +112,25 @@ impl ScreenGeometry {
         &self.chunks[(id / CHUNK) as usize].faces[(id % CHUNK) as usize]
     }
 
-    pub fn pieces(&self) -> impl Iterator<Item = &FacePiece> {
-        self.chunks.iter().flat_map(|chunk| &chunk.pieces)
+    /// The pieces that may touch pixels of `window`.
+    ///
+    /// Triangles that follow each other in a list mostly lie near each other: most chunks are passed over as a whole.
+    pub fn pieces_in(&self, window: PixelWindow) -> impl Iterator<Item = &FacePiece> {
+        let [top, bottom] = [window.from[1], window.to[1]];
+        let chunks =
+            self.chunks.iter().filter(move |chunk| chunk.rows.start < bottom && top < chunk.rows.end);
+        let pieces = chunks.flat_map(|chunk| &chunk.pieces);
+        pieces.filter(move |piece| !piece.window.intersection(window).is_empty())
     }
 }
 
 /// The faces of the triangles number `triangles`, counted through all items; `ends` counts the triangles up to the end
 /// of each item.
 fn build_chunk(list: &DrawList, screen: &Screen, ends: &[u64], triangles: Range<u64>) -> FaceChunk {
-    let mut chunk = FaceChunk::default();
+    // Memory that no face is written to is not taken from the system.
+    let most = (triangles.end - triangles.start) as usize;
+    let (faces, pieces) = (Vec::with_capacity(most), Vec::with_capacity(most));
+    let mut chunk = FaceChunk { faces, pieces, rows: 0..0 };
     let mut index = ends.partition_point(|&end| end <= triangles.start);
     let mut next = triangles.start;
     while next < triangles.end {
@@ -132,6 +144,11 @@ fn build_chunk(list: &DrawList, screen: &Screen, ends: &[u64], triangles: Range<
         }
         (next, index) = (end, index + 1);
     }
+    let (mut top, mut bottom) = (u32::MAX, 0);
+    for PixelWindow { from, to } in chunk.pieces.iter().map(|piece| piece.window) {
+        (top, bottom) = (top.min(from[1]), bottom.max(to[1]));
+    }
+    chunk.rows = top..bottom;
     chunk
 }
 

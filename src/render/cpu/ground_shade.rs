@@ -46,16 +46,10 @@ impl<'a> GroundShader<'a> {
 
     /// The light that the ground returns at a point that receives `received` past solids, before haze; see [`ReliefShading`].
     /// `form` is the [generalized ground](Self::form) there.
-    pub fn lit(
-        &self,
-        albedo: Vec3,
-        point: &GroundPoint,
-        form: &GroundPoint,
-        received: ReceivedLight,
-    ) -> Vec3 {
+    pub fn lit(&self, albedo: Vec3, point: &GroundPoint, form: &GroundPost, received: ReceivedLight) -> Vec3 {
         let point = ReliefPoint {
             normal: self.map.shaded_normal(&point.post),
-            form: self.map.shaded_normal(&form.post),
+            form: self.map.shaded_normal(form),
             sun_visibility: point.post.sun_visibility * received.sun,
             sky_visibility: point.post.sky_visibility * received.sky,
             elevation: self.map.ramp.elevation(point.post.height_m),
@@ -63,11 +57,15 @@ impl<'a> GroundShader<'a> {
         self.relief.shade(albedo, &point)
     }
 
-    /// The generalized ground at a world position.
-    pub fn form(&self, at: Vec2) -> GroundPoint {
-        let mut form = GroundPoint::default();
+    /// The slopes of the generalized ground at a world position: all else that it has is 0, and shades nothing.
+    pub fn form(&self, at: Vec2) -> GroundPost {
+        let mut form = GroundPost::default();
         let level = self.coarser.len().min(self.map.form_level as usize);
-        self.add_bilinear(&mut form, at, level, 1.0);
+        let cell = self.cell_at(at, level);
+        for (post, share) in cell.corners.iter().zip(cell.weights()) {
+            form.slope_east += post.slope_east * share;
+            form.slope_north += post.slope_north * share;
+        }
         form
     }
 
@@ -124,8 +122,8 @@ impl<'a> GroundShader<'a> {
         ShorePixel::new(point.post.water, change(point.water_gradient, hit)).cover
     }
 
-    /// Adds `weight` times the bilinear reading of a level at world position `at`.
-    fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
+    /// The cell of a level around world position `at`.
+    fn cell_at(&self, at: Vec2, level: usize) -> GroundCell<'_> {
         let (size, posts) = match level.checked_sub(1) {
             Some(index) => (self.coarser[index].size, self.coarser[index].posts.as_slice()),
             None => (PostCount::from_map(self.map), self.map.posts.as_slice()),
@@ -139,21 +137,47 @@ impl<'a> GroundShader<'a> {
         let east = usize::from(columns > 1);
         let north = if rows > 1 { columns } else { 0 };
         let first = row * columns + column;
-        let corners = [first, first + east, first + north, first + north + east].map(|index| posts[index]);
-        let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
-        for (post, share) in corners.iter().zip(weights) {
+        let corners = [first, first + east, first + north, first + north + east].map(|index| &posts[index]);
+        GroundCell { corners, part: Vec2::new(x, y), scale }
+    }
+
+    /// Adds `weight` times the bilinear reading of a level at world position `at`.
+    fn add_bilinear(&self, sum: &mut GroundPoint, at: Vec2, level: usize, weight: f32) {
+        let cell = self.cell_at(at, level);
+        for (post, share) in cell.corners.iter().zip(cell.weights()) {
             add_weighted(&mut sum.post, post, weight * share);
         }
-        let [sw, se, nw, ne] = corners.map(|post| post.height_m);
-        let rise = Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
-        sum.gradient += rise * self.posts_per_meter * (scale * weight);
-        let [sw, se, nw, ne] = corners.map(|post| post.water);
+        let per_meter = self.posts_per_meter * (cell.scale * weight);
+        sum.gradient += cell.rise(cell.corners.map(|post| post.height_m)) * per_meter;
+        let water = cell.corners.map(|post| post.water);
         // Nearly everywhere there is no shore.
-        if [se, nw, ne] != [sw; 3] {
-            let rise =
-                Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x);
-            sum.water_gradient += rise * self.posts_per_meter * (scale * weight);
+        if water[1..] != [water[0]; 3] {
+            sum.water_gradient += cell.rise(water) * per_meter;
         }
+    }
+}
+
+/// Four posts around a place.
+struct GroundCell<'a> {
+    /// South-west, south-east, north-west, north-east.
+    corners: [&'a GroundPost; 4],
+    /// Where in the cell the place is, 0..=1 eastward and northward.
+    part: Vec2,
+    /// Cells of the finest level per cell, inverted.
+    scale: f32,
+}
+
+impl GroundCell<'_> {
+    /// The weights of the corners; their sum is 1.
+    fn weights(&self) -> [f32; 4] {
+        let Vec2 { x, y } = self.part;
+        [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
+    }
+
+    /// The rise over the cell of what is this at its corners.
+    fn rise(&self, [sw, se, nw, ne]: [f32; 4]) -> Vec2 {
+        let Vec2 { x, y } = self.part;
+        Vec2::new((se - sw) * (1.0 - y) + (ne - nw) * y, (nw - sw) * (1.0 - x) + (ne - se) * x)
     }
 }
 

@@ -111,15 +111,21 @@ fn resolve<const N: usize>(
 ) -> ResolvedPixel {
     let faces = scratch.visibility.faces(x, y);
     let center = [x as f32 + 0.5, y as f32 + 0.5];
+    let color_of = |sample: usize, mask: SampleMask| match faces[sample] {
+        FaceId::NONE => frame.shader.backdrop(center),
+        id => frame.shader.shade(frame.geometry.face(id), frame.pattern.centroid_in(x, y, mask)).color,
+    };
     let mut colors = [Vec3::ZERO; N];
     let mut left = if frame.is_colored { SamplePattern::<N>::FULL } else { 0 };
     while left != 0 {
         let first = left.trailing_zeros() as usize;
         let mask = left & samples_alike(frame, &scratch.visibility, (x, y), first);
-        let color = match faces[first] {
-            FaceId::NONE => frame.shader.backdrop(center),
-            id => frame.shader.shade(frame.geometry.face(id), frame.pattern.centroid_in(x, y, mask)).color,
-        };
+        let color = color_of(first, mask);
+        if mask == SamplePattern::<N>::FULL {
+            // Most pixels: one face, or one slope of ground.
+            colors = [color; N];
+            break;
+        }
         for (sample, slot) in colors.iter_mut().enumerate() {
             *slot = if mask & (1 << sample) != 0 { color } else { *slot };
         }

@@ -104,9 +104,17 @@ impl ListTriangles {
         }
         let ground_end = list.items.partition_point(|item| item.layer == DepthLayer::Ground);
         let triangles = |items: Range<usize>| -> Vec<CasterTriangle> {
-            let casting =
-                items.into_par_iter().filter(|&index| index < first || is_caster(&list.items[index]));
-            let lists: Vec<_> = casting.map(|index| item_triangles(list, camera.eye(), index)).collect();
+            let casting = items.filter(|&index| index < first || is_caster(&list.items[index]));
+            let portions: Vec<_> = casting
+                .flat_map(|index| portions(&list.items[index]).map(move |part| (index, part)))
+                .collect();
+            let lists: Vec<_> = portions
+                .into_par_iter()
+                .fold(Vec::new, |mut triangles, (index, part)| {
+                    add_triangles(&mut triangles, list, camera.eye(), (index, part));
+                    triangles
+                })
+                .collect();
             lists.concat()
         };
         let (solids, ground) = (triangles(first..list.items.len()), triangles(0..ground_end));
@@ -127,15 +135,18 @@ impl LightTriangles {
     /// The bytes of a triangle.
     const BYTES: usize = size_of::<(CasterTriangle, LightBox)>();
 
-    /// `triangles` along `axes`, those of them whose box meets `within`.
-    pub fn new(triangles: &[CasterTriangle], axes: &LightAxes, within: Option<LightBox>) -> Self {
+    /// `triangles` along `axes`, those of them whose box `is_near`.
+    pub fn new(
+        triangles: &[CasterTriangle],
+        axes: &LightAxes,
+        is_near: impl Fn(LightBox) -> bool + Sync,
+    ) -> Self {
         let turned = |triangle: &CasterTriangle| {
             let [a, b, c] = triangle.corners;
             let corners = [axes.turned(a), axes.turned(b), axes.turned(c)];
             let [a, b, c] = corners.map(Vec3::truncate);
             let bounds = LightBox { low: a.min(b).min(c), high: a.max(b).max(c) };
-            let is_near = within.is_none_or(|within| !bounds.intersection(within).is_empty());
-            is_near.then_some((CasterTriangle { corners, ..*triangle }, bounds))
+            is_near(bounds).then_some((CasterTriangle { corners, ..*triangle }, bounds))
         };
         let triangles: Vec<_> = triangles.par_iter().with_min_len(1024).filter_map(turned).collect();
         let bounds = triangles.iter().fold(LightBox::EMPTY, |all, (_, bounds)| all.union(*bounds));
@@ -143,16 +154,29 @@ impl LightTriangles {
     }
 }
 
-/// The finite triangles of an item.
-fn item_triangles(list: &DrawList, eye: Vec3, index: usize) -> Vec<CasterTriangle> {
+/// The triangles of an item in ranges for which threads work apart.
+fn portions(item: &DrawItem) -> impl Iterator<Item = Range<u32>> + use<> {
+    /// Triangles of a portion: some tenths of a millisecond.
+    const PORTION: u32 = 4096;
+    let Range { start, end } = item.triangles;
+    (start..end).step_by(PORTION as usize).map(move |from| from..from.saturating_add(PORTION).min(end))
+}
+
+/// Adds the finite triangles of a part of an item.
+fn add_triangles(
+    triangles: &mut Vec<CasterTriangle>,
+    list: &DrawList,
+    eye: Vec3,
+    (index, part): (usize, Range<u32>),
+) {
     let item = &list.items[index];
     let mesh = &list.meshes[item.mesh.0 as usize];
     let to_world: DMat4 = item.world_from_mesh.as_dmat4();
     let eye = eye.as_dvec3();
     let corner =
         |position: [f32; 3]| (to_world.transform_point3(Vec3::from(position).as_dvec3()) - eye).as_vec3();
-    let mut triangles = Vec::with_capacity(item.triangles.len());
-    for triangle in item.triangles.clone() {
+    triangles.reserve(part.len());
+    for triangle in part {
         let [a, b, c] = mesh.triangles[triangle as usize];
         let position = |id: VertexId| corner(mesh.vertices[id.index()].position);
         let corners = [position(a), position(b), position(c)];
@@ -160,7 +184,6 @@ fn item_triangles(list: &DrawList, eye: Vec3, index: usize) -> Vec<CasterTriangl
             triangles.push(CasterTriangle { corners, item: index as u32, triangle });
         }
     }
-    triangles
 }
 
 /// The least and greatest depth of the corners that the camera sees, in meters.

@@ -11,7 +11,7 @@ use crate::render::cpu::alpha::AlphaMask;
 use crate::render::cpu::raster::{PixelWindow, doubled_area, snapped};
 use crate::render::shadow::casters::{CasterTriangle, LightTriangles};
 use crate::render::shadow::coverage::cover_centers;
-use crate::render::shadow::levels::{MapSource, PageRange};
+use crate::render::shadow::levels::{KeptPages, MapSource, PageRange};
 use crate::render::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
 
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
@@ -32,6 +32,7 @@ pub struct Filling<'a> {
     pub solids: &'a LightTriangles,
     pub ground: &'a LightTriangles,
     pub level: &'a ShadowLevel,
+    pub kept: &'a KeptPages<'a>,
 }
 
 /// The triangles of a level by the row of pages that they begin in, those of more than [`SHORT_ROWS`] rows apart: few
@@ -54,11 +55,11 @@ struct LevelTriangle<'a> {
 }
 
 /// The pages of one row of a level.
-struct PageRow {
+struct PageRow<'a> {
     row: u32,
     /// The place among those stored, by column.
     places: Vec<Option<usize>>,
-    texels: Vec<ShadowTexel>,
+    texels: &'a mut [ShadowTexel],
     /// The least height of a face that looks down, by texel; only for contact.
     undersides: Vec<f32>,
 }
@@ -84,50 +85,56 @@ struct TexelMask<'a> {
 }
 
 impl Filling<'_> {
-    /// The texels of the stored pages of the level, whose entries are `pages`; sets the greatest values of each.
-    pub fn texels(&self, pages: &mut [ShadowPage]) -> Vec<ShadowTexel> {
+    /// Draws the `texels` of the stored pages of the level, whose entries are `pages`; sets the greatest values of each.
+    pub fn fill(&self, pages: &mut [ShadowPage], mut texels: &mut [ShadowTexel]) {
         let mut triangles = Vec::new();
         for (kind, casters) in [(CasterKind::Solid, self.solids), (CasterKind::Ground, self.ground)] {
             for (triangle, bounds) in &casters.triangles {
-                if let Some(range) = self.level.pages_near(*bounds, 0.0) {
+                if let Some(range) = self.kept.pages_on(*bounds) {
                     triangles.push(LevelTriangle { triangle, kind, range });
                 }
             }
         }
         let buckets = RowBuckets::new(&triangles, self.level.rows);
-        let columns = self.level.columns as usize;
-        let rows = pages.par_chunks_exact_mut(columns).enumerate();
-        let rows: Vec<_> =
-            rows.map(|(row, pages)| self.row(row as u32, pages, &triangles, &buckets)).collect();
-        rows.concat()
+        let mut rows = Vec::new();
+        for (row, pages) in (0..).zip(pages.chunks_exact_mut(self.level.columns as usize)) {
+            let stored = pages.iter().filter(|page| page.number > 0).count();
+            let (own, others) = texels.split_at_mut(stored * (PAGE * PAGE) as usize);
+            texels = others;
+            if stored > 0 {
+                rows.push((row, pages, own));
+            }
+        }
+        rows.into_par_iter().for_each(|(row, pages, texels)| {
+            self.row(row, pages, texels, (&triangles, &buckets));
+        });
     }
 
+    /// Draws a row of pages, at least one of which is stored.
     fn row(
         &self,
         row: u32,
         pages: &mut [ShadowPage],
-        triangles: &[LevelTriangle],
-        buckets: &RowBuckets,
-    ) -> Vec<ShadowTexel> {
+        texels: &mut [ShadowTexel],
+        (triangles, buckets): (&[LevelTriangle], &RowBuckets),
+    ) {
         let mut stored = 0;
         let place = |page: &ShadowPage| {
             stored += usize::from(page.number > 0);
             (page.number > 0).then(|| stored - 1)
         };
         let places: Vec<_> = pages.iter().map(place).collect();
-        let texels = vec![ShadowTexel::EMPTY; stored * (PAGE * PAGE) as usize];
+        texels.fill(ShadowTexel::EMPTY);
         let undersides = match self.source.purpose {
             ShadowPurpose::Sun => Vec::new(),
             ShadowPurpose::Contact => vec![f32::MAX; texels.len()],
         };
         let mut work = PageRow { row, places, texels, undersides };
-        if stored > 0 {
-            let below = row.saturating_sub(SHORT_ROWS - 1) as usize;
-            for &index in buckets.short[below..=row as usize].iter().flatten().chain(&buckets.tall) {
-                let on = &triangles[index as usize];
-                if on.range.from[1] <= row && row < on.range.to[1] {
-                    self.draw(on, &mut work);
-                }
+        let below = row.saturating_sub(SHORT_ROWS - 1) as usize;
+        for &index in buckets.short[below..=row as usize].iter().flatten().chain(&buckets.tall) {
+            let on = &triangles[index as usize];
+            if on.range.from[1] <= row && row < on.range.to[1] {
+                self.draw(on, &mut work);
             }
         }
         let floating_m = FLOATING_TEXELS * self.level.texel_m;
@@ -140,10 +147,9 @@ impl Filling<'_> {
         for (page, texels) in kept.zip(work.texels.chunks_exact((PAGE * PAGE) as usize)) {
             page.highest = texels.iter().fold(ShadowTexel::EMPTY, |highest, &texel| highest.highest(texel));
         }
-        work.texels
     }
 
-    fn draw(&self, on: &LevelTriangle, work: &mut PageRow) {
+    fn draw(&self, on: &LevelTriangle, work: &mut PageRow<'_>) {
         let columns = on.range.from[0] as usize..on.range.to[0] as usize;
         if work.places[columns.clone()].iter().all(Option::is_none) {
             return;
@@ -169,7 +175,7 @@ impl Filling<'_> {
     }
 
     /// Draws a part of a triangle, its corners in texels.
-    fn draw_piece(&self, on: &LevelTriangle, plane: &TexelPlane, corners: [Vec2; 3], work: &mut PageRow) {
+    fn draw_piece(&self, on: &LevelTriangle, plane: &TexelPlane, corners: [Vec2; 3], work: &mut PageRow<'_>) {
         let snap = |corner: Vec2| [snapped(f64::from(corner.x)), snapped(f64::from(corner.y))];
         let [a, b, c] = corners.map(snap);
         let turned = if doubled_area(&[a, b, c]) < 0 { [a, c, b] } else { [a, b, c] };

@@ -1,5 +1,7 @@
 //! The levels of a map: what the camera sees at their depths, as pages that solids touch.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 
 use crate::draw::list::DrawList;
@@ -21,8 +23,8 @@ const MOST_DOUBLINGS: u32 = 24;
 /// Pages are stored for what lies this many texels from a solid, as far as filters read.
 const PAGE_MARGIN: f32 = MOST_RADIUS + 1.0;
 
-/// Bytes of a texel while its level is drawn: twice what is kept, in rows and joined, and the height of an underside.
-const BYTES_PER_TEXEL: u64 = 28;
+/// Bytes of a texel while its level is drawn: what is kept, and the height of an underside.
+const BYTES_PER_TEXEL: u64 = 12;
 
 /// A range of pages in both directions, its end excluded.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +50,7 @@ impl ShadowMap {
     /// There is not the memory for it.
     pub fn new(source: &MapSource, texel_px: f32) -> Result<Option<Self>, MemoryRefused> {
         let (camera, axes) = (source.camera, &source.axes);
-        let solids = LightTriangles::new(&source.triangles.solids, axes, None);
+        let solids = LightTriangles::new(&source.triangles.solids, axes, |_| true);
         // By meter of depth; with parallel rays at any depth, and there is one level.
         let pixel = 1.0 / camera.pixels_per_meter(1.0);
         let planned = (0..MOST_DOUBLINGS).find_map(|doubling| {
@@ -71,15 +73,19 @@ impl ShadowMap {
             scale,
             levels,
             pages,
-            texels: Vec::with_capacity(stored * (PAGE * PAGE) as usize),
+            texels: bytemuck::zeroed_vec(stored * (PAGE * PAGE) as usize),
         };
-        let all = map.levels.iter().fold(LightBox::EMPTY, |all, level| all.union(level.bounds()));
-        let ground = LightTriangles::new(&source.triangles.ground, axes, Some(all));
-        for level in map.levels.clone() {
-            let range = level.first as usize..(level.first + level.columns * level.rows) as usize;
-            let filling = Filling { source, solids: &solids, ground: &ground, level: &level };
-            map.texels.extend(filling.texels(&mut map.pages[range.clone()]));
-            level.spread_highest(&mut map.pages[range]);
+        let kept: Vec<_> = map.levels.iter().map(|level| KeptPages::new(level, &map.pages)).collect();
+        let is_near = |bounds: LightBox| kept.iter().any(|kept| kept.pages_on(bounds).is_some());
+        let ground = LightTriangles::new(&source.triangles.ground, axes, is_near);
+        let mut texels = map.texels.as_mut_slice();
+        for (level, kept) in map.levels.iter().zip(&kept) {
+            let pages = &mut map.pages[level.pages()];
+            let filling = Filling { source, solids: &solids, ground: &ground, level, kept };
+            let (own, others) = texels.split_at_mut(kept.count() * (PAGE * PAGE) as usize);
+            filling.fill(pages, own);
+            level.spread_highest(pages);
+            texels = others;
         }
         Ok(Some(map))
     }
@@ -144,7 +150,50 @@ fn slab(camera: &Camera, axes: &LightAxes, depths: [f32; 2]) -> LightBox {
     LightBox::around(&corners)
 }
 
+/// Where the pages of a level are that are stored: how many of them lie south-west of each corner of its grid, so that
+/// a box costs the same however large it is (Crow 1984).
+#[derive(Debug)]
+pub struct KeptPages<'a> {
+    level: &'a ShadowLevel,
+    counts: Vec<u32>,
+}
+
+impl<'a> KeptPages<'a> {
+    fn new(level: &'a ShadowLevel, pages: &[ShadowPage]) -> Self {
+        let stride = level.columns as usize + 1;
+        let mut counts = vec![0; stride * (level.rows as usize + 1)];
+        for (row, pages) in pages[level.pages()].chunks_exact(level.columns as usize).enumerate() {
+            let mut in_row = 0;
+            for (column, page) in pages.iter().enumerate() {
+                in_row += u32::from(page.number > 0);
+                counts[(row + 1) * stride + column + 1] = counts[row * stride + column + 1] + in_row;
+            }
+        }
+        Self { level, counts }
+    }
+
+    /// How many are stored.
+    fn count(&self) -> usize {
+        self.counts[self.counts.len() - 1] as usize
+    }
+
+    /// The pages that a box touches; `None` where none of them is stored.
+    pub fn pages_on(&self, bounds: LightBox) -> Option<PageRange> {
+        let range = self.level.pages_near(bounds, 0.0)?;
+        let stride = self.level.columns as usize + 1;
+        let below = |column: u32, row: u32| self.counts[row as usize * stride + column as usize];
+        let PageRange { from: [left, bottom], to: [right, top] } = range;
+        let stored = below(right, top) + below(left, bottom) - below(left, top) - below(right, bottom);
+        (stored > 0).then_some(range)
+    }
+}
+
 impl ShadowLevel {
+    /// Where its pages are in [`ShadowMap::pages`].
+    fn pages(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.columns * self.rows) as usize
+    }
+
     pub fn bounds(&self) -> LightBox {
         let low = Vec2::from(self.origin);
         let side = Vec2::new(self.columns as f32, self.rows as f32) * (PAGE as f32 * self.texel_m);

@@ -29,8 +29,8 @@
 //!
 //! # Cost
 //! Nothing where a list has no solids. Else, for the time of drawing, 44 bytes per triangle of a solid or of the ground
-//! and 60 for each map, twice that while they are collected; 8 bytes per stored texel, and up to 20 more while it is drawn, of which there are at most
-//! [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
+//! and 60 for each map that it is near pages of, twice that while they are collected; 8 bytes per stored texel, and up to 4 more
+//! while it is drawn, of which there are at most [`MOST_PAGES`] pages per map; these are asked for before they are drawn. A pixel costs
 //! one look-up per map where nothing is near, and from 9 to some 100 readings where a solid lies toward the light.
 
 mod casters;

@@ -1,5 +1,5 @@
 //! Many models: where neither a model nor its shadow is in view it is left out, small ones are drawn in a simpler form,
-//! plants smaller than a pixel or two leave it to the ground to show a wood, and equal ones form runs.
+//! woods of plants smaller than a pixel or two are left to their canopy, and equal ones form runs.
 //!
 //! A picture whose models have no more than `FULL_TRIANGLES` draws all of them in full. Past that, [`ModelDetail::form`]
 //! chooses the form of each by its apparent size. Items are listed by model, form and part, for the runs of
@@ -18,6 +18,7 @@ use crate::model::detail::{ApparentSize, DetailForm, ModelDetail};
 use crate::model::impostor::Impostor;
 use crate::model::{Model, ModelPart};
 use crate::scene::SceneModel;
+use crate::scene::picture::canopy::{CanopyPlant, canopies};
 use crate::view::camera::Camera;
 use crate::view::frustum::Frustum;
 
@@ -27,10 +28,6 @@ pub(super) const FULL_TRIANGLES: usize = 250_000;
 /// Small models of one kind are drawn as pictures on quads where they have this many triangles together; the pictures of
 /// fewer would take longer to make than their meshes to draw.
 const PICTURED_TRIANGLES: usize = 120_000;
-
-/// Plants smaller than this in the picture, in pixels, are not drawn: the ground under them has their tone, and thousands
-/// of specks would say less and cost more.
-const CANOPY_PX: f32 = 1.5;
 
 /// The sine of the sun's height below which shadows are taken to be no longer: they reach a hundred times as far as what
 /// casts them is high.
@@ -70,8 +67,14 @@ struct BoundingSphere {
     radius: f32,
 }
 
-/// Adds the models that `viewer` may see.
-pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel], viewer: Viewer<'_>) {
+/// Adds the models that `viewer` may see but for plants that are part of a canopy, and returns these.
+pub(super) fn add(
+    list: &mut DrawList,
+    scene: &SceneModel,
+    placed: &[PlacedModel],
+    viewer: Viewer<'_>,
+) -> Vec<CanopyPlant> {
+    let mut canopy = Vec::new();
     let balls: Vec<BoundingSphere> = scene.models.iter().map(BoundingSphere::around).collect();
     let groups = match viewer {
         Viewer::Anyone => grouped(placed.iter().map(|stand| (stand, DetailForm::Full))),
@@ -86,13 +89,16 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
                 })
                 .collect();
             let size = |stand: &PlacedModel| balls[stand.model].seen(stand, viewer, camera);
-            let is_canopy = |stand: &PlacedModel, size: &ApparentSize| {
-                size.across_px < CANOPY_PX && !scene.models[stand.model].tints.is_empty()
-            };
-            let (in_view, sizes): (Vec<&PlacedModel>, Vec<ApparentSize>) = in_view
-                .into_par_iter()
-                .map(|stand| (stand, size(stand)))
-                .filter(|(stand, size)| !is_canopy(stand, size))
+            let sizes: Vec<ApparentSize> = in_view.par_iter().map(|stand| size(stand)).collect();
+            let are_canopy = canopies(scene, &in_view, &sizes);
+            let sized = || in_view.par_iter().zip(&sizes).zip(&are_canopy);
+            canopy = sized()
+                .filter(|(_, is_canopy)| **is_canopy)
+                .filter_map(|((stand, size), _)| CanopyPlant::new(scene, stand, size))
+                .collect();
+            let (in_view, sizes): (Vec<&PlacedModel>, Vec<ApparentSize>) = sized()
+                .filter(|(_, is_canopy)| !**is_canopy)
+                .map(|((stand, size), _)| (*stand, *size))
                 .unzip();
             let forms = forms(scene, &in_view, &sizes);
             grouped(in_view.into_iter().zip(forms))
@@ -114,6 +120,7 @@ pub(super) fn add(list: &mut DrawList, scene: &SceneModel, placed: &[PlacedModel
             },
         }
     }
+    canopy
 }
 
 /// A form of equal models, for programs that choose forms themselves.

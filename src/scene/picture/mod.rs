@@ -2,6 +2,7 @@
 
 mod airspace;
 pub mod all_round;
+mod canopy;
 pub mod detail;
 mod drapes;
 mod fit;

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use crate::draw::list::{DepthLayer, DrawList, DrawMesh};
 use crate::draw::material::Material;
 use crate::scene::footprint::ModelFootprint;
-use crate::scene::picture::add_mesh;
 use crate::scene::picture::detail::{self, ListedForm, PlacedModel, Viewer};
+use crate::scene::picture::{add_mesh, canopy};
 use crate::scene::placement::stand;
 use crate::scene::scatter::chance::Chance;
 use crate::scene::{Placement, SceneModel};
@@ -52,7 +52,9 @@ pub(super) fn add_moved(
     moves: &PlacementMoves,
 ) {
     let placed = place(list, scene, displayed, moves);
-    detail::add(list, scene, &placed, viewer);
+    let plants = detail::add(list, scene, &placed, viewer);
+    let ground = scene.scale.ground(&scene.lattice);
+    canopy::add(list, SupportSurface { displayed, ground: &ground }, &plants);
 }
 
 /// [`add`] of all models in all their forms.
