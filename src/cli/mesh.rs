@@ -17,14 +17,17 @@ use crate::dem::raster::Raster;
 use crate::dem::read::DemOptions;
 use crate::dem::windows::MOST_KEPT_SAMPLES;
 use crate::geom::crs::Crs;
+use crate::mesh::source::{MeshSize, MeshSource};
 use crate::mesh::write::{self, MeshFormat, Remarks};
-use crate::pipeline::bounded_mesh::BoundedMesh;
-use crate::pipeline::dem;
+use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
+use crate::pipeline::dem::{self, OpenedDem};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files;
 use crate::pipeline::ground::{GroundError, MetricGround};
+use crate::pipeline::parted_elevation::PartedElevation;
 use crate::pipeline::windowed_elevation::WindowedElevation;
 use crate::roam::bound::Deviation;
+use crate::roam::parts::PartedGround;
 use crate::terrain::lattice::Lattice;
 
 #[derive(Debug, Args)]
@@ -52,57 +55,89 @@ pub struct MeshArguments {
 }
 
 pub fn run(arguments: &MeshArguments) -> Result<(), CliError> {
-    let out = &arguments.output;
     let written = "meshes are written as .obj, .ply, .stl or .glb";
-    let format = output_format(out, from_ref(&arguments.file), MeshFormat::from_extension, written)?;
+    let format =
+        output_format(&arguments.output, from_ref(&arguments.file), MeshFormat::from_extension, written)?;
     let steps = StepTimer::default();
     steps.begin("reading");
     let options =
         DemOptions { cell: arguments.cell, crs: arguments.crs.clone(), ..arguments.heights.dem_options() };
-    let MeshedGround { ground, header, warning } = MeshedGround::open(arguments, &options)?;
-    let MetricGround { lattice, crs } = ground;
-    let lattice = Arc::new(lattice);
-    steps.begin("building the mesh");
-    let bounded = BoundedMesh::new(&lattice, arguments.max_error).map_err(FileError::at(&arguments.file))?;
-    steps.begin("writing");
-    let remarks = remarks(arguments, &lattice, &crs, bounded.deviation);
-    files::write_with(out, |out| write::write(format, &bounded.mesh, &remarks, out))?;
-    steps.finish();
-    warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
-    if let Some(note) = resampled(&header, &lattice, &crs) {
-        warn(&format!("note: {}: {note}", arguments.file.display()));
+    match dem::open_either(&arguments.file, &options, MOST_KEPT_SAMPLES)? {
+        OpenedDem::Windows(windows) => {
+            let elevation = WindowedElevation::new(windows);
+            let ground = PartedElevation::new(elevation).map_err(|error| failed(arguments, error))?;
+            let (lattice, crs) = (ground.frame().clone(), ground.crs().clone());
+            let header = ground.header().without_samples();
+            let place = MeshPlace { header, lattice: &lattice, crs, warning: None };
+            steps.begin("building the mesh");
+            let range = ground.height_range();
+            let bounded = BoundedMesh::of_parts(ground, range, arguments.max_error);
+            let bounded = bounded.map_err(|error| failed(arguments, error))?;
+            write_mesh(arguments, format, &place, bounded, &steps)
+        }
+        OpenedDem::Kept(mosaic) => {
+            let warning = dem::warning(&arguments.file, &mosaic);
+            let ground = MetricGround::from_raster(&mosaic.raster)
+                .map_err(|error| failed(arguments, Arc::new(error).into()))?;
+            let (lattice, header) = (Arc::new(ground.lattice), mosaic.raster.without_samples());
+            drop(mosaic);
+            let place = MeshPlace { header, lattice: &lattice, crs: ground.crs, warning };
+            steps.begin("building the mesh");
+            let bounded = BoundedMesh::new(&lattice, arguments.max_error);
+            let bounded = bounded.map_err(|error| failed(arguments, error))?;
+            write_mesh(arguments, format, &place, bounded, &steps)
+        }
     }
-    print_lines(&summary(arguments, &lattice, &crs, &bounded))
 }
 
-/// The ground that a mesh is made of.
-struct MeshedGround {
-    ground: MetricGround,
+/// Where a mesh lies.
+struct MeshPlace<'a> {
     /// The raster without its samples, which are not held.
     header: Raster,
+    /// The ground; not all of its heights need be held.
+    lattice: &'a Lattice,
+    crs: Crs,
     /// A warning for the user about the files, where there is one.
     warning: Option<String>,
 }
 
-impl MeshedGround {
-    /// The ground of the elevation file. Of a large one only the heights of posts are held, not the file.
-    fn open(arguments: &MeshArguments, options: &DemOptions) -> Result<Self, CliError> {
-        let file = &arguments.file;
-        if let Some(windows) = dem::open_large(file, options, MOST_KEPT_SAMPLES) {
-            let elevation = WindowedElevation::new(windows);
-            let ground = elevation.whole_ground().map_err(|error| match &*error {
-                GroundError::Warp(error) => place_error(file, error, "--crs"),
-                _ => FileError::at(file)(error).into(),
-            })?;
-            return Ok(Self { ground, header: elevation.header().without_samples(), warning: None });
-        }
-        let mosaic = dem::open(file, options)?;
-        let warning = dem::warning(file, &mosaic);
-        let ground = MetricGround::from_raster(&mosaic.raster).map_err(|error| match error {
-            GroundError::Warp(error) => place_error(file, &error, "--crs"),
-            other => FileError::at(file)(other).into(),
-        })?;
-        Ok(Self { ground, header: mosaic.raster.without_samples(), warning })
+fn write_mesh<G: PartedGround>(
+    arguments: &MeshArguments,
+    format: MeshFormat,
+    place: &MeshPlace<'_>,
+    mut bounded: BoundedMesh<G>,
+    steps: &StepTimer,
+) -> Result<(), CliError>
+where
+    MeshError: From<G::Error>,
+{
+    steps.begin("writing");
+    let MeshPlace { header, lattice, crs, warning } = place;
+    let deviation = *bounded.deviation();
+    let remarks = remarks(arguments, lattice, crs, deviation);
+    let written =
+        files::write_with(&arguments.output, |out| write::write(format, &mut bounded, &remarks, out));
+    if let Some(error) = bounded.take_fault() {
+        return Err(failed(arguments, error));
+    }
+    written?;
+    steps.finish();
+    warning.iter().for_each(|warning| warn(&format!("warning: {warning}")));
+    if let Some(note) = resampled(header, lattice, crs) {
+        warn(&format!("note: {}: {note}", arguments.file.display()));
+    }
+    print_lines(&summary(arguments, place, bounded.size(), deviation))
+}
+
+/// The error of an elevation file of which no mesh can be made.
+fn failed(arguments: &MeshArguments, error: MeshError) -> CliError {
+    let file = &arguments.file;
+    match &error {
+        MeshError::Ground(ground) => match &**ground {
+            GroundError::Warp(error) => place_error(file, error, "--crs"),
+            _ => FileError::at(file)(error).into(),
+        },
+        _ => FileError::at(file)(error).into(),
     }
 }
 
@@ -144,8 +179,13 @@ fn rounded_up(max_m: f64) -> f64 {
     (max_m * 1e4).ceil() / 1e4
 }
 
-fn summary(arguments: &MeshArguments, lattice: &Lattice, crs: &Crs, bounded: &BoundedMesh) -> Vec<String> {
-    let Deviation { max_m, mean_m, rms_m, worst, measured, left_out } = bounded.deviation;
+fn summary(
+    arguments: &MeshArguments,
+    MeshPlace { lattice, crs, .. }: &MeshPlace<'_>,
+    size: MeshSize,
+    deviation: Deviation,
+) -> Vec<String> {
+    let Deviation { max_m, mean_m, rms_m, worst, measured, left_out } = deviation;
     let origin = lattice.origin();
     let place = worst.map_or_else(String::new, |post| {
         let at = lattice.map_position(post);
@@ -154,8 +194,8 @@ fn summary(arguments: &MeshArguments, lattice: &Lattice, crs: &Crs, bounded: &Bo
     let row = |name: &str, value: String| row(10, name, value);
     let mut lines = vec![
         arguments.output.display().to_string(),
-        row("vertices", bounded.mesh.positions.len().to_string()),
-        row("triangles", bounded.mesh.triangles.len().to_string()),
+        row("vertices", size.vertices.to_string()),
+        row("triangles", size.triangles.to_string()),
         row("error", format!("maximum {} m, asked for {} m{place}", rounded_up(max_m), arguments.max_error)),
         row("", format!("mean {mean_m:.4} m, RMS {rms_m:.4} m, over {measured} posts")),
         row("origin", format!("({:.3}, {:.3}) in {}", origin.x, origin.y, crs.name())),

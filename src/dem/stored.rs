@@ -1,7 +1,7 @@
 //! The sample type that stores a raster's heights without loss, and its no-data value.
 //!
 //! A type keeps heights where every bit comes back: integers where all heights are integers in their range (and none is
-//! minus zero), floats otherwise. Readers return integers of 16 bits and 32-bit floats in 32 bits and the others in 64,
+//! minus zero), floats otherwise. Bytes are kept as bytes; other small heights take 16 bits, as of most elevation. Readers return integers of 16 bits and 32-bit floats in 32 bits and the others in 64,
 //! so the choice depends on the raster's own precision: what is read back has the same.
 
 use rayon::prelude::*;
@@ -32,6 +32,7 @@ impl StoredSamples {
 /// The values that may mean no data in a type, the preferred first.
 fn candidates(sample: SampleType) -> &'static [f64] {
     match sample {
+        SampleType::U8 => &[255.0, 0.0],
         SampleType::I16 => &[-32768.0, 32767.0, -9999.0],
         SampleType::U16 => &[65535.0, 0.0],
         SampleType::I32 => &[-2_147_483_648.0, 2_147_483_647.0],
@@ -42,30 +43,57 @@ fn candidates(sample: SampleType) -> &'static [f64] {
 
 /// What decides how samples are stored, of a raster of which never all need be in memory.
 pub(crate) struct SampleSurvey {
-    integers: [SampleType; 2],
+    /// The types of integers that may keep the samples, the preferred first.
+    integers: &'static [SampleType],
     float: SampleType,
-    /// Whether each type of integers keeps all heights.
-    kept: [bool; 2],
     /// The value that the raster names for no data.
     own: Option<f64>,
-    /// Values that may mean no data, and whether each is a height.
-    taken: Vec<(f64, bool)>,
+    /// Values that may mean no data.
+    possible: Vec<f64>,
+    found: SurveyedSamples,
     /// Samples with data.
     pub valid: u64,
     samples: u64,
 }
 
+/// What some samples rule out.
+#[derive(Clone)]
+struct SurveyedSamples {
+    valid: u64,
+    /// Whether each type of integers keeps all heights.
+    kept: Vec<bool>,
+    /// Whether each value that may mean no data is a height.
+    taken: Vec<bool>,
+}
+
+impl SurveyedSamples {
+    fn and(mut self, other: Self) -> Self {
+        self.valid += other.valid;
+        self.kept.iter_mut().zip(other.kept).for_each(|(kept, other)| *kept &= other);
+        self.taken.iter_mut().zip(other.taken).for_each(|(taken, other)| *taken |= other);
+        self
+    }
+}
+
 impl SampleSurvey {
     /// A survey of the samples of `raster`, of which none is seen yet.
     pub fn new(raster: &Raster) -> Self {
-        let (integers, float) = match raster.samples {
-            Samples::F32(_) => ([SampleType::I16, SampleType::U16], SampleType::F32),
-            Samples::F64(_) => ([SampleType::I32, SampleType::U32], SampleType::F64),
+        let (integers, float): (&[SampleType], _) = match raster.samples {
+            Samples::F32(_) if raster.data_type == SampleType::U8.gdal_name() => {
+                (&[SampleType::U8, SampleType::I16, SampleType::U16], SampleType::F32)
+            }
+            Samples::F32(_) => (&[SampleType::I16, SampleType::U16], SampleType::F32),
+            Samples::F64(_) => (&[SampleType::I32, SampleType::U32], SampleType::F64),
         };
-        let types = integers.into_iter().chain([float]);
+        let types = integers.iter().copied().chain([float]);
         let possible = types.flat_map(candidates).copied().chain(raster.nodata);
-        let taken = possible.filter(|value| !value.is_nan()).map(|value| (value, false)).collect();
-        Self { integers, float, kept: [true; 2], own: raster.nodata, taken, valid: 0, samples: 0 }
+        let possible: Vec<f64> = possible.filter(|value| !value.is_nan()).collect();
+        let found = SurveyedSamples {
+            valid: 0,
+            kept: vec![true; integers.len()],
+            taken: vec![false; possible.len()],
+        };
+        Self { integers, float, own: raster.nodata, possible, found, valid: 0, samples: 0 }
     }
 
     /// Looks at the next samples.
@@ -78,24 +106,35 @@ impl SampleSurvey {
 
     fn add_values<T: SampleFloat>(&mut self, values: &[T]) {
         self.samples += values.len() as u64;
-        let chunks = || values.par_chunks(SURVEYED_TOGETHER);
-        let valid = |values: &[T]| values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
-        self.valid += chunks().map(valid).sum::<u64>();
-        for (sample, kept) in self.integers.iter().zip(&mut self.kept).filter(|(_, kept)| **kept) {
-            let keeps = |value: f64| value.is_nan() || sample.keeps(value);
-            *kept = chunks().all(|values| values.iter().all(|&value| keeps(value.into())));
+        let found = values.par_chunks(SURVEYED_TOGETHER).map(|values| self.surveyed(values));
+        if let Some(found) = found.reduce_with(SurveyedSamples::and) {
+            self.found = self.found.clone().and(found);
         }
-        for (candidate, taken) in self.taken.iter_mut().filter(|(_, taken)| !*taken) {
+        self.valid = self.found.valid;
+    }
+
+    /// What a few samples rule out that is not ruled out yet.
+    fn surveyed<T: SampleFloat>(&self, values: &[T]) -> SurveyedSamples {
+        let valid = values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
+        let mut kept = vec![false; self.integers.len()];
+        let mut bytes = false;
+        for (index, sample) in self.integers.iter().enumerate() {
+            // What bytes keep, the wider types keep.
+            kept[index] = bytes || self.found.kept[index] && sample.keeps_all(values);
+            bytes |= kept[index] && *sample == SampleType::U8;
+        }
+        let taken = self.possible.iter().zip(&self.found.taken).map(|(&candidate, &is_taken)| {
             // Counted rather than searched: a loop that may end early is not vectorized.
-            let equal = |values: &[T]| values.iter().filter(|&&value| value.into() == *candidate).count();
-            *taken = chunks().any(|values| equal(values) > 0);
-        }
+            let equal = || values.iter().filter(|&&value| value.into() == candidate).count();
+            !is_taken && (!bytes || SampleType::U8.keeps(candidate)) && equal() > 0
+        });
+        SurveyedSamples { valid, taken: taken.collect(), kept }
     }
 
     /// How the samples are stored without a loss.
     pub fn stored(&self) -> StoredSamples {
-        let integers = self.integers.into_iter().zip(self.kept).filter(|(_, kept)| *kept);
-        let types = integers.map(|(sample, _)| sample).chain([self.float]);
+        let integers = self.integers.iter().zip(&self.found.kept).filter(|(_, kept)| **kept);
+        let types = integers.map(|(sample, _)| *sample).chain([self.float]);
         let mut stored =
             types.filter_map(|sample| Some(StoredSamples { sample, nodata: self.nodata(sample)? }));
         // NaN is no height.
@@ -109,7 +148,8 @@ impl SampleSurvey {
             return Some(None);
         }
         let own = self.own.filter(|value| value.is_nan() && sample.is_float() || sample.keeps(*value));
-        let is_taken = |value: f64| self.taken.iter().any(|&(candidate, taken)| taken && candidate == value);
+        let taken = self.possible.iter().zip(&self.found.taken);
+        let is_taken = |value: f64| taken.clone().any(|(&candidate, &taken)| taken && candidate == value);
         let is_free = |value: &f64| value.is_nan() || !is_taken(*value);
         match own.into_iter().chain(candidates(sample).iter().copied()).find(is_free) {
             Some(nodata) => Some(Some(nodata)),
@@ -138,6 +178,27 @@ mod tests {
         assert_eq!(stored(Samples::F32(vec![-0.0, 1.0])), (SampleType::F32, None));
         assert_eq!(stored(Samples::F64(vec![-5.0, 1e9])), (SampleType::I32, None));
         assert_eq!(stored(Samples::F64(vec![0.1, 1e9])), (SampleType::F64, None));
+    }
+
+    #[test]
+    fn bytes_are_kept_as_bytes_where_one_is_left_for_no_data() {
+        let stored = |values: Vec<f32>, nodata| {
+            let raster = Raster { data_type: "Byte", nodata, ..Raster::new(1, Samples::F32(values)) };
+            let StoredSamples { sample, nodata } = StoredSamples::new(&raster);
+            (sample, nodata)
+        };
+        let all = || (0..=255_u8).map(f32::from);
+        let holed = |values: Vec<f32>| [values, vec![f32::NAN]].concat();
+        assert_eq!(stored(all().collect(), None), (SampleType::U8, None));
+        assert_eq!(stored(holed(all().skip(1).collect()), None), (SampleType::U8, Some(0.0)));
+        assert_eq!(stored(holed(vec![0.0, 1.0]), Some(255.0)), (SampleType::U8, Some(255.0)));
+        assert_eq!(stored(holed(all().collect()), Some(255.0)), (SampleType::I16, Some(-32768.0)));
+        for beyond in [256.0, -1.0] {
+            assert_eq!(stored(vec![0.0, beyond], None), (SampleType::I16, None));
+        }
+        for no_integer in [-0.0, 0.5, f32::INFINITY] {
+            assert_eq!(stored(vec![1.0, no_integer], None), (SampleType::F32, None));
+        }
     }
 
     #[test]

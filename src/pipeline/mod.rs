@@ -47,6 +47,7 @@ mod page_symbols;
 pub mod paged_elevation;
 pub mod part_file;
 pub mod part_name;
+pub mod parted_elevation;
 pub mod picture;
 pub mod picture_buffers;
 pub mod picture_statistics;

@@ -112,7 +112,7 @@ pub fn print_model(
     for row in 0..counts[1] {
         for column in 0..counts[0] {
             let (at_mm, lattice) = relief.piece([column, row], counts)?;
-            let mesh = BoundedMesh::new(&Arc::new(lattice), TOLERANCE_MM)?.mesh;
+            let mesh = BoundedMesh::new(&Arc::new(lattice), TOLERANCE_MM)?.to_mesh();
             let joints = [
                 (row, 0, Joint::Socket),
                 (column, counts[0] - 1, Joint::Peg),
@@ -175,7 +175,7 @@ pub fn write(
             Ok(vec![path.to_owned()])
         }
         (PrintFormat::Stl, [piece]) => {
-            files::write_with(path, |out| stl::write(&piece.mesh, &remarks, out))?;
+            files::write_with(path, |out| stl::write(&mut &piece.mesh, &remarks, out))?;
             Ok(vec![path.to_owned()])
         }
         (PrintFormat::Stl, pieces) => {
@@ -185,7 +185,7 @@ pub fn write(
             paths.iter().try_for_each(|path| files::check_output(path, &scene.files))?;
             let mut files = OutputFiles::default();
             for (path, piece) in paths.iter().zip(pieces) {
-                files.write_with(path, |out| stl::write(&piece.mesh, &remarks, out))?;
+                files.write_with(path, |out| stl::write(&mut &piece.mesh, &remarks, out))?;
             }
             files.publish()?;
             Ok(paths)

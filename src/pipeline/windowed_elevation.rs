@@ -18,17 +18,14 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::memory::check_memory;
-use crate::pipeline::ground::{GroundError, MetricGround, QueriedGround};
-use crate::terrain::lattice::{Lattice, LatticeError, Post};
+use crate::pipeline::ground::{GroundError, QueriedGround};
+use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::windowed::{lattice_part, windowed_ground_heights, windowed_source_heights};
 use crate::terrain::query::{Interpolation, Surface};
 
 /// Posts around the positions of a query: those of the cells that these lie in, and a few for rounding.
 const HALO: f64 = 4.0;
-
-/// The memory that ground takes while something is made of all of it: its heights, and a number beside each.
-const BYTES_PER_POST: u64 = 8;
 
 /// Elevation whose samples are read when a query needs them.
 pub struct WindowedElevation {
@@ -157,50 +154,30 @@ impl WindowedElevation {
     pub fn ground(&self, reach: &GroundReach) -> Result<QueriedGround, Arc<GroundError>> {
         let (plan, crs) = (self.plan()?, self.ground_crs()?);
         let held = posts_within(plan.header(), &crs, reach).map_err(Arc::new)?;
-        let mut source = self.source();
-        let mut metric = MetricWindows::new(&mut **source, plan);
-        let lattice = lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))?;
+        let lattice = self.ground_part(held)?;
         let vertical_datum = self.header.vertical_datum.clone();
         Ok(QueriedGround { lattice: Arc::new(lattice), crs, vertical_datum })
     }
 
-    /// The ground of all of the elevation, which is then in memory: a number for each post, and nothing of the file. The same as
-    /// [`MetricGround::from_raster`] makes of the raster in memory, to the last bit.
+    /// The ground of which these posts are held: what [`MetricGround::from_raster`](crate::pipeline::ground::MetricGround::from_raster)
+    /// makes of the raster in memory, to the last bit.
     ///
     /// # Errors
-    /// As [`WindowedElevation::ground`]; and where there is not the memory for it.
-    pub fn whole_ground(&self) -> Result<MetricGround, Arc<GroundError>> {
-        // What is too large is not looked at.
-        check_whole(&self.header).map_err(Arc::new)?;
-        let (plan, crs) = (self.plan()?, self.ground_crs()?);
-        check_whole(plan.header()).map_err(Arc::new)?;
-        let (width, height) = (plan.header().width, plan.header().height);
-        let last = Post { column: width - 1, row: height - 1 };
-        let held = PostRect { first: Post { column: 0, row: 0 }, last };
+    /// The raster has no ground, or cannot be read.
+    ///
+    /// # Panics
+    /// Where the posts reach beyond the ground.
+    pub fn ground_part(&self, held: PostRect) -> Result<Lattice, Arc<GroundError>> {
+        let plan = self.plan()?;
         let mut source = self.source();
         let mut metric = MetricWindows::new(&mut **source, plan);
-        let lattice = lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))?;
-        let (low, high) = lattice.height_range();
-        match low <= high {
-            true => Ok(MetricGround { lattice, crs }),
-            false => Err(Arc::new(LatticeError::Empty.into())),
-        }
+        lattice_part(&mut metric, held).map_err(|error| Arc::new(error.into()))
     }
 
     fn source(&self) -> MutexGuard<'_, Box<dyn Windows + Send>> {
         // A reader that panicked left whole blocks in its cache, and nothing else.
         self.source.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// Checks that all of a raster may be ground in memory.
-fn check_whole(raster: &Raster) -> Result<(), GroundError> {
-    let size = U64Vec2::new(raster.width.into(), raster.height.into());
-    if size.x * size.y > RASTER_SAMPLES.get() {
-        return Err(DemErrorKind::TooLarge { size, most: &RASTER_SAMPLES }.into());
-    }
-    let checked = check_memory(size.x * size.y * BYTES_PER_POST, "the raster", "cut or coarsen it");
-    Ok(checked.map_err(LatticeError::from)?)
 }
 
 /// The posts of the ground within reach; those nearest to it where it lies beyond the border.

@@ -2,7 +2,7 @@
 //!
 //! This checks the promise of an error bound, so it shares nothing with what made the mesh except the lattice: it takes the
 //! triangles as they are written, in f64. Distances are held for some rows at a time: the largest of a post is known when all
-//! triangles that meet its row were looked at.
+//! triangles that meet its row were looked at. `part_bound` does the same for ground that is in memory part by part.
 
 use std::cmp::Reverse;
 
@@ -86,7 +86,13 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
             }
         }
         met.retain(|&triangle| rows_of(triangle).1 > band.last);
-        sums.add(lattice, &band, &distances);
+        let start = band.start(lattice);
+        for (index, &distance) in distances.iter().enumerate() {
+            let height = lattice.held_heights()[start + index];
+            if !height.is_nan() {
+                sums.add(lattice.post_at(start + index), distance);
+            }
+        }
     }
     match over_hole {
         Some((triangle, Post { column, row })) => {
@@ -97,7 +103,7 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
 }
 
 /// Posts whose distances are held at a time: 32 MiB.
-const BAND_POSTS: u32 = 1 << 22;
+pub(in crate::roam) const BAND_POSTS: u32 = 1 << 22;
 
 /// Some rows of posts.
 struct RowBand {
@@ -134,7 +140,12 @@ fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
 }
 
 /// The distance of a post from the plane of a triangle; from the corner itself where it is one.
-fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Post) -> f64 {
+pub(in crate::roam) fn distance(
+    lattice: &Lattice,
+    corners: &[DVec3; 3],
+    posts: &[Post; 3],
+    post: Post,
+) -> f64 {
     let height = f64::from(lattice.height(post));
     if let Some(corner) = posts.iter().position(|&corner| corner == post) {
         return (height - corners[corner].z).abs();
@@ -146,9 +157,9 @@ fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Po
     (height - (a.z + (toward_b * ab.z + toward_c * ac.z) / doubled_area)).abs()
 }
 
-/// What a deviation is made of, row by row from the south.
+/// What a deviation is made of.
 #[derive(Default)]
-struct DeviationSums {
+pub(in crate::roam) struct DeviationSums {
     worst: Option<Post>,
     max_m: f64,
     sum: f64,
@@ -158,23 +169,24 @@ struct DeviationSums {
 }
 
 impl DeviationSums {
-    /// Adds the distances of a band's posts, NaN where no triangle covers one.
-    fn add(&mut self, lattice: &Lattice, band: &RowBand, distances: &[f64]) {
-        let start = band.start(lattice);
-        let heights = &lattice.heights()[start..start + distances.len()];
-        self.with_data += heights.iter().filter(|height| !height.is_nan()).count();
-        for (index, &distance) in distances.iter().enumerate().filter(|(_, distance)| !distance.is_nan()) {
-            if self.worst.is_none() || distance > self.max_m {
-                let (row, column) = (index as u32 / lattice.columns(), index as u32 % lattice.columns());
-                (self.worst, self.max_m) = (Some(Post { column, row: band.first + row }), distance);
-            }
-            self.sum += distance;
-            self.squares += distance * distance;
-            self.measured += 1;
+    /// Adds the distance of a post with data, NaN where no triangle covers it. The order of the posts is free.
+    pub(in crate::roam) fn add(&mut self, post: Post, distance: f64) {
+        self.with_data += 1;
+        if distance.is_nan() {
+            return;
         }
+        let is_before = |worst: Post| (post.row, post.column) < (worst.row, worst.column);
+        if self.worst.is_none_or(|worst| distance > self.max_m || distance == self.max_m && is_before(worst))
+        {
+            (self.worst, self.max_m) = (Some(post), distance);
+        }
+        self.sum += distance;
+        self.squares += distance * distance;
+        self.measured += 1;
     }
 
-    fn deviation(self) -> Deviation {
+    /// What they come to.
+    pub(in crate::roam) fn deviation(self) -> Deviation {
         let Self { worst, max_m, sum, squares, measured, with_data } = self;
         let count = measured.max(1) as f64;
         let rms_m = (squares / count).sqrt();

@@ -9,6 +9,8 @@
 //! least fixed point, whatever the order in which they are applied: any mesh of bintree triangles that keeps the bound has
 //! at least its vertices. Every triangle is examined once, when the vertex that makes it is activated.
 
+use std::sync::Arc;
+
 use crate::roam::active::ActiveSet;
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::exact::{triangle_error, triangles_split_at};
@@ -16,6 +18,7 @@ use crate::roam::errors::scan::PostTriangle;
 use crate::roam::errors::survey::TileSurvey;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
+use crate::roam::parts::{HeldGround, PartPlan, PartedGround};
 use crate::terrain::lattice::Lattice;
 
 /// The fewest active vertices that leave no triangle off by more than `tolerance_m` at any post it covers, no triangle
@@ -23,50 +26,78 @@ use crate::terrain::lattice::Lattice;
 ///
 /// Distances are measured within one part in a million of the relief under a triangle. A negative or NaN tolerance keeps
 /// all vertices.
-pub fn least_closure(lattice: &Lattice, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
+pub fn least_closure(lattice: &Arc<Lattice>, layout: &PatchLayout, tolerance_m: f32) -> ActiveSet {
+    let Ok(active) = least_closure_of_parts(&mut HeldGround::new(lattice, *layout), tolerance_m);
+    active
+}
+
+/// [`least_closure`] of ground that is read part by part: the same vertices. A part is read again where neighbors force
+/// triangles of it apart after it was examined.
+///
+/// # Errors
+/// A part cannot be read.
+pub fn least_closure_of_parts<G: PartedGround>(
+    ground: &mut G,
+    tolerance_m: f32,
+) -> Result<ActiveSet, G::Error> {
+    let plan = ground.plan();
+    let (layout, parts) = (*plan.layout(), plan.count());
+    let roots =
+        |part| plan.patches(part).flat_map(|corner| Triangle::roots(corner, layout.patch())).collect();
     let mut growth = Growth {
-        lattice,
-        layout,
+        plan,
         tolerance_m: if tolerance_m.is_nan() { -1.0 } else { tolerance_m },
-        survey: TileSurvey::new(lattice),
-        active: ActiveSet::new(*layout),
-        waiting: layout.patches().flat_map(|corner| Triangle::roots(corner, layout.patch())).collect(),
+        active: ActiveSet::new(layout),
+        waiting: (0..parts).map(roots).collect(),
     };
-    while let Some(triangle) = growth.waiting.pop() {
-        // A neighbor may have forced it apart meanwhile.
-        let vertex = triangle.split_vertex();
-        if !triangle.is_finest() && !growth.active.is_active(vertex) && growth.is_off(&triangle) {
-            growth.force(vertex);
+    while growth.waiting.iter().any(|waiting| !waiting.is_empty()) {
+        for part in 0..parts {
+            if !growth.waiting[part].is_empty() {
+                growth.examine(part, &*ground.part(part)?);
+            }
         }
     }
-    growth.active
+    Ok(growth.active)
 }
 
-struct Growth<'a> {
-    lattice: &'a Lattice,
-    layout: &'a PatchLayout,
+struct Growth {
+    plan: PartPlan,
     tolerance_m: f32,
-    survey: TileSurvey,
     active: ActiveSet,
-    /// Triangles of the mesh that were not examined.
-    waiting: Vec<Triangle>,
+    /// Triangles of the mesh that were not examined, by the part that they lie in.
+    waiting: Vec<Vec<Triangle>>,
 }
 
-impl Growth<'_> {
+impl Growth {
+    /// Examines the triangles of a part until none waits there.
+    fn examine(&mut self, part: usize, lattice: &Lattice) {
+        let survey = TileSurvey::new(lattice);
+        while let Some(triangle) = self.waiting[part].pop() {
+            // A neighbor may have forced it apart meanwhile.
+            let vertex = triangle.split_vertex();
+            if !self.active.is_active(vertex) && self.is_off(lattice, &survey, &triangle) {
+                self.force(vertex);
+            }
+        }
+    }
+
     /// Whether a triangle is off by more than the tolerance at any post it covers.
-    fn is_off(&self, triangle: &Triangle) -> bool {
-        match PostTriangle::new(self.lattice, triangle).filter(|posts| self.survey.covers(posts)) {
+    fn is_off(&self, lattice: &Lattice, survey: &TileSurvey, triangle: &Triangle) -> bool {
+        match PostTriangle::new(lattice, triangle).filter(|posts| survey.covers(posts)) {
             Some(posts) => posts.exceeds(self.tolerance_m),
-            None => triangle_error(self.lattice, self.layout, triangle) > self.tolerance_m,
+            None => triangle_error(lattice, self.plan.layout(), triangle) > self.tolerance_m,
         }
     }
 
     /// Activates a vertex, its parents first, and adds the halves that they make to those waiting.
     fn force(&mut self, vertex: Vertex) {
-        let (layout, waiting) = (self.layout, &mut self.waiting);
+        let (plan, waiting) = (&self.plan, &mut self.waiting);
         self.active.activate_each(vertex, &mut |vertex| {
-            let split = triangles_split_at(layout, vertex).into_iter().flatten();
-            waiting.extend(split.flat_map(|triangle| triangle.split()));
+            for split in triangles_split_at(plan.layout(), vertex).into_iter().flatten() {
+                let halves = split.split().into_iter().filter(|half| !half.is_finest());
+                let patch = plan.layout().patch_holding(vertex, split.apex);
+                waiting[plan.part_of(patch)].extend(halves);
+            }
         });
     }
 }
@@ -75,6 +106,7 @@ impl Growth<'_> {
 mod tests {
     use super::*;
     use crate::roam::errors::ErrorMap;
+    use crate::roam::parts::tests::CutGround;
     use glam::DVec2;
     use proptest::prelude::*;
 
@@ -140,7 +172,7 @@ mod tests {
         fn no_triangle_is_off_and_none_is_split_without_need(
             columns in 5..70u32, rows in 5..70u32, seed in 0..1000u32, holes in 0..3u32, tolerance in 0.5..30f32,
         ) {
-            let lattice = rough(columns, rows, seed, holes);
+            let lattice = Arc::new(rough(columns, rows, seed, holes));
             let layout = PatchLayout::new(columns, rows, 16).expect("sound");
             let least = least_closure(&lattice, &layout, tolerance);
             least.check();
@@ -153,23 +185,37 @@ mod tests {
             let raised = saturated(&ErrorMap::exact(&lattice, &layout), &layout, tolerance);
             prop_assert!(raised.count() >= least.count());
         }
+
+        #[test]
+        fn parts_read_one_by_one_have_the_closure_of_the_whole(
+            columns in 5..90u32, rows in 5..90u32, seed in 0..1000u32, holes in 0..3u32, tolerance in -1f32..30.0,
+            power in 2u32..6, most in 1usize..2000,
+        ) {
+            let lattice = Arc::new(rough(columns, rows, seed, holes));
+            let layout = PatchLayout::new(columns, rows, 1 << power).expect("sound");
+            let plan = PartPlan::of_vertices(layout, most);
+            let mut cut = CutGround { lattice: (*lattice).clone(), plan };
+            let Ok(parted) = least_closure_of_parts(&mut cut, tolerance);
+            prop_assert!(parted == least_closure(&lattice, &layout, tolerance), "{} parts", plan.count());
+        }
     }
 
     #[test]
     fn flat_ground_is_two_triangles_a_patch_and_no_tolerance_keeps_every_rough_post() {
         let layout = PatchLayout::new(33, 33, 32).expect("sound");
         let flat = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![812.3; 33 * 33]).expect("sound");
-        assert_eq!(least_closure(&flat, &layout, 0.0).count(), 0);
-        let every = least_closure(&rough(33, 33, 5, 0), &layout, -1.0);
+        assert_eq!(least_closure(&Arc::new(flat), &layout, 0.0).count(), 0);
+        let ground = Arc::new(rough(33, 33, 5, 0));
+        let every = least_closure(&ground, &layout, -1.0);
         assert_eq!(every.count() + 4, layout.vertex_count());
-        assert_eq!(every, least_closure(&rough(33, 33, 5, 0), &layout, f32::NAN));
+        assert_eq!(every, least_closure(&ground, &layout, f32::NAN));
     }
 
     #[test]
     fn pinned_posts_are_kept_exact() {
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![1.0; 33 * 33]).expect("sound");
         lattice.pin(crate::terrain::lattice::Post { column: 11, row: 7 }, 1.5);
-        let least = least_closure(&lattice, &PatchLayout::new(33, 33, 32).expect("sound"), 5.0);
+        let least = least_closure(&Arc::new(lattice), &PatchLayout::new(33, 33, 32).expect("sound"), 5.0);
         assert!(least.is_active(Vertex::new(11, 7)));
     }
 }

@@ -188,6 +188,11 @@ impl PatchLayout {
         (vertex.x | vertex.y) & (self.patch - 1) == 0
     }
 
+    /// The number of posts of the lattice.
+    pub fn posts(&self) -> u64 {
+        (self.last_column as u64 + 1) * (self.last_row as u64 + 1)
+    }
+
     /// The post of a vertex: its own, or the nearest on the border.
     #[inline]
     pub fn post(&self, vertex: Vertex) -> Post {

@@ -13,8 +13,8 @@
 //! - `displayed`: the mesh of the bits as a surface for features; `measured_ground`: a ground with all its measures.
 //! - `levels`, `edit`, `dynamic`: updates of errors and spheres after heights changed, and a terrain that can be edited;
 //!   `sphere_task`: its spheres for another picture, made on another thread.
-//! - `paging`: terrain larger than memory.
-//! - `shown`, `frames`, `measure`, `bound`: index lists of a frame, comparisons of frames, of a frame with the ground, and of
+//! - `paging`: terrain larger than memory, for walks; `parts`: for a mesh of all of it.
+//! - `shown`, `frames`, `measure`, `bound`, `part_bound`: index lists of a frame, comparisons of frames, of a frame with the ground, and of
 //!   a mesh with the ground.
 //!
 //! Sources: Duchaineau et al. 1997 (ROAM); patch-based forced splits and screen-space errors of the later papers; Lindstrom
@@ -41,6 +41,8 @@ pub mod levels;
 pub mod measure;
 pub mod measured_ground;
 pub mod paging;
+pub mod part_bound;
+pub mod parts;
 pub mod patched_ground;
 pub mod quadtree;
 pub mod refine;

@@ -236,6 +236,7 @@ fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
     let mut notes = Vec::new();
     let sample = match StoredSamples::new(raster).sample {
         kept @ (SampleType::I16 | SampleType::I32) => kept,
+        SampleType::U8 => SampleType::I16,
         other => {
             if other.is_wide() {
                 notes.push("heights are rounded to float32".to_owned());

@@ -19,18 +19,18 @@ use serde_json::{Map, Value, json};
 
 use crate::geom::aabb::Aabb;
 use crate::mesh::sink::VertexId;
-use crate::mesh::trimesh::TriMesh;
 use crate::mesh::write::{Remarks, count_u32, little_endian};
 
 /// From X east, Y north, Z up to glTF's axes, column by column.
-const GLTF_FROM_WORLD: [f32; 16] = [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
+pub(in crate::mesh::write) const GLTF_FROM_WORLD: [f32; 16] =
+    [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
 
 // The specification's numbers for component types and buffer targets.
 const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const FLOAT: u32 = 5126;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+pub(in crate::mesh::write) const UNSIGNED_INT: u32 = 5125;
+pub(in crate::mesh::write) const FLOAT: u32 = 5126;
+pub(in crate::mesh::write) const ARRAY_BUFFER: u32 = 34962;
+pub(in crate::mesh::write) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// The content of a GLB file; elements name each other by their index.
 #[derive(Clone, Debug, Default)]
@@ -71,6 +71,31 @@ pub struct GlbPrimitive<'a> {
     pub material: Option<usize>,
 }
 
+/// Writes the header of a file, its JSON chunk, and the head of the binary chunk, whose `length` bytes follow.
+///
+/// # Errors
+/// `out` cannot be written, or the file would exceed 4 GiB.
+pub(in crate::mesh::write) fn write_chunks(
+    document: String,
+    length: usize,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let mut text = document.into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let data_chunk = if length > 0 { 8 + length } else { 0 };
+    out.write_all(b"glTF")?;
+    out.write_all(&2u32.to_le_bytes())?;
+    out.write_all(&count_u32(20 + text.len() + data_chunk, "bytes")?.to_le_bytes())?;
+    out.write_all(&count_u32(text.len(), "bytes")?.to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    if length > 0 {
+        out.write_all(&count_u32(length, "bytes")?.to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+    }
+    Ok(())
+}
+
 /// A mesh in its place.
 #[derive(Clone, Debug)]
 pub struct GlbNode {
@@ -82,38 +107,15 @@ pub struct GlbNode {
     pub world_from_mesh: Mat4,
 }
 
-impl<'a> GlbScene<'a> {
-    /// A scene of one mesh with at least one triangle.
-    pub fn from_mesh(mesh: &'a TriMesh) -> Self {
-        let vertices = GlbVertices { positions: Cow::Borrowed(&mesh.positions), ..GlbVertices::default() };
-        let triangles = Cow::Borrowed(mesh.triangles.as_slice());
-        Self {
-            vertices: vec![vertices],
-            meshes: vec![vec![GlbPrimitive { vertices: 0, triangles, material: None }]],
-            nodes: vec![GlbNode { name: "terrain".into(), mesh: 0, world_from_mesh: Mat4::IDENTITY }],
-            ..Self::default()
-        }
-    }
-
+impl GlbScene<'_> {
     /// Writes the file; remarks go to `asset.extras`.
     ///
     /// # Errors
     /// `out` cannot be written, or the file would exceed 4 GiB.
     pub fn write(&self, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
         let mut data = GlbData::default();
-        let mut text = self.document(remarks, &mut data).to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let data_chunk = if data.length > 0 { 8 + data.length } else { 0 };
-        out.write_all(b"glTF")?;
-        out.write_all(&2u32.to_le_bytes())?;
-        out.write_all(&count_u32(20 + text.len() + data_chunk, "bytes")?.to_le_bytes())?;
-        out.write_all(&count_u32(text.len(), "bytes")?.to_le_bytes())?;
-        out.write_all(b"JSON")?;
-        out.write_all(&text)?;
-        if data.length > 0 {
-            out.write_all(&count_u32(data.length, "bytes")?.to_le_bytes())?;
-            out.write_all(b"BIN\0")?;
-        }
+        let text = self.document(remarks, &mut data).to_string();
+        write_chunks(text, data.length, out)?;
         data.chunks.iter().try_for_each(|chunk| out.write_all(chunk))
     }
 
@@ -270,22 +272,7 @@ impl<'s> GlbData<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::samples::{remarks, square};
-
-    #[test]
-    fn chunks_are_aligned_and_bounds_are_those_of_the_positions() {
-        let mut bytes = Vec::new();
-        GlbScene::from_mesh(&square()).write(&remarks(), &mut bytes).expect("memory");
-        let number =
-            |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize;
-        assert_eq!((&bytes[..4], number(4), number(8)), (&b"glTF"[..], 2, bytes.len()));
-        let text = number(12);
-        assert_eq!((text % 4, number(20 + text), &bytes[24 + text..28 + text]), (0, 72, &b"BIN\0"[..]));
-        let document: Value = serde_json::from_slice(&bytes[20..20 + text]).expect("JSON");
-        assert_eq!(document["accessors"][0]["min"], json!([0.0f32, 0.0f32, -1.5f32]));
-        assert_eq!(document["accessors"][0]["max"], json!([2.0f32, 3.0f32, 1e7f32]));
-        assert_eq!(document["asset"]["extras"]["remarks"][1], "zwölf");
-    }
+    use crate::mesh::write::samples::remarks;
 
     #[test]
     fn the_root_node_turns_up_to_y_and_north_away() {

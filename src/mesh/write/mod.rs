@@ -4,6 +4,7 @@
 //! same. No format has a field for the origin, so files state it in remarks.
 
 pub mod glb;
+pub mod glb_mesh;
 pub mod obj;
 pub mod ply;
 pub mod stl;
@@ -12,8 +13,7 @@ pub mod three_mf;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::mesh::trimesh::TriMesh;
-use crate::mesh::write::glb::GlbScene;
+use crate::mesh::source::MeshSource;
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,14 +76,18 @@ impl Remarks {
 /// Writes `mesh` in a format.
 ///
 /// # Errors
-/// `out` cannot be written, or the mesh does not fit the format ([`MeshWriteError`]).
-pub fn write(format: MeshFormat, mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+/// `out` cannot be written, the mesh cannot be made, or does not fit the format ([`MeshWriteError`]).
+pub fn write(
+    format: MeshFormat,
+    mesh: &mut impl MeshSource,
+    remarks: &Remarks,
+    out: &mut impl Write,
+) -> io::Result<()> {
     match format {
         MeshFormat::Obj => obj::write(mesh, remarks, out),
         MeshFormat::Ply => ply::write(mesh, remarks, out),
         MeshFormat::Stl => stl::write(mesh, remarks, out),
-        MeshFormat::Glb if mesh.triangles.is_empty() => Err(MeshWriteError::Empty.into()),
-        MeshFormat::Glb => GlbScene::from_mesh(mesh).write(remarks, out),
+        MeshFormat::Glb => glb_mesh::write(mesh, remarks, out),
     }
 }
 
@@ -127,6 +131,7 @@ pub(in crate::mesh::write) mod samples {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::trimesh::TriMesh;
 
     #[test]
     fn formats_are_known_by_their_extensions_in_any_case() {
@@ -141,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_glb_without_triangles_is_refused() {
-        let result = write(MeshFormat::Glb, &TriMesh::default(), &samples::remarks(), &mut Vec::new());
+        let result = write(MeshFormat::Glb, &mut &TriMesh::default(), &samples::remarks(), &mut Vec::new());
         assert_eq!(result.expect_err("empty").kind(), io::ErrorKind::InvalidInput);
     }
 }

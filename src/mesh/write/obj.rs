@@ -7,21 +7,21 @@ use std::io::{self, Write};
 use glam::{Vec2, Vec3};
 
 use crate::mesh::sink::VertexId;
-use crate::mesh::trimesh::TriMesh;
+use crate::mesh::source::MeshSource;
 use crate::mesh::write::Remarks;
 
-/// Writes `mesh`, each coordinate in the fewest digits that keep its value.
+/// Writes `mesh` as one object, each coordinate in the fewest digits that keep its value.
 ///
 /// # Errors
-/// `out` cannot be written.
-pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
-    let object = ObjObject {
-        name: "terrain".into(),
-        positions: Cow::Borrowed(&mesh.positions),
-        triangles: Cow::Borrowed(&mesh.triangles),
-        ..ObjObject::default()
-    };
-    ObjWriter::new(out, remarks, None)?.object(&object)
+/// `out` cannot be written, or the mesh cannot be made.
+pub fn write(mesh: &mut impl MeshSource, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+    ObjWriter::new(out, remarks, None)?;
+    writeln!(out, "o terrain")?;
+    mesh.each_vertex(&mut |Vec3 { x, y, z }| writeln!(out, "v {x} {y} {z}"))?;
+    mesh.each_triangle(&mut |corners| {
+        let [a, b, c] = corners.map(|id| id.index() + 1);
+        writeln!(out, "f {a} {b} {c}")
+    })
 }
 
 /// One object of a file. All attributes but the positions may be empty; the others have one value a vertex.
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn a_reader_gets_back_what_was_written() {
         let mut text = Vec::new();
-        write(&square(), &remarks(), &mut text).expect("memory");
+        write(&mut &square(), &remarks(), &mut text).expect("memory");
         let text = String::from_utf8(text).expect("UTF-8");
         assert!(text.starts_with("# a?v 9 9 9\n# zwölf\no terrain\nv 0 0 -1.5\n"), "{text}");
         let numbers = |kind: &str| -> Vec<f32> {

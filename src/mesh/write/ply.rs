@@ -2,30 +2,30 @@
 
 use std::io::{self, Write};
 
-use crate::mesh::trimesh::TriMesh;
+use crate::mesh::source::{MeshSize, MeshSource};
 use crate::mesh::write::{Remarks, little_endian};
 
 /// Writes `mesh`.
 ///
 /// # Errors
-/// `out` cannot be written.
-pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+/// `out` cannot be written, or the mesh cannot be made.
+pub fn write(mesh: &mut impl MeshSource, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"ply\nformat binary_little_endian 1.0\n")?;
     for line in &remarks.lines {
         writeln!(out, "comment {line}")?;
     }
-    writeln!(out, "element vertex {}", mesh.positions.len())?;
+    let MeshSize { vertices, triangles, .. } = mesh.size();
+    writeln!(out, "element vertex {vertices}")?;
     for axis in ["x", "y", "z"] {
         writeln!(out, "property float {axis}")?;
     }
-    writeln!(out, "element face {}", mesh.triangles.len())?;
+    writeln!(out, "element face {triangles}")?;
     out.write_all(b"property list uchar uint vertex_indices\nend_header\n")?;
-    out.write_all(&little_endian(&mesh.positions))?;
-    for corners in &mesh.triangles {
+    mesh.each_vertex(&mut |position| out.write_all(&little_endian(&[position])))?;
+    mesh.each_triangle(&mut |corners| {
         out.write_all(&[3])?;
-        out.write_all(&little_endian(corners))?;
-    }
-    Ok(())
+        out.write_all(&little_endian(&corners))
+    })
 }
 
 #[cfg(test)]
@@ -36,7 +36,7 @@ mod tests {
     #[test]
     fn the_header_states_what_follows_it() {
         let mut bytes = Vec::new();
-        write(&square(), &remarks(), &mut bytes).expect("memory");
+        write(&mut &square(), &remarks(), &mut bytes).expect("memory");
         let end = b"end_header\n";
         let start = bytes.windows(end.len()).position(|window| window == end).expect("a header") + end.len();
         let header = std::str::from_utf8(&bytes[..start]).expect("UTF-8");

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use glam::{DVec3, Vec3};
 
 use crate::geom::triangle::normal;
-use crate::mesh::trimesh::TriMesh;
+use crate::mesh::source::MeshSource;
 use crate::mesh::write::{Remarks, count_u32, little_endian};
 
 /// Bytes of the header. It must not begin with `solid`, as text STL files do.
@@ -14,17 +14,15 @@ const HEADER: usize = 80;
 /// Writes `mesh`; the header holds the short remark.
 ///
 /// # Errors
-/// `out` cannot be written, or there are 2³² triangles or more.
-pub fn write(mesh: &TriMesh, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
+/// `out` cannot be written, the mesh cannot be made, or has 2³² triangles or more.
+pub fn write(mesh: &mut impl MeshSource, remarks: &Remarks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(&header(&remarks.short))?;
-    out.write_all(&count_u32(mesh.triangles.len(), "triangles")?.to_le_bytes())?;
-    for triangle in 0..mesh.triangles.len() {
-        let [a, b, c] = mesh.corners(triangle);
+    out.write_all(&count_u32(mesh.size().triangles, "triangles")?.to_le_bytes())?;
+    mesh.each_facet(&mut |[a, b, c]| {
         let normal: DVec3 = normal([a, b, c].map(Vec3::as_dvec3)).normalize_or_zero();
         out.write_all(&little_endian(&[normal.as_vec3(), a, b, c]))?;
-        out.write_all(&[0, 0])?;
-    }
-    Ok(())
+        out.write_all(&[0, 0])
+    })
 }
 
 /// `text` in 80 bytes: other letters than ASCII become `?`, the rest is blanks.
@@ -45,7 +43,7 @@ mod tests {
     #[test]
     fn each_triangle_has_fifty_bytes_after_the_header() {
         let mut bytes = Vec::new();
-        write(&square(), &remarks(), &mut bytes).expect("memory");
+        write(&mut &square(), &remarks(), &mut bytes).expect("memory");
         assert!(bytes.starts_with(b"origin 5 6  "));
         assert_eq!(bytes.len(), 84 + 2 * 50);
         assert_eq!(bytes[80..84], [2, 0, 0, 0]);

@@ -123,7 +123,7 @@ impl Terrain {
     /// # Errors
     /// [`Error::Mesh`].
     pub fn mesh_within(&self, max_error_m: f64) -> Result<TriMesh, Error> {
-        Ok(BoundedMesh::new(self.ground.lattice(), max_error_m)?.mesh)
+        Ok(BoundedMesh::new(self.ground.lattice(), max_error_m)?.to_mesh())
     }
 
     /// How directly the ground faces the sun, a gray for each post: 1 facing away, 255 facing it, no data (0 in a file) where

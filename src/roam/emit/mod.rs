@@ -11,11 +11,13 @@
 //! | `geomipmap` | de Boer 2000, GeoMipMap | a level a patch |
 //! | `full` | – | the posts alone |
 //!
-//! The first three make the same triangles from the same bits. `walk` visits the leaves of a patch's bintree.
+//! The first three make the same triangles from the same bits. `walk` visits the leaves of a patch's bintree, `part` those of
+//! one part of the ground after the other.
 
 pub mod bintree;
 pub mod full;
 pub mod geomipmap;
+pub mod part;
 pub mod quadtree;
 pub mod strips;
 pub mod walk;

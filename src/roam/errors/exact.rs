@@ -324,7 +324,7 @@ impl CoveredPosts {
         let height_at = plane.along(span.row);
         for offset in 0..=(span.last - span.first) {
             let post = Post { column: span.first + offset, row: span.row };
-            let height = lattice.heights()[first + offset as usize];
+            let height = lattice.held_heights()[first + offset as usize];
             if height.is_nan() {
                 self.no_data = true;
                 continue;

@@ -21,6 +21,7 @@ use std::ops::Range;
 
 use crate::roam::bintree::Triangle;
 use crate::roam::errors::survey::is_plain;
+use crate::roam::graph::Vertex;
 use crate::terrain::lattice::Lattice;
 
 /// Posts that are measured together.
@@ -58,8 +59,12 @@ enum ScanShape {
 /// A triangle whose corners all are posts.
 #[derive(Clone, Copy, Debug)]
 pub struct PostTriangle<'a> {
+    /// Those that the lattice holds.
     heights: &'a [f32],
+    /// Held posts per row.
     columns: usize,
+    /// The index that column 0 of row 0 has among the held posts, or would have.
+    origin: isize,
     apex: (i32, i32),
     apex_height: f32,
     per_column: f32,
@@ -68,16 +73,18 @@ pub struct PostTriangle<'a> {
 }
 
 impl<'a> PostTriangle<'a> {
-    /// The triangle over a lattice; `None` where it reaches beyond the lattice's border.
+    /// The triangle over a lattice, which holds the posts under it; `None` where it reaches beyond the lattice's border.
     pub fn new(lattice: &'a Lattice, triangle: &Triangle) -> Option<Self> {
         let (columns, rows) = (lattice.columns() as i32, lattice.rows() as i32);
         let corners = triangle.corners();
         if corners.iter().any(|corner| corner.x >= columns || corner.y >= rows) {
             return None;
         }
-        let heights = lattice.heights();
-        let [apex_height, left, right] =
-            corners.map(|corner| heights[corner.y as usize * columns as usize + corner.x as usize]);
+        let (heights, held) = (lattice.held_heights(), lattice.held());
+        let stride = held.width();
+        let origin = -((held.first.row as usize * stride + held.first.column as usize) as isize);
+        let index = |corner: Vertex| origin + (corner.y as usize * stride + corner.x as usize) as isize;
+        let [apex_height, left, right] = corners.map(|corner| heights[index(corner) as usize]);
         let [apex, from, to] = corners.map(|corner| (corner.x, corner.y));
         let (left, right) = (left - apex_height, right - apex_height);
         let (shape, per_column, per_row) = if from.1 == to.1 {
@@ -107,7 +114,7 @@ impl<'a> PostTriangle<'a> {
                 across * (scale * north as f32),
             )
         };
-        Some(Self { heights, columns: columns as usize, apex, apex_height, per_column, per_row, shape })
+        Some(Self { heights, columns: stride, origin, apex, apex_height, per_column, per_row, shape })
     }
 
     /// The rows of posts it covers, counted from the apex, or from the south where the hypotenuse runs north.
@@ -183,7 +190,7 @@ impl<'a> PostTriangle<'a> {
     }
 
     fn posts(&self, row: i32, first: i32, length: i32) -> Range<usize> {
-        let start = row as usize * self.columns + first as usize;
+        let start = (self.origin + (row as usize * self.columns + first as usize) as isize) as usize;
         start..start + length.max(0) as usize
     }
 

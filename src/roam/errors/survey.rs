@@ -11,22 +11,25 @@ use crate::terrain::lattice::Lattice;
 /// Posts along a tile's side: a smaller one scans less ground around a hole the slow way; a larger one makes fewer tiles.
 const TILE: usize = 32;
 
-/// The plain tiles of a lattice.
+/// The plain tiles of the posts that a lattice holds.
 #[derive(Clone, Debug)]
 pub struct TileSurvey {
+    /// Column and row of the south-westernmost held post.
+    first: (i32, i32),
     tiles_east: usize,
     blemished: Vec<bool>,
 }
 
 impl TileSurvey {
-    /// Reads every post once.
+    /// Reads every held post once.
     pub fn new(lattice: &Lattice) -> Self {
-        let columns = lattice.columns() as usize;
+        let (held, heights) = (lattice.held(), lattice.held_heights());
+        let columns = held.width();
         let tiles_east = columns.div_ceil(TILE);
-        let mut blemished = vec![false; tiles_east * (lattice.rows() as usize).div_ceil(TILE)];
+        let mut blemished = vec![false; tiles_east * held.height().div_ceil(TILE)];
         blemished.par_chunks_mut(tiles_east).enumerate().for_each(|(north, tiles)| {
-            let posts = north * TILE * columns..((north + 1) * TILE * columns).min(lattice.heights().len());
-            let rows = lattice.heights()[posts.clone()].chunks_exact(columns);
+            let posts = north * TILE * columns..((north + 1) * TILE * columns).min(heights.len());
+            let rows = heights[posts.clone()].chunks_exact(columns);
             for (heights, pinned) in rows.zip(lattice.pinned()[posts].chunks_exact(columns)) {
                 let pieces = heights.chunks(TILE).zip(pinned.chunks(TILE));
                 for (tile, (heights, pinned)) in tiles.iter_mut().zip(pieces) {
@@ -34,15 +37,16 @@ impl TileSurvey {
                 }
             }
         });
-        Self { tiles_east, blemished }
+        Self { first: (held.first.column as i32, held.first.row as i32), tiles_east, blemished }
     }
 
-    /// Whether all posts from column and row `first` to `last`, ends included and within the lattice, are known to be plain.
+    /// Whether all posts from column and row `first` to `last`, ends included and held, are known to be plain.
     pub fn is_plain(&self, first: (i32, i32), last: (i32, i32)) -> bool {
-        let tile = |at: i32| at as usize / TILE;
-        (tile(first.1)..=tile(last.1)).all(|north| {
-            let row = north * self.tiles_east;
-            !self.blemished[row + tile(first.0)..=row + tile(last.0)].contains(&true)
+        let tile = |at: i32, first: i32| (at - first) as usize / TILE;
+        let (column, row) = (|at| tile(at, self.first.0), |at| tile(at, self.first.1));
+        (row(first.1)..=row(last.1)).all(|north| {
+            let west = north * self.tiles_east;
+            !self.blemished[west + column(first.0)..=west + column(last.0)].contains(&true)
         })
     }
 
