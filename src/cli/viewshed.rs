@@ -19,7 +19,7 @@ use crate::dem::formats::DemFormat;
 use crate::geom::crs::Crs;
 use crate::pipeline::dataset::{QueryError, transform};
 use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::viewshed::{ViewshedSummary, raster};
+use crate::pipeline::viewshed::{ViewshedSummary, raster, windows};
 use crate::pipeline::viewshed_map::{SheetText, viewshed_map};
 use crate::pipeline::windowed_elevation::GroundReach;
 use crate::pipeline::{files, raster_file};
@@ -134,8 +134,12 @@ fn write(
     let lattice = &*ground.held_lattice()?;
     match output {
         ViewshedOutput::Raster(path, format) => {
-            let raster = raster(lattice, viewshed, &ground.crs);
-            raster_file::write(&raster, format, path, slice::from_ref(&arguments.dataset.file))?;
+            let file = &arguments.dataset.file;
+            let mut windows = windows(lattice, viewshed, &ground.crs);
+            if raster_file::write_windows(&mut windows, format, path, file)?.is_none() {
+                let raster = raster(lattice, viewshed, &ground.crs);
+                raster_file::write(&raster, format, path, slice::from_ref(file))?;
+            }
         }
         ViewshedOutput::Map(path) => {
             let text = SheetText {

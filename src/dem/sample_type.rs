@@ -104,6 +104,25 @@ impl SampleType {
         }
     }
 
+    /// Whether every value comes back, or is NaN.
+    pub fn keeps_all<T: Copy + Into<f64>>(self, values: &[T]) -> bool {
+        /// Sums with it lose the bits behind the point of numbers below 2⁵¹.
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        /// Values that are looked at together: a loop that may end early is not vectorized.
+        const TOGETHER: usize = 1024;
+        if self.is_float() || self.bytes() == 8 {
+            return values.iter().all(|&value| value.into().is_nan() || self.keeps(value.into()));
+        }
+        let (least, greatest) = self.range();
+        let keeps = |value: f64| {
+            // Of equal bits, so that minus zero is not kept.
+            let is_whole = ((value + WHOLE) - WHOLE).to_bits() == value.to_bits();
+            (value >= least) & (value <= greatest) & is_whole | value.is_nan()
+        };
+        let all = |values: &[T]| values.iter().fold(true, |all, &value| all & keeps(value.into()));
+        values.chunks(TOGETHER).all(all)
+    }
+
     /// Appends values, the least significant byte of each first.
     pub fn write(self, values: &[f64], out: &mut Vec<u8>) {
         match self {

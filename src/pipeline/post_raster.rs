@@ -2,7 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
+use crate::dem::windows::{RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::terrain::hillshade::{self, HillshadeOptions, hillshade};
 use crate::terrain::lattice::{Lattice, Post};
@@ -20,21 +22,53 @@ pub struct PostBytes<F> {
 impl<F: Fn(usize) -> f32 + Sync> PostBytes<F> {
     /// The raster of the bytes, north up, its samples at the posts.
     pub fn raster(self, lattice: &Lattice, crs: &Crs) -> Raster {
+        let windows = self.windows(lattice, crs);
+        let samples = windows.values(RasterWindow::all(windows.size()));
+        Raster { samples: Samples::F32(samples), ..windows.header }
+    }
+
+    /// The raster of the bytes, made window by window.
+    pub fn windows(self, lattice: &Lattice, crs: &Crs) -> PostWindows<F> {
         let (columns, rows) = (lattice.columns(), lattice.rows());
         let north_west = lattice.map_position(Post { column: 0, row: rows - 1 });
-        let place = north_up_nodes(north_west, lattice.cell());
-        let width = columns as usize;
-        let mut values = vec![0.0; width * rows as usize];
-        values.par_chunks_mut(width).rev().enumerate().for_each(|(row, values)| {
-            values.iter_mut().enumerate().for_each(|(at, value)| *value = (self.value)(row * width + at));
-        });
-        Raster {
+        let header = Raster {
             driver: self.name,
             data_type: "Byte",
             crs: (*crs != Crs::local()).then(|| crs.clone()),
             nodata: Some(self.nodata),
-            ..Raster::new(columns, Samples::F32(values)).placed(place)
-        }
+            ..Raster::without_place(columns, rows)
+        };
+        PostWindows { header: header.placed(north_up_nodes(north_west, lattice.cell())), value: self.value }
+    }
+}
+
+/// A raster of [`PostBytes`] that is made window by window.
+pub struct PostWindows<F> {
+    header: Raster,
+    value: F,
+}
+
+impl<F: Fn(usize) -> f32 + Sync> PostWindows<F> {
+    fn values(&self, window: RasterWindow) -> Vec<f32> {
+        let (columns, width) = (self.header.width as usize, window.width as usize);
+        let first = (self.header.height - 1 - window.row) as usize * columns + window.column as usize;
+        let mut values = vec![0.0; window.samples()];
+        values.par_chunks_mut(width).enumerate().for_each(|(down, values)| {
+            let start = first - down * columns;
+            values.iter_mut().enumerate().for_each(|(at, value)| *value = (self.value)(start + at));
+        });
+        values
+    }
+}
+
+impl<F: Fn(usize) -> f32 + Sync> Windows for PostWindows<F> {
+    fn metadata(&self) -> &Raster {
+        &self.header
+    }
+
+    fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
+        window.assert_within(self.size());
+        Ok(Samples::F32(self.values(window)))
     }
 }
 

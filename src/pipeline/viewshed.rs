@@ -1,6 +1,7 @@
 //! The results of a viewshed: figures, and a raster.
 
 use crate::dem::raster::Raster;
+use crate::dem::windows::Windows;
 use crate::geom::crs::Crs;
 use crate::pipeline::post_raster::PostBytes;
 use crate::terrain::lattice::Lattice;
@@ -37,10 +38,19 @@ impl ViewshedSummary {
 
 /// The viewshed as a raster: 1 in sight, 0 hidden, no data elsewhere.
 pub fn raster(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> Raster {
+    bytes(viewshed).raster(lattice, crs)
+}
+
+/// [`raster`], made window by window.
+pub fn windows(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> impl Windows + Send {
+    bytes(viewshed).windows(lattice, crs)
+}
+
+fn bytes(viewshed: &Viewshed) -> PostBytes<impl Fn(usize) -> f32 + Send + Sync> {
     let value = |index: usize| match viewshed.posts[index] {
         PostVisibility::Visible => 1.0,
         PostVisibility::Hidden => 0.0,
         PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
-    PostBytes { name: "viewshed", value, nodata: NO_DATA }.raster(lattice, crs)
+    PostBytes { name: "viewshed", value, nodata: NO_DATA }
 }

@@ -5,6 +5,9 @@ use rayon::prelude::*;
 /// Heights that a thread scans together: some tens of microseconds.
 const SCANNED_TOGETHER: usize = 1 << 16;
 
+/// Heights of which it is asked at once whether any is beyond a limit.
+const LOOKED_AT_TOGETHER: usize = 1024;
+
 /// Ranges that are widened in turn, so that none waits for the one before.
 const LANES: usize = 8;
 
@@ -15,7 +18,11 @@ pub(in crate::terrain) fn range(heights: &[f32]) -> (f32, f32) {
 
 /// The first height above `limit` or below `-limit`.
 pub(in crate::terrain) fn first_beyond(heights: &[f32], limit: f32) -> Option<f32> {
-    scanned(heights, |heights| heights.iter().find(|height| height.abs() > limit).copied(), Option::or)
+    let is_beyond = |height: &&f32| height.abs() > limit;
+    // A loop that may end early is not vectorized: it looks where one is known to be.
+    let any = |heights: &&[f32]| heights.iter().fold(false, |any, height| any | is_beyond(&height));
+    let first = |heights: &[f32]| heights.iter().find(is_beyond).copied();
+    scanned(heights, |heights| heights.chunks(LOOKED_AT_TOGETHER).find(any).and_then(first), Option::or)
 }
 
 /// What `scan` finds, joined in the order of the heights where threads share them.

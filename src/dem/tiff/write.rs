@@ -95,21 +95,26 @@ fn notes(is_named: bool) -> Vec<String> {
     if is_named { vec![] } else { vec!["heights are converted to meters".to_owned()] }
 }
 
+/// How hard bytes are packed: grays and classes, of which a longer search finds a tenth more for twice the time.
+const BYTES_LEVEL: Compression = Compression::new(4);
+
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
 fn tile(raster: &Raster, StoredSamples { sample, nodata }: StoredSamples, column: u32, row: u32) -> Vec<u8> {
     let nodata = nodata.unwrap_or(f64::NAN);
     let size = sample.bytes();
-    let mut packer = ZlibEncoder::new(Vec::new(), Compression::default());
+    let mut predicted = Vec::with_capacity((TILE * TILE) as usize * size);
     let mut line = Vec::with_capacity(TILE as usize * size);
     let mut values = [0.0; TILE as usize];
     for y in row..row + TILE {
         tile_row(raster, column, y.min(raster.height - 1), &mut values);
-        values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = nodata);
+        values.iter_mut().for_each(|value| *value = if value.is_nan() { nodata } else { *value });
         line.clear();
         sample.write(&values, &mut line);
-        let predicted = if sample.is_float() { float_bytes(&line, size) } else { differences(&line, size) };
-        packer.write_all(&predicted).expect("memory takes what is written");
+        predicted.extend(if sample.is_float() { float_bytes(&line, size) } else { differences(&line, size) });
     }
+    let level = if size == 1 { BYTES_LEVEL } else { Compression::default() };
+    let mut packer = ZlibEncoder::new(Vec::new(), level);
+    packer.write_all(&predicted).expect("memory takes what is written");
     packer.finish().expect("memory takes what is written")
 }
 

@@ -82,6 +82,7 @@ fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Pe
             &mut || rate(|| _ = black_box(out.borrow_mut().plain(cold.lattice(), at))),
             &mut || rate(|| out.borrow_mut().reads(cold.lattice(), &indices)),
             &mut || ask("numba"),
+            &mut || ask("answering"),
             &mut || ask("scipy"),
             &mut || ask("rasterio"),
         ],
@@ -95,6 +96,7 @@ fn compare(field: &Field, what: &'static str, at: &[DVec2], peer: Option<&mut Pe
         "a plain loop, heights and statuses",
         "one read a point at its post (limit)",
         "numba loop, heights alone",
+        "numba loop, heights and statuses",
         "scipy map_coordinates",
         "rasterio.sample, nearest",
     ];

@@ -3,9 +3,10 @@
     bilinear.py FOLDER
 
 FOLDER holds field_N.f32 (N x N heights, row by row) and random_N.f64, line_N.f64 (points as column, row in posts). A
-command is `WHO WHAT N`, who is numba, scipy or rasterio, what is random or line; the answer is million points a second.
+command is `WHO WHAT N`, who is numba, answering, scipy or rasterio, what is random or line; the answer is million points a second.
 
 numba    the plain loop over positions in posts, compiled with fastmath; no status, nothing said of holes
+answering  the same loop in what ours reads and writes: positions on the map, heights of 64 bits, statuses
 scipy    ndimage.map_coordinates of order 1
 rasterio DatasetReader.sample, nearest only, of an uncompressed GeoTIFF made of the field; on fewer points
 """
@@ -24,6 +25,9 @@ from scipy.ndimage import map_coordinates
 
 FOLDER = sys.argv[1]
 RASTERIO_POINTS = 20_000
+# Where the fields of the bench lie.
+ORIGIN = (500_000.0, 4_000_000.0)
+CELL_M = 10.0
 
 
 @njit(fastmath=True)
@@ -38,6 +42,29 @@ def loop(field, points, out):
         south = field[row, column] + u * (field[row, column + 1] - field[row, column])
         north = field[row + 1, column] + u * (field[row + 1, column + 1] - field[row + 1, column])
         out[i] = south + v * (north - south)
+
+
+@njit
+def answering_loop(field, points, out, statuses):
+    last_column, last_row = field.shape[1] - 1, field.shape[0] - 1
+    for i in range(points.shape[0]):
+        x = (points[i, 0] - ORIGIN[0]) / CELL_M
+        y = (points[i, 1] - ORIGIN[1]) / CELL_M
+        if not (x >= 0 and y >= 0 and x <= last_column and y <= last_row):
+            out[i] = np.nan
+            statuses[i] = 2
+            continue
+        column = min(int(x), last_column - 1)
+        row = min(int(y), last_row - 1)
+        u = x - column
+        v = y - row
+        sw, se = np.float64(field[row, column]), np.float64(field[row, column + 1])
+        nw, ne = np.float64(field[row + 1, column]), np.float64(field[row + 1, column + 1])
+        south = sw + (se - sw) * u
+        north = nw + (ne - nw) * u
+        height = south + (north - south) * v
+        out[i] = height
+        statuses[i] = 1 if np.isnan(height) else 0
 
 
 cache = {}
@@ -74,6 +101,15 @@ def run(who, what, n):
         loop(field, points[:10], out)
         start = time.perf_counter()
         loop(field, points, out)
+    elif who == "answering":
+        if ("map", what, n) not in cache:
+            cache["map", what, n] = points * CELL_M + np.array(ORIGIN)
+        points = cache["map", what, n]
+        out = cache.setdefault("heights", np.zeros(len(points)))
+        statuses = cache.setdefault("statuses", np.zeros(len(points), np.uint8))
+        answering_loop(field, points[:10], out, statuses)
+        start = time.perf_counter()
+        answering_loop(field, points, out, statuses)
     elif who == "scipy":
         swapped = np.ascontiguousarray(points[:, ::-1].T)
         start = time.perf_counter()

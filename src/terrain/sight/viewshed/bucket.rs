@@ -142,7 +142,21 @@ impl Bucket {
         last: f64,
         scratch: &mut Vec<HorizonPiece>,
     ) -> bool {
-        self.changes(line, part) && self.merge(line, part, last, scratch)
+        self.changes(line, part) && self.merge(&|_| (*line, part.1), 0, part, last, scratch)
+    }
+
+    /// Merges edges of a chain; returns whether that changed any piece. The bucket begins at `borders.0` and ends at
+    /// `borders.1`; what `scratch` holds does not matter.
+    pub fn insert_chain(
+        &mut self,
+        chain: &EdgeChain<'_>,
+        edges: RangeInclusive<usize>,
+        borders: (f64, f64),
+        scratch: &mut Vec<HorizonPiece>,
+    ) -> bool {
+        let part = (chain.u[*edges.start()].max(borders.0), chain.u[*edges.end() + 1].min(borders.1));
+        let line = |edge: usize| (chain.line(edge), chain.u[edge + 1]);
+        part.0 < part.1 && self.merge(&line, *edges.start(), part, borders.1, scratch)
     }
 
     /// Whether a line changes a piece from `start` to `end`; most do not, and need no merge.
@@ -161,9 +175,13 @@ impl Bucket {
         })
     }
 
+    /// Merges lines that join end to end, from the one numbered `number` on, with the pieces from `start` to `end`. Each comes
+    /// with its end; that of the last is `end` or beyond.
+    #[inline(always)]
     fn merge(
         &mut self,
-        line: &HorizonPiece,
+        line: &impl Fn(usize) -> (HorizonPiece, f64),
+        mut number: usize,
         (start, end): (f64, f64),
         last: f64,
         scratch: &mut Vec<HorizonPiece>,
@@ -171,7 +189,7 @@ impl Bucket {
         let mut pieces = std::mem::take(scratch);
         pieces.clear();
         let mut merged = MergedBucket { pieces, origin: PieceOrigin::None, is_changed: false };
-        let new = Contender { origin: PieceOrigin::New, piece: line };
+        let (mut new, mut new_stop) = line(number);
         let pieces = &self.pieces;
         for (at, old) in pieces.iter().enumerate() {
             let origin = PieceOrigin::Old(at);
@@ -183,7 +201,17 @@ impl Bucket {
             if old.u < start {
                 merged.push(origin, old, old.u);
             }
-            merged.push_greater(Contender { origin, piece: old }, new, old.u.max(start), stop.min(end));
+            let (mut from, to) = (old.u.max(start), stop.min(end));
+            while from < to {
+                while new_stop <= from {
+                    number += 1;
+                    (new, new_stop) = line(number);
+                }
+                let until = new_stop.min(to);
+                let new = Contender { origin: PieceOrigin::New(number), piece: &new };
+                merged.push_greater(Contender { origin, piece: old }, new, from, until);
+                from = until;
+            }
             if stop > end {
                 merged.push(origin, old, end);
             }
@@ -207,17 +235,17 @@ impl Bucket {
 enum PieceOrigin {
     None,
     Old(usize),
-    New,
+    New(usize),
 }
 
-/// A piece or the new line, of which the greater becomes part of a merged bucket.
+/// A piece or a new line, of which the greater becomes part of a merged bucket.
 #[derive(Clone, Copy)]
 struct Contender<'a> {
     origin: PieceOrigin,
     piece: &'a HorizonPiece,
 }
 
-/// A bucket under construction, from its old pieces and a new line.
+/// A bucket under construction, from its old pieces and new lines.
 struct MergedBucket {
     pieces: Vec<HorizonPiece>,
     origin: PieceOrigin,
@@ -233,10 +261,10 @@ impl MergedBucket {
             _ => self.pieces.push(piece.from(u)),
         }
         self.origin = origin;
-        self.is_changed |= origin == PieceOrigin::New;
+        self.is_changed |= matches!(origin, PieceOrigin::New(_));
     }
 
-    /// Pushes the greater of an old piece and the new line, from `start` to `end`.
+    /// Pushes the greater of an old piece and a new line, from `start` to `end`.
     fn push_greater(&mut self, old: Contender<'_>, new: Contender<'_>, start: f64, end: f64) {
         let above = |u: f64| new.piece.at(u) - old.piece.at(u);
         let (first, last) = (above(start), above(end));

@@ -267,10 +267,9 @@ impl Horizon {
                 self.floor_is_stale = true;
             }
             ChainStanding::Mixed => {
-                for edge in edges {
-                    let ends = (chain.u[edge], chain.u[edge + 1]);
-                    let high = chain.v[edge].max(chain.v[edge + 1]) + chain.error;
-                    self.insert_in(index, &chain.line(edge), ends, high);
+                if self.buckets[index].insert_chain(chain, edges, borders, &mut self.scratch) {
+                    self.low[index] = self.least(index);
+                    self.floor_is_stale = true;
                 }
             }
         }

@@ -114,8 +114,8 @@ pub struct ViewshedCounts {
     pub beyond: usize,
 }
 
-/// Posts that a thread counts together: some microseconds.
-const COUNTED_TOGETHER: usize = 1 << 16;
+/// Posts that a thread looks at together: some microseconds.
+const LOOKED_AT_TOGETHER: usize = 1 << 16;
 
 impl Viewshed {
     /// The number of posts of each kind.
@@ -123,7 +123,7 @@ impl Viewshed {
         // Kind by kind: a loop that counts all of them at once waits for its own sums.
         let count = |kind: PostVisibility| {
             let count = |posts: &[PostVisibility]| posts.iter().filter(|&&post| post == kind).count();
-            self.posts.par_chunks(COUNTED_TOGETHER).map(count).sum()
+            self.posts.par_chunks(LOOKED_AT_TOGETHER).map(count).sum()
         };
         ViewshedCounts {
             visible: count(PostVisibility::Visible),
@@ -179,8 +179,24 @@ pub fn viewshed_until(
     if stop.is_stopped() {
         return Ok(None);
     }
-    let posts = observer.posts(|index, _| visible[index].load(Ordering::Relaxed));
+    let posts = match observer.looks_everywhere() {
+        true => seen_posts(visible, lattice.held_heights()),
+        false => observer.posts(|index, _| visible[index].load(Ordering::Relaxed)),
+    };
     Ok(Some(Viewshed { lines: lines.into_inner(), ..observer.viewshed(posts) }))
+}
+
+/// The visibility of posts that are all looked at, from whether they were found in sight, and their heights.
+fn seen_posts(mut visible: Vec<AtomicBool>, heights: &[f32]) -> Vec<PostVisibility> {
+    let mut posts = vec![PostVisibility::Hidden; heights.len()];
+    let parts = posts.par_chunks_mut(LOOKED_AT_TOGETHER).zip(visible.par_chunks_mut(LOOKED_AT_TOGETHER));
+    parts.zip(heights.par_chunks(LOOKED_AT_TOGETHER)).for_each(|((posts, visible), heights)| {
+        for ((post, is_visible), height) in posts.iter_mut().zip(visible).zip(heights) {
+            let seen = if *is_visible.get_mut() { PostVisibility::Visible } else { PostVisibility::Hidden };
+            *post = if height.is_nan() { PostVisibility::NoData } else { seen };
+        }
+    });
+    posts
 }
 
 /// [`viewshed`] by its definition, a line for each post: the reference for tests.
@@ -268,11 +284,16 @@ impl<'a> Observer<'a> {
         Viewshed { columns: held.width() as u32, rows: held.height() as u32, lines: posts.len(), posts }
     }
 
+    /// Whether all posts lie within the range and the sector.
+    fn looks_everywhere(&self) -> bool {
+        self.options.range_m.is_infinite() && self.options.sector.width_deg >= 360.0
+    }
+
     /// The visibility of every held post, by `sees` for those within reach that have data.
     fn posts(&self, sees: impl Fn(usize, Post) -> bool + Sync) -> Vec<PostVisibility> {
         let (heights, held) = (self.lattice.held_heights(), self.lattice.held());
         let columns = held.width();
-        let is_everywhere = self.options.range_m.is_infinite() && self.options.sector.width_deg >= 360.0;
+        let is_everywhere = self.looks_everywhere();
         let mut posts = vec![PostVisibility::Beyond; heights.len()];
         posts.par_chunks_mut(columns).enumerate().for_each(|(row, posts)| {
             for (column, visibility) in posts.iter_mut().enumerate() {

@@ -11,7 +11,7 @@ impl Sweep<'_> {
         for j in 0..self.ring.end().min(self.before.end()) {
             let corner = |ring: &PostRing, j: i64| {
                 let height = *ring.heights.get(usize::try_from(j - ring.first).ok()?)?;
-                Some(WedgePoint { x: ring.x, y: j as f64 - self.frame.offset, height })
+                Some(WedgePoint { x: ring.x, y: j as f64 - self.frame.offset, height: f64::from(height) })
             };
             let (a, d) = (corner(&self.before, j), corner(&self.before, j + 1));
             let (b, c) = (corner(&self.ring, j), corner(&self.ring, j + 1));

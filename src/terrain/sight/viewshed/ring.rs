@@ -1,5 +1,7 @@
 //! The rings of posts that a sweep passes, as the observer sees them, read some rings at a time.
 
+use std::ops::Range;
+
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 
 /// Rings read at once: where rings run across the rows of the lattice, a cache line holds the heights of as many.
@@ -14,6 +16,46 @@ pub(super) struct RingPost {
     pub v: f64,
 }
 
+/// How a ring's posts are seen: the factors of [`RingPost::u`] and [`RingPost::v`].
+#[derive(Clone, Copy, Default)]
+pub(super) struct RingView {
+    /// One over the ring's distance.
+    pub inverse: f64,
+    /// How far the observer stands beyond post 0.
+    pub offset: f64,
+    pub eye_m: f64,
+    /// The drop by curvature along the rings, and along a ring for each square of `u`.
+    pub along: f64,
+    pub across: f64,
+}
+
+impl RingView {
+    #[inline(always)]
+    fn u(&self, j: i64) -> f64 {
+        (j as f64 - self.offset) * self.inverse
+    }
+
+    #[inline(always)]
+    fn v(&self, height: f32, u: f64) -> f64 {
+        (f64::from(height) - self.eye_m) * self.inverse - self.drop(u)
+    }
+
+    #[inline(always)]
+    fn drop(&self, u: f64) -> f64 {
+        self.along + self.across * u * u
+    }
+
+    /// An upper bound of `v` of posts up to `height` on the rays between two, to the last bit: sums and products keep the
+    /// order of what they are made of.
+    fn bound(&self, height: f32, (u0, u1): (f64, f64)) -> f64 {
+        let least = self.drop(u0).min(self.drop(u1)).min(self.drop(u0.max(0.0)));
+        (f64::from(height) - self.eye_m) * self.inverse - least
+    }
+}
+
+/// Posts of a ring that are looked at together: where the highest is below the horizon around all, each is.
+pub(super) const BLOCK: usize = 16;
+
 /// A ring of posts within the wedge, and a few beyond.
 #[derive(Default)]
 pub(super) struct PostRing {
@@ -23,10 +65,13 @@ pub(super) struct PostRing {
     /// The first post.
     pub first: i64,
     /// Meters.
-    pub heights: Vec<f64>,
-    /// [`RingPost::u`] and [`RingPost::v`] of each post.
+    pub heights: Vec<f32>,
+    pub view: RingView,
+    /// [`RingPost::u`] and [`RingPost::v`] of the posts of blocks that may rise, and of one more on either side.
     pub u: Vec<f64>,
     pub v: Vec<f64>,
+    /// Whether a post, or a target on one, may rise above the horizon, for each [`BLOCK`] of posts.
+    pub may_rise: Vec<bool>,
     /// Whether a post may rise above the horizon.
     pub is_prominent: Vec<bool>,
     pub any_prominent: bool,
@@ -35,14 +80,55 @@ pub(super) struct PostRing {
 }
 
 impl PostRing {
-    /// The post after the last.
-    pub fn end(&self) -> i64 {
-        self.first + self.v.len() as i64
+    /// Takes on the heights of a ring's posts; none is prominent yet.
+    pub fn fill(&mut self, heights: &[f32]) {
+        self.heights.clear();
+        self.heights.extend_from_slice(heights);
+        self.is_prominent.clear();
+        self.is_prominent.resize(heights.len(), false);
+        self.may_rise.clear();
+        self.may_rise.resize(heights.len().div_ceil(BLOCK), false);
+        self.u.resize(heights.len(), 0.0);
+        self.v.resize(heights.len(), 0.0);
     }
 
+    /// The indices of the posts of a block.
+    pub fn block(&self, block: usize) -> Range<usize> {
+        block * BLOCK..(block * BLOCK + BLOCK).min(self.heights.len())
+    }
+
+    /// The rays of a block's first and last posts, and an upper bound of `v` of all; −∞ where none has data.
+    pub fn block_bound(&self, block: usize) -> ((f64, f64), f64) {
+        let posts = self.block(block);
+        let [u0, u1] = [posts.start, posts.end - 1].map(|index| self.view.u(self.first + index as i64));
+        // Comparisons with NaN are false; unlike `max` they are vectorized.
+        let higher = |high: f32, &height: &f32| if height > high { height } else { high };
+        let high = self.heights[posts].iter().fold(f32::NEG_INFINITY, higher);
+        ((u0, u1), self.view.bound(high, (u0, u1)))
+    }
+
+    /// Computes `u` and `v` of the posts of a block, and of one more on either side.
+    pub fn see_block(&mut self, block: usize) {
+        let posts = self.block(block);
+        let posts = posts.start.saturating_sub(1)..(posts.end + 1).min(self.heights.len());
+        let (first, view) = (self.first + posts.start as i64, self.view);
+        let out = self.u[posts.clone()].iter_mut().zip(&mut self.v[posts.clone()]);
+        for (step, ((u, v), &height)) in out.zip(&self.heights[posts]).enumerate() {
+            *u = view.u(first + step as i64);
+            *v = view.v(height, *u);
+        }
+    }
+
+    /// The post after the last.
+    pub fn end(&self) -> i64 {
+        self.first + self.heights.len() as i64
+    }
+
+    #[inline]
     pub fn get(&self, j: i64) -> Option<RingPost> {
-        let index = usize::try_from(j - self.first).ok()?;
-        Some(RingPost { u: *self.u.get(index)?, v: *self.v.get(index)? })
+        let &height = self.heights.get(usize::try_from(j - self.first).ok()?)?;
+        let u = self.view.u(j);
+        Some(RingPost { u, v: self.view.v(height, u) })
     }
 
     /// Whether post `j` exists and is prominent.
@@ -54,13 +140,19 @@ impl PostRing {
     /// Whether the edge from a post to the next, given by the first's index, has data and an end that is prominent.
     #[inline]
     pub fn is_prominent_edge(&self, index: usize) -> bool {
-        let (is_prominent, v) = (&self.is_prominent[index..index + 2], &self.v[index..index + 2]);
-        (is_prominent[0] || is_prominent[1]) && !(v[0] + v[1]).is_nan()
+        let (is_prominent, heights) = (&self.is_prominent[index..index + 2], &self.heights[index..index + 2]);
+        (is_prominent[0] || is_prominent[1]) && !(heights[0] + heights[1]).is_nan()
     }
 
     /// Whether post `j` exists without data.
     pub fn is_gap(&self, j: i64) -> bool {
-        self.get(j).is_some_and(|post| post.v.is_nan())
+        let index = usize::try_from(j - self.first).ok();
+        index.and_then(|index| self.heights.get(index)).is_some_and(|height| height.is_nan())
+    }
+
+    /// Whether a post has no data.
+    pub fn any_gap(&self) -> bool {
+        self.heights.iter().fold(false, |any, height| any | height.is_nan())
     }
 
     /// `v` on the ring edge from post `j` to the next at the ray `u`; NaN where there is none.

@@ -25,7 +25,7 @@ use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge};
-use crate::terrain::sight::viewshed::ring::{PostRing, RingChunk, RingPost};
+use crate::terrain::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
 use crate::terrain::stop_flag::StopFlag;
 
 /// How far the sweep's numbers may differ from those of a line of sight.
@@ -142,14 +142,23 @@ struct CellProminence {
     d: bool,
 }
 
-/// Posts that are passed over together where none is prominent.
-const SKIPPED: usize = 16;
-
-/// Whether any of [`SKIPPED`] flags from `index` on is set, or the one after them.
+/// Whether any of [`BLOCK`] flags from `index` on is set, or the one after them.
 #[inline]
 fn any(flags: &[bool], index: usize) -> bool {
-    let flags = &flags[index..flags.len().min(index + SKIPPED + 1)];
+    let flags = &flags[index..flags.len().min(index + BLOCK + 1)];
     flags.iter().fold(false, |any, &flag| any | flag)
+}
+
+/// The least of some numbers, in lanes of which none waits for another; ∞ of none.
+#[inline]
+fn least(values: &[f64]) -> f64 {
+    let lower = |low: f64, &value: &f64| if value < low { value } else { low };
+    let mut lanes = [f64::INFINITY; 4];
+    let (groups, rest) = values.as_chunks::<4>();
+    for group in groups {
+        lanes.iter_mut().zip(group).for_each(|(lane, value)| *lane = lower(*lane, value));
+    }
+    rest.iter().chain(&lanes).fold(f64::INFINITY, lower)
 }
 
 impl Sweep<'_> {
@@ -209,20 +218,15 @@ impl Sweep<'_> {
         let heights = self.chunk.heights(ring, first, count);
         let error = self.error((x - 1.0).max(NEAREST), x);
         let into = &mut self.ring;
-        (into.number, into.x, into.first) = (ring, x, first);
-        into.heights.clear();
-        into.heights.extend(heights.iter().map(|&height| f64::from(height)));
-        into.is_prominent.clear();
-        into.is_prominent.resize(count, false);
-        let (inverse, offset) = (x.recip(), self.frame.offset);
-        into.u.clear();
-        into.u.extend((0..count).map(|index| ((first + index as i64) as f64 - offset) * inverse));
-        into.v.clear();
-        let (along, across) = (self.bend.along * x, self.bend.across * x);
-        let lowered =
-            |(&height, &u): (&f64, &f64)| (height - self.scene.eye_m) * inverse - (along + across * u * u);
-        into.v.extend(into.heights.iter().zip(&into.u).map(lowered));
-        into.error = error;
+        (into.number, into.x, into.first, into.error) = (ring, x, first, error);
+        into.view = RingView {
+            inverse: x.recip(),
+            offset: self.frame.offset,
+            eye_m: self.scene.eye_m,
+            along: self.bend.along * x,
+            across: self.bend.across * x,
+        };
+        into.fill(heights);
     }
 
     /// The error of `v` of an edge between two distances.
@@ -235,14 +239,25 @@ impl Sweep<'_> {
     fn find_prominent(&mut self) -> bool {
         let floor = self.horizon.floor();
         let (count, last) = (floor.len() as f64, floor.len() - 1);
+        let bucket = |u: f64| ((u * count) as usize).min(last);
         let ring = &mut self.ring;
         let (error, lift) = (ring.error, self.scene.target_m / ring.x);
         let (mut any_prominent, mut any_target) = (false, false);
-        for ((&u, &v), is_prominent) in ring.u.iter().zip(&ring.v).zip(&mut ring.is_prominent) {
-            let floor = floor[((u * count) as usize).min(last)];
-            *is_prominent = v + error >= floor;
-            any_prominent |= *is_prominent;
-            any_target |= v + lift + error >= floor;
+        for block in 0..ring.may_rise.len() {
+            let ((u0, u1), bound) = ring.block_bound(block);
+            let least = least(&floor[bucket(u0)..=bucket(u1)]);
+            if bound.max(bound + lift) + error < least {
+                continue;
+            }
+            ring.may_rise[block] = true;
+            ring.see_block(block);
+            for index in ring.block(block) {
+                let (v, floor) = (ring.v[index], floor[bucket(ring.u[index])]);
+                let is_prominent = v + error >= floor;
+                ring.is_prominent[index] = is_prominent;
+                any_prominent |= is_prominent;
+                any_target |= v + lift + error >= floor;
+            }
         }
         ring.any_prominent = any_prominent;
         any_target
@@ -255,25 +270,25 @@ impl Sweep<'_> {
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
         let is_ground = lift == 0.0 && !is_near;
-        let mut next = 0;
-        while next < self.ring.v.len() {
-            let index = next;
-            if is_ground && index % SKIPPED == 0 && !any(&self.ring.is_prominent, index) {
-                next += SKIPPED;
+        for block in 0..self.ring.may_rise.len() {
+            if is_near {
+                self.ring.see_block(block);
+            } else if !self.ring.may_rise[block] {
                 continue;
             }
-            next += 1;
-            if is_ground && !self.ring.is_prominent[index] {
-                continue;
-            }
-            let target = RingPost { u: self.ring.u[index], v: self.ring.v[index] + lift };
-            let floor = floor[((target.u * count) as usize).min(last)];
-            let is_low = !is_near && target.v + self.ring.error < floor;
-            // A border belongs to the wedge that it begins.
-            let is_inside =
-                target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
-            if !is_low && is_inside && !target.v.is_nan() {
-                self.decide_post(self.ring.first + index as i64, target);
+            for index in self.ring.block(block) {
+                if is_ground && !self.ring.is_prominent[index] {
+                    continue;
+                }
+                let target = RingPost { u: self.ring.u[index], v: self.ring.v[index] + lift };
+                let floor = floor[((target.u * count) as usize).min(last)];
+                let is_low = !is_near && target.v + self.ring.error < floor;
+                // A border belongs to the wedge that it begins.
+                let is_inside =
+                    target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
+                if !is_low && is_inside && !target.v.is_nan() {
+                    self.decide_post(self.ring.first + index as i64, target);
+                }
             }
         }
         *self.horizon.floor() = floor;
@@ -323,11 +338,11 @@ impl Sweep<'_> {
     /// Adds the ring's own edges to the horizon.
     fn ring_edges(&mut self) {
         self.doubt_beside_gaps();
-        let edges = self.ring.v.len().saturating_sub(1);
+        let edges = self.ring.heights.len().saturating_sub(1);
         let mut index = 0;
         while index < edges {
-            if index % SKIPPED == 0 && !any(&self.ring.is_prominent, index) {
-                index += SKIPPED;
+            if index % BLOCK == 0 && !any(&self.ring.is_prominent, index) {
+                index += BLOCK;
                 continue;
             }
             let first = index;
@@ -345,7 +360,7 @@ impl Sweep<'_> {
     fn ring_run(&mut self, mut first: usize, mut last: usize) {
         let (error, cut) = (self.ring.error, self.ray_error(self.ring.x));
         let is_gap = |index: Option<usize>| {
-            index.and_then(|index| self.ring.v.get(index)).is_some_and(|height| height.is_nan())
+            index.and_then(|index| self.ring.heights.get(index)).is_some_and(|height| height.is_nan())
         };
         // Beside a gap a ray may just miss the edge.
         let cut_at = |is_gap: bool| if is_gap { cut } else { 0.0 };
@@ -373,7 +388,7 @@ impl Sweep<'_> {
     /// Leaves the rays to prominent posts beside gaps to lines of sight: rungs and diagonals to such a post are cut short of it
     /// by the error of the strip before.
     fn doubt_beside_gaps(&mut self) {
-        if !self.ring.v.iter().any(|v| v.is_nan()) {
+        if !self.ring.any_gap() {
             return;
         }
         let ray_error = self.ray_error((self.ring.x - 1.0).max(NEAREST));
@@ -416,8 +431,8 @@ impl Sweep<'_> {
         let count = near_here.len().min(far.len());
         let mut index = 0;
         while index < count {
-            if index % SKIPPED == 0 && !any(near_here, index) && !any(&far, index) {
-                index += SKIPPED;
+            if index % BLOCK == 0 && !any(near_here, index) && !any(&far, index) {
+                index += BLOCK;
                 continue;
             }
             let at = |flags: &[bool], index: usize| flags.get(index).copied().unwrap_or(false);
