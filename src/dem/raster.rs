@@ -62,6 +62,9 @@ pub(crate) trait SampleFloat: Copy + Default + Display + Into<f64> + PartialEq +
     fn from_f64(value: f64) -> Self;
 
     fn into_samples(values: Vec<Self>) -> Samples;
+
+    /// The values of samples of this type.
+    fn values(samples: &Samples) -> Option<&[Self]>;
 }
 
 macro_rules! sample_floats {
@@ -75,6 +78,13 @@ macro_rules! sample_floats {
 
             fn into_samples(values: Vec<Self>) -> Samples {
                 Samples::$samples(values)
+            }
+
+            fn values(samples: &Samples) -> Option<&[Self]> {
+                match samples {
+                    Samples::$samples(values) => Some(values),
+                    _ => None,
+                }
             }
         }
     )*};

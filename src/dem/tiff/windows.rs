@@ -8,22 +8,20 @@
 //! └────┴────┴────┘
 //! ```
 //!
-//! Blocks that a window needs and that are not kept are decoded on all threads.
+//! Blocks that a window needs and that are not kept are decoded on all threads. Those of a window larger than all that is kept
+//! are not kept (`large_window`).
 //!
 //! Memory: the window, the blocks that are kept (a bound in bytes), the blocks while they are decoded, some for each
 //! thread, and the file's tables of blocks. A file whose single blocks are too large for that (a picture stored as one strip) is refused.
 //!
 //! Overviews — reduced images in the same file — are listed, and open as rasters of their own.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::{self, BufReader, SeekFrom};
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-use glam::{DAffine2, DVec2, UVec2};
+use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
-use tiff::decoder::Decoder;
 
 use crate::dem::cache::LruCache;
 use crate::dem::error::{DemError, DemErrorKind};
@@ -32,37 +30,11 @@ use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::{DemFile, DemHints};
 use crate::dem::tiff::blocks;
 use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
-use crate::dem::tiff::image_kind;
-use crate::dem::tiff::mask::{self, IS_MASK};
-use crate::dem::tiff::storage::{Storage, TiffBlock, decode_error};
+use crate::dem::tiff::images::{LaterImages, Overview, SharedFile};
+use crate::dem::tiff::mask;
+use crate::dem::tiff::storage::{Storage, TiffBlock};
 use crate::dem::tiff::unpack::{BlockBytes, packed_range};
 use crate::dem::windows::{RasterWindow, Windows};
-use crate::limits::BLOCK_SAMPLES;
-use crate::limits::TIFF_IMAGES;
-use crate::limits::WINDOWED_SAMPLES;
-
-/// The most bytes that one block decodes to: the largest with 64-bit samples.
-const LARGEST_BLOCK: usize = 32 << 20;
-
-/// NewSubfileType's bit for "reduced version of another image".
-const IS_REDUCED: u32 = 1;
-
-/// A reduced image of the same ground in the same file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Overview {
-    /// Samples per row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    image: usize,
-}
-
-/// The overviews and the masks among the images after the first.
-#[derive(Clone, Debug, Default)]
-struct LaterImages {
-    overviews: Vec<Overview>,
-    masks: Vec<Overview>,
-}
 
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
@@ -78,6 +50,9 @@ pub struct GeoTiffWindows<R> {
 
 /// Blocks for each thread that are decoded before the next are: enough to keep all threads at work.
 const BLOCKS_PER_THREAD: usize = 4;
+
+/// Bytes of blocks for each thread that are decoded before the next are, where blocks are small.
+const BYTES_PER_THREAD: usize = 1 << 20;
 
 impl<R: FileContent> GeoTiffWindows<R> {
     /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those of
@@ -172,24 +147,63 @@ impl<R: FileContent> GeoTiffWindows<R> {
     }
 
     /// Whether samples take 64 bits.
-    fn is_wide(&self) -> bool {
+    pub(super) fn is_wide(&self) -> bool {
         self.header.raster.samples.is_wide()
     }
 
+    /// Bytes of decoded blocks that may be kept.
+    pub(super) fn cache_bytes(&self) -> usize {
+        self.cache_bytes
+    }
+
     /// Bytes of a decoded sample.
-    fn sample_bytes(&self) -> usize {
+    pub(super) fn sample_bytes(&self) -> usize {
         if self.is_wide() { size_of::<f64>() } else { size_of::<f32>() }
     }
 
     /// The samples of a block as the whole reader has them.
-    fn decode(&self, at: TiffBlock) -> Result<Arc<Samples>, DemErrorKind> {
+    pub(super) fn decode(&self, file: &mut impl BlockBytes, at: TiffBlock) -> Result<Samples, DemErrorKind> {
         let GeoTiffHeader { raster, scale, offset } = &self.header;
-        let mut file = self.file.clone();
-        let mut samples = blocks::block(&mut file, &self.heights, raster.nodata, at)?;
+        let mut samples = blocks::block(file, &self.heights, raster.nodata, at)?;
         if let Some(mask) = &self.mask {
-            mask::each_hidden(&mut file, mask, at.window, |index| samples.set(index, f64::NAN))?;
+            mask::each_hidden(file, mask, at.window, |index| samples.set(index, f64::NAN))?;
         }
-        Ok(Arc::new(samples.scaled(*scale, *offset)))
+        Ok(samples.scaled(*scale, *offset))
+    }
+
+    /// The file.
+    pub(super) fn file(&self) -> impl BlockBytes + use<R> {
+        self.file.clone()
+    }
+
+    /// Where the packed bytes of a block lie; `None` where the table does not list it.
+    pub(super) fn packed_range(&self, at: TiffBlock) -> Option<Range<usize>> {
+        packed_range(&self.heights, at, self.file.length).ok()
+    }
+
+    /// The blocks that a window meets.
+    pub(super) fn blocks_meeting(&self, window: RasterWindow) -> impl Iterator<Item = TiffBlock> + '_ {
+        self.heights.blocks_meeting(window)
+    }
+
+    /// Rows of a block.
+    pub(super) fn block_height(&self) -> u32 {
+        self.heights.block_height
+    }
+
+    /// Says which bytes of the file are read next, as far as their samples fit the cache.
+    pub(super) fn announce_windows(&self, windows: impl Iterator<Item = RasterWindow>) {
+        self.announce_blocks(&self.fitting(windows.flat_map(|window| self.blocks_meeting(window))));
+    }
+
+    /// The first of some blocks, as many as fit the cache.
+    fn fitting(&self, blocks: impl Iterator<Item = TiffBlock>) -> Vec<TiffBlock> {
+        let bytes = self.sample_bytes();
+        let fitting = blocks.scan(0, |total, block| {
+            *total += block.window.samples() * bytes;
+            (*total <= self.cache_bytes).then_some(block)
+        });
+        fitting.collect()
     }
 
     /// Says which bytes of the file are read next. Blocks that the table does not list are an error of their reading.
@@ -226,13 +240,13 @@ impl<R: FileContent> GeoTiffWindows<R> {
         }
         // No more than are kept, so that a file of large blocks takes no more memory for many threads.
         let largest = missing.iter().map(|at| at.window.samples() * self.sample_bytes()).max().unwrap_or(1);
-        let most = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+        let most = rayon::current_num_threads() * BLOCKS_PER_THREAD.max(BYTES_PER_THREAD / largest.max(1));
         let at_once = (self.cache_bytes / largest.max(1)).clamp(1, most);
         for some in missing.chunks(at_once) {
             self.announce_blocks(some);
             let decoded: Vec<Result<Arc<Samples>, DemErrorKind>> = match some {
-                [one] => vec![self.decode(*one)],
-                some => some.par_iter().map(|&at| self.decode(at)).collect(),
+                [one] => vec![self.decode(&mut self.file(), *one).map(Arc::new)],
+                some => some.par_iter().map(|&at| self.decode(&mut self.file(), at).map(Arc::new)).collect(),
             };
             for (&at, block) in some.iter().zip(decoded) {
                 let block = block?;
@@ -253,6 +267,10 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
 
     fn samples(&mut self, window: RasterWindow) -> Result<Samples, DemErrorKind> {
         window.assert_within(self.size());
+        let is_large = window.samples() * self.sample_bytes() > self.cache_bytes;
+        if is_large && self.bands_at_once(window) >= rayon::current_num_threads() {
+            return self.large_window(window);
+        }
         let mut out = Samples::absent(window.samples(), self.is_wide());
         let blocks: Vec<TiffBlock> = self.heights.blocks_meeting(window).collect();
         self.each_block(blocks.into_iter(), |at, block| {
@@ -282,115 +300,8 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
             .flat_map(|&window| self.heights.blocks_meeting(window))
             .map(|block| (block.index, block))
             .collect();
-        let bytes = self.sample_bytes();
-        let fitting = blocks.into_values().scan(0, |total, block| {
-            *total += block.window.samples() * bytes;
-            (*total <= self.cache_bytes).then_some(block)
-        });
-        let fitting: Vec<TiffBlock> = fitting.collect();
+        let fitting = self.fitting(blocks.into_values());
         // What cannot be read is an error of the window that needs it.
         let _ = self.each_block(fitting.into_iter(), |_, _| ());
-    }
-}
-
-/// A file that a raster shares with its overviews.
-struct SharedFile<R> {
-    file: Arc<Mutex<R>>,
-    length: usize,
-}
-
-impl<R> Clone for SharedFile<R> {
-    fn clone(&self) -> Self {
-        Self { file: Arc::clone(&self.file), length: self.length }
-    }
-}
-
-impl<R: FileContent> SharedFile<R> {
-    fn new(mut file: R) -> io::Result<Self> {
-        let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
-        Ok(Self { file: Arc::new(Mutex::new(file)), length })
-    }
-
-    fn lock(&self) -> MutexGuard<'_, R> {
-        // A reader that panicked elsewhere left no state here: every read seeks first.
-        self.file.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
-        file.rewind().map_err(|error| FORMAT.unread(error))?;
-        let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
-        Ok(decoder.with_limits(geotiff::limits(self.length)))
-    }
-
-    /// How one image of the file is stored.
-    fn storage(&self, image: usize) -> Result<Storage, DemErrorKind> {
-        let mut file = self.lock();
-        let mut decoder = self.decoder(&mut file)?;
-        for _ in 0..image {
-            decoder.next_image().map_err(decode_error)?;
-        }
-        let storage = Storage::read(&mut decoder, self.length, &WINDOWED_SAMPLES)?;
-        let across = storage.block_width.clamp(1, storage.width);
-        let down = storage.block_height.clamp(1, storage.height);
-        let samples = u64::from(across) * u64::from(down);
-        if samples > BLOCK_SAMPLES.get() {
-            return Err(DemErrorKind::LargeBlocks(UVec2::new(across, down)));
-        }
-        if storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
-            return Err(FORMAT.unsupported(
-                format!("blocks of {across} x {down} samples"),
-                "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
-            ));
-        }
-        let blocks = u64::from(storage.width.div_ceil(across)) * u64::from(storage.height.div_ceil(down));
-        if blocks > u64::from(u32::MAX) {
-            return Err(FORMAT.broken(format!("it claims {blocks} blocks")));
-        }
-        Ok(storage)
-    }
-
-    fn later_images(&self) -> LaterImages {
-        let mut images = LaterImages::default();
-        let mut file = self.lock();
-        let Ok(mut decoder) = self.decoder(&mut file) else { return images };
-        let size = decoder.dimensions().unwrap_or_default();
-        for image in 1..=TIFF_IMAGES.count() {
-            // A broken overview or page is no reason to refuse the images before it.
-            if !decoder.more_images() || decoder.next_image().is_err() {
-                break;
-            }
-            let kind = image_kind(&mut decoder);
-            let Ok((width, height)) = decoder.dimensions() else { continue };
-            let found = Overview { width, height, image };
-            if kind & IS_MASK != 0 {
-                images.masks.push(found);
-            } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
-                images.overviews.push(found);
-            }
-        }
-        images
-    }
-}
-
-impl<R: FileContent> BlockBytes for SharedFile<R> {
-    fn length(&self) -> usize {
-        self.length
-    }
-
-    fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
-        let mut file = self.lock();
-        file.seek(SeekFrom::Start(range.start as u64))?;
-        // In one read: a file on a server is not asked for many small parts.
-        let (mut bytes, mut filled) = (vec![0; range.len()], 0);
-        while filled < bytes.len() {
-            match file.read(&mut bytes[filled..]) {
-                Ok(0) => break,
-                Ok(count) => filled += count,
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
-            }
-        }
-        bytes.truncate(filled);
-        Ok(Cow::Owned(bytes))
     }
 }

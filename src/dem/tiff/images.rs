@@ -1,0 +1,145 @@
+//! The images of a GeoTIFF that stays on disk, and its file, which they and the threads that decode blocks share.
+
+use std::borrow::Cow;
+use std::io::{self, BufReader, SeekFrom};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::UVec2;
+use tiff::decoder::Decoder;
+
+use crate::dem::error::DemErrorKind;
+use crate::dem::formats::FileContent;
+use crate::dem::tiff::geotiff::{self, FORMAT};
+use crate::dem::tiff::image_kind;
+use crate::dem::tiff::mask::IS_MASK;
+use crate::dem::tiff::storage::{Storage, decode_error};
+use crate::dem::tiff::unpack::BlockBytes;
+use crate::limits::BLOCK_SAMPLES;
+use crate::limits::TIFF_IMAGES;
+use crate::limits::WINDOWED_SAMPLES;
+
+/// The most bytes that one block decodes to: the largest with 64-bit samples.
+const LARGEST_BLOCK: usize = 32 << 20;
+
+/// NewSubfileType's bit for "reduced version of another image".
+const IS_REDUCED: u32 = 1;
+
+/// A reduced image of the same ground in the same file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overview {
+    /// Samples per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    pub(super) image: usize,
+}
+
+/// The overviews and the masks among the images after the first.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LaterImages {
+    pub overviews: Vec<Overview>,
+    pub masks: Vec<Overview>,
+}
+
+/// A file that a raster shares with its overviews.
+pub(super) struct SharedFile<R> {
+    file: Arc<Mutex<R>>,
+    pub length: usize,
+}
+
+impl<R> Clone for SharedFile<R> {
+    fn clone(&self) -> Self {
+        Self { file: Arc::clone(&self.file), length: self.length }
+    }
+}
+
+impl<R: FileContent> SharedFile<R> {
+    pub fn new(mut file: R) -> io::Result<Self> {
+        let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
+        Ok(Self { file: Arc::new(Mutex::new(file)), length })
+    }
+
+    pub fn lock(&self) -> MutexGuard<'_, R> {
+        // A reader that panicked elsewhere left no state here: every read seeks first.
+        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn decoder<'a>(&self, file: &'a mut R) -> Result<Decoder<BufReader<&'a mut R>>, DemErrorKind> {
+        file.rewind().map_err(|error| FORMAT.unread(error))?;
+        let decoder = Decoder::new(BufReader::new(file)).map_err(decode_error)?;
+        Ok(decoder.with_limits(geotiff::limits(self.length)))
+    }
+
+    /// How one image of the file is stored.
+    pub fn storage(&self, image: usize) -> Result<Storage, DemErrorKind> {
+        let mut file = self.lock();
+        let mut decoder = self.decoder(&mut file)?;
+        for _ in 0..image {
+            decoder.next_image().map_err(decode_error)?;
+        }
+        let storage = Storage::read(&mut decoder, self.length, &WINDOWED_SAMPLES)?;
+        let across = storage.block_width.clamp(1, storage.width);
+        let down = storage.block_height.clamp(1, storage.height);
+        let samples = u64::from(across) * u64::from(down);
+        if samples > BLOCK_SAMPLES.get() {
+            return Err(DemErrorKind::LargeBlocks(UVec2::new(across, down)));
+        }
+        if storage.decoded_bytes(samples) > LARGEST_BLOCK as u64 {
+            return Err(FORMAT.unsupported(
+                format!("blocks of {across} x {down} samples"),
+                "rewrite it in tiles, for example with: gdal_translate -co TILED=YES FILE out.tif",
+            ));
+        }
+        let blocks = u64::from(storage.width.div_ceil(across)) * u64::from(storage.height.div_ceil(down));
+        if blocks > u64::from(u32::MAX) {
+            return Err(FORMAT.broken(format!("it claims {blocks} blocks")));
+        }
+        Ok(storage)
+    }
+
+    pub fn later_images(&self) -> LaterImages {
+        let mut images = LaterImages::default();
+        let mut file = self.lock();
+        let Ok(mut decoder) = self.decoder(&mut file) else { return images };
+        let size = decoder.dimensions().unwrap_or_default();
+        for image in 1..=TIFF_IMAGES.count() {
+            // A broken overview or page is no reason to refuse the images before it.
+            if !decoder.more_images() || decoder.next_image().is_err() {
+                break;
+            }
+            let kind = image_kind(&mut decoder);
+            let Ok((width, height)) = decoder.dimensions() else { continue };
+            let found = Overview { width, height, image };
+            if kind & IS_MASK != 0 {
+                images.masks.push(found);
+            } else if kind & IS_REDUCED != 0 && width.min(height) > 0 && width < size.0 && height <= size.1 {
+                images.overviews.push(found);
+            }
+        }
+        images
+    }
+}
+
+impl<R: FileContent> BlockBytes for SharedFile<R> {
+    fn length(&self) -> usize {
+        self.length
+    }
+
+    fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
+        let mut file = self.lock();
+        file.seek(SeekFrom::Start(range.start as u64))?;
+        // In one read: a file on a server is not asked for many small parts.
+        let (mut bytes, mut filled) = (vec![0; range.len()], 0);
+        while filled < bytes.len() {
+            match file.read(&mut bytes[filled..]) {
+                Ok(0) => break,
+                Ok(count) => filled += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        bytes.truncate(filled);
+        Ok(Cow::Owned(bytes))
+    }
+}
