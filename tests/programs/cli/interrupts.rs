@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::cli::{program, project, run_in};
+use crate::cli::{project, run_in};
 use crate::common::scratch::Scratch;
 
 /// A flight that is drawn for minutes into `flight.png`, which is there before with the text `old`.
@@ -16,7 +16,11 @@ struct LongFlight {
 
 impl LongFlight {
     fn begin() -> Self {
-        Self::begin_as(|scratch, arguments| program(scratch.folder(), arguments))
+        Self::begin_as(|scratch, arguments| {
+            let mut command = heeding(env!("CARGO_BIN_EXE_sandtable"));
+            command.args(arguments).current_dir(scratch.folder()).stdin(Stdio::null());
+            command
+        })
     }
 
     fn begin_as(command: impl Fn(&Scratch, &[&str]) -> Command) -> Self {
@@ -69,6 +73,18 @@ impl Drop for LongFlight {
     }
 }
 
+/// A command that heeds the signals, though whoever runs the tests ignores them, as a shell does for what it
+/// starts in the background.
+fn heeding(program: &str) -> Command {
+    if cfg!(target_os = "linux") {
+        let mut command = Command::new("env");
+        command.args(["--default-signal=HUP,INT,TERM", program]);
+        command
+    } else {
+        Command::new(program)
+    }
+}
+
 #[test]
 fn an_interrupted_program_leaves_the_old_file_and_nothing_else() {
     for (name, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
@@ -100,7 +116,7 @@ fn what_a_killed_program_leaves_the_next_removes_and_a_living_one_keeps() {
 #[test]
 fn a_signal_that_the_parent_ignores_is_ignored() {
     let ignoring = |scratch: &Scratch, arguments: &[&str]| {
-        let mut command = Command::new("sh");
+        let mut command = heeding("sh");
         command.args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_sandtable")]);
         command.args(arguments).current_dir(scratch.folder()).stdin(Stdio::null());
         command
@@ -118,7 +134,7 @@ fn a_signal_that_the_parent_ignores_is_ignored() {
 #[cfg(target_os = "linux")]
 fn under_a_limit_of_memory_signals_reach_the_command() {
     let limited = |scratch: &Scratch, arguments: &[&str]| {
-        let mut command = Command::new("sh");
+        let mut command = heeding("sh");
         command.args(["-c", "ulimit -v 4000000; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_sandtable")]);
         command.args(arguments).current_dir(scratch.folder()).stdin(Stdio::null());
         command
@@ -137,7 +153,9 @@ fn several_pictures_appear_together_or_not_at_all() {
     let scratch = Scratch::new();
     let scene = project("scenes/areas.toml");
     let arguments = ["render", &scene, "--all-cameras", "--sidecar", "--size", "2400x1600", "-o", "all.png"];
-    let mut child = program(scratch.folder(), &arguments).stdout(Stdio::null()).spawn().expect("it starts");
+    let mut command = heeding(env!("CARGO_BIN_EXE_sandtable"));
+    command.args(arguments).current_dir(scratch.folder()).stdin(Stdio::null()).stdout(Stdio::null());
+    let mut child = command.spawn().expect("it starts");
     let begun = Instant::now();
     // The first picture and its sidecar are whole when the second is begun.
     while scratch.names().len() < 2 {

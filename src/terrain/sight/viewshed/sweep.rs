@@ -358,7 +358,8 @@ impl Sweep<'_> {
 
     /// Adds the ring's edges from one post to another, given by their indices.
     fn ring_run(&mut self, mut first: usize, mut last: usize) {
-        let (error, cut) = (self.ring.error, self.ray_error(self.ring.x));
+        // They lie at one distance: the error of the strip before would leave more to lines of sight.
+        let (error, cut) = (self.error(self.ring.x, self.ring.x), self.ray_error(self.ring.x));
         let is_gap = |index: Option<usize>| {
             index.and_then(|index| self.ring.heights.get(index)).is_some_and(|height| height.is_nan())
         };
