@@ -184,14 +184,15 @@ impl Furniture {
         self.drawings.iter().map(|(_, drawing)| drawing)
     }
 
-    /// Moves a piece into its corner, or into the upper one on its side where that is free and its own is not, and keeps it
-    /// where it fits.
+    /// Moves a piece into its corner, or into the upper one on its side where its own is not free and the upper one covers
+    /// less than half as much of the scene, and keeps it where it fits.
     fn place(&mut self, kind: FurnitureKind, drawing: Option<Drawing>, cover: Option<&SceneCover>) {
-        let is_free = |drawing: &Drawing| cover.is_none_or(|cover| cover.share(&drawing.bounds()) <= FREE);
+        let covered = |drawing: &Drawing| cover.map_or(0.0, |cover| cover.share(&drawing.bounds()));
         let moved = drawing.map(|drawing| {
             let own = self.in_corner(kind, drawing);
-            let upper = if is_free(&own) { None } else { self.below_upper(kind, &own) };
-            upper.filter(is_free).unwrap_or(own)
+            let share = covered(&own);
+            let upper = if share <= FREE { None } else { self.below_upper(kind, &own) };
+            upper.filter(|upper| covered(upper) <= FREE.max(share / 2.0)).unwrap_or(own)
         });
         self.keep(kind, moved);
     }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use crate::cli::error::CliError;
 use crate::cli::options::DatasetArguments;
-use crate::cli::output::stream;
+use crate::cli::output::{stream, warn};
 use crate::cli::values::choice;
 use crate::dem::answer::Answer;
 use crate::dem::height_datum::HeightDatum;
@@ -17,6 +17,7 @@ use crate::geom::geoid::Geoid;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files;
 use crate::pipeline::heights_above::bring_heights;
+use crate::pipeline::outside_note::outside_note;
 use crate::pipeline::positions::{WrittenPosition, parse_positions};
 use crate::pipeline::shards::heights::csv::{HEADER, write_row};
 use crate::terrain::query::{Interpolation, Surface};
@@ -68,6 +69,8 @@ pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
         arguments.dataset.note_ground(&dataset)?;
     }
     let mut answers = dataset.heights(surface, arguments.query.interpolation, &crs, &at)?;
+    let outside = outside_note(&answers, &at, &crs, &dataset.header());
+    outside.iter().for_each(|note| warn(&format!("note: {note}")));
     let mut datum = dataset.header().vertical_datum.clone();
     if let Some(above) = arguments.query.above {
         let brought = bring_heights(&mut answers, (datum.as_deref(), above), (&crs, &at), &Geoid::default());

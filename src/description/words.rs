@@ -98,7 +98,7 @@ words! {
         Topographic = "topographic": "tints by height, contour lines, clear air",
         Relief = "relief": "shaded relief in grays, without lines",
         Satellite = "satellite": "the ground's natural cover, or `imagery`, without lines",
-        Military = "military": "pale tints, contour lines, the military grid, clear air",
+        Military = "military": "pale tints, light shade, contour lines, the military grid, clear air",
         Print = "print": "black on white, patterns in place of colors",
         Night = "night": "red light",
     }

@@ -105,7 +105,8 @@ impl Lighting {
 /// ```
 ///
 /// `gain` is [`Self::GAIN`] in light and [`Self::shade_gain`] in shade, so that the darkest slopes of gentle ground are as
-/// dark as those of mountains. Shadows need no such help: they are as dark on every ground.
+/// dark as those of mountains. Shadows need no such help: they are as dark on every ground. Ground that lies under symbols and
+/// graphics has [`Self::BASE_GAIN`] in shade, so that they stand out.
 /// `soft` bends what lies beyond [`Self::TOE`] and [`Self::SHOULDER`] toward [`Self::DARKEST`] and [`Self::BRIGHTEST`]
 /// along hyperbolas that it reaches nowhere, so that forms still show in deep shade and on the brightest slopes.
 /// Level ground in the open keeps its albedo, so that the tints of a legend are those of the picture.
@@ -115,7 +116,7 @@ pub struct ReliefShading {
     pub to_sun: Vec3,
     /// Unit vectors toward the side lights: 90° and 45° counterclockwise of the sun, with it, and 45° clockwise of it.
     pub sides: [Vec3; 4],
-    /// The change of brightness with shade on slopes darker than level ground, at least [`Self::GAIN`].
+    /// The change of brightness with shade on slopes darker than level ground, [`Self::BASE_GAIN`] or at least [`Self::GAIN`].
     pub shade_gain: f32,
 }
 
@@ -141,6 +142,9 @@ impl ReliefShading {
     pub const SIDE_SHARES: [f32; 4] = [0.2, 0.3, 0.3, 0.2];
     /// The change of brightness with light on slopes lighter than level ground, and with cast shadows: larger is harsher.
     pub const GAIN: f32 = 2.4;
+    /// [`Self::shade_gain`] of a base map: more of it takes the contrast from dark lines and letters on shaded slopes, less
+    /// loses the forms.
+    pub const BASE_GAIN: f32 = 1.2;
     /// The brightness that the deepest shade tends to: a shadowed cliff keeps about 0.15.
     pub const DARKEST: f32 = 0.05;
     /// The brightness below which shade is softened.

@@ -42,6 +42,7 @@ pub mod military;
 pub mod model_file;
 pub mod new_scene;
 pub mod output_files;
+pub mod outside_note;
 pub mod page;
 mod page_symbols;
 pub mod paged_elevation;

@@ -148,6 +148,7 @@ pub fn build_with(
         ramp: RampSource::new(document)?,
         latitude_deg: latitude_deg(&crs, lattice.map_extent().center()),
         land_cover: surroundings.land_cover,
+        is_base_map: surroundings.is_base_map,
         imagery: imagery::load(document, assets, &crs, &lattice)?.map(Arc::new),
         contours: style::contours(document, height_range_m),
         preset: document.style.preset,

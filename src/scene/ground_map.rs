@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use crate::dem::raster::Samples;
 use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_levels::{GroundLevel, PostCount, level};
+use crate::draw::lighting::ReliefShading;
 use crate::scene::SceneModel;
 use crate::scene::relief_strength::ReliefStrength;
 use crate::scene::undergrowth::undergrowth;
@@ -95,6 +96,7 @@ pub(super) fn ground_map(
     let ramp = scene.ramp();
     let ReliefStrength { z_factor, shade_gain } =
         ReliefStrength::of(lattice, scene.scale, &ramp, to_sun, is_water);
+    let shade_gain = if scene.is_base_map { ReliefShading::BASE_GAIN } else { shade_gain };
     GroundMap {
         origin: Vec2::ZERO,
         cell: lattice.cell().as_vec2() * (1u32 << number) as f32,

@@ -151,6 +151,8 @@ pub struct SceneModel {
     ramp: RampSource,
     latitude_deg: Option<f64>,
     land_cover: bool,
+    /// Whether it is there to carry symbols and graphics.
+    is_base_map: bool,
     /// The picture draped over the ground.
     pub imagery: Option<Arc<GroundImagery>>,
     /// Lines of equal height on the ground.

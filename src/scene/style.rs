@@ -107,7 +107,7 @@ fn round_interval(least: f64) -> Option<f32> {
     (0.01..=100_000.0).contains(&found).then_some(found as f32)
 }
 
-/// Distance of haze, what the block stands on, and whether the ground's natural cover shows, as stated or by the preset.
+/// Distance of haze, what the block stands on, and what the ground's colors are for, as stated or by the preset.
 pub struct Surroundings {
     /// Meters, 0 for clear air; `None` fits it to the view.
     pub haze_m: Option<f32>,
@@ -115,6 +115,8 @@ pub struct Surroundings {
     pub table: TableTop,
     /// Whether the ground's natural cover shows.
     pub land_cover: bool,
+    /// Whether the ground is there to carry symbols and graphics: its shade is lighter then.
+    pub is_base_map: bool,
 }
 
 impl Surroundings {
@@ -130,6 +132,8 @@ impl Surroundings {
             haze_m: style.haze.map(|distance_m| distance_m as f32).or(is_clear.then_some(0.0)),
             table: *style.table,
             land_cover: style.land_cover.stated().copied().unwrap_or(is_natural || *style.land_cover),
+            is_base_map: matches!(style.preset, Some(StylePreset::Military | StylePreset::Print))
+                || !(document.graphics.is_empty() && document.symbols.is_empty()),
         }
     }
 }

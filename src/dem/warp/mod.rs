@@ -28,7 +28,7 @@ use crate::limits::RASTER_SAMPLES;
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum WarpError {
     #[error(
-        "the elevation file names no coordinate system and its coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; state its system under [terrain], for example crs = \"EPSG:4326\""
+        "the elevation file names no coordinate system and its coordinates, {min_x} to {max_x} and {min_y} to {max_y}, look like degrees; state its system, for example EPSG:4326, as crs under [terrain] or by --crs on the command line"
     )]
     LooksLikeDegrees { min_x: f64, max_x: f64, min_y: f64, max_y: f64 },
     #[error(

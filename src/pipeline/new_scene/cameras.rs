@@ -1,6 +1,8 @@
 //! The cameras of a new scene: the whole ground, what the vector files hold, and the boldest relief from low above.
 
-use glam::DVec2;
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
 
 use crate::geom::rect::Rect;
 use crate::scene::SceneModel;
@@ -28,8 +30,20 @@ const LOW_PITCH_DEG: f64 = 14.0;
 /// The directions in which the low camera may look: light from the upper left models the ground.
 const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 
-/// The cameras for a scene whose vectors, if any, lie within `vectors` in the scene's system; the first is the default.
-pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
+/// How far to the left of a low view its light comes from, and how high above the horizon, degrees; see [`Sunlight`].
+///
+/// [`Sunlight`]: crate::scene::sunlight::Sunlight
+const LIGHT_DEG: (f64, f64) = (100.0, 40.0);
+/// Ground whose normal has less than this of the light's direction looks dark, whatever it is made of.
+const DARK: f64 = 0.25;
+/// Where the ground before a block is looked at, in sixteenths of its longer side from its middle: fine enough for a ridge.
+const APPROACH: Range<u32> = 8..32;
+/// Along each side of a block as many places are looked at: enough to compare directions.
+const PLACES: u32 = 48;
+
+/// The cameras for a scene whose vectors, if any, lie within `vectors` in the scene's system, and whose heights are drawn
+/// `exaggeration` times; the first is the default.
+pub(super) fn cameras(scene: &SceneModel, vectors: Rect, exaggeration: f64) -> Vec<CameraDraft> {
     let lattice = &scene.lattice;
     let ground = lattice.map_extent();
     let mut cameras = vec![CameraDraft {
@@ -54,7 +68,7 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
         CameraDraft {
             name: "relief",
             about: "The boldest relief, from low above the ground before it.",
-            azimuth_deg: Some(lowest_approach(lattice, block)),
+            azimuth_deg: Some(best_approach(lattice, block, exaggeration)),
             pitch_deg: Some(LOW_PITCH_DEG),
             shown: Some(shown),
         }
@@ -62,7 +76,7 @@ pub(super) fn cameras(scene: &SceneModel, vectors: Rect) -> Vec<CameraDraft> {
     cameras
 }
 
-/// The block of the ground with the greatest difference of heights and half a block around it, from the south-west post on;
+/// The block of the ground with the greatest difference of heights and a block around it, from the south-west post on;
 /// `None` on level ground.
 fn boldest_block(lattice: &Lattice) -> Option<Rect> {
     let side = (lattice.columns().max(lattice.rows()) / BLOCKS).max(2);
@@ -85,26 +99,60 @@ fn boldest_block(lattice: &Lattice) -> Option<Rect> {
         .fold(((0, 0), 0.0), |best, next| if next.1 > best.1 { next } else { best });
     let min = lattice.position(Post { column: left, row: below }).as_dvec2();
     let size = lattice.cell() * f64::from(side);
-    (relief > 0.0)
-        .then(|| Rect { min: min - size / 2.0, max: min + size * 1.5 }.intersection(&lattice.extent()))
+    (relief > 0.0).then(|| Rect { min: min - size, max: min + size * 2.0 }.intersection(&lattice.extent()))
 }
 
-/// The direction toward `block` with the lowest ground before it, degrees clockwise from north; beyond the border of the
-/// data there is none, and the walls of the ground's block would be in the way.
-fn lowest_approach(lattice: &Lattice, block: Rect) -> f64 {
+/// The direction toward `block`, degrees clockwise from north, from which most of it is lit and the ground before it is low;
+/// beyond the border of the data there is none, and the walls of the ground's block would be in the way.
+fn best_approach(lattice: &Lattice, block: Rect, exaggeration: f64) -> f64 {
     let (center, reach) = (block.center(), block.size().max_element());
-    let highest = |azimuth_deg: f64| {
+    let heights = || places(block).filter_map(|at| lattice.cell_at(at)).map(|(post, _)| lattice.height(post));
+    let (low, high) = heights()
+        .filter(|height| !height.is_nan())
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
+    let cost = |azimuth_deg: f64| {
         let (sin, cos) = (libm::sin(azimuth_deg.to_radians()), libm::cos(azimuth_deg.to_radians()));
-        let approach = (2..8).map(|step| {
-            let at = center - DVec2::new(sin, cos) * (reach * f64::from(step) / 4.0);
+        let approach = APPROACH.map(|step| {
+            let at = center - DVec2::new(sin, cos) * (reach * f64::from(step) / 16.0);
             lattice.cell_at(at).map_or(f32::NAN, |(post, _)| lattice.height(post))
         });
-        approach.fold((0, f32::NEG_INFINITY), |(beyond, highest), height| {
+        let (beyond, highest) = approach.fold((0, low), |(beyond, highest), height| {
             (beyond + u32::from(height.is_nan()), highest.max(height))
-        })
+        });
+        let hidden = f64::from((highest - low) / (high - low).max(f32::MIN_POSITIVE));
+        (beyond, hidden + dark_share(lattice, block, azimuth_deg, exaggeration))
     };
-    let [first, others @ ..] = LOW_AZIMUTHS_DEG.map(|azimuth| (azimuth, highest(azimuth)));
+    let [first, others @ ..] = LOW_AZIMUTHS_DEG.map(|azimuth| (azimuth, cost(azimuth)));
     others.into_iter().fold(first, |best, next| if next.1 < best.1 { next } else { best }).0
+}
+
+/// Places spread evenly over a block.
+fn places(block: Rect) -> impl Iterator<Item = DVec2> {
+    let share = |index: u32| (f64::from(index) + 0.5) / f64::from(PLACES);
+    (0..PLACES).flat_map(move |row| {
+        (0..PLACES).map(move |column| block.min + block.size() * DVec2::new(share(column), share(row)))
+    })
+}
+
+/// The share of a block that is dark in a low view toward `azimuth_deg`, without cast shadows.
+fn dark_share(lattice: &Lattice, block: Rect, azimuth_deg: f64, exaggeration: f64) -> f64 {
+    let (left, altitude) = (LIGHT_DEG.0, LIGHT_DEG.1.to_radians());
+    let azimuth = (azimuth_deg - left).to_radians();
+    let level = libm::cos(altitude);
+    let to_sun = DVec3::new(libm::sin(azimuth) * level, libm::cos(azimuth) * level, libm::sin(altitude));
+    let normals = places(block).filter_map(|at| {
+        let (cell, _) = lattice.cell_at(at)?;
+        let [south_west, south_east, north_west, north_east] = lattice.corner_heights(cell).map(f64::from);
+        let rise = DVec2::new(
+            south_east + north_east - south_west - north_west,
+            north_west + north_east - south_west - south_east,
+        );
+        let slope = rise / 2.0 / lattice.cell() * exaggeration;
+        Some((-slope).extend(1.0).normalize()).filter(|normal| !normal.is_nan())
+    });
+    let (dark, all) = normals
+        .fold((0_u32, 0_u32), |(dark, all), normal| (dark + u32::from(normal.dot(to_sun) < DARK), all + 1));
+    f64::from(dark) / f64::from(all.max(1))
 }
 
 #[cfg(test)]
@@ -128,7 +176,20 @@ mod tests {
         let lattice = hill();
         let block = boldest_block(&lattice).expect("there is a hill");
         assert!(block.contains(DVec2::new(700.0, 600.0)), "{block:?}");
-        assert_eq!(lowest_approach(&lattice, block), 30.0, "from the south-west, past the end of the ridge");
+        assert_eq!(
+            best_approach(&lattice, block, 1.0),
+            30.0,
+            "from the south-west, past the end of the ridge"
+        );
+    }
+
+    #[test]
+    fn a_slope_is_seen_from_where_the_light_falls_on_it() {
+        let falls_west: Vec<f32> = (0..101 * 101).map(|index: u32| 20.0 * (index % 101) as f32).collect();
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), 101, falls_west).expect("sound");
+        let block = Rect { min: DVec2::splat(400.0), max: DVec2::splat(600.0) };
+        assert_eq!(dark_share(&lattice, block, 0.0, 1.0), 0.0, "the light comes from the west");
+        assert_eq!(dark_share(&lattice, block, 180.0, 1.0), 1.0);
     }
 
     #[test]

@@ -4,14 +4,23 @@ use glam::DVec2;
 
 use crate::dem::largest_rectangle::largest_rectangle;
 use crate::geom::rect::Rect;
+use crate::pipeline::new_scene::stated;
+use crate::scene::SceneModel;
 use crate::terrain::lattice::Lattice;
 
-/// A part of the elevation model, in the scene's system.
+/// A part of the elevation model, in the scene's system, or in that of its inline points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ExtentDraft {
     pub rect: Rect,
     /// What it holds, as the beginning of a sentence.
     pub holds: &'static str,
+}
+
+impl ExtentDraft {
+    /// The extent in the system of inline points.
+    pub fn stated_in(self, scene: &SceneModel) -> Self {
+        Self { rect: stated(self.rect, scene), ..self }
+    }
 }
 
 /// The extent of a scene whose vectors cover little of the `ground`: theirs and a margin; `None` where they cover more, or

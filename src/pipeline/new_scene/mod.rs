@@ -21,6 +21,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
+
 use crate::annotate::nice::NiceNumber;
 use crate::dem::undeclared::undeclared_nodata;
 use crate::description::parse::parse;
@@ -34,6 +36,7 @@ use crate::pipeline::new_scene::survey::SurveyError;
 use crate::pipeline::new_scene::text::{SceneDraft, VectorDraft};
 use crate::pipeline::scene_file::OpenSceneError;
 use crate::remote::address::is_address_path;
+use crate::scene::SceneModel;
 use crate::scene::assets::Assets;
 use crate::scene::build::build_with;
 use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
@@ -54,7 +57,7 @@ pub struct NewSceneOptions {
     /// Vector files.
     pub vectors: Vec<PathBuf>,
     /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
-    /// first elevation file.
+    /// first elevation file or its folder.
     pub title: Option<String>,
     /// The coordinate system of elevation that names none, as a scene file states it.
     pub crs: Option<String>,
@@ -147,10 +150,12 @@ fn complete(
     draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
     let surveyed = vectors;
     let vectors = extent(surveyed, &scene.crs);
-    draft.extent = around_vectors(vectors, scene.lattice.map_extent());
+    let around_vectors = around_vectors(vectors, scene.lattice.map_extent());
+    draft.extent = around_vectors.map(|extent| extent.stated_in(&scene));
     if !draft.nodata.is_empty() {
         scene = built(&draft)?;
-        draft.extent = draft.extent.or_else(|| with_straight_edges(&scene.lattice));
+        let straight = || with_straight_edges(&scene.lattice).map(|extent| extent.stated_in(&scene));
+        draft.extent = draft.extent.or_else(straight);
     }
     if draft.extent.is_some() {
         scene = built(&draft)?;
@@ -159,11 +164,31 @@ fn complete(
     let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
     let size_m = lattice.extent().size().max_element();
     draft.relief_m = f64::from(high - low);
-    draft.crs_name = scene.crs.name().to_owned();
+    draft.crs_name = scene.stated_crs.name().to_owned();
     draft.exaggeration = exaggeration(draft.relief_m / size_m);
     draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
-    draft.cameras = cameras(&scene, vectors);
+    draft.cameras = cameras(&scene, vectors, draft.exaggeration);
+    for camera in &mut draft.cameras {
+        camera.shown = camera.shown.map(|shown| stated(shown, &scene));
+    }
     Ok(draft)
+}
+
+/// A rectangle of the ground, in the system of inline points; where that is another one, the largest whose sides cut
+/// through none of its corners. What has no place in that system stays as it is.
+fn stated(rect: Rect, scene: &SceneModel) -> Rect {
+    if scene.stated_crs == scene.crs {
+        return rect;
+    }
+    let corner = |x: f64, y: f64| scene.crs.transform(&scene.stated_crs, DVec2::new(x, y));
+    let Rect { min, max } = rect;
+    let corners = [corner(min.x, min.y), corner(max.x, min.y), corner(min.x, max.y), corner(max.x, max.y)];
+    let [Ok(low_left), Ok(low_right), Ok(high_left), Ok(high_right)] = corners else { return rect };
+    let inner = Rect {
+        min: DVec2::new(low_left.x.max(high_left.x), low_left.y.max(low_right.y)),
+        max: DVec2::new(low_right.x.min(high_right.x), high_left.y.min(high_right.y)),
+    };
+    if inner.is_empty() { Rect::around([low_left, low_right, high_left, high_right]) } else { inner }
 }
 
 /// The vertical exaggeration for a relief as a share of the extent: flat country shows nothing at true scale.

@@ -50,15 +50,115 @@ fn holds(district: &NamedDistrict, at: DVec2) -> bool {
     district.polygons.iter().any(|polygon| polygon::contains(polygon.rings().map(Vec::as_slice), at))
 }
 
-/// A title from the name of a file: words with capitals, without extensions.
+/// A title from the name of a file: its words with capitals, without extensions and without those that say how the file is
+/// made and not what it shows. Where no other are left, the name of its folder is taken, then all words.
 pub(super) fn of_file(file: &Path) -> String {
     let stem = files::file_stem(file);
     // `N43E007.hgt.zip` has two extensions.
     let is_packed = file.extension().is_some_and(|extension| extension == "zip" || extension == "gz");
     let stem = if is_packed { files::file_stem(Path::new(&stem)) } else { stem };
-    let words = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).map(title_word);
-    let title = words.collect::<Vec<_>>().join(" ");
-    if title.is_empty() { "A scene".into() } else { title }
+    let folder = file.parent().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let telling = |name: &str| title_of(words(name).filter(|word| !is_technical(word)));
+    [telling(&stem), telling(&folder.unwrap_or_default()), title_of(words(&stem))]
+        .into_iter()
+        .find(|title| !title.is_empty())
+        .unwrap_or_else(|| "A scene".into())
+}
+
+/// The words of a file's name: apart by signs, and where a capital follows a small letter.
+fn words(name: &str) -> impl Iterator<Item = &str> {
+    name.split(['_', '-', ' ', '.']).flat_map(|part| {
+        let begins_word = |at: usize| {
+            let (before, after) = part.split_at(at);
+            let ends_small = before.chars().next_back().is_some_and(char::is_lowercase);
+            let mut after = after.chars();
+            // `SainteHelens`, but not `SainteH`.
+            ends_small
+                && after.next().is_some_and(char::is_uppercase)
+                && after.next().is_some_and(char::is_lowercase)
+        };
+        let ends =
+            part.char_indices().map(|(at, _)| at).filter(move |&at| begins_word(at)).chain([part.len()]);
+        ends.scan(0, move |start, end| Some(&part[std::mem::replace(start, end)..end]))
+            .filter(|word| !word.is_empty())
+    })
+}
+
+/// Whether a word says how a file is made: the kind of its model, its source, system, samples or packing.
+fn is_technical(word: &str) -> bool {
+    let word = word.to_lowercase();
+    let is_number = |text: &str| !text.is_empty() && text.chars().all(|letter| letter.is_ascii_digit());
+    // `utm33s`, `epsg4326`, `srtmgl3`, `int16`, `f32`.
+    let numbered = NUMBERED.iter().filter_map(|prefix| word.strip_prefix(prefix));
+    let of_number = |rest: &str| {
+        let rest = rest.strip_suffix(['n', 's']).unwrap_or(rest);
+        rest.is_empty() || is_number(rest)
+    };
+    TECHNICAL.contains(&word.as_str())
+        || numbered.into_iter().any(of_number)
+        || is_number(&word)
+        // `30m`, `1m`.
+        || ["cm", "km", "m"].iter().any(|unit| word.strip_suffix(unit).is_some_and(is_number))
+}
+
+/// Words that say how a file is made.
+const TECHNICAL: [&str; 38] = [
+    "alos",
+    "aster",
+    "byte",
+    "clip",
+    "clipped",
+    "cog",
+    "copy",
+    "crop",
+    "cropped",
+    "data",
+    "deflate",
+    "dem",
+    "dhm",
+    "dsm",
+    "dtm",
+    "elev",
+    "elevation",
+    "final",
+    "float",
+    "geotiff",
+    "gtiff",
+    "height",
+    "heightmap",
+    "lidar",
+    "lzw",
+    "merged",
+    "mosaic",
+    "nasadem",
+    "ned",
+    "raster",
+    "srtm",
+    "terrain",
+    "terrarium",
+    "tile",
+    "tiled",
+    "tiles",
+    "usgs",
+    "zstd",
+];
+
+/// What a number may follow in such a word.
+const NUMBERED: [&str; 16] = [
+    "epsg", "etrs", "f", "float", "glo", "i", "int", "srtmgl", "u", "uint", "utm", "v", "version", "wgs",
+    "cop", "gdem",
+];
+
+/// A title of words; a last one of two letters after others, as of a country, is written in capitals.
+fn title_of<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let mut words: Vec<String> = words.map(title_word).collect();
+    if let [_, .., last] = &mut words[..]
+        && last.len() == 2
+        && last.chars().all(char::is_alphabetic)
+    {
+        *last = last.to_uppercase();
+    }
+    words.join(" ")
 }
 
 /// A word with a capital letter first; abbreviations in capitals.
@@ -73,11 +173,37 @@ mod tests {
     #[test]
     fn a_file_s_name_becomes_words() {
         for (file, wanted) in [
-            ("data/red_butte-dem.tif", "Red Butte DEM"),
+            ("data/red_butte-dem.tif", "Red Butte"),
             ("N43E007.hgt.zip", "N43E007"),
             ("crater.bt", "Crater"),
+            ("SainteHelens.dem", "Sainte Helens"),
             ("élan__vital.asc", "Élan Vital"),
             ("_.asc", "A scene"),
+        ] {
+            assert_eq!(of_file(Path::new(file)), wanted);
+        }
+    }
+
+    #[test]
+    fn words_of_formats_and_systems_leave_a_title() {
+        for (file, wanted) in [
+            ("bigtujunga_utm11_i16_tiled.tif", "Bigtujunga"),
+            ("zion_srtm_u16_deflate.tif", "Zion"),
+            ("kootenai_1m.asc", "Kootenai"),
+            ("poa_elevation.tif", "Poa"),
+            ("utah_v2_30m.tif", "Utah"),
+        ] {
+            assert_eq!(of_file(Path::new(file)), wanted);
+        }
+    }
+
+    #[test]
+    fn a_name_that_says_nothing_leaves_the_title_to_the_folder() {
+        for (file, wanted) in [
+            ("taunton_uk/dtm.tif", "Taunton UK"),
+            ("swellendam_za/dem_srtm_wgs84_f32.tif", "Swellendam ZA"),
+            ("data/dem.tif", "DEM"),
+            ("dem_utm33s.tif", "DEM Utm33s"),
         ] {
             assert_eq!(of_file(Path::new(file)), wanted);
         }

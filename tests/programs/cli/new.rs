@@ -138,6 +138,19 @@ fn the_layers_of_an_openstreetmap_extract_are_told_apart() {
 }
 
 #[test]
+fn a_scene_of_a_web_mercator_model_shows_what_its_cameras_name() {
+    let Some(dem) = data("dem/tin_valid_raster_3857.tif") else { return };
+    let scratch = Scratch::new();
+    let arguments = ["new".as_ref(), scratch.at("scene").as_os_str(), "--dem".as_ref(), dem.as_os_str()];
+    let out = run_in(scratch.folder(), &arguments).ok();
+    let text = std::fs::read_to_string(scratch.at("scene/scene.toml")).expect("it was written");
+    // Inline points stay in the system of the file, whose lengths are not those of the ground.
+    assert!(text.contains("in the scene's coordinate system, EPSG:3857,"), "{text}");
+    assert!(text.contains("shows = [[-136"), "{text}");
+    assert!(out.contains("cameras   overview, relief"), "{out}");
+}
+
+#[test]
 fn a_scene_is_named_after_its_place_and_cut_to_what_stands_in_it() {
     let scratch = Scratch::new();
     let post =
@@ -203,7 +216,7 @@ fn a_layer_without_properties_is_taken_for_what_its_name_says() {
     let vectors: Vec<&Path> = vectors.iter().map(|path| path.as_path()).collect();
     let (text, _) = of_data(&scratch, &folder.join("dtm.tif"), &vectors);
     for wanted in [
-        "title = \"DTM\"",
+        "title = \"Taunton UK\"",
         "# Buildings (401).\n[[building]]",
         "# In no table of this file (4 lines)",
         "# [[model]]",
