@@ -163,10 +163,15 @@ pub fn viewshed_until(
     let visible: Vec<AtomicBool> =
         lattice.held_heights().par_iter().map(|_| AtomicBool::new(false)).collect();
     let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
+    let is_clear_near = |post: Post, part: f64| observer.is_clear_up_to(post, part);
     // Lines from a post meet no diagonal but at its ends.
     let is_on_post = observer.grid.fract() == DVec2::ZERO;
     let is_clear_of_diagonals = |post: Post| is_on_post || !observer.may_meet_a_diagonal_at(post);
-    let tests = PostTests { sees: &sees, is_clear_of_diagonals: &is_clear_of_diagonals };
+    let tests = PostTests {
+        sees: &sees,
+        is_clear_near: &is_clear_near,
+        is_clear_of_diagonals: &is_clear_of_diagonals,
+    };
     let scene = observer.scene(stop);
     let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
     let lines = AtomicUsize::new(0);
@@ -241,16 +246,24 @@ impl<'a> Observer<'a> {
 
     /// Whether the line of sight to the target on a post is clear: the definition.
     fn sees(&self, post: Post) -> bool {
+        self.is_clear_up_to(post, 1.0)
+    }
+
+    /// Whether nothing blocks a line of sight in its first `part`.
+    fn is_clear_up_to(&self, post: Post, part: f64) -> bool {
         let target_m = f64::from(self.lattice.height(post)) + self.options.target_above_m;
         let length_m = self.options.observer.at.distance(self.lattice.map_position(post));
         let line = SightLine::new(self.eye_m, target_m, length_m, self.options.curvature);
-        crossings(self.lattice, self.grid, post.grid(), |crossing| {
+        let walk = crossings(self.lattice, self.grid, post.grid(), |crossing| {
+            if crossing.part > part {
+                return ControlFlow::Break(true);
+            }
             if line.is_below(crossing.height_m, crossing.part) {
-                return ControlFlow::Break(());
+                return ControlFlow::Break(false);
             }
             ControlFlow::Continue(())
-        })
-        .is_continue()
+        });
+        walk.break_value().unwrap_or(true)
     }
 
     /// Whether rounding may leave a diagonal that ends at a post, where it is as high as the target, just before the end of

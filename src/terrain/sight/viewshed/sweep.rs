@@ -47,8 +47,9 @@ const NEAR: f64 = 3.0;
 /// rays: its crossing with a ray is ill determined, so it is a doubt and hides nothing.
 const NARROW: f64 = 1.0 / 64.0;
 
-/// Nearer than this share of a cell `rise / x` is meaningless; ground there counts as a doubt for the whole wedge.
-pub(super) const NEAREST: f64 = 1.0 / 16.0;
+/// Nearer than this share of a cell `rise / x` is meaningless: a bound of the whole wedge, or the begin of the line to a post,
+/// decides whether ground there hides it.
+pub(super) const NEAREST: f64 = 1.0 / 256.0;
 
 /// The last ray of the last wedge of an octant, plus rounding: a post on the border of two octants may be decided twice,
 /// but must not be left out.
@@ -74,6 +75,8 @@ pub(super) struct SweepScene<'a> {
 pub(super) struct PostTests<'a> {
     /// Whether the line of sight to a post is clear.
     pub sees: &'a (dyn Fn(Post) -> bool + Sync),
+    /// Whether its first part, 0..=1, is.
+    pub is_clear_near: &'a (dyn Fn(Post, f64) -> bool + Sync),
     /// Whether rounding cannot leave a diagonal that ends at a post before it.
     pub is_clear_of_diagonals: &'a (dyn Fn(Post) -> bool + Sync),
 }
@@ -186,7 +189,7 @@ impl Sweep<'_> {
             if any_target || self.ring.x <= NEAR {
                 self.decide();
             }
-            if self.before.x < NEAREST {
+            if self.before.x < NEAR {
                 self.near_strip(ring);
             } else if self.before.any_prominent || self.ring.any_prominent {
                 self.strip(ring);
@@ -296,7 +299,7 @@ impl Sweep<'_> {
 
     fn decide_post(&mut self, j: i64, target: RingPost) {
         let post = self.frame.post(self.ring.number, j);
-        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(j, target) };
+        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(j, target, post) };
         let decided = decided.filter(|&is_visible| !is_visible || (self.tests.is_clear_of_diagonals)(post));
         let is_visible = decided.unwrap_or_else(|| {
             self.lines += 1;
@@ -308,7 +311,7 @@ impl Sweep<'_> {
     }
 
     /// Whether the target on post `j` is visible; `None` where only the line of sight decides.
-    fn is_visible(&self, j: i64, RingPost { u, v }: RingPost) -> Option<bool> {
+    fn is_visible(&self, j: i64, RingPost { u, v }: RingPost, post: Post) -> Option<bool> {
         let error = self.ring.error;
         let span = self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?;
         if v + error < span.low {
@@ -320,8 +323,13 @@ impl Sweep<'_> {
             return Some(false);
         }
         let is_over = diagonal.is_nan() || v - error > diagonal + error;
-        let is_clear = is_over && v - error > span.high && v - error > self.near;
-        is_clear.then_some(true)
+        let is_clear = is_over && v - error > span.high;
+        // The horizon has everything beyond.
+        let is_over_near = || {
+            let beyond = 2.0 * NEAREST / self.ring.x;
+            v - error > self.near || (self.tests.is_clear_near)(post, beyond)
+        };
+        is_clear.then(is_over_near)
     }
 
     /// `v` on the diagonal of the last cell before post `j` at the post's ray; NaN where the diagonal ends at the post.
@@ -358,8 +366,7 @@ impl Sweep<'_> {
 
     /// Adds the ring's edges from one post to another, given by their indices.
     fn ring_run(&mut self, mut first: usize, mut last: usize) {
-        // They lie at one distance: the error of the strip before would leave more to lines of sight.
-        let (error, cut) = (self.error(self.ring.x, self.ring.x), self.ray_error(self.ring.x));
+        let (error, cut) = (self.ring_error(), self.ray_error(self.ring.x));
         let is_gap = |index: Option<usize>| {
             index.and_then(|index| self.ring.heights.get(index)).is_some_and(|height| height.is_nan())
         };
@@ -384,6 +391,12 @@ impl Sweep<'_> {
             let (u, v) = (&self.ring.u[posts.clone()], &self.ring.v[posts]);
             self.horizon.insert_chain(&EdgeChain { u, v, per_step: self.ring.x, error });
         }
+    }
+
+    /// The error of the ring's own edges. They also stand for the rungs and diagonals under them, which bend by their strip's
+    /// error; near the observer, where that is large, no rung is left out for them.
+    fn ring_error(&self) -> f64 {
+        if self.ring.x < NEAR { self.error(self.ring.x, self.ring.x) } else { self.ring.error }
     }
 
     /// Leaves the rays to prominent posts beside gaps to lines of sight: rungs and diagonals to such a post are cut short of it
@@ -494,16 +507,29 @@ impl Sweep<'_> {
     }
 
     /// Adds an edge between two distances to the horizon.
-    pub fn cross(&mut self, from: RingPost, to: RingPost, (near_x, far_x): (f64, f64), error: f64) {
-        let (from, to) = if from.u <= to.u { (from, to) } else { (to, from) };
+    fn cross(&mut self, from: RingPost, to: RingPost, xs: (f64, f64), error: f64) {
+        self.cross_part([from, to], [true; 2], xs, error);
+    }
+
+    /// Adds a part of an edge between two distances to the horizon; where it does not end, the edge goes on.
+    pub fn cross_part(
+        &mut self,
+        [from, to]: [RingPost; 2],
+        ends: [bool; 2],
+        (near_x, far_x): (f64, f64),
+        error: f64,
+    ) {
+        let ((from, to), [start, end]) =
+            if from.u <= to.u { ((from, to), ends) } else { ((to, from), [ends[1], ends[0]]) };
         if (from.v + to.v).is_nan() {
             return;
         }
         let ray_error = self.ray_error(near_x);
         let width = to.u - from.u;
-        if width * far_x >= NARROW {
+        if width * far_x >= NARROW * (far_x - near_x) {
             // A ray may just miss an end of it; there the rings hide as much.
-            self.insert(from, to, [ray_error; 2], error);
+            let cut = |is_end: bool| if is_end { ray_error } else { 0.0 };
+            self.insert(from, to, [cut(start), cut(end)], error);
         } else if width > 0.0 {
             let (u0, u1) = (from.u - ray_error, to.u + ray_error);
             self.horizon.doubt(Doubt { u0, u1, v: from.v.max(to.v) + error });
