@@ -18,6 +18,7 @@ mod horizon;
 mod near;
 mod ring;
 mod sector;
+mod step;
 mod sweep;
 
 use std::ops::ControlFlow;

@@ -24,8 +24,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge};
+use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge, HorizonSpan};
 use crate::terrain::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
+use crate::terrain::sight::viewshed::step::RingStep;
 use crate::terrain::stop_flag::StopFlag;
 
 /// How far the sweep's numbers may differ from those of a line of sight.
@@ -104,6 +105,7 @@ pub(super) fn sweep(
         chunk: RingChunk::default(),
         before: PostRing::default(),
         ring: PostRing::default(),
+        step: RingStep::default(),
         lines: 0,
     };
     sweep.run();
@@ -131,6 +133,7 @@ pub(super) struct Sweep<'a> {
     chunk: RingChunk,
     pub before: PostRing,
     pub ring: PostRing,
+    step: RingStep,
     /// The number of posts decided by a line of sight.
     lines: usize,
 }
@@ -184,8 +187,13 @@ impl Sweep<'_> {
                 }
                 continue;
             }
-            self.horizon.grow(self.ring.x);
+            self.horizon.grow(self.ring.x, &self.before);
             let any_target = self.find_prominent();
+            if self.before.x < NEAR {
+                self.step.skip(&self.ring);
+            } else {
+                self.step.measure(&mut self.before, &self.ring, self.frame.parity(ring - 1));
+            }
             if any_target || self.ring.x <= NEAR {
                 self.decide();
             }
@@ -197,6 +205,7 @@ impl Sweep<'_> {
             if self.ring.any_prominent {
                 self.ring_edges();
             }
+            self.horizon.end_ring(&self.before);
         }
     }
 
@@ -220,8 +229,12 @@ impl Sweep<'_> {
         let (first, count) = (*posts.start(), (posts.end() - posts.start() + 1).max(0) as usize);
         let heights = self.chunk.heights(ring, first, count);
         let error = self.error((x - 1.0).max(NEAREST), x);
+        // A ring's edges also stand for the rungs and diagonals under them, which bend by their strip's error; near the
+        // observer, where that is large, no rung is left out for them.
+        let edge_error = if x < NEAR { self.error(x.max(NEAREST), x) } else { error };
         let into = &mut self.ring;
         (into.number, into.x, into.first, into.error) = (ring, x, first, error);
+        into.edge_error = edge_error;
         into.view = RingView {
             inverse: x.recip(),
             offset: self.frame.offset,
@@ -273,6 +286,8 @@ impl Sweep<'_> {
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
         let is_ground = lift == 0.0 && !is_near;
+        let is_measured = self.before.x >= NEAR;
+        let hidden = -self.ring.error - self.before.edge_error;
         for block in 0..self.ring.may_rise.len() {
             if is_near {
                 self.ring.see_block(block);
@@ -284,22 +299,28 @@ impl Sweep<'_> {
                     continue;
                 }
                 let target = RingPost { u: self.ring.u[index], v: self.ring.v[index] + lift };
-                let floor = floor[((target.u * count) as usize).min(last)];
-                let is_low = !is_near && target.v + self.ring.error < floor;
+                let is_low = || {
+                    let floor = floor[((target.u * count) as usize).min(last)];
+                    !is_near && target.v + self.ring.error < floor
+                };
                 // A border belongs to the wedge that it begins.
                 let is_inside =
                     target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
-                if !is_low && is_inside && !target.v.is_nan() {
-                    self.decide_post(self.ring.first + index as i64, target);
+                // NaN, where it is not known, hides nothing.
+                let is_behind = is_measured && self.step.rise[index] + lift < hidden;
+                // A prominent post is known not to be low.
+                let is_open = !is_behind && is_inside && !target.v.is_nan() && (is_ground || !is_low());
+                if is_open {
+                    self.decide_post(index, target);
                 }
             }
         }
         *self.horizon.floor() = floor;
     }
 
-    fn decide_post(&mut self, j: i64, target: RingPost) {
-        let post = self.frame.post(self.ring.number, j);
-        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(j, target, post) };
+    fn decide_post(&mut self, index: usize, target: RingPost) {
+        let post = self.frame.post(self.ring.number, self.ring.first + index as i64);
+        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(index, target, post) };
         let decided = decided.filter(|&is_visible| !is_visible || (self.tests.is_clear_of_diagonals)(post));
         let is_visible = decided.unwrap_or_else(|| {
             self.lines += 1;
@@ -310,15 +331,20 @@ impl Sweep<'_> {
         }
     }
 
-    /// Whether the target on post `j` is visible; `None` where only the line of sight decides.
-    fn is_visible(&self, j: i64, RingPost { u, v }: RingPost, post: Post) -> Option<bool> {
+    /// Whether the target on a post, also given by its index on the ring, is visible; `None` where only the line of sight decides.
+    fn is_visible(&self, index: usize, RingPost { u, v }: RingPost, post: Post) -> Option<bool> {
         let error = self.ring.error;
-        let span = self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?;
+        let span = if self.horizon.is_front(u) {
+            let (level, error) = (self.ring.v[index] - self.step.rise[index], self.before.edge_error);
+            HorizonSpan { low: level - error, high: level + error }
+        } else {
+            self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?
+        };
         if v + error < span.low {
             return Some(false);
         }
         // The one edge of the last strip that the line crosses.
-        let diagonal = self.last_diagonal(j, u);
+        let diagonal = self.last_diagonal(index, u);
         if v + error < diagonal - error {
             return Some(false);
         }
@@ -332,13 +358,17 @@ impl Sweep<'_> {
         is_clear.then(is_over_near)
     }
 
-    /// `v` on the diagonal of the last cell before post `j` at the post's ray; NaN where the diagonal ends at the post.
-    fn last_diagonal(&self, j: i64, u: f64) -> f64 {
-        let joins_post = (self.frame.parity(self.ring.number) + j) % 2 == 0;
+    /// `v` on the diagonal of the last cell before a post at the post's ray; NaN where the diagonal ends at the post.
+    fn last_diagonal(&self, index: usize, u: f64) -> f64 {
+        let j = self.ring.first + index as i64;
+        if (self.frame.parity(self.ring.number) + j) % 2 == 0 {
+            return f64::NAN;
+        }
+        if self.before.x >= NEAR && index > 0 && !self.step.bulge[index - 1].is_nan() {
+            return self.ring.v[index] - self.step.bulge[index - 1];
+        }
         match (self.before.get(j), self.ring.get(j - 1)) {
-            (Some(near), Some(far)) if !joins_post => {
-                far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u))
-            }
+            (Some(near), Some(far)) => far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u)),
             _ => f64::NAN,
         }
     }
@@ -354,7 +384,7 @@ impl Sweep<'_> {
                 continue;
             }
             let first = index;
-            while index < edges && self.ring.is_prominent_edge(index) {
+            while index < edges && self.ring.is_prominent_edge(index) && !self.step.is_behind[index] {
                 index += 1;
             }
             if first < index {
@@ -366,7 +396,7 @@ impl Sweep<'_> {
 
     /// Adds the ring's edges from one post to another, given by their indices.
     fn ring_run(&mut self, mut first: usize, mut last: usize) {
-        let (error, cut) = (self.ring_error(), self.ray_error(self.ring.x));
+        let (error, cut) = (self.ring.edge_error, self.ray_error(self.ring.x));
         let is_gap = |index: Option<usize>| {
             index.and_then(|index| self.ring.heights.get(index)).is_some_and(|height| height.is_nan())
         };
@@ -389,14 +419,11 @@ impl Sweep<'_> {
         if first < last {
             let posts = first..=last;
             let (u, v) = (&self.ring.u[posts.clone()], &self.ring.v[posts]);
-            self.horizon.insert_chain(&EdgeChain { u, v, per_step: self.ring.x, error });
+            let is_far = self.ring.x >= NEAR;
+            let is_ahead = if is_far { &self.step.is_ahead[first..last] } else { &[] };
+            let chain = EdgeChain { u, v, per_step: self.ring.x, error, is_ahead };
+            self.horizon.insert_chain(&chain, self.ring.number, &self.before);
         }
-    }
-
-    /// The error of the ring's own edges. They also stand for the rungs and diagonals under them, which bend by their strip's
-    /// error; near the observer, where that is large, no rung is left out for them.
-    fn ring_error(&self) -> f64 {
-        if self.ring.x < NEAR { self.error(self.ring.x, self.ring.x) } else { self.ring.error }
     }
 
     /// Leaves the rays to prominent posts beside gaps to lines of sight: rungs and diagonals to such a post are cut short of it
@@ -447,6 +474,10 @@ impl Sweep<'_> {
         while index < count {
             if index % BLOCK == 0 && !any(near_here, index) && !any(&far, index) {
                 index += BLOCK;
+                continue;
+            }
+            if self.step.is_cell_flat(index) {
+                index += 1;
                 continue;
             }
             let at = |flags: &[bool], index: usize| flags.get(index).copied().unwrap_or(false);
