@@ -280,8 +280,11 @@ impl Horizon {
                 standing => return self.insert_part(index, chain, edges, borders, standing),
             }
         } else if !(is_front && chain.is_ahead[edges.clone()].iter().all(|&is_ahead| is_ahead)) {
+            let was_front = self.fronts[index] != 0;
             self.settle(index, before);
-            let standing = match covers {
+            // Ahead of the ring before here, and not there.
+            let is_mixed = was_front && chain.is_ahead[edges.clone()].iter().any(|&is_ahead| is_ahead);
+            let standing = match covers && !is_mixed {
                 true => self.buckets[index].standing(chain, edges.clone(), borders),
                 false => ChainStanding::Mixed,
             };

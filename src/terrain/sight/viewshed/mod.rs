@@ -121,17 +121,21 @@ const LOOKED_AT_TOGETHER: usize = 1 << 16;
 impl Viewshed {
     /// The number of posts of each kind.
     pub fn counts(&self) -> ViewshedCounts {
+        /// Posts of which a byte holds the number: many bytes are added up at once.
+        const BYTE: usize = 128;
         // Kind by kind: a loop that counts all of them at once waits for its own sums.
-        let count = |kind: PostVisibility| {
-            let count = |posts: &[PostVisibility]| posts.iter().filter(|&&post| post == kind).count();
-            self.posts.par_chunks(LOOKED_AT_TOGETHER).map(count).sum()
+        let count = |posts: &[PostVisibility], kind: PostVisibility| -> usize {
+            let few = |few: &[PostVisibility]| few.iter().map(|&post| u8::from(post == kind)).sum::<u8>();
+            posts.chunks(BYTE).map(|posts| usize::from(few(posts))).sum()
         };
-        ViewshedCounts {
-            visible: count(PostVisibility::Visible),
-            hidden: count(PostVisibility::Hidden),
-            no_data: count(PostVisibility::NoData),
-            beyond: count(PostVisibility::Beyond),
-        }
+        let counts = |posts: &[PostVisibility]| {
+            let kinds = [PostVisibility::Visible, PostVisibility::Hidden, PostVisibility::NoData];
+            kinds.map(|kind| count(posts, kind))
+        };
+        let all = self.posts.par_chunks(LOOKED_AT_TOGETHER).map(counts);
+        let [visible, hidden, no_data] =
+            all.reduce(|| [0; 3], |one, other| std::array::from_fn(|kind| one[kind] + other[kind]));
+        ViewshedCounts { visible, hidden, no_data, beyond: self.posts.len() - visible - hidden - no_data }
     }
 }
 
@@ -176,8 +180,9 @@ pub fn viewshed_until(
     let scene = observer.scene(stop);
     let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
     let lines = AtomicUsize::new(0);
-    wedges.par_iter().with_max_len(1).for_each(|(frame, rays)| {
-        lines.fetch_add(sweep(&scene, frame, *rays, tests, &visible), Ordering::Relaxed);
+    // One by one in their order, so that no thread begins a large one when the others are done.
+    wedges.into_iter().par_bridge().for_each(|(frame, rays)| {
+        lines.fetch_add(sweep(&scene, &frame, rays, tests, &visible), Ordering::Relaxed);
     });
     for post in observer.own_posts() {
         visible[lattice.index(post)].store(sees(post), Ordering::Relaxed);
@@ -217,13 +222,15 @@ pub fn viewshed_by_lines(lattice: &Lattice, options: &ViewshedOptions) -> Result
 
 /// Parts of an octant that are swept apart, a power of two: enough for threads to share the work evenly, and few enough
 /// that the double work along their borders is negligible.
-const PARTS: usize = 4;
+const PARTS: usize = 8;
 
-/// The wedges that a sector touches.
+/// The wedges that a sector touches, the largest first.
 fn wedges(frames: impl Iterator<Item = OctantFrame>, sector: &Sector) -> Vec<(OctantFrame, (f64, f64))> {
     let parts = (0..PARTS).map(|part| (part as f64 / PARTS as f64, (part + 1) as f64 / PARTS as f64));
     let all = frames.flat_map(|frame| parts.clone().map(move |rays| (frame, rays)));
-    all.filter(|(frame, rays)| sector.may_touch(frame.directions(*rays))).collect()
+    let mut wedges: Vec<_> = all.filter(|(frame, rays)| sector.may_touch(frame.directions(*rays))).collect();
+    wedges.sort_by_cached_key(|(frame, (from, _))| std::cmp::Reverse(frame.rings_before(*from)));
+    wedges
 }
 
 /// An observer on a lattice.
