@@ -226,7 +226,9 @@ impl Horizon {
             && high > self.low[index]
             && self.buckets[index].insert(line, part, border, &mut self.scratch)
         {
-            self.low[index] = self.low[index].max(self.least(index));
+            let least = self.least(index);
+            // A front may be higher than the pieces.
+            self.low[index] = if self.fronts[index] == 0 { least } else { self.low[index].max(least) };
             self.floor_is_stale = true;
         }
     }
@@ -314,7 +316,7 @@ impl Horizon {
                 }
             }
         }
-        self.low[index] = self.low[index].max(self.least(index));
+        self.low[index] = self.least(index);
         self.floor_is_stale = true;
     }
 
