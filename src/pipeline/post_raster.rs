@@ -13,13 +13,13 @@ use crate::terrain::lattice::{Lattice, Post};
 pub struct PostBytes<F> {
     /// What they are: the raster's driver.
     pub name: &'static str,
-    /// The byte of a post, by its index row by row from the south-west; NaN for no data.
-    pub value: F,
+    /// Fills in the bytes of the posts from one on, by its index row by row from the south-west; NaN for no data.
+    pub fill: F,
     /// The byte for no data in a file.
     pub nodata: f64,
 }
 
-impl<F: Fn(usize) -> f32 + Sync> PostBytes<F> {
+impl<F: Fn(usize, &mut [f32]) + Sync> PostBytes<F> {
     /// The raster of the bytes, north up, its samples at the posts.
     pub fn raster(self, lattice: &Lattice, crs: &Crs) -> Raster {
         let windows = self.windows(lattice, crs);
@@ -38,30 +38,29 @@ impl<F: Fn(usize) -> f32 + Sync> PostBytes<F> {
             nodata: Some(self.nodata),
             ..Raster::without_place(columns, rows)
         };
-        PostWindows { header: header.placed(north_up_nodes(north_west, lattice.cell())), value: self.value }
+        PostWindows { header: header.placed(north_up_nodes(north_west, lattice.cell())), fill: self.fill }
     }
 }
 
 /// A raster of [`PostBytes`] that is made window by window.
 pub struct PostWindows<F> {
     header: Raster,
-    value: F,
+    fill: F,
 }
 
-impl<F: Fn(usize) -> f32 + Sync> PostWindows<F> {
+impl<F: Fn(usize, &mut [f32]) + Sync> PostWindows<F> {
     fn values(&self, window: RasterWindow) -> Vec<f32> {
         let (columns, width) = (self.header.width as usize, window.width as usize);
         let first = (self.header.height - 1 - window.row) as usize * columns + window.column as usize;
         let mut values = vec![0.0; window.samples()];
         values.par_chunks_mut(width).enumerate().for_each(|(down, values)| {
-            let start = first - down * columns;
-            values.iter_mut().enumerate().for_each(|(at, value)| *value = (self.value)(start + at));
+            (self.fill)(first - down * columns, values);
         });
         values
     }
 }
 
-impl<F: Fn(usize) -> f32 + Sync> Windows for PostWindows<F> {
+impl<F: Fn(usize, &mut [f32]) + Sync> Windows for PostWindows<F> {
     fn metadata(&self) -> &Raster {
         &self.header
     }
@@ -75,9 +74,9 @@ impl<F: Fn(usize) -> f32 + Sync> Windows for PostWindows<F> {
 /// The gray of every post: 1 facing away from the sun, 255 facing it.
 pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs) -> Raster {
     let grays = hillshade(lattice, options);
-    let value = |index: usize| match grays[index] {
-        hillshade::NO_DATA => f32::NAN,
-        gray => f32::from(gray),
+    let value = |gray: u8| if gray == hillshade::NO_DATA { f32::NAN } else { f32::from(gray) };
+    let fill = |first: usize, values: &mut [f32]| {
+        values.iter_mut().zip(&grays[first..]).for_each(|(place, &gray)| *place = value(gray));
     };
-    PostBytes { name: "hillshade", value, nodata: f64::from(hillshade::NO_DATA) }.raster(lattice, crs)
+    PostBytes { name: "hillshade", fill, nodata: f64::from(hillshade::NO_DATA) }.raster(lattice, crs)
 }

@@ -46,11 +46,14 @@ pub fn windows(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> impl Window
     bytes(viewshed).windows(lattice, crs)
 }
 
-fn bytes(viewshed: &Viewshed) -> PostBytes<impl Fn(usize) -> f32 + Send + Sync> {
-    let value = |index: usize| match viewshed.posts[index] {
+fn bytes(viewshed: &Viewshed) -> PostBytes<impl Fn(usize, &mut [f32]) + Send + Sync> {
+    let value = |post: PostVisibility| match post {
         PostVisibility::Visible => 1.0,
         PostVisibility::Hidden => 0.0,
         PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
     };
-    PostBytes { name: "viewshed", value, nodata: NO_DATA }
+    let fill = move |first: usize, values: &mut [f32]| {
+        values.iter_mut().zip(&viewshed.posts[first..]).for_each(|(place, &post)| *place = value(post));
+    };
+    PostBytes { name: "viewshed", fill, nodata: NO_DATA }
 }

@@ -32,7 +32,8 @@ impl Seeded {
 
 const ORIGIN: DVec2 = DVec2::new(5e5, 4e6);
 
-/// Ground of a kind: 0 rough, 1 hills, 2 gentle waves, 3 terraces, 4 a level, 5 a slope that is one plane.
+/// Ground of a kind: 0 rough, 1 hills, 2 gentle waves, 3 terraces, 4 a level, 5 a slope that is one plane, 6 a bowl, most
+/// of which faces whoever stands in it.
 fn ground(kind: u32, (columns, rows): (u32, u32), cell: DVec2, holes: f64, seed: u64) -> Lattice {
     let mut seeded = Seeded(seed | 1);
     let (a, b) = (seeded.part() * 0.3, seeded.part() * 0.3);
@@ -46,7 +47,11 @@ fn ground(kind: u32, (columns, rows): (u32, u32), cell: DVec2, holes: f64, seed:
             2 => hills * 0.2,
             3 => (hills / 10.0).floor() * 8.0,
             4 => 17.0,
-            _ => x * 3.0 - y * 2.0,
+            5 => x * 3.0 - y * 2.0,
+            _ => {
+                let middle = DVec2::new(f64::from(columns), f64::from(rows)) / 2.0;
+                0.01 * DVec2::new(x, y).distance_squared(middle) + rough * 4.0
+            }
         };
         if seeded.part() < holes { f32::NAN } else { height as f32 }
     };
@@ -92,7 +97,7 @@ proptest! {
 
     #[test]
     fn the_sweep_says_of_every_post_what_its_line_says(
-        kind in 0..6u32,
+        kind in 0..7u32,
         size in (2..70u32, 2..70u32),
         cell in prop_oneof![Just(DVec2::splat(10.0)), Just(DVec2::new(10.3, 27.1)), Just(DVec2::new(400.0, 90.0))],
         holes in prop_oneof![Just(0.0), Just(0.02), Just(0.3)],
@@ -101,7 +106,13 @@ proptest! {
         on in 0..5u32,
         above in prop_oneof![Just(0.0), Just(2.0), Just(50.0)],
         target in prop_oneof![Just(0.0), Just(1.6), Just(30.0)],
-        curvature in prop_oneof![Just(Curvature::default()), Just(Curvature::FLAT)],
+        curvature in prop_oneof![
+            Just(Curvature::default()),
+            Just(Curvature::FLAT),
+            // A moon on which a cell bends by meters, and air that bends light more than that.
+            Just(Curvature { radius_m: 3000.0, refraction: 0.0 }),
+            Just(Curvature { radius_m: 50_000.0, refraction: 3.0 }),
+        ],
         range in prop_oneof![Just(f64::INFINITY), Just(333.0), Just(5000.0)],
         sector in prop_oneof![Just(Sector::ALL), (0.0..360.0f64, 1.0..300.0f64).prop_map(|(from, width)| {
             Sector { from_deg: from, width_deg: width }
@@ -259,4 +270,62 @@ fn a_line_along_a_column_between_holes_is_swept_as_it_is_walked() {
         ..options(ORIGIN)
     };
     assert_eq!(differences(&lattice, &options), []);
+}
+
+/// Positions on posts are map coordinates, and rounding moves some of them off: then the eye's own post may be a crossing.
+#[test]
+fn an_eye_that_rounding_moves_off_its_post_between_holes_sees_as_its_lines_do() {
+    let cell = DVec2::new(10.3, 27.1);
+    // Near the origin of the map, where coordinates are finest.
+    let heights = ground(2, (40, 40), cell, 0.3, 7).heights().to_vec();
+    let lattice = Lattice::new(DVec2::ZERO, cell, 40, heights).expect("sound");
+    for post in lattice.posts().filter(|&post| post.row < 6 && !lattice.height(post).is_nan()) {
+        let options = ViewshedOptions {
+            observer: SightEnd { at: post.grid() * cell, above_m: 0.0 },
+            target_above_m: 1.6,
+            curvature: Curvature::FLAT,
+            ..options(ORIGIN)
+        };
+        assert_eq!(differences(&lattice, &options), [], "{post:?}");
+    }
+}
+
+#[test]
+fn an_eye_just_above_a_steep_summit_leaves_next_to_nothing_to_lines() {
+    const SIZE: u32 = 201;
+    let mut seeded = Seeded(3);
+    let mut height = |index: u32| {
+        let from_summit = DVec2::new(f64::from(index % SIZE), f64::from(index / SIZE)) - 100.0;
+        (2000.0 - 2.0 * from_summit.length() + 0.01 * seeded.part()) as f32
+    };
+    let heights = (0..SIZE * SIZE).map(&mut height).collect();
+    let lattice = Lattice::new(ORIGIN, DVec2::splat(10.0), SIZE, heights).expect("sound");
+    for (beside, above_m) in [(0.0, 0.1), (0.003, 0.1), (0.03, 0.1), (0.5, 0.5), (0.03, 0.0)] {
+        let options = ViewshedOptions {
+            observer: SightEnd { at: ORIGIN + DVec2::splat(1000.0 + 10.0 * beside), above_m },
+            ..options(ORIGIN)
+        };
+        let swept = viewshed(&lattice, &options).expect("there is ground");
+        assert!(swept.lines < 200, "{beside}: {} of {} posts", swept.lines, swept.posts.len());
+        assert_eq!(differences(&lattice, &options), [], "{beside}");
+    }
+}
+
+/// Large enough that rings hide the ones before over many buckets of the horizon, here and there not.
+#[test]
+fn rough_ground_that_faces_the_eye_is_swept_as_its_lines_are_walked() {
+    for (holes, seed) in [(0.0, 1), (0.001, 2)] {
+        let lattice = ground(6, (181, 163), DVec2::new(10.0, 12.0), holes, seed);
+        for (grid, above_m) in [(DVec2::new(90.0, 80.0), 2.0), (DVec2::new(95.3, 70.8), 0.1)] {
+            let options = ViewshedOptions {
+                observer: SightEnd { at: ORIGIN + grid * lattice.cell(), above_m },
+                ..options(ORIGIN)
+            };
+            let swept = viewshed(&lattice, &options).expect("there is ground");
+            let counts = swept.counts();
+            assert!(counts.visible > 2000 && counts.hidden > 2000, "{counts:?}");
+            assert!(swept.lines < 500, "{} lines", swept.lines);
+            assert_eq!(differences(&lattice, &options), [], "{grid}");
+        }
+    }
 }

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use crate::dem::formats::WrittenContent;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read_ahead::read_ahead;
-use crate::dem::sample_type::NumberKind;
+use crate::dem::sample_type::{NumberKind, SampleType};
 use crate::dem::stored::{SampleSurvey, StoredSamples};
 use crate::dem::tiff::gdal_metadata::GDAL_METADATA;
 use crate::dem::tiff::write_geokeys::GeoKeyTags;
@@ -99,7 +99,11 @@ fn notes(is_named: bool) -> Vec<String> {
 const BYTES_LEVEL: Compression = Compression::new(4);
 
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
-fn tile(raster: &Raster, StoredSamples { sample, nodata }: StoredSamples, column: u32, row: u32) -> Vec<u8> {
+fn tile(raster: &Raster, stored: StoredSamples, column: u32, row: u32) -> Vec<u8> {
+    if stored.sample == SampleType::U8 {
+        return byte_tile(raster, stored.nodata.unwrap_or(0.0) as u8, column, row);
+    }
+    let StoredSamples { sample, nodata } = stored;
     let nodata = nodata.unwrap_or(f64::NAN);
     let size = sample.bytes();
     let mut predicted = Vec::with_capacity((TILE * TILE) as usize * size);
@@ -112,9 +116,26 @@ fn tile(raster: &Raster, StoredSamples { sample, nodata }: StoredSamples, column
         sample.write(&values, &mut line);
         predicted.extend(if sample.is_float() { float_bytes(&line, size) } else { differences(&line, size) });
     }
-    let level = if size == 1 { BYTES_LEVEL } else { Compression::default() };
+    packed(&predicted, Compression::default())
+}
+
+/// [`tile`] of bytes, of which many are all the same: nothing is in sight behind a ridge.
+fn byte_tile(raster: &Raster, nodata: u8, column: u32, row: u32) -> Vec<u8> {
+    let mut predicted = vec![0; (TILE * TILE) as usize];
+    let mut values = [0.0; TILE as usize];
+    for (y, out) in (row..).zip(predicted.chunks_exact_mut(TILE as usize)) {
+        tile_row(raster, column, y.min(raster.height - 1), &mut values);
+        let line = values.map(|value| if value.is_nan() { nodata } else { value as u8 });
+        out[0] = line[0];
+        let pairs = line[1..].iter().zip(&line);
+        out[1..].iter_mut().zip(pairs).for_each(|(out, (byte, before))| *out = byte.wrapping_sub(*before));
+    }
+    packed(&predicted, BYTES_LEVEL)
+}
+
+fn packed(bytes: &[u8], level: Compression) -> Vec<u8> {
     let mut packer = ZlibEncoder::new(Vec::new(), level);
-    packer.write_all(&predicted).expect("memory takes what is written");
+    packer.write_all(bytes).expect("memory takes what is written");
     packer.finish().expect("memory takes what is written")
 }
 

@@ -44,12 +44,20 @@ pub(super) struct EdgeChain<'a> {
     pub per_step: f64,
     /// The error of `v` on them.
     pub error: f64,
+    /// Whether an edge is higher than the ring before and the strip between; of none where nothing is known.
+    pub is_ahead: &'a [bool],
 }
 
 impl EdgeChain<'_> {
     /// How many there are.
     pub fn edges(&self) -> usize {
         self.u.len() - 1
+    }
+
+    /// A lower bound of `v` on some.
+    pub fn least(&self, edges: RangeInclusive<usize>) -> f64 {
+        let points = &self.v[*edges.start()..=*edges.end() + 1];
+        points.iter().fold(f64::INFINITY, |low, &v| if v < low { v } else { low }) - self.error
     }
 
     /// The line of an edge.
@@ -101,13 +109,15 @@ impl Bucket {
         let mut next = pieces.next();
         // Stretch by stretch on which both are straight.
         loop {
-            let (old_stop, line_stop) = (next.map_or(end, |next| next.u), chain.u[edge + 1].min(end));
-            let stop = old_stop.min(line_stop);
+            let (old_stop, line_stop) = (next.map_or(end, |next| next.u), lesser(chain.u[edge + 1], end));
+            let stop = lesser(old_stop, line_stop);
             let (first, last) = (line.at(start) - old.at(start), line.at(stop) - old.at(stop));
-            let (lead, most) = (first.min(last), first.max(last));
-            // As the merge of a single edge decides it.
-            is_ahead &= lead >= 0.0 && (lead >= old.error || old.error <= chain.error);
-            is_behind &= most <= 0.0 && (chain.error <= old.error || -most >= chain.error);
+            // As the merge of a single edge decides it: a lead counts where it is no less than the loser's error, or that is no
+            // more than the winner's.
+            let lead = if old.error <= chain.error { 0.0 } else { old.error };
+            let lag = if chain.error <= old.error { 0.0 } else { -chain.error };
+            is_ahead &= (first >= lead) & (last >= lead);
+            is_behind &= (first <= lag) & (last <= lag);
             if stop >= end || !(is_ahead || is_behind) {
                 break;
             }
@@ -187,35 +197,43 @@ impl Bucket {
         scratch: &mut Vec<HorizonPiece>,
     ) -> bool {
         let mut pieces = std::mem::take(scratch);
+        let olds = &self.pieces;
+        // The pieces that end before are kept, and those that begin after.
+        let mut first = 0;
+        while first + 1 < olds.len() && olds[first + 1].u <= start {
+            first += 1;
+        }
         pieces.clear();
+        pieces.extend_from_slice(&olds[..first]);
         let mut merged = MergedBucket { pieces, origin: PieceOrigin::None, is_changed: false };
         let (mut new, mut new_stop) = line(number);
-        let pieces = &self.pieces;
-        for (at, old) in pieces.iter().enumerate() {
-            let origin = PieceOrigin::Old(at);
-            let stop = pieces.get(at + 1).map_or(last, |next| next.u);
-            if stop <= start || old.u >= end {
-                merged.push(origin, old, old.u);
-                continue;
-            }
-            if old.u < start {
-                merged.push(origin, old, old.u);
-            }
-            let (mut from, to) = (old.u.max(start), stop.min(end));
+        let mut at = first;
+        if olds[first].u < start {
+            merged.push(PieceOrigin::Old(first as u32), &olds[first], olds[first].u);
+        }
+        loop {
+            let (old, origin) = (&olds[at], PieceOrigin::Old(at as u32));
+            let stop = olds.get(at + 1).map_or(last, |next| next.u);
+            let (mut from, to) = (if old.u > start { old.u } else { start }, lesser(stop, end));
             while from < to {
                 while new_stop <= from {
                     number += 1;
                     (new, new_stop) = line(number);
                 }
-                let until = new_stop.min(to);
-                let new = Contender { origin: PieceOrigin::New(number), piece: &new };
+                let until = lesser(new_stop, to);
+                let new = Contender { origin: PieceOrigin::New(number as u32), piece: &new };
                 merged.push_greater(Contender { origin, piece: old }, new, from, until);
                 from = until;
             }
             if stop > end {
-                merged.push(origin, old, end);
+                merged.push(origin, old, end.max(old.u));
+            }
+            at += 1;
+            if stop >= end || at == olds.len() {
+                break;
             }
         }
+        merged.pieces.extend_from_slice(&olds[at..]);
         let MergedBucket { mut pieces, is_changed, .. } = merged;
         // A crossing may be rounded to the end of the bucket. A piece there covers nothing, and on the last ray, which belongs
         // to the last bucket, it would hide the pieces that end there.
@@ -230,12 +248,18 @@ impl Bucket {
     }
 }
 
+/// The lesser of two numbers: unlike `min`, without thought of NaN.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
 /// Where the last stretch of a merged bucket comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceOrigin {
     None,
-    Old(usize),
-    New(usize),
+    Old(u32),
+    New(u32),
 }
 
 /// A piece or a new line, of which the greater becomes part of a merged bucket.
@@ -253,7 +277,10 @@ struct MergedBucket {
 }
 
 impl MergedBucket {
+    // These run for every stretch.
+
     /// Lets `piece` apply from `u` on; the last stretch continues if it is the same line with the same error.
+    #[inline(always)]
     fn push(&mut self, origin: PieceOrigin, piece: &HorizonPiece, u: f64) {
         match self.pieces.last_mut() {
             Some(last) if self.origin == origin && last.error == piece.error => {}
@@ -265,6 +292,7 @@ impl MergedBucket {
     }
 
     /// Pushes the greater of an old piece and a new line, from `start` to `end`.
+    #[inline(always)]
     fn push_greater(&mut self, old: Contender<'_>, new: Contender<'_>, start: f64, end: f64) {
         let above = |u: f64| new.piece.at(u) - old.piece.at(u);
         let (first, last) = (above(start), above(end));
@@ -281,6 +309,7 @@ impl MergedBucket {
     }
 
     /// Pushes the greater piece from `u` on; where it wins by less than the loser's error, it takes on the greater error.
+    #[inline(always)]
     fn push_winner(&mut self, winner: Contender<'_>, loser: Contender<'_>, gap: f64, u: f64) {
         let (piece, loser_error) = (winner.piece, loser.piece.error);
         let error = if gap < loser_error { piece.error.max(loser_error) } else { piece.error };

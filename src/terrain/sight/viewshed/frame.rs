@@ -74,6 +74,11 @@ impl OctantFrame {
         }
     }
 
+    /// About how many rings lie on the held part of the lattice on a ray.
+    pub fn rings_before(&self, ray: f64) -> usize {
+        self.rings.min((self.last as f64 / ray) as usize)
+    }
+
     /// The distance of a ring from the observer, in cells; for ring 0 that behind the observer as a negative one, or 0.
     pub fn distance(&self, ring: usize) -> f64 {
         self.ring_sign as f64 * (self.ring_position(ring) as f64 - self.eye)

@@ -19,6 +19,7 @@
 use std::ops::RangeInclusive;
 
 use crate::terrain::sight::viewshed::bucket::{Bucket, ChainStanding, Doubt, EdgeChain, HorizonPiece};
+use crate::terrain::sight::viewshed::ring::PostRing;
 
 /// A terrain edge as the observer sees it, `u0` < `u1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,11 +59,20 @@ pub(super) struct Horizon {
     floor: Vec<f64>,
     floor_is_stale: bool,
     scratch: Vec<HorizonPiece>,
+    /// The number of the ring whose edges are the horizon of a bucket, which has not got them; 0 for none.
+    fronts: Vec<usize>,
+    /// Those buckets, of the ring before and of the ring.
+    front_buckets: Vec<usize>,
+    next_fronts: Vec<usize>,
 }
 
 /// The buckets to either side that a floor takes in: an edge with an end in a bucket ends at most this many away, where there
 /// are no more buckets than posts across the wedge.
 const REACH: usize = 3;
+
+/// The rays on which a ring may be a bucket's horizon without the bucket having it: beyond, rungs or diagonals are so nearly
+/// along the rays that only lines of sight decide.
+const FRONT_RAYS: (f64, f64) = (1.0 / 32.0, 31.0 / 32.0);
 
 impl Horizon {
     /// A horizon that hides nothing.
@@ -77,14 +87,18 @@ impl Horizon {
             floor: Vec::new(),
             floor_is_stale: true,
             scratch: Vec::new(),
+            fronts: vec![0],
+            front_buckets: Vec::new(),
+            next_fronts: Vec::new(),
         };
         horizon.measure_all();
         horizon
     }
 
     /// Splits buckets until there are more than half as many as `posts` lie across the wedge, but no more than those.
-    pub fn grow(&mut self, posts: f64) {
+    pub fn grow(&mut self, posts: f64, before: &PostRing) {
         while (self.count * 2) as f64 <= posts {
+            self.end_ring(before);
             self.split();
         }
     }
@@ -105,6 +119,7 @@ impl Horizon {
             let second = Bucket { pieces: after, doubts: doubts(&|doubt| doubt.u1 >= middle) };
             self.buckets.extend([first, second]);
         }
+        self.fronts = vec![0; self.count];
         self.measure_all();
     }
 
@@ -211,7 +226,9 @@ impl Horizon {
             && high > self.low[index]
             && self.buckets[index].insert(line, part, border, &mut self.scratch)
         {
-            self.low[index] = self.least(index);
+            let least = self.least(index);
+            // A front may be higher than the pieces.
+            self.low[index] = if self.fronts[index] == 0 { least } else { self.low[index].max(least) };
             self.floor_is_stale = true;
         }
     }
@@ -219,7 +236,7 @@ impl Horizon {
     /// Adds edges that join end to end; their parts off the wedge have no effect. The horizon is as after
     /// [`Horizon::insert`] of each, but most buckets of a slope that faces the observer are decided at once: they hold the new
     /// edges, or what they held.
-    pub fn insert_chain(&mut self, chain: &EdgeChain<'_>) {
+    pub fn insert_chain(&mut self, chain: &EdgeChain<'_>, ring: usize, before: &PostRing) {
         let last = chain.edges();
         let (start, end) = (chain.u[0].max(self.from), chain.u[last].min(self.to));
         if start >= end {
@@ -238,41 +255,104 @@ impl Horizon {
             while through + 1 < last && chain.u[through + 1] < borders.1 {
                 through += 1;
             }
-            self.insert_part(index, chain, first..=through, borders);
+            self.insert_front(index, chain, first..=through, borders, (ring, before));
             first = through;
         }
     }
 
-    /// Adds those edges of a chain that meet a bucket.
+    /// Adds those edges of a chain of a ring that meet a bucket. Where they alone are its horizon from now on, the bucket does
+    /// not get them: ground that faces the observer hides them behind the next ring.
+    fn insert_front(
+        &mut self,
+        index: usize,
+        chain: &EdgeChain<'_>,
+        edges: RangeInclusive<usize>,
+        borders: (f64, f64),
+        (ring, before): (usize, &PostRing),
+    ) {
+        if self.low[index] == f64::INFINITY {
+            return;
+        }
+        let covers = chain.u[*edges.start()] <= borders.0 && chain.u[*edges.end() + 1] >= borders.1;
+        let mut is_front = covers && self.buckets[index].doubts.is_empty();
+        if is_front && self.fronts[index] == 0 {
+            is_front = borders.0 >= FRONT_RAYS.0 && borders.1 <= FRONT_RAYS.1 && !chain.is_ahead.is_empty();
+            match self.buckets[index].standing(chain, edges.clone(), borders) {
+                ChainStanding::Ahead if is_front => {}
+                standing => return self.insert_part(index, chain, edges, borders, standing),
+            }
+        } else if !(is_front && chain.is_ahead[edges.clone()].iter().all(|&is_ahead| is_ahead)) {
+            let was_front = self.fronts[index] != 0;
+            self.settle(index, before);
+            // Ahead of the ring before here, and not there.
+            let is_mixed = was_front && chain.is_ahead[edges.clone()].iter().any(|&is_ahead| is_ahead);
+            let standing = match covers && !is_mixed {
+                true => self.buckets[index].standing(chain, edges.clone(), borders),
+                false => ChainStanding::Mixed,
+            };
+            return self.insert_part(index, chain, edges, borders, standing);
+        }
+        self.fronts[index] = ring;
+        self.next_fronts.push(index);
+        self.low[index] = self.low[index].max(chain.least(edges));
+        self.floor_is_stale = true;
+    }
+
+    /// Adds those edges of a chain that meet a bucket, and stand like this to it.
     fn insert_part(
         &mut self,
         index: usize,
         chain: &EdgeChain<'_>,
         edges: RangeInclusive<usize>,
         borders: (f64, f64),
+        standing: ChainStanding,
     ) {
-        if self.low[index] == f64::INFINITY {
-            return;
-        }
-        let covers = chain.u[*edges.start()] <= borders.0 && chain.u[*edges.end() + 1] >= borders.1;
-        let standing = match covers {
-            true => self.buckets[index].standing(chain, edges.clone(), borders),
-            false => ChainStanding::Mixed,
-        };
         match standing {
-            ChainStanding::Behind => {}
-            ChainStanding::Ahead => {
-                self.buckets[index].replace(chain, edges, borders.0);
-                self.low[index] = self.least(index);
-                self.floor_is_stale = true;
-            }
+            ChainStanding::Behind => return,
+            ChainStanding::Ahead => self.buckets[index].replace(chain, edges, borders.0),
             ChainStanding::Mixed => {
-                if self.buckets[index].insert_chain(chain, edges, borders, &mut self.scratch) {
-                    self.low[index] = self.least(index);
-                    self.floor_is_stale = true;
+                if !self.buckets[index].insert_chain(chain, edges, borders, &mut self.scratch) {
+                    return;
                 }
             }
         }
+        self.low[index] = self.least(index);
+        self.floor_is_stale = true;
+    }
+
+    /// Gives a bucket the edges of the ring before that are its horizon.
+    fn settle(&mut self, index: usize, before: &PostRing) {
+        if std::mem::take(&mut self.fronts[index]) == 0 {
+            return;
+        }
+        let borders = (self.border(index), self.border(index + 1));
+        let posts = before.over(borders);
+        let chain = EdgeChain {
+            u: &before.u[posts.clone()],
+            v: &before.v[posts],
+            per_step: before.x,
+            error: before.edge_error,
+            is_ahead: &[],
+        };
+        let edges = 0..=chain.edges() - 1;
+        let standing = self.buckets[index].standing(&chain, edges.clone(), borders);
+        self.insert_part(index, &chain, edges, borders, standing);
+    }
+
+    /// Ends a ring: the horizon that still is the ring before is given to its buckets.
+    pub fn end_ring(&mut self, before: &PostRing) {
+        let mut fronts = std::mem::take(&mut self.front_buckets);
+        for index in fronts.drain(..) {
+            if self.fronts[index] == before.number {
+                self.settle(index, before);
+            }
+        }
+        self.front_buckets = std::mem::replace(&mut self.next_fronts, fronts);
+    }
+
+    /// Whether the ring before is the horizon on the ray `u`, and known as [`Horizon::span`] is not.
+    pub fn is_front(&self, u: f64) -> bool {
+        self.fronts[self.bucket_of(u)] != 0
     }
 }
 
@@ -312,7 +392,7 @@ mod tests {
         let mut edges: Vec<HorizonEdge> = Vec::new();
         for turn in 1..=200 {
             if turn % 40 == 0 {
-                horizon.grow(f64::from(turn) / 10.0);
+                horizon.grow(f64::from(turn) / 10.0, &PostRing::default());
             }
             let start = seeded.part() * 1.1 - 0.1;
             let end = start + seeded.part() * 0.2 + 1e-6;
@@ -338,8 +418,8 @@ mod tests {
             let (mut together, mut apart) = (Horizon::new(from, to), Horizon::new(from, to));
             for turn in 1..=120_u32 {
                 let x = f64::from(turn + 3);
-                together.grow(x);
-                apart.grow(x);
+                together.grow(x, &PostRing::default());
+                apart.grow(x, &PostRing::default());
                 // Slopes that face the observer, walls and hollows.
                 let rise = [0.01, 0.0, -0.2][turn as usize % 3] * f64::from(turn);
                 let first = (from * x) as usize + (seeded.part() * 3.0) as usize;
@@ -347,7 +427,8 @@ mod tests {
                 let u: Vec<f64> = (first..=last.max(first + 1)).map(|j| j as f64 / x).collect();
                 let v: Vec<f64> = u.iter().map(|u| rise + u + seeded.part()).collect();
                 let error = 1e-9 / x;
-                together.insert_chain(&EdgeChain { u: &u, v: &v, per_step: x, error });
+                let chain = EdgeChain { u: &u, v: &v, per_step: x, error, is_ahead: &[] };
+                together.insert_chain(&chain, 0, &PostRing::default());
                 for edge in 0..u.len() - 1 {
                     let (u0, v0, u1, v1) = (u[edge], v[edge], u[edge + 1], v[edge + 1]);
                     apart.insert(&HorizonEdge { u0, v0, u1, v1, error });

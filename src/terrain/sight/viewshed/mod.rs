@@ -18,6 +18,7 @@ mod horizon;
 mod near;
 mod ring;
 mod sector;
+mod step;
 mod sweep;
 
 use std::ops::ControlFlow;
@@ -120,17 +121,21 @@ const LOOKED_AT_TOGETHER: usize = 1 << 16;
 impl Viewshed {
     /// The number of posts of each kind.
     pub fn counts(&self) -> ViewshedCounts {
+        /// Posts of which a byte holds the number: many bytes are added up at once.
+        const BYTE: usize = 128;
         // Kind by kind: a loop that counts all of them at once waits for its own sums.
-        let count = |kind: PostVisibility| {
-            let count = |posts: &[PostVisibility]| posts.iter().filter(|&&post| post == kind).count();
-            self.posts.par_chunks(LOOKED_AT_TOGETHER).map(count).sum()
+        let count = |posts: &[PostVisibility], kind: PostVisibility| -> usize {
+            let few = |few: &[PostVisibility]| few.iter().map(|&post| u8::from(post == kind)).sum::<u8>();
+            posts.chunks(BYTE).map(|posts| usize::from(few(posts))).sum()
         };
-        ViewshedCounts {
-            visible: count(PostVisibility::Visible),
-            hidden: count(PostVisibility::Hidden),
-            no_data: count(PostVisibility::NoData),
-            beyond: count(PostVisibility::Beyond),
-        }
+        let counts = |posts: &[PostVisibility]| {
+            let kinds = [PostVisibility::Visible, PostVisibility::Hidden, PostVisibility::NoData];
+            kinds.map(|kind| count(posts, kind))
+        };
+        let all = self.posts.par_chunks(LOOKED_AT_TOGETHER).map(counts);
+        let [visible, hidden, no_data] =
+            all.reduce(|| [0; 3], |one, other| std::array::from_fn(|kind| one[kind] + other[kind]));
+        ViewshedCounts { visible, hidden, no_data, beyond: self.posts.len() - visible - hidden - no_data }
     }
 }
 
@@ -163,15 +168,21 @@ pub fn viewshed_until(
     let visible: Vec<AtomicBool> =
         lattice.held_heights().par_iter().map(|_| AtomicBool::new(false)).collect();
     let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
+    let is_clear_near = |post: Post, part: f64| observer.is_clear_up_to(post, part);
     // Lines from a post meet no diagonal but at its ends.
     let is_on_post = observer.grid.fract() == DVec2::ZERO;
     let is_clear_of_diagonals = |post: Post| is_on_post || !observer.may_meet_a_diagonal_at(post);
-    let tests = PostTests { sees: &sees, is_clear_of_diagonals: &is_clear_of_diagonals };
+    let tests = PostTests {
+        sees: &sees,
+        is_clear_near: &is_clear_near,
+        is_clear_of_diagonals: &is_clear_of_diagonals,
+    };
     let scene = observer.scene(stop);
     let wedges = wedges(OctantFrame::all(lattice, observer.grid), &options.sector);
     let lines = AtomicUsize::new(0);
-    wedges.par_iter().with_max_len(1).for_each(|(frame, rays)| {
-        lines.fetch_add(sweep(&scene, frame, *rays, tests, &visible), Ordering::Relaxed);
+    // One by one in their order, so that no thread begins a large one when the others are done.
+    wedges.into_iter().par_bridge().for_each(|(frame, rays)| {
+        lines.fetch_add(sweep(&scene, &frame, rays, tests, &visible), Ordering::Relaxed);
     });
     for post in observer.own_posts() {
         visible[lattice.index(post)].store(sees(post), Ordering::Relaxed);
@@ -211,13 +222,15 @@ pub fn viewshed_by_lines(lattice: &Lattice, options: &ViewshedOptions) -> Result
 
 /// Parts of an octant that are swept apart, a power of two: enough for threads to share the work evenly, and few enough
 /// that the double work along their borders is negligible.
-const PARTS: usize = 4;
+const PARTS: usize = 8;
 
-/// The wedges that a sector touches.
+/// The wedges that a sector touches, the largest first.
 fn wedges(frames: impl Iterator<Item = OctantFrame>, sector: &Sector) -> Vec<(OctantFrame, (f64, f64))> {
     let parts = (0..PARTS).map(|part| (part as f64 / PARTS as f64, (part + 1) as f64 / PARTS as f64));
     let all = frames.flat_map(|frame| parts.clone().map(move |rays| (frame, rays)));
-    all.filter(|(frame, rays)| sector.may_touch(frame.directions(*rays))).collect()
+    let mut wedges: Vec<_> = all.filter(|(frame, rays)| sector.may_touch(frame.directions(*rays))).collect();
+    wedges.sort_by_cached_key(|(frame, (from, _))| std::cmp::Reverse(frame.rings_before(*from)));
+    wedges
 }
 
 /// An observer on a lattice.
@@ -241,16 +254,24 @@ impl<'a> Observer<'a> {
 
     /// Whether the line of sight to the target on a post is clear: the definition.
     fn sees(&self, post: Post) -> bool {
+        self.is_clear_up_to(post, 1.0)
+    }
+
+    /// Whether nothing blocks a line of sight in its first `part`.
+    fn is_clear_up_to(&self, post: Post, part: f64) -> bool {
         let target_m = f64::from(self.lattice.height(post)) + self.options.target_above_m;
         let length_m = self.options.observer.at.distance(self.lattice.map_position(post));
         let line = SightLine::new(self.eye_m, target_m, length_m, self.options.curvature);
-        crossings(self.lattice, self.grid, post.grid(), |crossing| {
+        let walk = crossings(self.lattice, self.grid, post.grid(), |crossing| {
+            if crossing.part > part {
+                return ControlFlow::Break(true);
+            }
             if line.is_below(crossing.height_m, crossing.part) {
-                return ControlFlow::Break(());
+                return ControlFlow::Break(false);
             }
             ControlFlow::Continue(())
-        })
-        .is_continue()
+        });
+        walk.break_value().unwrap_or(true)
     }
 
     /// Whether rounding may leave a diagonal that ends at a post, where it is as high as the target, just before the end of

@@ -1,11 +1,11 @@
-//! The strip of cells around the observer. Its edges pass the observer on all sides, so they are clipped to the wedge;
-//! where they come too near for `rise / x` to be meaningful, they count as high as their higher end.
+//! The strips of cells around the observer. The edges of the first pass the observer on all sides, so all are clipped to the
+//! wedge; where they come too near for `rise / x` to be meaningful, they count as high as their higher end.
 
 use crate::terrain::sight::viewshed::ring::{PostRing, RingPost};
 use crate::terrain::sight::viewshed::sweep::{NEAREST, Sweep};
 
 impl Sweep<'_> {
-    /// Adds the strip that the observer stands in, or just before, to the horizon.
+    /// Adds the strip that the observer stands in, or one of the next, to the horizon.
     pub(super) fn near_strip(&mut self, ring: usize) {
         let parity = self.frame.parity(ring - 1);
         for j in 0..self.ring.end().min(self.before.end()) {
@@ -25,20 +25,22 @@ impl Sweep<'_> {
     }
 
     fn near_edge(&mut self, from: WedgePoint, to: WedgePoint) {
+        let slack = 4.0 * self.scene.margins.across;
+        let is_observer = |corner: &WedgePoint| corner.x == 0.0 && corner.y == 0.0;
         if (from.height + to.height).is_nan() {
-            // Posts of farther rings are added with their rings.
+            // Posts of farther rings are added with their rings. Rounding may move a crossing onto a post beside the observer.
+            let is_beside =
+                |end: &WedgePoint| end.x.abs() <= slack && end.y.abs() <= slack && !is_observer(end);
             for end in [from, to] {
-                if end.x < NEAREST && end.x > 0.0 && !end.height.is_nan() {
+                if end.x < NEAREST && (end.x > 0.0 || is_beside(&end)) && !end.height.is_nan() {
                     self.raise_near(end.height);
                 }
             }
             return;
         }
-        let is_observer = |corner: &WedgePoint| corner.x == 0.0 && corner.y == 0.0;
         if is_observer(&from) || is_observer(&to) {
             return;
         }
-        let slack = 4.0 * self.scene.margins.across;
         let at = |t: f64| from.toward(&to, t);
         let in_wedge = clip_part((0.0, 1.0), (from.y + slack, to.y + slack));
         let in_wedge =
@@ -51,10 +53,27 @@ impl Sweep<'_> {
         }
         let Some((start, end)) = clip_part((start, end), (from.x - NEAREST, to.x - NEAREST)) else { return };
         let (from, to) = (at(start), at(end));
-        if from.x >= NEAREST && to.x >= NEAREST {
-            let (near_x, far_x) = (from.x.min(to.x), from.x.max(to.x));
-            let error = self.error(near_x, far_x);
-            self.cross(self.seen(&from), self.seen(&to), (near_x, far_x), error);
+        let (near, far) = if from.x <= to.x { (from, to) } else { (to, from) };
+        if near.x >= NEAREST {
+            self.near_parts(near, far);
+        }
+    }
+
+    /// Adds an edge part by part, each no more than twice as far at its end as at its begin: what curvature bends the far ones
+    /// is little, whatever it bends the nearest.
+    fn near_parts(&mut self, near: WedgePoint, far: WedgePoint) {
+        let mut start = near;
+        loop {
+            let is_last = far.x <= 2.0 * start.x;
+            let stop =
+                if is_last { far } else { near.toward(&far, (2.0 * start.x - near.x) / (far.x - near.x)) };
+            let parts = [self.seen(&start), self.seen(&stop)];
+            let (xs, ends) = ((start.x, stop.x.max(start.x)), [start.x == near.x, is_last]);
+            self.cross_part(parts, ends, xs, self.error(xs.0, xs.1));
+            if is_last {
+                return;
+            }
+            start = stop;
         }
     }
 

@@ -1,6 +1,6 @@
 //! The rings of posts that a sweep passes, as the observer sees them, read some rings at a time.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::terrain::sight::viewshed::frame::OctantFrame;
 
@@ -77,6 +77,10 @@ pub(super) struct PostRing {
     pub any_prominent: bool,
     /// The error of `v` here and in the strip before.
     pub error: f64,
+    /// The error of `v` on the ring's own edges.
+    pub edge_error: f64,
+    /// Whether `u` and `v` of the posts of a block are known.
+    is_seen: Vec<bool>,
 }
 
 impl PostRing {
@@ -88,6 +92,8 @@ impl PostRing {
         self.is_prominent.resize(heights.len(), false);
         self.may_rise.clear();
         self.may_rise.resize(heights.len().div_ceil(BLOCK), false);
+        self.is_seen.clear();
+        self.is_seen.resize(self.may_rise.len(), false);
         self.u.resize(heights.len(), 0.0);
         self.v.resize(heights.len(), 0.0);
     }
@@ -95,6 +101,14 @@ impl PostRing {
     /// The indices of the posts of a block.
     pub fn block(&self, block: usize) -> Range<usize> {
         block * BLOCK..(block * BLOCK + BLOCK).min(self.heights.len())
+    }
+
+    /// The next posts from one on, a block's first, whose blocks all may rise.
+    pub fn next_rising(&self, from: usize) -> Option<Range<usize>> {
+        let blocks = &self.may_rise;
+        let first = (from.div_ceil(BLOCK)..blocks.len()).find(|&block| blocks[block])?;
+        let end = (first..blocks.len()).find(|&block| !blocks[block]).unwrap_or(blocks.len());
+        Some(first * BLOCK..(end * BLOCK).min(self.heights.len()))
     }
 
     /// The rays of a block's first and last posts, and an upper bound of `v` of all; −∞ where none has data.
@@ -109,6 +123,7 @@ impl PostRing {
 
     /// Computes `u` and `v` of the posts of a block, and of one more on either side.
     pub fn see_block(&mut self, block: usize) {
+        self.is_seen[block] = true;
         let posts = self.block(block);
         let posts = posts.start.saturating_sub(1)..(posts.end + 1).min(self.heights.len());
         let (first, view) = (self.first + posts.start as i64, self.view);
@@ -117,6 +132,30 @@ impl PostRing {
             *u = view.u(first + step as i64);
             *v = view.v(height, *u);
         }
+    }
+
+    /// Computes `u` and `v` of some posts where they are not known, and of one more on either side.
+    pub fn see(&mut self, posts: Range<usize>) {
+        for block in posts.start / BLOCK..posts.end.div_ceil(BLOCK).min(self.is_seen.len()) {
+            if !self.is_seen[block] {
+                self.see_block(block);
+            }
+        }
+    }
+
+    /// The posts whose edges lie over the rays from `begin` to `end`: no more than needed.
+    pub fn over(&self, (begin, end): (f64, f64)) -> RangeInclusive<usize> {
+        let ray = |index: usize| self.view.u(self.first + index as i64);
+        let index = |u: f64| (u * self.x + self.view.offset) as i64 - self.first;
+        let most = self.heights.len() - 1;
+        let (mut first, mut last) = ((index(begin) - 1).max(0) as usize, (index(end) - 1).max(0) as usize);
+        while first + 1 < most && ray(first + 1) <= begin {
+            first += 1;
+        }
+        while last < most && ray(last) < end {
+            last += 1;
+        }
+        first..=last
     }
 
     /// The post after the last.

@@ -24,8 +24,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
 use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge};
+use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge, HorizonSpan};
 use crate::terrain::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
+use crate::terrain::sight::viewshed::step::RingStep;
 use crate::terrain::stop_flag::StopFlag;
 
 /// How far the sweep's numbers may differ from those of a line of sight.
@@ -47,8 +48,9 @@ const NEAR: f64 = 3.0;
 /// rays: its crossing with a ray is ill determined, so it is a doubt and hides nothing.
 const NARROW: f64 = 1.0 / 64.0;
 
-/// Nearer than this share of a cell `rise / x` is meaningless; ground there counts as a doubt for the whole wedge.
-pub(super) const NEAREST: f64 = 1.0 / 16.0;
+/// Nearer than this share of a cell `rise / x` is meaningless: a bound of the whole wedge, or the begin of the line to a post,
+/// decides whether ground there hides it.
+pub(super) const NEAREST: f64 = 1.0 / 256.0;
 
 /// The last ray of the last wedge of an octant, plus rounding: a post on the border of two octants may be decided twice,
 /// but must not be left out.
@@ -74,6 +76,8 @@ pub(super) struct SweepScene<'a> {
 pub(super) struct PostTests<'a> {
     /// Whether the line of sight to a post is clear.
     pub sees: &'a (dyn Fn(Post) -> bool + Sync),
+    /// Whether its first part, 0..=1, is.
+    pub is_clear_near: &'a (dyn Fn(Post, f64) -> bool + Sync),
     /// Whether rounding cannot leave a diagonal that ends at a post before it.
     pub is_clear_of_diagonals: &'a (dyn Fn(Post) -> bool + Sync),
 }
@@ -101,6 +105,7 @@ pub(super) fn sweep(
         chunk: RingChunk::default(),
         before: PostRing::default(),
         ring: PostRing::default(),
+        step: RingStep::default(),
         lines: 0,
     };
     sweep.run();
@@ -128,6 +133,7 @@ pub(super) struct Sweep<'a> {
     chunk: RingChunk,
     pub before: PostRing,
     pub ring: PostRing,
+    step: RingStep,
     /// The number of posts decided by a line of sight.
     lines: usize,
 }
@@ -181,12 +187,17 @@ impl Sweep<'_> {
                 }
                 continue;
             }
-            self.horizon.grow(self.ring.x);
+            self.horizon.grow(self.ring.x, &self.before);
             let any_target = self.find_prominent();
+            if self.before.x < NEAR {
+                self.step.skip(&self.ring);
+            } else {
+                self.step.measure(&mut self.before, &self.ring, self.frame.parity(ring - 1));
+            }
             if any_target || self.ring.x <= NEAR {
                 self.decide();
             }
-            if self.before.x < NEAREST {
+            if self.before.x < NEAR {
                 self.near_strip(ring);
             } else if self.before.any_prominent || self.ring.any_prominent {
                 self.strip(ring);
@@ -194,6 +205,7 @@ impl Sweep<'_> {
             if self.ring.any_prominent {
                 self.ring_edges();
             }
+            self.horizon.end_ring(&self.before);
         }
     }
 
@@ -217,8 +229,12 @@ impl Sweep<'_> {
         let (first, count) = (*posts.start(), (posts.end() - posts.start() + 1).max(0) as usize);
         let heights = self.chunk.heights(ring, first, count);
         let error = self.error((x - 1.0).max(NEAREST), x);
+        // A ring's edges also stand for the rungs and diagonals under them, which bend by their strip's error; near the
+        // observer, where that is large, no rung is left out for them.
+        let edge_error = if x < NEAR { self.error(x.max(NEAREST), x) } else { error };
         let into = &mut self.ring;
         (into.number, into.x, into.first, into.error) = (ring, x, first, error);
+        into.edge_error = edge_error;
         into.view = RingView {
             inverse: x.recip(),
             offset: self.frame.offset,
@@ -270,6 +286,8 @@ impl Sweep<'_> {
         let floor = std::mem::take(self.horizon.floor());
         let (count, last) = (floor.len() as f64, floor.len() - 1);
         let is_ground = lift == 0.0 && !is_near;
+        let is_measured = self.before.x >= NEAR;
+        let hidden = -self.ring.error - self.before.edge_error;
         for block in 0..self.ring.may_rise.len() {
             if is_near {
                 self.ring.see_block(block);
@@ -281,22 +299,28 @@ impl Sweep<'_> {
                     continue;
                 }
                 let target = RingPost { u: self.ring.u[index], v: self.ring.v[index] + lift };
-                let floor = floor[((target.u * count) as usize).min(last)];
-                let is_low = !is_near && target.v + self.ring.error < floor;
+                let is_low = || {
+                    let floor = floor[((target.u * count) as usize).min(last)];
+                    !is_near && target.v + self.ring.error < floor
+                };
                 // A border belongs to the wedge that it begins.
                 let is_inside =
                     target.u >= self.from && (target.u < self.to || self.to == 1.0 && target.u <= LAST);
-                if !is_low && is_inside && !target.v.is_nan() {
-                    self.decide_post(self.ring.first + index as i64, target);
+                // NaN, where it is not known, hides nothing.
+                let is_behind = is_measured && self.step.rise[index] + lift < hidden;
+                // A prominent post is known not to be low.
+                let is_open = !is_behind && is_inside && !target.v.is_nan() && (is_ground || !is_low());
+                if is_open {
+                    self.decide_post(index, target);
                 }
             }
         }
         *self.horizon.floor() = floor;
     }
 
-    fn decide_post(&mut self, j: i64, target: RingPost) {
-        let post = self.frame.post(self.ring.number, j);
-        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(j, target) };
+    fn decide_post(&mut self, index: usize, target: RingPost) {
+        let post = self.frame.post(self.ring.number, self.ring.first + index as i64);
+        let decided = if self.ring.x <= NEAR { None } else { self.is_visible(index, target, post) };
         let decided = decided.filter(|&is_visible| !is_visible || (self.tests.is_clear_of_diagonals)(post));
         let is_visible = decided.unwrap_or_else(|| {
             self.lines += 1;
@@ -307,30 +331,44 @@ impl Sweep<'_> {
         }
     }
 
-    /// Whether the target on post `j` is visible; `None` where only the line of sight decides.
-    fn is_visible(&self, j: i64, RingPost { u, v }: RingPost) -> Option<bool> {
+    /// Whether the target on a post, also given by its index on the ring, is visible; `None` where only the line of sight decides.
+    fn is_visible(&self, index: usize, RingPost { u, v }: RingPost, post: Post) -> Option<bool> {
         let error = self.ring.error;
-        let span = self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?;
+        let span = if self.horizon.is_front(u) {
+            let (level, error) = (self.ring.v[index] - self.step.rise[index], self.before.edge_error);
+            HorizonSpan { low: level - error, high: level + error }
+        } else {
+            self.horizon.span(u, v - error, self.scene.margins.across / self.ring.x)?
+        };
         if v + error < span.low {
             return Some(false);
         }
         // The one edge of the last strip that the line crosses.
-        let diagonal = self.last_diagonal(j, u);
+        let diagonal = self.last_diagonal(index, u);
         if v + error < diagonal - error {
             return Some(false);
         }
         let is_over = diagonal.is_nan() || v - error > diagonal + error;
-        let is_clear = is_over && v - error > span.high && v - error > self.near;
-        is_clear.then_some(true)
+        let is_clear = is_over && v - error > span.high;
+        // The horizon has everything beyond.
+        let is_over_near = || {
+            let beyond = 2.0 * NEAREST / self.ring.x;
+            v - error > self.near || (self.tests.is_clear_near)(post, beyond)
+        };
+        is_clear.then(is_over_near)
     }
 
-    /// `v` on the diagonal of the last cell before post `j` at the post's ray; NaN where the diagonal ends at the post.
-    fn last_diagonal(&self, j: i64, u: f64) -> f64 {
-        let joins_post = (self.frame.parity(self.ring.number) + j) % 2 == 0;
+    /// `v` on the diagonal of the last cell before a post at the post's ray; NaN where the diagonal ends at the post.
+    fn last_diagonal(&self, index: usize, u: f64) -> f64 {
+        let j = self.ring.first + index as i64;
+        if (self.frame.parity(self.ring.number) + j) % 2 == 0 {
+            return f64::NAN;
+        }
+        if self.before.x >= NEAR && index > 0 && !self.step.bulge[index - 1].is_nan() {
+            return self.ring.v[index] - self.step.bulge[index - 1];
+        }
         match (self.before.get(j), self.ring.get(j - 1)) {
-            (Some(near), Some(far)) if !joins_post => {
-                far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u))
-            }
+            (Some(near), Some(far)) => far.v + (near.v - far.v) * ((u - far.u) / (near.u - far.u)),
             _ => f64::NAN,
         }
     }
@@ -346,7 +384,7 @@ impl Sweep<'_> {
                 continue;
             }
             let first = index;
-            while index < edges && self.ring.is_prominent_edge(index) {
+            while index < edges && self.ring.is_prominent_edge(index) && !self.step.is_behind[index] {
                 index += 1;
             }
             if first < index {
@@ -358,8 +396,7 @@ impl Sweep<'_> {
 
     /// Adds the ring's edges from one post to another, given by their indices.
     fn ring_run(&mut self, mut first: usize, mut last: usize) {
-        // They lie at one distance: the error of the strip before would leave more to lines of sight.
-        let (error, cut) = (self.error(self.ring.x, self.ring.x), self.ray_error(self.ring.x));
+        let (error, cut) = (self.ring.edge_error, self.ray_error(self.ring.x));
         let is_gap = |index: Option<usize>| {
             index.and_then(|index| self.ring.heights.get(index)).is_some_and(|height| height.is_nan())
         };
@@ -382,7 +419,10 @@ impl Sweep<'_> {
         if first < last {
             let posts = first..=last;
             let (u, v) = (&self.ring.u[posts.clone()], &self.ring.v[posts]);
-            self.horizon.insert_chain(&EdgeChain { u, v, per_step: self.ring.x, error });
+            let is_far = self.ring.x >= NEAR;
+            let is_ahead = if is_far { &self.step.is_ahead[first..last] } else { &[] };
+            let chain = EdgeChain { u, v, per_step: self.ring.x, error, is_ahead };
+            self.horizon.insert_chain(&chain, self.ring.number, &self.before);
         }
     }
 
@@ -434,6 +474,10 @@ impl Sweep<'_> {
         while index < count {
             if index % BLOCK == 0 && !any(near_here, index) && !any(&far, index) {
                 index += BLOCK;
+                continue;
+            }
+            if self.step.is_cell_flat(index) {
+                index += 1;
                 continue;
             }
             let at = |flags: &[bool], index: usize| flags.get(index).copied().unwrap_or(false);
@@ -494,16 +538,29 @@ impl Sweep<'_> {
     }
 
     /// Adds an edge between two distances to the horizon.
-    pub fn cross(&mut self, from: RingPost, to: RingPost, (near_x, far_x): (f64, f64), error: f64) {
-        let (from, to) = if from.u <= to.u { (from, to) } else { (to, from) };
+    fn cross(&mut self, from: RingPost, to: RingPost, xs: (f64, f64), error: f64) {
+        self.cross_part([from, to], [true; 2], xs, error);
+    }
+
+    /// Adds a part of an edge between two distances to the horizon; where it does not end, the edge goes on.
+    pub fn cross_part(
+        &mut self,
+        [from, to]: [RingPost; 2],
+        ends: [bool; 2],
+        (near_x, far_x): (f64, f64),
+        error: f64,
+    ) {
+        let ((from, to), [start, end]) =
+            if from.u <= to.u { ((from, to), ends) } else { ((to, from), [ends[1], ends[0]]) };
         if (from.v + to.v).is_nan() {
             return;
         }
         let ray_error = self.ray_error(near_x);
         let width = to.u - from.u;
-        if width * far_x >= NARROW {
+        if width * far_x >= NARROW * (far_x - near_x) {
             // A ray may just miss an end of it; there the rings hide as much.
-            self.insert(from, to, [ray_error; 2], error);
+            let cut = |is_end: bool| if is_end { ray_error } else { 0.0 };
+            self.insert(from, to, [cut(start), cut(end)], error);
         } else if width > 0.0 {
             let (u0, u1) = (from.u - ray_error, to.u + ray_error);
             self.horizon.doubt(Doubt { u0, u1, v: from.v.max(to.v) + error });
