@@ -319,7 +319,8 @@ table! {
         /// Pixels per inch of the print on which `scale` is true, and of `paper`; 96 is that of screens.
         dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96, and 150 on `paper`";
         /// The paper that the picture fills at `dpi`, unless the command line states a size in pixels.
-        paper: Option<PaperName> = key::word::<PaperName>(), otherwise "none";
+        paper: Option<PaperName> = key::word::<PaperName>(),
+            otherwise "none: 1920 × 1080 px; not in perspective and without `scale`, as many in the shape of what it shows, from 1:2 to 2:1";
         /// Whether the paper stands upright.
         portrait: bool = key::switch(), default false;
         /// Place of the eye.
