@@ -235,6 +235,9 @@ table! {
         /// Date and time, such as "2026-06-21T09:30:00+02:00": the sun stands where it stood over the middle of the
         /// scene then.
         time: Option<Stated<String>> = key::filled_text(), otherwise "the sun of `azimuth` and `altitude`";
+        /// How strongly texture shading shows: crests at all scales are lighter and drainage is darker, by up to half at 1,
+        /// from whatever side the light comes, and shading by light is eased. About 0.6 brings out forms along the light.
+        texture: f64 = key::number(Within(0.0, 1.0), ""), default 0;
     }
 
     /// `[[label]]`.
