@@ -14,7 +14,7 @@ use crate::draw::lighting::ReliefShading;
 use crate::terrain::light::texture::{ORDER, texture};
 
 /// How much lighter the sharpest crests are at full strength: more burns pale tints.
-const LIGHTER: f32 = 0.25;
+const LIGHTER: f32 = 0.15;
 
 /// How much darker the deepest drainage is: no more fits into the share of the sky.
 const DARKER: f32 = 0.5;
@@ -50,8 +50,8 @@ impl TextureShading {
         posts.par_iter_mut().zip(values).filter(|(post, _)| post.water < 0.5).for_each(|(post, value)| {
             let bent = bent(value * per_value);
             let change = bent * if bent > 0.0 { lighter } else { darker };
-            post.sky_visibility =
-                (post.sky_visibility + change * (UNSEEN + post.sky_visibility)).clamp(0.0, GroundPost::MOST_SKY);
+            post.sky_visibility = (post.sky_visibility + change * (UNSEEN + post.sky_visibility))
+                .clamp(0.0, GroundPost::MOST_SKY);
         });
     }
 

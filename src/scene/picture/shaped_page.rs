@@ -65,9 +65,9 @@ pub fn page_size(
     let shown = ParallelSpan::new(silhouette(scene, parallel.shown), &axes);
     let size_on = |page| fitted_px_per_m(parallel, &shown, picture_size(page));
     let screen = size_on(SCREEN_PX);
-    let best = pages().map(|page| (size_on(page), page)).fold((screen, SCREEN_PX), |best, next| {
-        if next.0 > best.0 { next } else { best }
-    });
+    let best = pages()
+        .map(|page| (size_on(page), page))
+        .fold((screen, SCREEN_PX), |best, next| if next.0 > best.0 { next } else { best });
     if best.0 > screen * WORTH { best.1 } else { SCREEN_PX }
 }
 

@@ -140,7 +140,11 @@ impl TextureLevel {
         }
         let value = |column: usize| {
             let [west, own, east] = beside(column / 2, line.len()).map(|column| line[column]);
-            if column.is_multiple_of(2) { at_weight(west, own, east) } else { between_weights(west, own, east) }
+            if column.is_multiple_of(2) {
+                at_weight(west, own, east)
+            } else {
+                between_weights(west, own, east)
+            }
         };
         (0..count).map(value).collect()
     }
@@ -221,7 +225,8 @@ mod tests {
     #[test]
     fn many_waves_at_once_have_the_texture_of_a_fourier_transform() {
         // Height in meters, length in posts and direction of each: a transform multiplies them one by one.
-        let waves = [(1.0, 40.0, 0.3), (0.6, 23.0, 1.1), (0.5, 17.0, 2.3), (0.3, 11.0, -0.4), (0.2, 90.0, 0.9)];
+        let waves =
+            [(1.0, 40.0, 0.3), (0.6, 23.0, 1.1), (0.5, 17.0, 2.3), (0.3, 11.0, -0.4), (0.2, 90.0, 0.9)];
         let order = f64::from(ORDER);
         let sum = |factor: &dyn Fn(f64) -> f64| {
             let mut sum = vec![0.0; SIDE * SIDE];
@@ -252,9 +257,10 @@ mod tests {
         let (coarse, _) = response(16.0, 0.0, Vec2::splat(20.0));
         assert!((fine / coarse - 1.0).abs() < 0.03, "{fine} {coarse}");
         let (square, _) = response(32.0, 0.0, Vec2::splat(10.0));
-        for cell in [Vec2::new(10.0, 40.0), Vec2::new(10.0, 10.0 / 3.0)] {
+        // The additional weight of the finest band is that of the shorter side alone.
+        for (cell, off) in [(Vec2::new(10.0, 40.0), 0.03), (Vec2::new(10.0, 10.0 / 3.0), 0.08)] {
             let (long, _) = response(32.0, 0.0, cell);
-            assert!((long / square - 1.0).abs() < 0.05, "{cell}: {long} {square}");
+            assert!((long / square - 1.0).abs() < off, "{cell}: {long} {square}");
         }
     }
 
@@ -271,8 +277,12 @@ mod tests {
     fn ridges_are_high_and_valleys_low_on_both_sides() {
         let ground: Vec<f32> = wave(40.0, 0.6, SIDE).iter().map(|height| height.powi(3) * 80.0).collect();
         let texture = texture(ground.clone(), SIDE, Vec2::splat(10.0));
-        let agree = ground.iter().zip(&texture).filter(|(height, _)| height.abs() > 40.0);
-        assert!(agree.into_iter().all(|(height, texture)| height * texture > 0.0));
+        // At the border, which is taken to go on level, half of a ridge may look like a slope.
+        let is_inner =
+            |index: usize| [index % SIDE, index / SIDE].iter().all(|at| (20..SIDE - 20).contains(at));
+        let pairs = ground.iter().zip(&texture).enumerate().filter(|(index, _)| is_inner(*index));
+        let mut steep = pairs.filter(|(_, (height, _))| height.abs() > 40.0);
+        assert!(steep.all(|(_, (height, texture))| height * texture > 0.0));
     }
 
     #[test]
