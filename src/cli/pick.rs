@@ -24,7 +24,7 @@ pub struct PickArguments {
     /// The pixels, column and row each
     #[arg(long, value_name = "X,Y", required = true, num_args = 1.., value_parser = pixel)]
     pub pixel: Vec<[u32; 2]>,
-    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080]
+    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080; in plan, as many in the shape of the ground]
     #[arg(long, value_name = "WxH", value_parser = picture_size)]
     pub size: Option<PictureSize>,
     /// The camera of the scene that the picture is seen through [default: its first]
@@ -40,7 +40,7 @@ pub fn run(arguments: &PickArguments) -> Result<(), CliError> {
     let progress = |step| steps.begin(step);
     let scene = open_scene(&arguments.scene.scene, &arguments.scene.access.allow, &progress)?;
     let view = find_camera(&scene, arguments.camera.as_deref())?;
-    let size = arguments.size.unwrap_or_else(|| PictureSize::of(view));
+    let size = arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
     let PictureSize { width, height } = size;
     if let Some([x, y]) = arguments.pixel.iter().find(|[x, y]| *x >= width || *y >= height) {
         return Err(CliError::Usage(format!(

@@ -183,7 +183,7 @@ impl RenderSeries<'_> {
         };
         let mut pictures = Vec::new();
         for (&view, path) in views.iter().zip(paths) {
-            let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(view));
+            let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
             let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
             let steps = self.steps;
             match draw_view(&scene, view, size, arguments.backend, &|step| steps.begin(step)) {

@@ -235,6 +235,9 @@ table! {
         /// Date and time, such as "2026-06-21T09:30:00+02:00": the sun stands where it stood over the middle of the
         /// scene then.
         time: Option<Stated<String>> = key::filled_text(), otherwise "the sun of `azimuth` and `altitude`";
+        /// How strongly texture shading shows: crests at all scales are lighter and drainage is darker, by up to half at 1,
+        /// from whatever side the light comes, and shading by light is eased. About 0.6 brings out forms along the light.
+        texture: f64 = key::number(Within(0.0, 1.0), ""), default 0;
     }
 
     /// `[[label]]`.
@@ -319,7 +322,8 @@ table! {
         /// Pixels per inch of the print on which `scale` is true, and of `paper`; 96 is that of screens.
         dpi: Option<f64> = key::number(Within(10.0, 10_000.0), "per inch"), otherwise "96, and 150 on `paper`";
         /// The paper that the picture fills at `dpi`, unless the command line states a size in pixels.
-        paper: Option<PaperName> = key::word::<PaperName>(), otherwise "none";
+        paper: Option<PaperName> = key::word::<PaperName>(),
+            otherwise "none: 1920 × 1080 px; not in perspective and without `scale`, as many in the shape of what it shows, from 1:2 to 2:1";
         /// Whether the paper stands upright.
         portrait: bool = key::switch(), default false;
         /// Place of the eye.

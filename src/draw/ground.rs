@@ -59,7 +59,8 @@ pub struct GroundPost {
     pub slope_north: f32,
     /// Share of the sun that reaches the post past other terrain, 0..=1.
     pub sun_visibility: f32,
-    /// Share of the sky seen from the post, 0..=1.
+    /// Share of the sky seen from the post, 0..=1; of ground with texture shading up to [`Self::MOST_SKY`] on its crests, which
+    /// are lighter than level ground.
     pub sky_visibility: f32,
     /// Below 0.5 on land and above it under water, so that the shore lies at 0.5 between posts. It rises evenly across the
     /// shore; from 0.75 to 1 it says how far open water is. Negative under trees: −1 where crowns cover all of the ground.
@@ -278,6 +279,9 @@ impl GroundMap {
 }
 
 impl GroundPost {
+    /// The greatest [`Self::sky_visibility`], which is brighter than level ground by half.
+    pub const MOST_SKY: f32 = 2.0;
+
     /// Combines each value with the same value of `other`.
     pub fn zip_with(&self, other: &Self, combine: impl Fn(f32, f32) -> f32) -> Self {
         let [own, other]: [[f32; 6]; 2] = [bytemuck::cast(*self), bytemuck::cast(*other)];

@@ -129,7 +129,7 @@ pub struct ReliefPoint {
     pub form: Vec3,
     /// Share of the sun that reaches the place, 0..=1.
     pub sun_visibility: f32,
-    /// Share of the sky that is seen, 0..=1.
+    /// Share of the sky that is seen, 0..=1; more on the crests of textured ground.
     pub sky_visibility: f32,
     /// The elevation as a share of the ground's range of heights; clamped to 0..=1.
     pub elevation: f32,

@@ -12,8 +12,8 @@ use crate::pipeline::look::{apply_look, night_ink};
 use crate::render::picture::Rendering;
 use crate::render::{RenderBackend, RenderError, render};
 use crate::scene::nested_ground::{NestedGround, NestedHeights, nested_grounds};
-use crate::scene::paper_sheet::SCREEN_PX;
 use crate::scene::picture::nested::build_nested_draw_list;
+use crate::scene::picture::shaped_page::page_size;
 use crate::scene::picture::{ViewDraw, build_draw_list, camera};
 use crate::scene::{SceneModel, SceneView};
 use crate::view::camera::{Camera, CameraError};
@@ -28,9 +28,13 @@ pub struct PictureSize {
 }
 
 impl PictureSize {
-    /// The size of a view's paper, or 1920 × 1080.
-    pub fn of(view: &SceneView) -> Self {
-        let (width, height) = view.paper.map_or(SCREEN_PX, |paper| paper.size_px());
+    /// The size of a view's paper; without paper, 1920 × 1080, or as many pixels in the shape of what a view by parallel rays
+    /// shows whose scale is fitted.
+    pub fn of(scene: &SceneModel, view: &SceneView) -> Self {
+        let picture_size = |(width, height): (u32, u32)| {
+            page_frame(scene, Self { width, height }).map_or((width, height), |frame| frame.picture_size())
+        };
+        let (width, height) = page_size(scene, view, picture_size);
         Self { width, height }
     }
 }

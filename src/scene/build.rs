@@ -154,6 +154,7 @@ pub fn build_with(
         preset: document.style.preset,
         grid: style::grid(document),
         sunlight: Sunlight::new(document, &crs, lattice.map_extent().center())?,
+        texture: document.style.light.texture as f32,
         haze_m: surroundings.haze_m,
         table: surroundings.table,
         maps: Default::default(),

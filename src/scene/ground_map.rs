@@ -10,6 +10,7 @@ use crate::draw::ground_levels::{GroundLevel, PostCount, level};
 use crate::draw::lighting::ReliefShading;
 use crate::scene::SceneModel;
 use crate::scene::relief_strength::ReliefStrength;
+use crate::scene::texture_shading::TextureShading;
 use crate::scene::undergrowth::undergrowth;
 use crate::terrain::lattice::Lattice;
 use crate::terrain::light::TerrainLight;
@@ -92,14 +93,23 @@ pub(super) fn ground_map(
         posts
     };
     let all = PostCount { columns: lattice.columns(), rows: lattice.rows() };
-    let GroundLevel { size, posts } = level(all, number, row);
+    let GroundLevel { size, mut posts } = level(all, number, row);
+    let cell = lattice.cell().as_vec2() * (1u32 << number) as f32;
     let ramp = scene.ramp();
     let ReliefStrength { z_factor, shade_gain } =
         ReliefStrength::of(lattice, scene.scale, &ramp, to_sun, is_water);
     let shade_gain = if scene.is_base_map { ReliefShading::BASE_GAIN } else { shade_gain };
+    if scene.texture > 0.0 {
+        let texture = TextureShading {
+            strength: scene.texture,
+            steepness: scene.scale.world_z(z_factor),
+            form_m: form_m(lattice) as f32,
+        };
+        texture.apply(&mut posts, size, cell);
+    }
     GroundMap {
         origin: Vec2::ZERO,
-        cell: lattice.cell().as_vec2() * (1u32 << number) as f32,
+        cell,
         columns: size.columns,
         rows: size.rows,
         posts,
@@ -108,7 +118,7 @@ pub(super) fn ground_map(
         imagery: scene.imagery.clone(),
         cover: scene.cover(),
         form_level: form_level(lattice).saturating_sub(number),
-        z_factor,
+        z_factor: TextureShading::eased(scene.texture, z_factor),
         shade_gain,
         has_grain: true,
     }
@@ -119,8 +129,12 @@ const FORM_SHARE: f64 = 1.0 / 100.0;
 
 /// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
 pub(super) fn form_level(lattice: &Lattice) -> u32 {
-    let form_m = lattice.extent().size().max_element() * FORM_SHARE;
-    libm::log2((form_m / lattice.cell().max_element()).max(1.0)).round() as u32
+    libm::log2((form_m(lattice) / lattice.cell().max_element()).max(1.0)).round() as u32
+}
+
+/// The width of the smallest forms of the generalized ground, meters.
+fn form_m(lattice: &Lattice) -> f64 {
+    lattice.extent().size().max_element() * FORM_SHARE
 }
 
 /// Whether all samples that are numbers are whole.

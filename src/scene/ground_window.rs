@@ -10,6 +10,7 @@ use crate::draw::ground::{GroundMap, GroundPost};
 use crate::draw::ground_window::GroundWindow;
 use crate::scene::SceneModel;
 use crate::scene::ground_map::is_whole_meters;
+use crate::scene::texture_shading::sky_in_part;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::light::TerrainLight;
 use crate::terrain::post_rect::PostRect;
@@ -48,7 +49,7 @@ pub fn ground_window(
                 slope_east: scene.scale.world_z(slopes[at].x),
                 slope_north: scene.scale.world_z(slopes[at].y),
                 sun_visibility: sun[at].min(around.sun_visibility),
-                sky_visibility: sky[at].min(around.sky_visibility),
+                sky_visibility: sky_in_part(scene.texture, sky[at], around.sky_visibility),
                 water: around.water,
             }
         };

@@ -57,6 +57,7 @@ pub mod style;
 pub mod sunlight;
 pub mod symbols;
 pub mod table_shadow;
+mod texture_shading;
 pub mod undergrowth;
 pub mod vertical_scale;
 pub mod views;
@@ -159,6 +160,8 @@ pub struct SceneModel {
     pub contours: Option<Contours>,
     /// Where the light comes from.
     pub sunlight: Sunlight,
+    /// How strongly its texture shows, 0..=1.
+    texture: f32,
     /// The distance in meters from the near edge of the scene at which 63 % of what is seen is haze, 0 for clear air;
     /// `None` fits haze to each view.
     pub haze_m: Option<f32>,

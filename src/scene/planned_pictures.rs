@@ -21,7 +21,7 @@ pub enum ElevationNeed<'a> {
 pub struct PlannedPictures {
     /// What they are seen by.
     pub cameras: PlannedCameras,
-    /// Their greatest size, pixels; `None` for that of each camera's paper, or of a screen.
+    /// Their greatest size, pixels; `None` for that of each camera's paper, of a screen, or of a page in the shape of what is shown.
     pub size: Option<(u32, u32)>,
     /// How they show ground near the eye.
     pub near: NearGround,

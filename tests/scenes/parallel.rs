@@ -127,6 +127,52 @@ fn without_a_scale_all_of_the_ground_fits_at_a_round_one() {
     }
 }
 
+/// The size that the picture of a camera with `keys` has where the command line states none.
+fn own_size(test: &str, keys: &str) -> (SceneModel, PictureSize) {
+    let (scene, _) = with_camera(test, keys);
+    let size = PictureSize::of(&scene, &scene.cameras[0]);
+    (scene, size)
+}
+
+#[test]
+fn a_fitted_plan_whose_size_nothing_states_has_the_shape_of_what_it_shows() {
+    let shown = [
+        ("tall", [500_200.0, 4_600_100.0], [501_400.0, 4_602_500.0]),
+        ("square", [500_200.0, 4_600_100.0], [502_200.0, 4_602_100.0]),
+        ("wide", [500_200.0, 4_600_100.0], [503_800.0, 4_602_000.0]),
+        ("strip", [500_200.0, 4_600_100.0], [500_500.0, 4_602_900.0]),
+    ];
+    for (name, low, high) in shown {
+        let keys = format!("projection = \"plan\"\nshows = [{low:?}, {high:?}]");
+        let (scene, PictureSize { width, height }) = own_size(&format!("shaped-{name}"), &keys);
+        let pixels = f64::from(width) * f64::from(height);
+        assert!((pixels / (1920.0 * 1080.0) - 1.0).abs() < 1e-3, "{name}: {width} × {height}");
+        let camera = camera(&scene, &scene.cameras[0], (width, height)).expect("sound");
+        let corner = |[x, y]: [f64; 2]| {
+            let at = DVec2::new(x, y) - scene.lattice.map_extent().min;
+            pixel(&camera, at.as_vec2().extend(300.0))
+        };
+        let filled = (corner(high) - corner(low)).abs() / Vec2::new(width as f32, height as f32);
+        // A twentieth is free for title and scale bar, and a round scale takes a tenth at most.
+        let [across, down] = filled.to_array();
+        assert!(down > 0.8, "{name}: {filled}");
+        assert!(across > 0.8 || name == "strip", "{name}: {filled}");
+        assert!(name != "strip" || height < width * 2 + 3, "no page is longer: {width} × {height}");
+    }
+}
+
+#[test]
+fn a_stated_paper_or_scale_and_a_perspective_have_a_size_of_their_own() {
+    let shows = "shows = [[500200, 4600100], [501400, 4602500]]";
+    let size = |test: &str, keys: &str| {
+        let PictureSize { width, height } = own_size(test, &format!("{keys}\n{shows}")).1;
+        (width, height)
+    };
+    assert_eq!(size("sized-view", ""), (1920, 1080));
+    assert_eq!(size("sized-scale", "projection = \"plan\"\nscale = 10000"), (1920, 1080));
+    assert_eq!(size("sized-paper", "projection = \"plan\"\npaper = \"A4\"\ndpi = 100"), (1169, 827));
+}
+
 #[test]
 fn the_ground_is_as_fine_as_the_scale_shows_it() {
     let triangles = |scale: u32| {

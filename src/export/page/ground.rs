@@ -66,6 +66,13 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
     let share = |of: fn(&GroundPost) -> f32| -> Vec<u8> {
         posts.iter().map(|post| (of(post).clamp(0.0, 1.0) * 255.0).round() as u8).collect()
     };
+    // Half as many steps where crests are lighter than level ground.
+    let is_textured = posts.iter().any(|post| post.sky_visibility > 1.0);
+    let sky_most = if is_textured { GroundPost::MOST_SKY } else { 1.0 };
+    let sky: Vec<u8> = posts
+        .iter()
+        .map(|post| (post.sky_visibility.clamp(0.0, sky_most) * (255.0 / sky_most)).round() as u8)
+        .collect();
     // 0 is all woods, 127 dry and open, 254 open water.
     let water: Vec<u8> =
         posts.iter().map(|post| (post.water.clamp(-1.0, 1.0) * 127.0 + 127.0).round() as u8).collect();
@@ -80,7 +87,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
         "slopeEast": sections.add_words(&slope(|post| post.slope_east), 1),
         "slopeNorth": sections.add_words(&slope(|post| post.slope_north), 1),
         "sun": sections.add_bytes(&share(|post| post.sun_visibility), 1),
-        "sky": sections.add_bytes(&share(|post| post.sky_visibility), 1),
+        "sky": sections.add_bytes(&sky, 1),
         "water": sections.add_bytes(&water, 1),
         "ramp": ramp(&map.ramp),
         "contours": map.contours.map(|contours| json!({
@@ -98,6 +105,7 @@ pub fn map(sections: &mut PageSections, map: &GroundMap) -> Value {
         "formLevel": map.form_level.saturating_sub(number),
         "zFactor": map.z_factor,
         "shadeGain": map.shade_gain,
+        "skyMost": sky_most,
         "hasGrain": map.has_grain,
     })
 }

@@ -95,14 +95,15 @@ impl Scene {
         self.model.cameras.iter().map(|view| view.name.as_str())
     }
 
-    /// The view called `name`, as large as its paper, or 1920 by 1080 pixels.
+    /// The view called `name`, as large as its paper, or 1920 by 1080 pixels; by parallel rays without a stated scale, as many pixels in the
+    /// shape of what it shows.
     ///
     /// # Errors
     /// [`Error::NoView`].
     pub fn view(&self, name: &str) -> Result<View, Error> {
         let no_view = || Error::NoView(name.to_owned(), self.view_names().collect::<Vec<_>>().join(", "));
         let view = self.model.view(Some(name)).ok_or_else(no_view)?.clone();
-        let size = PictureSize::of(&view);
+        let size = PictureSize::of(&self.model, &view);
         Ok(View { view, size, backend: RenderBackend::Cpu })
     }
 

@@ -41,7 +41,7 @@ pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     for (view, table) in scene.cameras.iter().zip(&context.document.cameras) {
         let span = span_of(table);
         let found = |code, message: String| context.finding(code, span.clone(), message);
-        let camera = match framed_camera(scene, view, PictureSize::of(view)) {
+        let camera = match framed_camera(scene, view, PictureSize::of(scene, view)) {
             Ok((camera, _)) => camera,
             Err(error) => {
                 let message = format!("camera '{}' has no picture: {error}", view.name);

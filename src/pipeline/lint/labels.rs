@@ -108,7 +108,7 @@ fn by_standing(
 
 /// What becomes of the labels of a view, and what hides them; `None` where it has no picture.
 fn placed(scene: &SceneModel, view: &SceneView) -> Option<(AnnotationReport, BTreeMap<String, FeatureId>)> {
-    let (camera, frame) = framed_camera(scene, view, PictureSize::of(view)).ok()?;
+    let (camera, frame) = framed_camera(scene, view, PictureSize::of(scene, view)).ok()?;
     let LabelSight { picture, behind } = label_sight(scene, &camera);
     let shown = AnnotatedGround { graphics: &[], nested: &NestedHeights::default() };
     let annotations = annotations(scene, &camera, &picture, frame.as_ref(), &shown);

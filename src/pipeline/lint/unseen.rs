@@ -22,7 +22,7 @@ const ABOVE_M: f32 = 100.0;
 /// Finds these.
 pub fn check(context: &LintContext<'_>, sink: &mut FindingSink) {
     let scene = context.scene;
-    let frustums = scene.cameras.iter().map(|view| framed_camera(scene, view, PictureSize::of(view)));
+    let frustums = scene.cameras.iter().map(|view| framed_camera(scene, view, PictureSize::of(scene, view)));
     let frustums: Vec<Frustum> = frustums.flatten().map(|(camera, _)| Frustum::new(&camera)).collect();
     // Without cameras, one is fitted to all of the scene; cameras without a picture are other findings.
     if context.document.cameras.is_empty() || frustums.is_empty() {

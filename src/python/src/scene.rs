@@ -67,7 +67,7 @@ impl PyScene {
     /// Renders the view of a camera, with its annotations: uint8 of shape (H, W, 3), red, green and blue.
     ///
     /// `camera` is one of `cameras`, the first by default; `size` is (width, height), 16 to 16384 pixels each, by default that
-    /// of the camera's paper or (1920, 1080). The pixels are those of `sandtable render`.
+    /// of the camera's paper or (1920, 1080), or as many in the shape of what a map shows. The pixels are those of `sandtable render`.
     #[pyo3(signature = (camera = None, size = None))]
     fn render<'py>(
         &self,

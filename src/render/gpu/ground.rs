@@ -144,15 +144,16 @@ impl TexelWriter<'_> {
     }
 }
 
-/// Height and slopes as bits, then the visibility of the sun in 12 bits, that of the sky in 10, and water in 10, from −1 (woods) to 1.
+/// Height and slopes as bits, then the visibility of the sun in 11 bits, that of the sky in 11, from 0 to 2, and water in 10, from
+/// −1 (woods) to 1.
 pub fn packed(post: &GroundPost) -> [u32; 4] {
     let share = |share: f32, most: f32| (share.clamp(0.0, 1.0) * most + 0.5) as u32;
     [
         post.height_m.to_bits(),
         post.slope_east.to_bits(),
         post.slope_north.to_bits(),
-        share(post.sun_visibility, 4095.0)
-            | share(post.sky_visibility, 1023.0) << 12
+        share(post.sun_visibility, 2047.0)
+            | share(post.sky_visibility / GroundPost::MOST_SKY, 2046.0) << 11
             | share(post.water * 0.5 + 0.5, 1022.0) << 22,
     ]
 }
@@ -185,7 +186,7 @@ mod tests {
         };
         let [height, east, north, shares] = packed(&post);
         assert_eq!([height, east, north].map(f32::from_bits), [-1234.567, 0.1, -3.5]);
-        let shares = [(shares & 4095, 4095.0), (shares >> 12 & 1023, 1023.0), (shares >> 22, 1022.0)];
+        let shares = [(shares & 2047, 2047.0), (shares >> 11 & 2047, 1023.0), (shares >> 22, 1022.0)];
         for ((share, most), wanted) in shares.into_iter().zip([1.0, 0.25, 0.875]) {
             assert!((f64::from(share) / most - wanted).abs() < 1e-3, "{share} of {most}");
         }

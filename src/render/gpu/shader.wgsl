@@ -75,7 +75,7 @@ const MASK_LEVEL_BIAS = -1.0;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 // One texel a post, row by row and level by level: height, slope east and slope north as bits of f32; the visibilities of
-// the sun in 12 bits and of the sky in 10, and water in 10, from -1 (woods) to 1.
+// the sun in 11 bits and of the sky in 11, from 0 to 2, and water in 10, from -1 (woods) to 1.
 @group(0) @binding(1) var ground_posts: texture_2d<u32>;
 // One texel a stop of the ramp: linear rgb, height.
 @group(0) @binding(2) var ramp_stops: texture_2d<f32>;
@@ -250,8 +250,8 @@ fn post_at(at: vec2u, level: u32) -> Post {
 }
 
 fn unpacked(texel: vec4u) -> Post {
-    let shares = vec3f(vec3u(texel.w, texel.w >> 12u, texel.w >> 22u) & vec3u(4095u, 1023u, 1023u));
-    let visibility = shares / vec3f(4095.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
+    let shares = vec3f(vec3u(texel.w, texel.w >> 11u, texel.w >> 22u) & vec3u(2047u, 2047u, 1023u));
+    let visibility = shares / vec3f(2047.0, 1023.0, 511.0) - vec3f(0.0, 0.0, 1.0);
     return Post(bitcast<f32>(texel.x), bitcast<vec2f>(texel.yz), visibility, vec2f(0.0), vec2f(0.0));
 }
 

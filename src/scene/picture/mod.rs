@@ -24,6 +24,7 @@ mod parallel_view;
 pub mod placed_text;
 pub mod recut;
 pub mod setting;
+pub mod shaped_page;
 pub mod sheet_cuts;
 pub(in crate::scene) mod shown_step;
 mod sight;

@@ -28,6 +28,7 @@ use crate::scene::picture::{
     ViewDraw, airspace, display, drapes, ground, has_table, lighting, models, overlay, solids, table,
     uprights, voids,
 };
+use crate::scene::texture_shading::sky_in_part;
 use crate::scene::{FeatureKind, SceneFeature, SceneModel};
 use crate::view::camera::Camera;
 
@@ -145,7 +146,7 @@ fn inset(part: &ShownPart<'_>, scene: &SceneModel, around: &GroundInset, to_sun:
             let at = origin + first + cell * Vec2::new(column as f32, row as f32);
             let light = around.map.sample(at - around.origin);
             post.sun_visibility = post.sun_visibility.min(light.sun_visibility);
-            post.sky_visibility = post.sky_visibility.min(light.sky_visibility);
+            post.sky_visibility = sky_in_part(scene.texture, post.sky_visibility, light.sky_visibility);
         }
     });
     map.ramp = scene.ramp();

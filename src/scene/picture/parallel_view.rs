@@ -46,14 +46,22 @@ pub(super) fn parallel_camera(
 
 /// Pixels per meter across and up the picture of a view of `shown` on a picture of `size` pixels.
 pub(super) fn pixels_per_meter(view: &ParallelView, shown: &ParallelSpan, size: (u32, u32)) -> DVec2 {
+    let scale =
+        view.scale.unwrap_or_else(|| round_scale(view.dpi / INCH_M / fitted_px_per_m(view, shown, size)));
+    view.dpi / (INCH_M * scale) * stretch(view)
+}
+
+/// Pixels per meter across a picture of `size` pixels whose part free of title and scale bar `shown` fills.
+pub(super) fn fitted_px_per_m(view: &ParallelView, shown: &ParallelSpan, size: (u32, u32)) -> f64 {
     let picture = DVec2::new(f64::from(size.0), f64::from(size.1));
-    let stretch = DVec2::new(1.0, f64::from(view.stretch));
-    let scale = view.scale.unwrap_or_else(|| {
-        let free = picture * DVec2::new(1.0 - 2.0 * f64::from(LEFT_RIGHT), f64::from(1.0 - BELOW - ABOVE));
-        let span_m = (shown.max - shown.min).truncate().as_dvec2() * stretch;
-        round_scale(view.dpi / INCH_M * (span_m / free).max_element().max(1e-6))
-    });
-    view.dpi / (INCH_M * scale) * stretch
+    let free = picture * DVec2::new(1.0 - 2.0 * f64::from(LEFT_RIGHT), f64::from(1.0 - BELOW - ABOVE));
+    let span_m = (shown.max - shown.min).truncate().as_dvec2() * stretch(view);
+    (span_m / free).max_element().max(1e-6).recip()
+}
+
+/// Pixels across and up the picture, per pixel across it.
+fn stretch(view: &ParallelView) -> DVec2 {
+    DVec2::new(1.0, f64::from(view.stretch))
 }
 
 /// The least number of two significant figures that is not below `scale`: at most a tenth of the size is lost.

@@ -28,6 +28,7 @@ use crate::scene::paper_sheet::{PaperSheet, SCREEN_PX};
 use crate::scene::picture::fit::{ParallelSpan, fitted_eye};
 use crate::scene::picture::fitted_view::{PITCHES, free_frame, half_picture};
 use crate::scene::picture::parallel_view::pixels_per_meter;
+use crate::scene::picture::shaped_page::pages;
 use crate::scene::planned_pictures::{PlannedCameras, PlannedPictures};
 use crate::scene::views;
 use crate::scene::world_frame::WorldFrame;
@@ -96,7 +97,7 @@ fn widest_square(pictures: &PlannedPictures, document: &Document, ground: &Unrea
     let mut pixel_m = f64::INFINITY;
     for table in planned {
         let paper = table.and_then(views::paper);
-        let size = pictures.size.or(paper.as_ref().map(PaperSheet::size_px)).unwrap_or(SCREEN_PX);
+        let size = pictures.size.or(paper.as_ref().map(PaperSheet::size_px));
         // What is wrong with a camera is reported when it is made.
         pixel_m = pixel_m.min(finest_pixel_m(table, &frame, &plan, size).ok()??);
     }
@@ -104,13 +105,15 @@ fn widest_square(pictures: &PlannedPictures, document: &Document, ground: &Unrea
     squares.is_finite().then_some(squares)
 }
 
-/// The width of the pixel that shows the least ground, meters; `None` where the camera may be at the ground.
+/// The width of the pixel that shows the least ground on a picture of a stated size, or of the one that it would have, meters;
+/// `None` where the camera may be at the ground.
 fn finest_pixel_m(
     table: Option<&CameraTable>,
     frame: &WorldFrame<'_>,
     plan: &Rect,
-    size: (u32, u32),
+    stated: Option<(u32, u32)>,
 ) -> Result<Option<f64>, Diagnostic> {
+    let size = stated.unwrap_or(SCREEN_PX);
     let half = half_picture(views::fov_y_rad(table), size);
     let aim = match table {
         None => views::overview().aim,
@@ -124,7 +127,12 @@ fn finest_pixel_m(
     };
     Ok(match aim {
         ViewAim::Fitted(view) => fitted_depth_m(&view, half, plan).map(|depth| pixel_m(depth, half, size)),
-        ViewAim::Parallel(view) => Some(parallel_pixel_m(&view, plan, size)),
+        ViewAim::Parallel(view) => match stated {
+            None if view.scale.is_none() => {
+                pages().map(|page| parallel_pixel_m(&view, plan, page)).reduce(f64::min)
+            }
+            _ => Some(parallel_pixel_m(&view, plan, size)),
+        },
         ViewAim::At { .. } => None,
     })
 }

@@ -13,6 +13,7 @@ use crate::terrain::light::sun::SunShadow;
 mod field;
 mod sky;
 mod sun;
+pub mod texture;
 
 /// The light on a displayed lattice.
 #[derive(Debug)]

@@ -160,6 +160,7 @@ class Renderer {
       ? [contours.interval, contours.width * frame.pixelRatio, contours.every]
       : [1, 1, 1]), map.zFactor);
     set("shade_gain", "uniform1f", map.shadeGain);
+    set("sky_most", "uniform1f", map.skyMost);
     set("sides", "uniform3fv", light.sides.flat());
     set("side_shares", "uniform4fv", light.sideShares);
     set("imagery", "uniform4f", ...(imagery ? [...imagery.origin, 1 / imagery.size[0], 1 / imagery.size[1]] : [0, 0, 1, 1]));

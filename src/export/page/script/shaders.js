@@ -197,7 +197,7 @@ uniform vec4 contour_shape; // interval, width, every how many is heavy, z facto
 uniform vec4 imagery;       // corner, 1 / size
 uniform vec4 imagery_size;  // texel, 1 where there is one, 1 where it is shaded
 uniform sampler2D imagery_texture;
-uniform float shade_gain;
+uniform float shade_gain, sky_most;
 uniform vec3 sides[4];
 uniform vec4 side_shares;
 out vec4 shown;
@@ -308,7 +308,7 @@ void main() {
     reading.gradient = mix(reading.gradient, coarse.gradient, part);
   }
   vec4 post = texture(slopes, place);
-  float sky_share = texture(skies, place).r;
+  float sky_share = texture(skies, place).r * sky_most;
   vec2 wet_change = vec2(dFdx(post.w), dFdy(post.w));
   float covered = symbol_cover();
   if (covered <= 0.0) discard;

@@ -46,7 +46,7 @@ impl AtlasScene {
         let scene = &self.scene;
         let to_map = scene.lattice.map_extent().min - scene.lattice.extent().min;
         let view = arguments.view(&shard.name, Rect { min: rect.min - to_map, max: rect.max - to_map });
-        let drawn = draw_view(scene, &view, PictureSize::of(&view), RenderBackend::Cpu, &|_| ())?;
+        let drawn = draw_view(scene, &view, PictureSize::of(scene, &view), RenderBackend::Cpu, &|_| ())?;
         let sheet = compose_view(scene, drawn, &|_| ()).sheet;
         let description = picture_description(scene, &view);
         Ok(sheet_png(sheet, view.dpi(), (scene.title.as_deref(), &description)))
