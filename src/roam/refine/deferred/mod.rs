@@ -16,6 +16,7 @@
 //! view.
 
 mod check;
+mod mend;
 pub mod patch;
 pub mod surface;
 pub mod topology;
@@ -252,14 +253,21 @@ impl<S: BlockSource> Deferred<S> {
     fn edit_mesh(&mut self, mesh: u32, block: &Arc<PatchBlock>) {
         let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
         let topology = &self.topologies[self.meshes[slot].parity];
-        let Some(changed) = self.meshes[slot].edit(topology, block) else {
+        if self.meshes[slot].edit(topology, block) {
+            self.miss_renewed(mesh);
+        } else {
             self.wheel.retain(|entry| entry >> VERTEX_BITS != mesh);
             self.meshes[slot].reset(topology, block, entries);
             self.behind[slot] = true;
-            return;
-        };
-        for vertex in changed {
-            let patch = &mut self.meshes[slot];
+        }
+    }
+
+    /// Marks the renewed vertices of a mesh that may have changed sides, or may do so before they are due.
+    fn miss_renewed(&mut self, mesh: u32) {
+        let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
+        let patch = &mut self.meshes[slot];
+        let renewed = patch.take_renewed(&self.topologies[patch.parity]);
+        for &vertex in renewed.iter().filter(|&&vertex| !Topology::is_corner(vertex)) {
             let waits = patch.is_waiting(vertex);
             if !waits && !patch.may_change(vertex) {
                 // A change of its neighbors examines it.
@@ -278,6 +286,7 @@ impl<S: BlockSource> Deferred<S> {
             patch.miss(vertex);
             self.behind[slot] = true;
         }
+        patch.keep(renewed);
     }
 
     /// The vertices of the patch with south-west corner `corner`; `None` while it has no mesh.

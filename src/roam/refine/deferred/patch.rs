@@ -109,6 +109,8 @@ pub struct PatchMesh {
     missed: Vec<u16>,
     /// The vertices that became active or inactive in update [`PatchMesh::changed`].
     flipped: Vec<u16>,
+    /// Vertices with a new sphere.
+    renewed: Vec<u16>,
 }
 
 /// The context of a decision.
@@ -173,6 +175,7 @@ impl PatchMesh {
         for &root in topology.roots() {
             self.show(root, triangle(root[0], 0));
         }
+        self.renewed.clear();
         self.missed.clear();
         self.missed.push(CENTER);
     }
@@ -188,11 +191,13 @@ impl PatchMesh {
     }
 
     /// Whether the vertex is active; patch corners are.
+    #[inline]
     pub fn is_active(&self, vertex: u16) -> bool {
         self.records[vertex as usize].flags & ACTIVE != 0
     }
 
     /// Adds a vertex to examine when the patch is listed next.
+    #[inline]
     pub fn miss(&mut self, vertex: u16) {
         self.missed.push(vertex);
     }
@@ -203,32 +208,60 @@ impl PatchMesh {
         self.decide_all(with);
     }
 
-    /// Replaces the block by an edited one and returns the vertices whose spheres changed; `None` where data was added or
-    /// removed, so that the patch must be reset.
-    pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> Option<Vec<u16>> {
+    /// Takes over a block, edited; false where data was added or removed, so that the patch must be reset.
+    pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> bool {
         let old = std::mem::replace(&mut self.block, Arc::clone(block));
-        let mut changed = Vec::new();
-        let same = |at: usize| {
-            old.z[at].to_bits() == block.z[at].to_bits()
-                && old.radii[at].to_bits() == block.radii[at].to_bits()
-        };
         for (row, (z, radii)) in block.z.chunks(ROW).zip(block.radii.chunks(ROW)).enumerate() {
             let row = row * ROW..row * ROW + z.len();
             if same_bits(&old.z[row.clone()], z) && same_bits(&old.radii[row.clone()], radii) {
                 continue;
             }
-            for at in row.filter(|&at| !same(at)) {
-                let (z, vertex) = (block.z[at], topology.numbers()[at]);
-                if z.is_nan() != (self.records[vertex as usize].flags & HOLE != 0) {
-                    return None;
-                }
-                let sphere = &mut self.records[vertex as usize].sphere;
-                (sphere[2], sphere[3]) = (if z.is_nan() { 0.0 } else { z }, block.radii[at]);
-                changed.push(vertex);
+            if !row.into_iter().all(|at| self.renew(topology.numbers()[at], [block.z[at], block.radii[at]])) {
+                return false;
             }
         }
-        changed.retain(|&vertex| !Topology::is_corner(vertex));
-        Some(changed)
+        true
+    }
+
+    /// Gives a vertex its height and its radius after an edit, meters; false where data was added or removed, so that the
+    /// patch must be reset.
+    #[inline]
+    pub fn renew(&mut self, vertex: u16, [z, radius]: [f32; 2]) -> bool {
+        let record = &mut self.records[vertex as usize];
+        if z.is_nan() != (record.flags & HOLE != 0) {
+            return false;
+        }
+        let now = [if z.is_nan() { 0.0 } else { z }, radius];
+        let sphere = &mut record.sphere[2..];
+        if sphere.iter().zip(now).any(|(old, now)| old.to_bits() != now.to_bits()) {
+            sphere.copy_from_slice(&now);
+            self.renewed.push(vertex);
+        }
+        true
+    }
+
+    /// The vertices that were renewed since this was called last, in the block too; the list is to be given back with
+    /// [`PatchMesh::keep`].
+    pub fn take_renewed(&mut self, topology: &Topology) -> Vec<u16> {
+        let renewed = std::mem::take(&mut self.renewed);
+        if !renewed.is_empty() {
+            let block = Arc::make_mut(&mut self.block);
+            for &vertex in &renewed {
+                let record = &self.records[vertex as usize];
+                let at = topology.row_major(vertex);
+                if record.flags & HOLE == 0 {
+                    block.z[at] = record.sphere[2];
+                }
+                block.radii[at] = record.sphere[3];
+            }
+        }
+        renewed
+    }
+
+    /// Takes back the memory of a list.
+    pub fn keep(&mut self, mut list: Vec<u16>) {
+        list.clear();
+        self.renewed = list;
     }
 
     /// Marks a vertex as in no list of the wheel.
@@ -238,6 +271,7 @@ impl PatchMesh {
     }
 
     /// The list of a vertex; valid while the vertex waits.
+    #[inline]
     pub fn list(&self, vertex: u16) -> WheelList {
         self.records[vertex as usize].list
     }
@@ -248,6 +282,7 @@ impl PatchMesh {
     }
 
     /// Whether a vertex waits in the wheel.
+    #[inline]
     pub(super) fn is_waiting(&self, vertex: u16) -> bool {
         self.records[vertex as usize].flags & WAITING != 0
     }

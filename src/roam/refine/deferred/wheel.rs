@@ -130,6 +130,7 @@ impl Wheel {
     }
 
     /// The tick at which a list is taken; 0 for the one that is taken every time.
+    #[inline]
     pub fn begin(&self, WheelList(list): WheelList) -> u64 {
         let list = u64::from(list);
         if list as usize == NEXT_TIME {
