@@ -283,13 +283,14 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), None);
+        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), [(-1, -1); 2]);
         let patches_east = layout.patch_grid().0;
         for &vertex in vertices {
             let span = layout.patches_at(vertex);
-            if last.replace(span) == Some(span) {
+            if span == last {
                 continue;
             }
+            last = span;
             let [(west, south), (east, north)] = span;
             for y in south..=north {
                 for x in west..=east {

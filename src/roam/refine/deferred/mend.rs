@@ -1,6 +1,6 @@
 //! Edits of a terrain in memory, followed vertex by vertex: no patch is read and compared as a whole.
 
-use crate::roam::block::{BlockError, BlockSource};
+use crate::roam::block::BlockError;
 use crate::roam::dynamic::{DynamicTerrain, Edit};
 use crate::roam::graph::Vertex;
 use crate::roam::refine::deferred::Deferred;
@@ -14,8 +14,13 @@ impl Deferred<DynamicTerrain> {
     pub fn mend(&mut self, edit: &Edit) -> Result<(), BlockError> {
         self.settled = false;
         let mut reset = Vec::new();
-        for &vertex in &edit.vertices[..edit.placed] {
-            self.renew(vertex, &mut reset);
+        let layout = self.layout;
+        let are_beside = |a: &Vertex, b: &Vertex| layout.patches_at(*a) == layout.patches_at(*b);
+        for run in edit.vertices[..edit.placed].chunk_by(are_beside) {
+            let [(west, south), (east, north)] = layout.patches_at(run[0]);
+            for corner in layout.patches_within((west, south), (east, north)) {
+                self.renew(corner, run, &mut reset);
+            }
         }
         for &corner in &edit.patches {
             let patch = &mut self.patches[self.layout.patch_index(corner)];
@@ -27,24 +32,19 @@ impl Deferred<DynamicTerrain> {
         self.edit(&reset)
     }
 
-    /// Gives a vertex the height and the radius that it has in the source, in all meshes that it belongs to. Adds the patches
-    /// that gained or lost data to `reset`.
-    #[inline]
-    fn renew(&mut self, vertex: Vertex, reset: &mut Vec<Vertex>) {
+    /// Gives vertices of the patch with south-west corner `corner` the heights and the radii that they have in the source.
+    /// Adds the patch to `reset` where it gained or lost data.
+    fn renew(&mut self, corner: Vertex, vertices: &[Vertex], reset: &mut Vec<Vertex>) {
+        let Some(mesh) = self.patches[self.layout.patch_index(corner)].mesh else { return };
         let (ground, side) = (self.source.ground(), self.layout.patch());
-        let z = ground.lattice.height(ground.layout.post(vertex));
-        let radius = self.source.spheres().at(ground.layout, vertex);
-        let [(west, south), (east, north)] = self.layout.patches_at(vertex);
-        for y in south..=north {
-            for x in west..=east {
-                let corner = Vertex::new(x * side, y * side);
-                let Some(mesh) = self.patches[self.layout.patch_index(corner)].mesh else { continue };
-                let mesh = &mut self.meshes[mesh as usize];
-                let at = (vertex.y - corner.y) * (side + 1) + vertex.x - corner.x;
-                let number = self.topologies[mesh.parity].numbers()[at as usize];
-                if !mesh.renew(number, [z, radius]) {
-                    reset.push(corner);
-                }
+        let (layout, heights, radii) = (ground.layout, ground.lattice, self.source.spheres().values());
+        let mesh = &mut self.meshes[mesh as usize];
+        let numbers = self.topologies[mesh.parity].numbers();
+        for &vertex in vertices {
+            let at = (vertex.y - corner.y) * (side + 1) + vertex.x - corner.x;
+            let now = [heights.height(layout.post(vertex)), radii[layout.index(vertex)]];
+            if !mesh.renew(numbers[at as usize], now) {
+                reset.push(corner);
             }
         }
     }
