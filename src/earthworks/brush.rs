@@ -55,6 +55,7 @@ impl Change {
         Self { posts: bounds, before }
     }
 
+    #[inline]
     fn index(&self, post: Post) -> usize {
         let first = self.posts.first;
         (post.row - first.row) as usize * self.posts.width() + (post.column - first.column) as usize

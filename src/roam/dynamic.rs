@@ -4,7 +4,7 @@
 //! heights. An edit reports its dirty patches; features on the ground and copies of it need an update there alone.
 //!
 //! A terrain is a source of patches that a [`Deferred`](crate::roam::refine::deferred::Deferred) mesh can own: edit the
-//! mesh's source, and pass the dirty patches to the mesh.
+//! mesh's source, and pass the edit to the mesh.
 //!
 //! The heights are shared: an edit changes a copy where a snapshot of them is held elsewhere, and copies nothing otherwise.
 
@@ -18,7 +18,7 @@ use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeG
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::spheres::Spheres;
 use crate::roam::culling::{NO_DATA, PatchHeights, drawn_range, joined};
-use crate::roam::edit::{mend_exact, mend_midpoint, mend_spheres};
+use crate::roam::edit::{Mended, has_moved, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
@@ -89,8 +89,10 @@ pub struct Edit {
     /// The south-west corners of the dirty patches, in the layout's order. A patch is dirty where one of its vertices,
     /// borders included, has a new height, error or radius.
     pub patches: Vec<Vertex>,
-    /// The vertices with a new height, error or radius; one may be listed for each of the three.
+    /// The vertices with a new height, error or radius, some twice: first those with a new height or radius.
     pub vertices: Vec<Vertex>,
+    /// How many of the vertices have a new height or radius; the others have a new error alone.
+    pub placed: usize,
     /// The earth moved.
     pub volumes: Volumes,
 }
@@ -206,19 +208,24 @@ impl DynamicTerrain {
             return None;
         }
         self.edits += 1;
-        let mut vertices =
-            Vec::with_capacity(4 * changes.pieces.iter().map(|change| change.before.len()).sum::<usize>());
+        let posts = changes.pieces.iter().map(|change| change.before.len()).sum::<usize>();
+        let (mut vertices, mut erring) = (Vec::with_capacity(2 * posts), Vec::new());
         for change in &changes.pieces {
             self.renew_heights(change);
             self.add_moved(change, &mut vertices);
-            self.mend(change, &mut vertices);
+            let [errors, spheres] = self.mend(change);
+            let is_moved = |&vertex: &Vertex| has_moved(&self.lattice, change, self.layout.post(vertex));
+            vertices.extend(spheres.vertices.into_iter().filter(|vertex| !is_moved(vertex)));
+            erring.extend(errors.vertices.into_iter().filter(|vertex| !is_moved(vertex)));
         }
+        let placed = vertices.len();
+        vertices.append(&mut erring);
         let patches = self.patches_of(&vertices);
-        Some(Edit { number: self.edits, patches, vertices, volumes: changes.volumes })
+        Some(Edit { number: self.edits, patches, vertices, placed, volumes: changes.volumes })
     }
 
-    /// Updates errors and spheres for one piece and adds the vertices whose error or radius changed to `vertices`.
-    fn mend(&mut self, change: &Change, vertices: &mut Vec<Vertex>) {
+    /// Updates errors and spheres for one piece; returns the vertices whose error and those whose radius changed.
+    fn mend(&mut self, change: &Change) -> [Mended; 2] {
         let (lattice, layout) = (&*self.lattice, &self.layout);
         let errors = match self.options.measure {
             ErrorMeasure::Midpoint => mend_midpoint(Arc::make_mut(&mut self.errors), lattice, layout, change),
@@ -232,8 +239,7 @@ impl DynamicTerrain {
         let ground = PatchedGround { lattice, layout };
         let own = own_radius(&self.options, &self.errors, self.roughness.as_deref());
         let spheres = mend_spheres(&mut self.spheres, ground, &own, change, &errors);
-        vertices.extend_from_slice(&errors.vertices);
-        vertices.extend_from_slice(&spheres.vertices);
+        [errors, spheres]
     }
 
     /// Adds the vertices whose height changed to `vertices`.
@@ -277,19 +283,23 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), None);
-        let shift = layout.patch().trailing_zeros();
+        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), [(-1, -1); 2]);
+        let patches_east = layout.patch_grid().0;
         for &vertex in vertices {
-            // Vertices that have these in common belong to the same patches.
-            let around = [vertex.moved(-1, -1), vertex].map(|at| (at.x >> shift, at.y >> shift));
-            if last.replace(around) == Some(around) {
+            let span = layout.patches_at(vertex);
+            if span == last {
                 continue;
             }
-            dirty.extend(
-                layout
-                    .patches_meeting(vertex, vertex)
-                    .filter(|&corner| !std::mem::replace(&mut self.dirty[layout.patch_index(corner)], true)),
-            );
+            last = span;
+            let [(west, south), (east, north)] = span;
+            for y in south..=north {
+                for x in west..=east {
+                    let index = y as usize * patches_east + x as usize;
+                    if !std::mem::replace(&mut self.dirty[index], true) {
+                        dirty.push(Vertex::new(x * layout.patch(), y * layout.patch()));
+                    }
+                }
+            }
         }
         dirty.sort_unstable_by_key(|&corner| layout.patch_index(corner));
         dirty.iter().for_each(|&corner| self.dirty[layout.patch_index(corner)] = false);
@@ -315,7 +325,7 @@ pub(super) fn own_radius<'a>(
 /// parents.
 pub fn mend_active(active: &mut ActiveSet, criterion: &Spheres<'_>, edit: &Edit) {
     let layout = *active.layout();
-    for &vertex in edit.vertices.iter().filter(|&&vertex| !layout.is_corner(vertex)) {
+    for &vertex in edit.vertices[..edit.placed].iter().filter(|&&vertex| !layout.is_corner(vertex)) {
         if criterion.wants(vertex) {
             active.activate(vertex);
         } else {

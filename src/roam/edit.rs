@@ -216,7 +216,9 @@ fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
     a.max(b).max(c) - a.min(b).min(c)
 }
 
-fn has_moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
+/// Whether `change` gave a post another height.
+#[inline]
+pub(super) fn has_moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
     change.posts.contains(post) && change.height_before(post).to_bits() != lattice.height(post).to_bits()
 }
 

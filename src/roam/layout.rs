@@ -97,6 +97,16 @@ impl PatchLayout {
         self.patches_within((before(min.x), before(min.y)), (max.x / self.patch, max.y / self.patch))
     }
 
+    /// The first and the last of the patches that a vertex of the layout belongs to, counted in patches east and north: the
+    /// same unless it lies on a border between patches.
+    #[inline]
+    pub fn patches_at(&self, vertex: Vertex) -> [(i32, i32); 2] {
+        let shift = self.patch.trailing_zeros();
+        let first = ((vertex.x - 1).max(0) >> shift, (vertex.y - 1).max(0) >> shift);
+        let (east, north) = (self.patches_east - 1, self.patches_north - 1);
+        [first, ((vertex.x >> shift).min(east), (vertex.y >> shift).min(north))]
+    }
+
     /// The place of the patch with south-west corner `corner` in [`PatchLayout::patches`].
     #[inline]
     pub fn patch_index(&self, corner: Vertex) -> usize {
@@ -209,6 +219,16 @@ mod tests {
         let layout = PatchLayout::new(65, 66, 64).expect("sound");
         assert_eq!((layout.columns(), layout.rows(), layout.patch_count()), (65, 129, 2));
         assert_eq!(layout.post(Vertex::new(10, 100)), Post { column: 10, row: 65 });
+    }
+
+    #[test]
+    fn the_patches_at_a_vertex_are_those_that_meet_it() {
+        let layout = PatchLayout::new(40, 21, 8).expect("sound");
+        for vertex in layout.vertices() {
+            let [first, last] = layout.patches_at(vertex);
+            let meeting = layout.patches_meeting(vertex, vertex);
+            assert!(meeting.eq(layout.patches_within(first, last)), "{vertex:?}: {first:?} to {last:?}");
+        }
     }
 
     #[test]

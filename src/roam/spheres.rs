@@ -278,7 +278,7 @@ impl<'a> SphereNest<'a> {
 
     /// The radius about the edge middle in column `x` that holds the spheres of the centers around it, whose radii are in
     /// the rows `south` and `north`.
-    #[inline]
+    #[inline(always)]
     fn about_edge(&self, reach: usize, x: usize, [south, north]: [&[f32]; 2]) -> f32 {
         let [below, above] = &self.beside;
         let [west, east] = both_sides(x, reach, south.len());
@@ -296,7 +296,7 @@ impl<'a> SphereNest<'a> {
 
     /// The radius about the center in column `x` that holds the spheres of the edge middles around it; `row` has the radii
     /// of its own row.
-    #[inline]
+    #[inline(always)]
     fn about_center(&self, reach: usize, x: usize, row: &[f32], [south, north]: [&[f32]; 2]) -> f32 {
         let [below, above] = &self.beside;
         let (west, east) = (x - reach, x + reach);

@@ -63,6 +63,7 @@ impl PostRect {
     }
 
     /// Whether the post lies inside.
+    #[inline]
     pub fn contains(&self, post: Post) -> bool {
         (self.first.column..=self.last.column).contains(&post.column)
             && (self.first.row..=self.last.row).contains(&post.row)

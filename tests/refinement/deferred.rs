@@ -3,7 +3,7 @@
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable::dem::raster::{Raster, Samples};
-use sandtable::earthworks::brush::Crater;
+use sandtable::earthworks::brush::{Crater, set_heights};
 use sandtable::roam::bintree::Triangle;
 use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
 use sandtable::roam::criterion::spheres::Spheres;
@@ -18,6 +18,7 @@ use sandtable::roam::refine::deferred::Deferred;
 use sandtable::roam::refine::rebuild::rebuild;
 use sandtable::roam::spheres::SphereMap;
 use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable::terrain::post_rect::PostRect;
 
 fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
     let mut heights: Vec<f32> = (0..columns * rows)
@@ -182,6 +183,64 @@ fn a_crater_in_view_is_walked_round_as_if_it_had_always_been_there() {
         let anew = rebuilt(bare.ground(), bare.spheres(), eye, &all);
         assert_eq!(shown(&walk), anew, "after crater {step}");
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn an_edit_followed_by_vertices_shows_what_one_read_by_patches_does(
+        columns in 20u32..90, rows in 20u32..90,
+        holes in proptest::collection::vec(0usize..400, 0..4),
+        bumps in proptest::collection::vec((0u32..90, 0u32..90, 1u32..20, -40f32..40.0), 1..6),
+        stride in 0f32..40.0,
+    ) {
+        let options =
+            DynamicOptions { patch: 16, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 40.0 };
+        let terrain = || DynamicTerrain::new(hills(columns, rows, &holes), options).expect("sound");
+        let all: Vec<Vertex> = terrain().layout().patches().collect();
+        let mut walks = [terrain(), terrain()].map(|terrain| Deferred::new(terrain, 8.0).expect("small patches"));
+        let mut eye = Vec3::new(250.0, 200.0, 60.0);
+        for walk in &mut walks {
+            walk.update(eye, &all).expect("in memory");
+        }
+        for (column, row, side, height_m) in bumps {
+            eye.x += stride;
+            for (number, walk) in walks.iter_mut().enumerate() {
+                let edit = walk.source_mut().edit(|lattice| {
+                    let first = Post { column: column % columns, row: row % rows };
+                    let last = Post {
+                        column: (first.column + side).min(columns - 1),
+                        row: (first.row + side / 2).min(rows - 1),
+                    };
+                    let posts = PostRect { first, last };
+                    // Every fifth post stays as it is.
+                    let raised = |(at, post): (usize, Post)| {
+                        lattice.height(post) + if at % 5 == 0 { 0.0 } else { height_m }
+                    };
+                    let heights: Vec<f32> = posts.posts().enumerate().map(raised).collect();
+                    set_heights(lattice, posts, &heights)
+                });
+                let Some(edit) = edit else { continue };
+                if number == 0 { walk.mend(&edit) } else { walk.edit(&edit.patches) }.expect("in memory");
+                walk.update(eye, &all).expect("in memory");
+                walk.check();
+            }
+            let [mended, edited] = &walks;
+            prop_assert_eq!(shown(mended), shown(edited));
+            let source = mended.source();
+            prop_assert_eq!(shown(mended), rebuilt(source.ground(), source.spheres(), eye, &all));
+            for &corner in &all {
+                let held = [mended, edited].map(|walk| walk.block(corner).map(|block| bits(block)));
+                prop_assert!(held[0] == held[1], "the patch at {:?}", corner);
+            }
+        }
+    }
+}
+
+/// The heights and radii of a patch, bit by bit.
+fn bits(block: &PatchBlock) -> [Vec<u32>; 2] {
+    [&block.z, &block.radii].map(|values| values.iter().map(|value| value.to_bits()).collect())
 }
 
 #[test]

@@ -68,7 +68,7 @@ impl Walk {
             self.sight = again.into();
         }
         let Some(edit) = edit else { return Ok(None) };
-        self.mesh.edit(&edit.patches)?;
+        self.mesh.mend(&edit)?;
         self.view.forget();
         let layout = *self.mesh.source().ground().layout;
         let patches: Vec<usize> = edit.patches.iter().map(|&corner| layout.patch_index(corner)).collect();

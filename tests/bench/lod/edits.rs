@@ -155,7 +155,7 @@ fn print_walked() {
         let edit = edit.expect("a bump changes heights");
         edit_us.push(spent);
         let (_, spent) = timed(|| {
-            walk.edit(&edit.patches).expect("in memory");
+            walk.mend(&edit).expect("in memory");
             walk.update(camera.eye(), &patches).expect("in memory");
         });
         mesh_us.push(spent);

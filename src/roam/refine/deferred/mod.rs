@@ -16,6 +16,7 @@
 //! view.
 
 mod check;
+mod mend;
 pub mod patch;
 pub mod surface;
 pub mod topology;
@@ -84,8 +85,6 @@ pub struct Deferred<S> {
     settled: bool,
     frame: u64,
     changes: RefinementChanges,
-    /// Vertices that became active or inactive in the last update, with the places of their patches.
-    changed: Vec<(u32, u16)>,
     counts: UpdateCounts,
     scratch: UpdateScratch,
 }
@@ -115,7 +114,6 @@ impl<S: BlockSource> Deferred<S> {
             settled: false,
             frame: 0,
             changes: RefinementChanges::default(),
-            changed: Vec::new(),
             counts: UpdateCounts::default(),
             scratch: UpdateScratch::default(),
         })
@@ -131,7 +129,6 @@ impl<S: BlockSource> Deferred<S> {
             ..RefinementChanges::default()
         };
         self.changes.dirty.clear();
-        self.changed.clear();
         self.counts = UpdateCounts::default();
         if self.settled && eye == self.station.eye && visible == self.visible {
             return Ok(&self.changes);
@@ -148,7 +145,6 @@ impl<S: BlockSource> Deferred<S> {
         self.changes.splits = self.counts.splits;
         self.changes.merges = self.counts.merges;
         self.changes.dirty.sort_unstable();
-        self.changed.sort_unstable();
         self.settled = true;
         Ok(&self.changes)
     }
@@ -171,11 +167,9 @@ impl<S: BlockSource> Deferred<S> {
     /// Boxes, in world space, around the triangles of a patch that the last update changed: one for each vertex that became
     /// active or inactive. Heights that were edited are no such change.
     pub fn changed_areas(&self, patch: usize) -> impl ExactSizeIterator<Item = Rect> {
-        let of_patch = |&(changed, _): &(u32, u16)| (changed as usize).cmp(&patch);
-        let first = self.changed.partition_point(|changed| of_patch(changed).is_lt());
-        let end = self.changed.partition_point(|changed| of_patch(changed).is_le());
-        let mesh = self.patches[patch].mesh.map(|mesh| &self.meshes[mesh as usize]);
-        self.changed[first..end].iter().map(move |&(_, vertex)| {
+        let has_changed = self.changes.dirty.binary_search(&patch).is_ok();
+        let mesh = self.patches[patch].mesh.filter(|_| has_changed).map(|mesh| &self.meshes[mesh as usize]);
+        mesh.map_or(&[][..], PatchMesh::flipped).iter().map(move |&vertex| {
             let mesh = mesh.expect("only meshes change");
             mesh.around(&self.topologies[mesh.parity], vertex)
         })
@@ -259,21 +253,28 @@ impl<S: BlockSource> Deferred<S> {
     fn edit_mesh(&mut self, mesh: u32, block: &Arc<PatchBlock>) {
         let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
         let topology = &self.topologies[self.meshes[slot].parity];
-        let Some(changed) = self.meshes[slot].edit(topology, block) else {
+        if self.meshes[slot].edit(topology, block) {
+            self.miss_renewed(mesh);
+        } else {
             self.wheel.retain(|entry| entry >> VERTEX_BITS != mesh);
             self.meshes[slot].reset(topology, block, entries);
             self.behind[slot] = true;
-            return;
-        };
-        for vertex in changed {
-            let patch = &mut self.meshes[slot];
+        }
+    }
+
+    /// Marks the renewed vertices of a mesh that may have changed sides, or may do so before they are due.
+    fn miss_renewed(&mut self, mesh: u32) {
+        let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
+        let patch = &mut self.meshes[slot];
+        let renewed = patch.take_renewed(&self.topologies[patch.parity]);
+        for &vertex in renewed.iter().filter(|&&vertex| !Topology::is_corner(vertex)) {
             let waits = patch.is_waiting(vertex);
             if !waits && !patch.may_change(vertex) {
                 // A change of its neighbors examines it.
                 continue;
             }
             if waits {
-                let inside = self.station.inside_m(patch.sphere(topology, vertex));
+                let inside = self.station.inside_m(patch.sphere(vertex));
                 let is_soon_enough = (inside > 0.0) == patch.is_active(vertex)
                     && self.station.due(inside.abs()) >= self.wheel.begin(patch.list(vertex));
                 if is_soon_enough {
@@ -285,6 +286,7 @@ impl<S: BlockSource> Deferred<S> {
             patch.miss(vertex);
             self.behind[slot] = true;
         }
+        patch.keep(renewed);
     }
 
     /// The vertices of the patch with south-west corner `corner`; `None` while it has no mesh.
@@ -317,7 +319,6 @@ impl<S: BlockSource> Deferred<S> {
         swap(&mut self.settled, &mut other.settled);
         swap(&mut self.frame, &mut other.frame);
         swap(&mut self.changes, &mut other.changes);
-        swap(&mut self.changed, &mut other.changed);
         swap(&mut self.counts, &mut other.counts);
     }
 
@@ -431,7 +432,7 @@ impl<S: BlockSource> Deferred<S> {
         inside_m.extend(due.iter().map(|&entry| {
             let patch = &mut self.meshes[(entry >> VERTEX_BITS) as usize];
             patch.leave(vertex_of(entry));
-            self.station.inside_m(patch.sphere(&self.topologies[patch.parity], vertex_of(entry)))
+            self.station.inside_m(patch.sphere(vertex_of(entry)))
         }));
         for (&entry, &inside) in due.iter().zip(&inside_m) {
             let mesh = (entry >> VERTEX_BITS) as usize;
@@ -454,9 +455,9 @@ impl<S: BlockSource> Deferred<S> {
         }
     }
 
-    /// Calls `decide` for a mesh, and marks its patch as dirty if it changed.
+    /// Calls `decide` for a mesh.
+    #[inline]
     fn with_patch(&mut self, mesh: usize, decide: impl FnOnce(&mut PatchMesh, &mut Decider<'_>)) {
-        let before = self.counts.splits + self.counts.merges;
         let patch = &mut self.meshes[mesh];
         let mut with = Decider {
             topology: &self.topologies[patch.parity],
@@ -464,17 +465,15 @@ impl<S: BlockSource> Deferred<S> {
             wheel: &mut self.wheel,
             todo: &mut self.scratch.todo,
             counts: &mut self.counts,
-            changed: &mut self.changed,
+            frame: self.frame,
+            dirty: &mut self.changes.dirty,
         };
         decide(patch, &mut with);
-        if self.counts.splits + self.counts.merges > before && patch.changed < self.frame {
-            patch.changed = self.frame;
-            self.changes.dirty.push(patch.patch);
-        }
     }
 }
 
 /// The vertex of an entry of the wheel.
+#[inline]
 fn vertex_of(entry: u32) -> u16 {
     (entry & ((1 << VERTEX_BITS) - 1)) as u16
 }

@@ -49,11 +49,13 @@ pub struct EyeStation {
 
 impl EyeStation {
     /// The last full tick.
+    #[inline]
     pub fn tick(&self) -> u64 {
         self.traveled as u64
     }
 
     /// The first tick in which a vertex `slack_m` meters from its sphere's surface can change; at most [`FARTHEST`] ahead.
+    #[inline]
     pub fn due(&self, slack_m: f64) -> u64 {
         let ahead = (slack_m * self.ticks_per_m * SAFETY).min(FARTHEST as f64);
         (self.traveled + ahead) as u64
@@ -74,13 +76,16 @@ impl EyeStation {
     }
 }
 
-/// The sphere of a vertex and its list in the wheel: twelve bytes, five to a cache line. The flags, which change with the
-/// neighbors, are stored apart, sixty-four to a line.
+/// All that is stored of a vertex: half a cache line, so that looking at a vertex waits for the memory once.
 #[derive(Clone, Copy, Debug)]
-struct VertexCell {
-    z: f32,
-    radius: f32,
+#[repr(align(32))]
+struct VertexRecord {
+    /// The vertex in world space, Z 0 without data, and the radius of its sphere.
+    sphere: [f32; 4],
+    /// The places of its four triangles in the index list.
+    slots: [u16; 4],
     list: WheelList,
+    flags: u8,
 }
 
 /// The mesh of one patch.
@@ -96,15 +101,16 @@ pub struct PatchMesh {
     partial: bool,
     /// Which of the two orientations it has.
     pub parity: usize,
-    cells: Vec<VertexCell>,
-    flags: Vec<u8>,
-    /// The places of each vertex's four triangles in the index list.
-    slots: Vec<[u16; 4]>,
+    records: Vec<VertexRecord>,
     /// The source of the vertices, for comparison with an edited one.
     block: Arc<PatchBlock>,
     indices: Vec<[u16; 3]>,
     /// Vertices to examine when the patch is listed again.
     missed: Vec<u16>,
+    /// The vertices that became active or inactive in update [`PatchMesh::changed`].
+    flipped: Vec<u16>,
+    /// Vertices with a new sphere.
+    renewed: Vec<u16>,
 }
 
 /// The context of a decision.
@@ -119,8 +125,10 @@ pub struct Decider<'a> {
     pub todo: &'a mut Vec<u16>,
     /// The work done.
     pub counts: &'a mut UpdateCounts,
-    /// Vertices that became active or inactive, with the place of their patch in the layout.
-    pub changed: &'a mut Vec<(u32, u16)>,
+    /// The number of the update.
+    pub frame: u64,
+    /// The places in the layout of the patches that changed, each once.
+    pub dirty: &'a mut Vec<usize>,
 }
 
 /// The work of an update.
@@ -140,29 +148,34 @@ impl PatchMesh {
     pub fn reset(&mut self, topology: &Topology, block: &Arc<PatchBlock>, entries: u32) {
         self.entries = entries;
         self.block = Arc::clone(block);
-        self.cells.clear();
-        self.flags.clear();
-        for (vertex, node) in topology.nodes().iter().enumerate() {
-            let at = topology.row_major(vertex as u16);
-            let z = block.z[at];
-            let absent = u8::from(node.ring[1] == NONE) + u8::from(node.ring[3] == NONE);
-            let hole = if z.is_nan() { HOLE } else { 0 };
-            self.flags.push(hole | (absent * ONE_PARENT));
-            let z = if z.is_nan() { 0.0 } else { z };
-            self.cells.push(VertexCell { z, radius: block.radii[at], list: WheelList::NONE });
-        }
-        self.flags[CENTER as usize] |= BOTH_PARENTS;
-        self.slots.clear();
-        self.slots.resize(self.cells.len(), [NONE; 4]);
+        self.records.clear();
+        self.records.extend(topology.nodes().iter().zip(topology.places()).enumerate().map(
+            |(vertex, (node, place))| {
+                let at = topology.row_major(vertex as u16);
+                let z = block.z[at];
+                let absent = u8::from(node.ring[1] == NONE) + u8::from(node.ring[3] == NONE);
+                let hole = if z.is_nan() { HOLE } else { 0 };
+                let [x, y] = [0, 1].map(|axis| block.plan[axis][usize::from(place[axis])]);
+                let z = if z.is_nan() { 0.0 } else { z };
+                VertexRecord {
+                    sphere: [x, y, z, block.radii[at]],
+                    slots: [NONE; 4],
+                    list: WheelList::NONE,
+                    flags: hole | (absent * ONE_PARENT),
+                }
+            },
+        ));
+        self.records[CENTER as usize].flags |= BOTH_PARENTS;
         let clipped = block.plan.iter().any(|along| along.windows(2).any(|pair| pair[0] == pair[1]));
         self.partial = clipped || block.z.iter().any(|z| z.is_nan());
         self.indices.clear();
         for corner in topology.roots().iter().flatten() {
-            self.flags[*corner as usize] |= ACTIVE;
+            self.records[*corner as usize].flags |= ACTIVE;
         }
         for &root in topology.roots() {
-            self.show(topology, root, triangle(root[0], 0));
+            self.show(root, triangle(root[0], 0));
         }
+        self.renewed.clear();
         self.missed.clear();
         self.missed.push(CENTER);
     }
@@ -178,11 +191,13 @@ impl PatchMesh {
     }
 
     /// Whether the vertex is active; patch corners are.
+    #[inline]
     pub fn is_active(&self, vertex: u16) -> bool {
-        self.flags[vertex as usize] & ACTIVE != 0
+        self.records[vertex as usize].flags & ACTIVE != 0
     }
 
     /// Adds a vertex to examine when the patch is listed next.
+    #[inline]
     pub fn miss(&mut self, vertex: u16) {
         self.missed.push(vertex);
     }
@@ -193,66 +208,99 @@ impl PatchMesh {
         self.decide_all(with);
     }
 
-    /// Replaces the block by an edited one and returns the vertices whose spheres changed; `None` where data was added or
-    /// removed, so that the patch must be reset.
-    pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> Option<Vec<u16>> {
+    /// Takes over a block, edited; false where data was added or removed, so that the patch must be reset.
+    pub fn edit(&mut self, topology: &Topology, block: &Arc<PatchBlock>) -> bool {
         let old = std::mem::replace(&mut self.block, Arc::clone(block));
-        let mut changed = Vec::new();
-        let same = |at: usize| {
-            old.z[at].to_bits() == block.z[at].to_bits()
-                && old.radii[at].to_bits() == block.radii[at].to_bits()
-        };
         for (row, (z, radii)) in block.z.chunks(ROW).zip(block.radii.chunks(ROW)).enumerate() {
             let row = row * ROW..row * ROW + z.len();
             if same_bits(&old.z[row.clone()], z) && same_bits(&old.radii[row.clone()], radii) {
                 continue;
             }
-            for at in row.filter(|&at| !same(at)) {
-                let (z, vertex) = (block.z[at], topology.numbers()[at]);
-                if z.is_nan() != (self.flags[vertex as usize] & HOLE != 0) {
-                    return None;
-                }
-                let cell = &mut self.cells[vertex as usize];
-                (cell.z, cell.radius) = (if z.is_nan() { 0.0 } else { z }, block.radii[at]);
-                changed.push(vertex);
+            if !row.into_iter().all(|at| self.renew(topology.numbers()[at], [block.z[at], block.radii[at]])) {
+                return false;
             }
         }
-        changed.retain(|&vertex| !Topology::is_corner(vertex));
-        Some(changed)
+        true
+    }
+
+    /// Gives a vertex its height and its radius after an edit, meters; false where data was added or removed, so that the
+    /// patch must be reset.
+    #[inline]
+    pub fn renew(&mut self, vertex: u16, [z, radius]: [f32; 2]) -> bool {
+        let record = &mut self.records[vertex as usize];
+        if z.is_nan() != (record.flags & HOLE != 0) {
+            return false;
+        }
+        let now = [if z.is_nan() { 0.0 } else { z }, radius];
+        let sphere = &mut record.sphere[2..];
+        if sphere.iter().zip(now).any(|(old, now)| old.to_bits() != now.to_bits()) {
+            sphere.copy_from_slice(&now);
+            self.renewed.push(vertex);
+        }
+        true
+    }
+
+    /// The vertices that were renewed since this was called last, in the block too; the list is to be given back with
+    /// [`PatchMesh::keep`].
+    pub fn take_renewed(&mut self, topology: &Topology) -> Vec<u16> {
+        let renewed = std::mem::take(&mut self.renewed);
+        if !renewed.is_empty() {
+            let block = Arc::make_mut(&mut self.block);
+            for &vertex in &renewed {
+                let record = &self.records[vertex as usize];
+                let at = topology.row_major(vertex);
+                if record.flags & HOLE == 0 {
+                    block.z[at] = record.sphere[2];
+                }
+                block.radii[at] = record.sphere[3];
+            }
+        }
+        renewed
+    }
+
+    /// Takes back the memory of a list.
+    pub fn keep(&mut self, mut list: Vec<u16>) {
+        list.clear();
+        self.renewed = list;
     }
 
     /// Marks a vertex as in no list of the wheel.
     #[inline]
     pub fn leave(&mut self, vertex: u16) {
-        self.flags[vertex as usize] &= !WAITING;
+        self.records[vertex as usize].flags &= !WAITING;
     }
 
     /// The list of a vertex; valid while the vertex waits.
+    #[inline]
     pub fn list(&self, vertex: u16) -> WheelList {
-        self.cells[vertex as usize].list
+        self.records[vertex as usize].list
     }
 
     /// The active children that a vertex counts.
     pub(super) fn active_children(&self, vertex: u16) -> usize {
-        usize::from(self.flags[vertex as usize] / ONE_CHILD)
+        usize::from(self.records[vertex as usize].flags / ONE_CHILD)
     }
 
     /// Whether a vertex waits in the wheel.
+    #[inline]
     pub(super) fn is_waiting(&self, vertex: u16) -> bool {
-        self.flags[vertex as usize] & WAITING != 0
+        self.records[vertex as usize].flags & WAITING != 0
     }
 
     /// The place of a triangle in the index list.
     pub(super) fn slot(&self, triangle: u32) -> Option<usize> {
-        let slot = self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
+        let slot = self.records[(triangle / 4) as usize].slots[(triangle % 4) as usize];
         (slot != NONE).then_some(slot as usize)
     }
 
     #[inline]
-    pub(super) fn sphere(&self, topology: &Topology, vertex: u16) -> [f32; 4] {
-        let cell = &self.cells[vertex as usize];
-        let [column, row] = topology.places()[vertex as usize];
-        [self.block.plan[0][column as usize], self.block.plan[1][row as usize], cell.z, cell.radius]
+    pub(super) fn sphere(&self, vertex: u16) -> [f32; 4] {
+        self.records[vertex as usize].sphere
+    }
+
+    /// The vertices that became active or inactive in update [`PatchMesh::changed`].
+    pub fn flipped(&self) -> &[u16] {
+        &self.flipped
     }
 
     /// The box in world space around the triangles that a vertex's activation replaces.
@@ -266,6 +314,7 @@ impl PatchMesh {
     }
 
     /// Decides a vertex whose sphere the eye is inside by `inside` meters, and those that follow from it.
+    #[inline]
     pub fn decide(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
         self.decide_one(with, vertex, inside);
         self.decide_all(with);
@@ -273,14 +322,15 @@ impl PatchMesh {
 
     fn decide_all(&mut self, with: &mut Decider<'_>) {
         while let Some(vertex) = with.todo.pop() {
-            let inside = with.station.inside_m(self.sphere(with.topology, vertex));
+            let inside = with.station.inside_m(self.sphere(vertex));
             self.decide_one(with, vertex, inside);
         }
     }
 
     /// Decides a vertex, unless it waits or cannot change, and puts it into the wheel.
+    #[inline]
     fn decide_one(&mut self, with: &mut Decider<'_>, vertex: u16, inside: f64) {
-        let flags = self.flags[vertex as usize];
+        let flags = self.records[vertex as usize].flags;
         if flags & WAITING != 0 || !self.may_change(vertex) {
             return;
         }
@@ -293,57 +343,71 @@ impl PatchMesh {
         }
         if inside != f64::NEG_INFINITY {
             let due = with.station.due(inside.abs());
-            self.flags[vertex as usize] |= WAITING;
-            self.cells[vertex as usize].list = with.wheel.put(self.entries + u32::from(vertex), due);
+            self.records[vertex as usize].flags |= WAITING;
+            self.records[vertex as usize].list = with.wheel.put(self.entries + u32::from(vertex), due);
         }
     }
 
     /// Whether a vertex can change before its neighbors do: it is active without active children, or its parents are active.
     #[inline]
     pub(super) fn may_change(&self, vertex: u16) -> bool {
-        let flags = self.flags[vertex as usize];
+        let flags = self.records[vertex as usize].flags;
         if flags & ACTIVE != 0 { flags < ONE_CHILD } else { flags & PARENTS == BOTH_PARENTS }
     }
 
     /// Whether the parents of a vertex are active.
+    #[inline]
     pub(super) fn may_split(&self, vertex: u16) -> bool {
-        self.flags[vertex as usize] & PARENTS == BOTH_PARENTS
+        self.records[vertex as usize].flags & PARENTS == BOTH_PARENTS
     }
 
+    /// Notes that a vertex becomes active or inactive.
+    #[inline]
+    fn flip(&mut self, with: &mut Decider<'_>, vertex: u16) {
+        if self.changed < with.frame {
+            self.changed = with.frame;
+            self.flipped.clear();
+            with.dirty.push(self.patch);
+        }
+        self.flipped.push(vertex);
+        self.records[vertex as usize].flags ^= ACTIVE;
+    }
+
+    #[inline]
     fn activate(&mut self, with: &mut Decider<'_>, vertex: u16) {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.splits += 1;
-        with.changed.push((self.patch as u32, vertex));
-        self.flags[vertex as usize] |= ACTIVE;
+        self.flip(with, vertex);
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
             if parent == NONE {
                 continue;
             }
-            self.flags[parent as usize] += ONE_CHILD;
+            self.records[parent as usize].flags += ONE_CHILD;
             let [first, second] = halves(node, vertex, side);
             self.replace(topology, node.splits[side], triangle(vertex, 2 * side), first);
-            self.show(topology, second, triangle(vertex, 2 * side + 1));
+            self.show(second, triangle(vertex, 2 * side + 1));
         }
+        let mut ready = ReadyVertices::default();
         for child in node.children.into_iter().filter(|&child| child != NONE) {
-            let below = &mut self.flags[child as usize];
+            let below = &mut self.records[child as usize].flags;
             *below += ONE_PARENT;
-            if *below & (PARENTS | WAITING) == BOTH_PARENTS {
-                with.todo.push(child);
-            }
+            ready.add_if(*below & (PARENTS | WAITING) == BOTH_PARENTS, child);
         }
+        ready.append_to(with.todo);
     }
 
+    #[inline]
     fn deactivate(&mut self, with: &mut Decider<'_>, vertex: u16) {
         let topology = with.topology;
         let node = &topology.nodes()[vertex as usize];
         with.counts.merges += 1;
-        with.changed.push((self.patch as u32, vertex));
-        self.flags[vertex as usize] &= !ACTIVE;
+        self.flip(with, vertex);
         for child in node.children.into_iter().filter(|&child| child != NONE) {
-            self.flags[child as usize] -= ONE_PARENT;
+            self.records[child as usize].flags -= ONE_PARENT;
         }
+        let mut ready = ReadyVertices::default();
         for side in 0..2 {
             let parent = node.ring[2 * side + 1];
             if parent == NONE {
@@ -352,39 +416,41 @@ impl PatchMesh {
             self.hide(topology, triangle(vertex, 2 * side + 1));
             let whole = [parent, node.ring[(2 * side + 2) % 4], node.ring[2 * side]];
             self.replace(topology, triangle(vertex, 2 * side), node.splits[side], whole);
-            let above = &mut self.flags[parent as usize];
+            let above = &mut self.records[parent as usize].flags;
             *above -= ONE_CHILD;
-            if *above < ONE_CHILD && *above & WAITING == 0 && !Topology::is_corner(parent) {
-                with.todo.push(parent);
-            }
+            ready.add_if(*above < ONE_CHILD && *above & WAITING == 0 && !Topology::is_corner(parent), parent);
         }
+        ready.append_to(with.todo);
     }
 
     /// Shows a triangle in the place of another.
+    #[inline]
     fn replace(&mut self, topology: &Topology, old: u32, new: u32, corners: [u16; 3]) {
-        let slot = self.slots[(old / 4) as usize][(old % 4) as usize];
+        let slot = self.records[(old / 4) as usize].slots[(old % 4) as usize];
         if slot == NONE || self.partial {
             self.hide(topology, old);
-            self.show(topology, corners, new);
+            self.show(corners, new);
             return;
         }
-        self.slots[(old / 4) as usize][(old % 4) as usize] = NONE;
-        self.slots[(new / 4) as usize][(new % 4) as usize] = slot;
+        self.records[(old / 4) as usize].slots[(old % 4) as usize] = NONE;
+        self.records[(new / 4) as usize].slots[(new % 4) as usize] = slot;
         self.indices[slot as usize] = corners;
     }
 
     /// Adds a triangle to the index list, unless it lies over no data or has no area.
-    fn show(&mut self, topology: &Topology, corners: [u16; 3], triangle: u32) {
-        if self.partial && self.is_missing(topology, corners) {
+    #[inline]
+    fn show(&mut self, corners: [u16; 3], triangle: u32) {
+        if self.partial && self.is_missing(corners) {
             return;
         }
-        self.slots[(triangle / 4) as usize][(triangle % 4) as usize] = self.indices.len() as u16;
+        self.records[(triangle / 4) as usize].slots[(triangle % 4) as usize] = self.indices.len() as u16;
         self.indices.push(corners);
     }
 
     /// Takes a triangle out of the index list; the last one takes its place.
+    #[inline]
     fn hide(&mut self, topology: &Topology, triangle: u32) {
-        let own = &mut self.slots[(triangle / 4) as usize][(triangle % 4) as usize];
+        let own = &mut self.records[(triangle / 4) as usize].slots[(triangle % 4) as usize];
         let slot = std::mem::replace(own, NONE);
         if slot == NONE {
             return;
@@ -392,25 +458,45 @@ impl PatchMesh {
         self.indices.swap_remove(slot as usize);
         if let Some(&corners) = self.indices.get(slot as usize) {
             let moved = topology.triangle_of(corners);
-            self.slots[(moved / 4) as usize][(moved % 4) as usize] = slot;
+            self.records[(moved / 4) as usize].slots[(moved % 4) as usize] = slot;
         }
     }
 
     /// Whether a leaf of the bintree is displayed.
-    pub(super) fn is_displayed(&self, topology: &Topology, corners: [u16; 3]) -> bool {
-        !(self.partial && self.is_missing(topology, corners))
+    pub(super) fn is_displayed(&self, corners: [u16; 3]) -> bool {
+        !(self.partial && self.is_missing(corners))
     }
 
     /// Whether a triangle lies over no data, or has no area, as beyond the border of the terrain.
-    pub(super) fn is_missing(&self, topology: &Topology, corners: [u16; 3]) -> bool {
-        if corners.iter().any(|&corner| self.flags[corner as usize] & HOLE != 0) {
+    pub(super) fn is_missing(&self, corners: [u16; 3]) -> bool {
+        if corners.iter().any(|&corner| self.records[corner as usize].flags & HOLE != 0) {
             return true;
         }
-        let [a, b, c] = corners.map(|corner| {
-            let [x, y] = topology.places()[corner as usize];
-            [self.block.plan[0][x as usize], self.block.plan[1][y as usize]]
-        });
+        let [a, b, c] = corners.map(|corner| self.sphere(corner));
         (b[0] - a[0]) * (c[1] - a[1]) == (b[1] - a[1]) * (c[0] - a[0])
+    }
+}
+
+/// Up to four vertices to examine. Whether a vertex is added is written without a branch, which would be foreseen wrongly as
+/// often as not.
+#[derive(Default)]
+struct ReadyVertices {
+    vertices: [u16; 4],
+    count: usize,
+}
+
+impl ReadyVertices {
+    #[inline]
+    fn add_if(&mut self, is_ready: bool, vertex: u16) {
+        self.vertices[self.count & 3] = vertex;
+        self.count += usize::from(is_ready);
+    }
+
+    #[inline]
+    fn append_to(self, todo: &mut Vec<u16>) {
+        let end = todo.len() + self.count;
+        todo.extend_from_slice(&self.vertices);
+        todo.truncate(end);
     }
 }
 

@@ -5,9 +5,11 @@
 //! taken when its *beginning* is reached: early, never late. Those that may change before the next tick are in a separate
 //! list, which is taken every time.
 //!
-//! Entries are numbers of the owner's choice; the owner stores the list of each. A list is an array, so that reading the
-//! entry after next does not wait for the next, as in a chain through the vertices' own records, and an entry to take out is
-//! found by a scan.
+//! Entries are numbers of the owner's choice; the owner stores the list of each. A list is a chain of chunks of one cache
+//! line, so that reading the entry after next seldom waits for the next, as in a chain through the vertices' own records.
+//! An entry to take out is found by a scan. The chunks of all lists come from one pool: those that a list gives back, still
+//! in the cache, are the next to be filled, and once the pool is as large as the most that wait at a time no frame asks for
+//! memory.
 
 /// Slots of a level; one word of bits tells which are not empty.
 const SLOTS: u64 = 64;
@@ -33,19 +35,47 @@ impl WheelList {
     pub const NONE: Self = Self(u16::MAX);
 }
 
+/// Entries in a chunk: with the link, one cache line.
+const CHUNK: usize = 15;
+
+/// The link of the last chunk of a list.
+const NO_CHUNK: u32 = u32::MAX;
+
+/// Entries of one list.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct WheelChunk {
+    entries: [u32; CHUNK],
+    /// The chunk that was filled before this.
+    before: u32,
+}
+
+/// The newest chunk of a list, the only one that may have fewer than [`CHUNK`] entries.
+#[derive(Clone, Copy, Debug)]
+struct NewestChunk {
+    chunk: u32,
+    /// Its entries; [`CHUNK`] where there is no chunk, so that the next entry begins one.
+    count: u32,
+}
+
+const EMPTY_LIST: NewestChunk = NewestChunk { chunk: NO_CHUNK, count: CHUNK as u32 };
+
 /// The lists.
 #[derive(Clone, Debug)]
 pub struct Wheel {
     now: u64,
     filled: [u64; LEVELS],
-    /// Those that have been taken keep their memory.
-    lists: Vec<Vec<u32>>,
+    lists: Vec<NewestChunk>,
+    pool: Vec<WheelChunk>,
+    /// Chunks of no list.
+    spare: Vec<u32>,
 }
 
 impl Wheel {
     /// An empty wheel at tick `now`.
     pub fn new(now: u64) -> Self {
-        Self { now, filled: [0; LEVELS], lists: vec![Vec::new(); NEXT_TIME + 1] }
+        let lists = vec![EMPTY_LIST; NEXT_TIME + 1];
+        Self { now, filled: [0; LEVELS], lists, pool: Vec::new(), spare: Vec::new() }
     }
 
     /// Puts `entry`, which is in no list, into the list that is taken at tick `due` or up to a sixteenth of the distance
@@ -55,11 +85,38 @@ impl Wheel {
     pub fn put(&mut self, entry: u32, due: u64) -> WheelList {
         let due = due.min(self.now + FARTHEST);
         let list = if due <= self.now { NEXT_TIME } else { self.slot(due) };
-        self.lists[list].push(entry);
+        self.add(list, entry);
         WheelList(list as u16)
     }
 
+    #[inline]
+    fn add(&mut self, list: usize, entry: u32) {
+        let newest = &mut self.lists[list];
+        if newest.count as usize == CHUNK {
+            let chunk = self.spare.pop().unwrap_or_else(|| {
+                self.pool.push(WheelChunk { entries: [0; CHUNK], before: NO_CHUNK });
+                self.pool.len() as u32 - 1
+            });
+            self.pool[chunk as usize].before = newest.chunk;
+            *newest = NewestChunk { chunk, count: 0 };
+        }
+        self.pool[newest.chunk as usize].entries[newest.count as usize] = entry;
+        newest.count += 1;
+    }
+
+    /// Empties a list and appends its entries to `taken`, the newest first.
+    fn take(&mut self, list: usize, taken: &mut Vec<u32>) {
+        let NewestChunk { mut chunk, mut count } = std::mem::replace(&mut self.lists[list], EMPTY_LIST);
+        while chunk != NO_CHUNK {
+            let WheelChunk { entries, before } = &self.pool[chunk as usize];
+            taken.extend(entries[..count as usize].iter().rev());
+            self.spare.push(chunk);
+            (chunk, count) = (*before, CHUNK as u32);
+        }
+    }
+
     /// The slot of a tick after now, marked as filled.
+    #[inline]
     fn slot(&mut self, due: u64) -> usize {
         // The lowest level on which the tick is fewer than a turn away.
         let bits = u64::BITS - (due - self.now).leading_zeros();
@@ -73,6 +130,7 @@ impl Wheel {
     }
 
     /// The tick at which a list is taken; 0 for the one that is taken every time.
+    #[inline]
     pub fn begin(&self, WheelList(list): WheelList) -> u64 {
         let list = u64::from(list);
         if list as usize == NEXT_TIME {
@@ -83,22 +141,40 @@ impl Wheel {
         (now + slot.wrapping_sub(now) % SLOTS) << shift
     }
 
-    /// Takes an entry out of the list that it is in.
+    /// Takes an entry out of the list that it is in; the newest entry of the list takes its place.
     pub fn remove(&mut self, entry: u32, WheelList(list): WheelList) {
-        let list = &mut self.lists[list as usize];
-        let at = list.iter().position(|&other| other == entry);
-        list.remove(at.expect("the owner stores the list that an entry is in"));
+        let newest = self.lists[list as usize];
+        let (mut chunk, mut count) = (newest.chunk, newest.count as usize);
+        let at = loop {
+            assert!(chunk != NO_CHUNK, "the owner stores the list that an entry is in");
+            let WheelChunk { entries, before } = &self.pool[chunk as usize];
+            match entries[..count].iter().position(|&other| other == entry) {
+                Some(at) => break at,
+                None => (chunk, count) = (*before, CHUNK),
+            }
+        };
+        let last = self.pool[newest.chunk as usize];
+        self.pool[chunk as usize].entries[at] = last.entries[newest.count as usize - 1];
+        self.lists[list as usize].count -= 1;
+        if newest.count == 1 {
+            self.spare.push(newest.chunk);
+            self.lists[list as usize] = NewestChunk { chunk: last.before, ..EMPTY_LIST };
+        }
     }
 
     /// Takes out every entry for which `keep` returns false.
     pub fn retain(&mut self, keep: impl Fn(u32) -> bool) {
-        self.lists.iter_mut().for_each(|list| list.retain(|&entry| keep(entry)));
+        let mut taken = Vec::new();
+        for list in 0..self.lists.len() {
+            self.take(list, &mut taken);
+            taken.drain(..).rev().filter(|&entry| keep(entry)).for_each(|entry| self.add(list, entry));
+        }
     }
 
     /// Advances to tick `now`, which must not be before the last, and appends the entries due by then to `due`,
     /// those of a list in the reverse of the order in which they were put there.
     pub fn take_due(&mut self, now: u64, due: &mut Vec<u32>) {
-        due.extend(self.lists[NEXT_TIME].drain(..).rev());
+        self.take(NEXT_TIME, due);
         for level in 0..LEVELS {
             if (self.now >> (level as u32 * SHIFT)) == (now >> (level as u32 * SHIFT)) {
                 break;
@@ -107,7 +183,7 @@ impl Wheel {
             self.filled[level] &= !slots;
             while slots != 0 {
                 let slot = slots.trailing_zeros() as usize;
-                due.extend(self.lists[level * SLOTS as usize + slot].drain(..).rev());
+                self.take(level * SLOTS as usize + slot, due);
                 slots &= slots - 1;
             }
         }
