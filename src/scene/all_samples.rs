@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::dem::answer::Answer;
+use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
 use crate::dem::voids;
 use crate::dem::warp::metric_windows::{MetricPlan, MetricWindows};
@@ -12,6 +13,7 @@ use crate::description::document::Document;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
+use crate::limits::memory::check_memory;
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::Interpolation;
@@ -24,6 +26,9 @@ const HALO: f64 = 4.0;
 
 /// Posts beside a part with voids that are read as well, so that voids on its border are known to end.
 const VOID_MARGIN: u32 = 512;
+
+/// Memory for a post of a part: its height, whether it is pinned and whether it is in sight.
+const BYTES_PER_POST: usize = 8;
 
 /// More posts than are read at once.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +141,8 @@ impl AllSamples {
     /// The samples cannot be read.
     pub fn part(&mut self, posts: PostRect) -> Result<Lattice, LatticePartError> {
         let size = self.plan.header().size();
+        let bytes = (posts.width() * posts.height() * BYTES_PER_POST) as u64;
+        check_memory(bytes, "the ground in sight", "look less far").map_err(DemErrorKind::from)?;
         let mut metric = MetricWindows::new(&mut self.windows, &self.plan);
         let part = lattice_part(&mut metric, posts)?;
         if !self.fills_voids || part.held_heights().iter().all(|height| height.is_finite()) {

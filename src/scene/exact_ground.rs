@@ -35,8 +35,8 @@ use crate::terrain::query::{Interpolation, ground_height};
 /// grounds, whose sources are read as often.
 const MOST_SHAPED_PARTS: usize = 8;
 
-/// The side of such a part, in cells of the means.
-const SHAPED_PART_CELLS: f64 = 128.0;
+/// The side of such a part, in cells of the means: a town's labels share one, and it is read in a few milliseconds.
+const SHAPED_PART_CELLS: f64 = 64.0;
 
 /// How far from a summit of the means the highest sample is looked for, in cells of the means: within the squares beside it.
 const SUMMIT_CELLS: f64 = 1.5;
@@ -188,7 +188,7 @@ impl<'a> ExactGround<'a> {
                  there: too many places far apart have one"
             );
             let span = self.frame.document.terrain.dem.span().unwrap_or_default();
-            findings.add(FindingCode::SamplesAveraged, span, message);
+            findings.add(FindingCode::HeightsUnshaped, span, message);
         }
     }
 

@@ -88,7 +88,7 @@ impl SceneViewshed {
     /// # Errors
     /// The range is too large, or the samples cannot be read.
     pub(super) fn find(&self, exact: &ExactGround<'_>) -> Result<Option<Lattice>, ExactPartError> {
-        let Some(reach) = self.reach(&exact.lattice.map_extent()) else { return Ok(None) };
+        let Some(reach) = self.reach() else { return Ok(None) };
         let part = exact.part(&reach)?;
         if let Some(part) = &part {
             self.seen.get_or_init(|| self.compute(part));
@@ -96,16 +96,14 @@ impl SceneViewshed {
         Ok(part)
     }
 
-    /// The rectangle within reach of the observers, on ground of the extent `all`.
-    fn reach(&self, all: &Rect) -> Option<Rect> {
-        let squares = self.observers.iter().map(|options| {
+    /// The rectangle within reach of the observers, map coordinates; may be infinite. `None` without observers.
+    fn reach(&self) -> Option<Rect> {
+        let corners = |options: &ViewshedOptions| {
             let at = options.observer.at;
-            let around = Rect { min: at - options.range_m, max: at + options.range_m };
-            // An observer beside the border of the means is still looked from.
-            let kept = around.intersection(all);
-            Rect::around([kept.min, kept.max, at])
-        });
-        squares.reduce(|a, b| Rect::around([a.min, a.max, b.min, b.max]))
+            [at - options.range_m, at + options.range_m]
+        };
+        let around = Rect::around(self.observers.iter().flat_map(corners));
+        (!around.is_empty()).then_some(around)
     }
 
     /// What is in sight of one of the observers at least, on `lattice` unless it was found before, computed on first use; `None`

@@ -148,7 +148,7 @@ pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Resu
                 "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
             );
             let span = table.observers.span().unwrap_or_default();
-            collected.findings.add_with_help(FindingCode::SamplesAveraged, span, message, help);
+            collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
         }
         layers.viewsheds.push(layer);
     }
