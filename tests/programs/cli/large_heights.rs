@@ -10,7 +10,8 @@ use crate::common::scratch::Scratch;
 const FAR: &str = "[[camera]]\nname = \"far\"\nprojection = \"plan\"\n";
 
 /// A camera that shows all samples of a part of the ground.
-const PART: &str = "[[camera]]\nname = \"part\"\nprojection = \"plan\"\nshows = [[503000, 4002500], [504500, 4003500]]\n";
+const PART: &str =
+    "[[camera]]\nname = \"part\"\nprojection = \"plan\"\nshows = [[503000, 4002500], [504500, 4003500]]\n";
 
 const TERRAIN: &str = "[terrain]\ndem = \"hill.tif\"\n";
 
@@ -36,7 +37,9 @@ impl LabeledPicture {
     }
 
     fn is_of_means(&self) -> bool {
-        self.said["notes"].to_string().contains("heights in numbers and what is in sight are those of all samples")
+        self.said["notes"]
+            .to_string()
+            .contains("heights in numbers and what is in sight are those of all samples")
     }
 
     /// The share of bytes that differ from those of another by no more than `levels`.
@@ -109,7 +112,8 @@ fn numbers_and_sight_of_a_large_model_are_of_the_ground_as_it_is_shaped() {
 
 #[test]
 fn more_places_far_apart_than_parts_are_built_for_are_said_to_be_unshaped() {
-    let lake = "[[lake]]\nlevel = 250.4\npoints = [[500500, 4000500], [500700, 4000500], [500700, 4000700]]\n";
+    let lake =
+        "[[lake]]\nlevel = 250.4\npoints = [[500500, 4000500], [500700, 4000500], [500700, 4000700]]\n";
     let scratch = scene(TERRAIN);
     let label = |index: u32| {
         let (x, y) = (500_150 + 2900 * (index % 4), 4_000_150 + 2900 * (index / 4));
@@ -132,7 +136,7 @@ fn a_viewshed_without_a_range_is_refused_where_it_would_read_too_much() {
     let notes = picture.said["notes"].to_string();
     assert!(notes.contains("took all 900 x 900 samples"), "{notes}");
     let render = ["render", "s.toml", "-o", "out.png", "--limit", "raster-samples=500k"];
-    let said = run_in(scratch.folder(), &render).failed(1);
+    let said = run_in(scratch.folder(), &[&render[..], &LARGE].concat()).failed(1);
     assert!(said.contains("900 x 900 samples") && said.contains("state `range`, in meters"), "{said}");
 }
 
@@ -143,7 +147,7 @@ fn buffers_are_of_the_picture_as_it_is_drawn_and_say_so() {
     let raster = |more: &[&str]| {
         run_in(scratch.folder(), &[&render[..], more].concat()).ok();
         let bytes = std::fs::read(scratch.at("b/elevation.tif")).expect("a raster");
-        let says = bytes.windows(12).any(|text| text == b"is the mean ");
+        let says = bytes.windows(13).any(|text| text == b"is their mean");
         let values = run_in(scratch.folder(), &["dem", "info", "b/elevation.tif", "--json"]).ok();
         let values: Value = serde_json::from_str(&values).expect("JSON");
         (says, values)
