@@ -18,6 +18,7 @@ use crate::dem::windows::Windows;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::feature_value::FeatureValue;
+use crate::description::features::FenceTable;
 use crate::description::finding_code::FindingCode;
 use crate::description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
 use crate::geom::rect::Rect;
@@ -55,11 +56,15 @@ fn shows_sight(document: &Document) -> bool {
 
 /// Whether the heights of the ground may be other than those of the elevation.
 fn shapes_ground(document: &Document) -> bool {
-    let is_trench = |kind: &Option<FeatureValue<FenceKind>>| !matches!(kind, Some(FeatureValue::Fixed(kind)) if *kind != FenceKind::Trench);
+    let may_be_dug = |fence: &FenceTable| match &fence.kind {
+        Some(FeatureValue::Fixed(kind)) => *kind == FenceKind::Trench,
+        Some(FeatureValue::Computed { .. }) => true,
+        None => fence.source.file.is_some(),
+    };
     !(document.lakes.is_empty() && document.rivers.is_empty() && document.earthworks.is_empty())
         || document.roads.iter().any(|road| road.profile == ProfileMode::Conform)
         || document.buildings.iter().any(|building| building.base == BaseRule::Pad)
-        || document.fences.iter().any(|fence| is_trench(&fence.kind))
+        || document.fences.iter().any(may_be_dug)
         || document.models.iter().any(|model| *model.footing == Footing::Pad)
 }
 
