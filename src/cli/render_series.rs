@@ -120,11 +120,7 @@ impl RenderSeries<'_> {
         let progress = |step| steps.begin(step);
         let allowed = &arguments.access.allow;
         let pictures = planned_pictures(arguments);
-        // Buffers hold heights.
-        let need = match arguments.buffers {
-            Some(_) => ElevationNeed::AllThatFit,
-            None => ElevationNeed::Pictures(&pictures),
-        };
+        let need = ElevationNeed::Pictures(&pictures);
         if !arguments.all_phases {
             let scene = open_scene_for(file, allowed, arguments.phase.as_deref(), need, &progress)?;
             return Ok(vec![self.scene(scene, path, 1)?]);

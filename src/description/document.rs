@@ -184,7 +184,8 @@ table! {
         ramp: Stated<RampChoice> = key::ramp(), default "atlas";
         /// Contour lines.
         contours: Option<ContourTable> = key::table::<ContourTable>(), otherwise "no contour lines";
-        /// How many summits, saddles and lakes without a label show their elevation, the most prominent first.
+        /// How many summits, saddles and lakes without a label show their elevation, the most prominent first. Of a model of which
+        /// pictures show means, hills smaller than these are missed; the elevation of those that are found is the file's.
         spot_heights: u32 = key::integer(0, 1000), default 0;
         /// A picture of the ground over the colors by height, such as an aerial photograph.
         imagery: Option<ImageryTable> = key::table::<ImageryTable>(), otherwise "no picture";

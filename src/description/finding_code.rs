@@ -133,7 +133,15 @@ finding_codes! {
     SamplesAveraged = "samples-averaged", Note,
         "The pictures show no square of so many samples of the elevation model wider than half a pixel, so that it was read as \
          means of them: faster, and in less memory. What lies on the ground lies on these. Near the eye pictures show windows of all \
-         samples with what lies there. Heights on labels and lines of sight have all samples read, as all other commands have.";
+         samples with what lies there. Heights in numbers, lines of sight and viewsheds are of all samples around them; summits and \
+         saddles are those of the means, which leave out what is smaller.";
+    RangeMissing = "range-missing", Note,
+        "A viewshed without a `range` looks as far as the ground reaches, so that all samples of the elevation model were read for \
+         it, eight bytes of memory each, though its pictures need fewer. State `range`, in meters.";
+    HeightsUnshaped = "heights-unshaped", Note,
+        "Heights in numbers are those of the elevation model where lakes, rivers, roads, pads and earthworks may have changed the \
+         ground: a scene of a large model builds a few parts of it with all samples, for the first places that show a height. \
+         `extent` under `[terrain]` names a part, which is taken in full.";
     PostsAdded = "posts-added", Note,
         "More posts were put between those of the elevation model, for what is finer than its cells. The ground stays as it was.";
     TooFine = "too-fine", Note,

@@ -77,7 +77,7 @@ table! {
         observer_height: f64 = key::number(ABOVE, "m"), default 2;
         /// Height above the ground of what is looked for.
         target_height: f64 = key::number(ABOVE, "m"), default 0;
-        /// How far they look.
+        /// How far they look. All samples of the elevation model within it are read, however large the model is.
         range: Option<f64> = key::number(REACH, "m"), otherwise "as far as the ground reaches";
         /// Directions in which they look, from the first clockwise to the second.
         azimuths: Option<[f64; 2]> = key::directions(DIRECTION, "°"), otherwise "all around";

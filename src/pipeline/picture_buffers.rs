@@ -6,8 +6,10 @@ use glam::{DAffine2, DMat2, DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::annotate::sheet_frame::SheetFrame;
-use crate::dem::formats::DemFormat;
 use crate::dem::raster::{Raster, Samples};
+use crate::dem::tiff::write::write_described;
+use crate::description::finding::Finding;
+use crate::description::finding_code::FindingCode;
 use crate::draw::color::Srgba;
 use crate::draw::list::FeatureId;
 use crate::draw::pixels::Pixels;
@@ -15,7 +17,6 @@ use crate::export::encode_png;
 use crate::pipeline::files::{self, WriteFileError};
 use crate::pipeline::output_files::OutputFiles;
 use crate::pipeline::picture::{PictureError, PictureSize, framed_camera};
-use crate::pipeline::raster_file::{self, WriteRasterError};
 use crate::render::cpu::render_buffers;
 use crate::render::picture::Rendering;
 use crate::scene::picture::build_shapes;
@@ -102,13 +103,15 @@ impl PictureBuffers<'_> {
 
     /// Writes `depth.tif` and `elevation.tif` in meters without data for sky, `normal.png`, `feature.tif` with the number
     /// of a feature at each pixel (0 for sky, 1 for ground) and `features.csv` with their names, all into `folder`, among the other
-    /// `files`. In a plan the rasters have the scene's georeference.
+    /// `files`. In a plan the rasters have the scene's georeference. They are of the picture as it is drawn: where its ground is of
+    /// means of samples, the rasters say so in their description.
     ///
     /// # Errors
     /// A file cannot be written, or would replace one of the scene's.
-    pub fn write(&self, files: &mut OutputFiles, folder: &Path) -> Result<(), WriteRasterError> {
+    pub fn write(&self, files: &mut OutputFiles, folder: &Path) -> Result<(), WriteFileError> {
         let Rendering { depth_m, features, .. } = self.rendering;
         let finite = |&depth_m: &f32| if depth_m.is_finite() { depth_m } else { f32::NAN };
+        let description = self.description();
         let depths = Samples::F32(depth_m.par_iter().map(finite).collect());
         let elevation = |(column, row)| match self.world(column, row) {
             Some((_, at)) => self.scene.scale.elevation_m(at.z),
@@ -123,13 +126,21 @@ impl PictureBuffers<'_> {
         {
             let path = folder.join(name);
             files::check_output(&path, &self.scene.files)?;
-            let format = DemFormat::to_write("tif").expect("GeoTIFF is written");
-            raster_file::add(files, &self.raster(samples), format, &path, &self.scene.files)?;
+            files.write(&path, &write_described(&self.raster(samples), &description).bytes)?;
         }
         self.write_normals(files, folder)?;
         let path = folder.join("features.csv");
         files::check_output(&path, &self.scene.files)?;
-        Ok(files.write(&path, self.feature_table().as_bytes())?)
+        files.write(&path, self.feature_table().as_bytes())
+    }
+
+    /// Of which samples of the elevation the picture's ground is made; empty where that is of all.
+    fn description(&self) -> String {
+        let is_of_means = |finding: &&Finding| {
+            matches!(finding.code, FindingCode::SamplesAveraged | FindingCode::ElevationReduced)
+        };
+        let found = self.scene.findings.iter().find(is_of_means);
+        found.map_or_else(String::new, |finding| finding.message.clone())
     }
 
     fn each_pixel<T: Send>(&self, value: impl Fn((u32, u32)) -> T + Sync) -> Vec<T> {

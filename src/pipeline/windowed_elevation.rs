@@ -19,7 +19,7 @@ use crate::geom::rect::Rect;
 use crate::limits::RASTER_SAMPLES;
 use crate::limits::memory::check_memory;
 use crate::pipeline::ground::{GroundError, QueriedGround};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::lattice::Lattice;
 use crate::terrain::post_rect::PostRect;
 use crate::terrain::query::windowed::{lattice_part, windowed_ground_heights, windowed_source_heights};
 use crate::terrain::query::{Interpolation, Surface};
@@ -89,7 +89,7 @@ impl WindowedElevation {
     /// The raster has no ground, or cannot be read.
     pub fn plan(&self) -> Result<&MetricPlan, Arc<GroundError>> {
         let make = || {
-            let plan = MetricPlan::new(&mut **self.source())?;
+            let plan = MetricPlan::new(&mut **self.source(), None)?;
             Lattice::frame(plan.header())?;
             Ok(plan)
         };
@@ -187,7 +187,6 @@ fn posts_within(ground: &Raster, crs: &Crs, reach: &GroundReach) -> Result<PostR
     let to_ground = |&at: &DVec2| reach.crs.transform(crs, at).unwrap_or(DVec2::NAN);
     let on_ground = reach.at.par_iter().map(to_ground).filter(|at| at.is_finite()).collect::<Vec<_>>();
     let around = Rect::around(on_ground);
-    let last = DVec2::new(f64::from(ground.width - 1), f64::from(ground.height - 1));
     let (low, high) = match around.is_empty() {
         true => (DVec2::ZERO, DVec2::ONE),
         false => {
@@ -195,10 +194,7 @@ fn posts_within(ground: &Raster, crs: &Crs, reach: &GroundReach) -> Result<PostR
             ((around.min - origin) / cell - margin, (around.max - origin) / cell + margin)
         }
     };
-    let first = Post::at_grid(low.floor().clamp(DVec2::ZERO, last - 1.0));
-    let end = Post::at_grid(high.ceil().clamp(DVec2::ONE, last));
-    let end = Post { column: end.column.max(first.column + 1), row: end.row.max(first.row + 1) };
-    let held = PostRect { first, last: end };
+    let held = PostRect::around((ground.width, ground.height), low, high);
     if held.width() as u64 * held.height() as u64 > RASTER_SAMPLES.get() {
         let (columns, rows) = (held.width(), held.height());
         return Err(GroundError::Reach { columns, rows });

@@ -26,10 +26,11 @@ use crate::scene::bridges;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::buildings::{self, Plot};
 use crate::scene::earthworks;
+use crate::scene::exact_ground::ExactGround;
 use crate::scene::fences::{self, FenceLine};
 use crate::scene::font;
 use crate::scene::graphics;
-use crate::scene::ground;
+use crate::scene::ground::{self, LoadedGround};
 use crate::scene::imagery;
 use crate::scene::military;
 use crate::scene::models;
@@ -57,17 +58,36 @@ use crate::terrain::triangle_surface::SurfaceTriangle;
 /// # Errors
 /// The first file that cannot be read or table that does not fit, at its place in the scene file.
 pub fn build_ground(document: &Document, assets: &Assets) -> Result<SceneGround, Diagnostic> {
-    let loaded = ground::load(document, assets, ElevationNeed::All)?;
-    let mut lattice = loaded.lattice;
-    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, lattice.origin());
-    let sources = Sources::new(&frame, assets);
-    let mut collected = SceneBuilder::new(loaded.findings);
-    shape(document, &sources, &mut lattice, &mut collected)?;
-    models::level_pads(&sources, &mut lattice)?;
-    let lattice = Arc::new(lattice);
-    let heights = height_service(document, loaded.source, loaded.crs.clone(), lattice, &collected.decks)?;
-    let (stated_crs, scale_note) = (loaded.stated_crs, loaded.scale_note);
+    let mut loaded = ground::load(document, assets, ElevationNeed::All)?;
+    let decks = shape_loaded(document, assets, &mut loaded)?;
+    let LoadedGround { source, lattice, crs, stated_crs, scale_note, .. } = loaded;
+    let heights = height_service(document, source, crs, Arc::new(lattice), &decks)?;
     Ok(SceneGround { heights, stated_crs, scale_note, files: assets.files_read() })
+}
+
+/// The ground of a part of a scene by all samples of its elevation, with what shapes it. `document` is that of the part.
+///
+/// # Errors
+/// As [`build_ground`].
+pub(super) fn part_ground(document: &Document, assets: &Assets) -> Result<Lattice, Diagnostic> {
+    let mut loaded = ground::load(document, assets, ElevationNeed::Nested { step: 1 })?;
+    shape_loaded(document, assets, &mut loaded)?;
+    Ok(loaded.lattice)
+}
+
+/// Shapes the ground as it was loaded, and returns the decks over it. Of the models, only those that have the ground leveled are
+/// read.
+fn shape_loaded(
+    document: &Document,
+    assets: &Assets,
+    loaded: &mut LoadedGround,
+) -> Result<Vec<SurfaceTriangle>, Diagnostic> {
+    let frame = WorldFrame::new(document, &loaded.crs, &loaded.stated_crs, loaded.lattice.origin());
+    let sources = Sources::new(&frame, assets);
+    let mut collected = SceneBuilder::new(loaded.findings.clone());
+    shape(document, &sources, &mut loaded.lattice, &mut collected)?;
+    models::level_pads(&sources, &mut loaded.lattice)?;
+    Ok(collected.decks)
 }
 
 /// Builds the scene that `document` describes, with all samples of its elevation that fit into the memory. `progress` is called
@@ -115,15 +135,18 @@ pub fn build_with(
     }
 
     graphics::lay(document, &sources, &lattice.extent(), &mut collected)?;
-    let sight = sight_layers::lay(&frame, &lattice, &mut collected)?;
+    let exact = ExactGround::new(&frame, &lattice, assets, loaded.all_samples)?;
+    let sight = sight_layers::lay(&exact, &mut collected)?;
 
     progress("placing labels and cameras");
     let layout = layout(document, &lattice)?;
+    let mut labels = views::labels(&sources, &exact, &mut collected.findings)?;
+    let most = document.style.spot_heights as usize;
+    labels.extend(spot_heights(most, &labels, &collected.lakes, &exact)?);
+    exact.report(&mut collected.findings);
+    drop(exact);
     let (scale, height_range_m, lattice) = (frame.scale, lattice.height_range(), Arc::new(lattice));
     let bounds = scale.ground(&lattice).bounds(height_range_m);
-    let mut labels = views::labels(&sources, &lattice, &mut collected.findings)?;
-    let most = document.style.spot_heights as usize;
-    labels.extend(spot_heights(most, &labels, &collected.lakes, &frame, &lattice));
     let military = military::symbols(&sources, &lattice, &mut collected.findings)?;
     let cameras = views::cameras(&frame, &lattice)?;
     let reaches = sources.reaches();

@@ -60,6 +60,8 @@ pub(super) struct ReadElevation {
     pub extent: Option<StatedExtent>,
     /// As [`ReducedElevation::nests_step`].
     pub nests_step: Option<u32>,
+    /// The raster of all samples, where those that are held are means of them.
+    pub all_samples: Option<Box<dyn Windows + Send>>,
 }
 
 /// An extent in two systems.
@@ -85,7 +87,7 @@ impl ReadElevation {
         need: ElevationNeed<'_>,
         findings: &mut SceneFindings,
     ) -> Result<Self, Diagnostic> {
-        let mut nests_step = None;
+        let (mut nests_step, mut all_samples) = (None, None);
         let held = match TileList::of(document, assets)? {
             None => replaced(document, assets, findings)?,
             Some(list) => {
@@ -100,8 +102,8 @@ impl ReadElevation {
                     None => None,
                 };
                 match reduced {
-                    Some(ReducedElevation { raster, nests_step: step }) => {
-                        (*findings, nests_step) = (of_windows, step);
+                    Some(ReducedElevation { raster, nests_step: step, whole }) => {
+                        (*findings, nests_step, all_samples) = (of_windows, step, Some(whole));
                         raster
                     }
                     None => list.joined(document, assets, findings)?,
@@ -118,7 +120,7 @@ impl ReadElevation {
             }
             false => None,
         };
-        Ok(Self { held, whole, window, off_scale, extent, nests_step })
+        Ok(Self { held, whole, window, off_scale, extent, nests_step, all_samples })
     }
 
     /// Reads what the extent needs, and [`MARGIN`]; of a nested ground its means, and [`BESIDE`].
@@ -155,7 +157,7 @@ impl ReadElevation {
         }
         let samples = windows.samples(window).map_err(|error| document.error(&terrain.dem, error))?;
         let held = part(&whole, window, samples);
-        Ok(Self { held, whole, window, off_scale, extent, nests_step: None })
+        Ok(Self { held, whole, window, off_scale, extent, nests_step: None, all_samples: None })
     }
 
     /// The part of the raster with its samples in `rect`, in its own system, and `margin` more on each side, from `held` or one

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::LabelTable;
@@ -17,6 +17,7 @@ use crate::geom::polygon::{doubled_area, inner_point};
 use crate::geom::polyline::Polyline;
 use crate::scene::SceneLabel;
 use crate::scene::attributes::Attributes;
+use crate::scene::exact_ground::ExactGround;
 use crate::scene::label_course::{LabelCourse, across, along};
 use crate::scene::near::MERGE_M;
 use crate::scene::scene_findings::SceneFindings;
@@ -34,13 +35,13 @@ const MOST_LETTERS: usize = 1000;
 ///
 /// # Errors
 /// The file cannot be read or holds no feature that matches.
-pub fn labels(
+pub(super) fn labels(
     table: &LabelTable,
     sources: &Sources<'_>,
-    lattice: &Lattice,
+    exact: &ExactGround<'_>,
     findings: &mut SceneFindings,
 ) -> Result<Vec<SceneLabel>, Diagnostic> {
-    let frame = sources.frame;
+    let (frame, lattice) = (sources.frame, exact.lattice);
     let Some(source) = table.source() else { return Ok(Vec::new()) };
     let text = Expression::parse(&table.text).map_err(|error| frame.document.error(&table.text, error))?;
     let (crs, features) = sources.features(&source)?;
@@ -80,7 +81,10 @@ pub fn labels(
             left_out.off += 1;
             continue;
         };
-        let elevation = whole_meters(frame.scale.elevation_m(ground.z));
+        let elevation = match text.contains("{height}") {
+            true => whole_meters(exact.elevation_m(ground.truncate(), ground.z as f32)?),
+            false => String::new(),
+        };
         let Some(filled) = filled(&text, &elevation, &attributes) else {
             left_out.nameless += 1;
             continue;
@@ -95,6 +99,7 @@ pub fn labels(
         if is_line {
             lines.insert(text, named.len());
         }
+        let ground = ground.as_vec3();
         let anchor = ground + Vec3::Z * table.height as f32;
         let stated = table.text.span().unwrap_or_default();
         let label = SceneLabel { text: filled, stated, ground, anchor, course, kind: table.kind, rank };
@@ -220,12 +225,13 @@ fn next_brace(text: &str) -> Option<(&str, &str, &str)> {
     Some((before, name, after))
 }
 
-/// The place on the ground that names a shape of the system `crs`; `None` where nothing of it lies on ground with data.
-pub fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
+/// The place on the ground that names a shape of the system `crs`, world space, displayed height; `None` where nothing of it lies on
+/// ground with data.
+pub fn place(shape: &Geometry, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<DVec3> {
     let extent = lattice.extent();
     let world = |points: &[DVec2]| world_points(points, crs, frame);
     let longest = |best: (DVec2, f64), next: (DVec2, f64)| if next.1 > best.1 { next } else { best };
-    let on_ground = |at: DVec2| frame.ground_at(lattice, at);
+    let on_ground = |at: DVec2| frame.ground_at(lattice, at).map(|ground| at.extend(f64::from(ground.z)));
     match shape {
         Geometry::Points(points) => {
             points.iter().find_map(|&point| frame.world(crs, point).ok().and_then(on_ground))

@@ -12,6 +12,7 @@ use crate::dem::undeclared::{NodataSign, undeclared_nodata};
 use crate::dem::void_counts::VoidCounts;
 use crate::dem::voids;
 use crate::dem::warp;
+use crate::dem::windows::Windows;
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
@@ -40,6 +41,8 @@ pub struct LoadedGround {
     pub findings: SceneFindings,
     /// The side of the squares of samples that its heights are means of, where pictures show nested grounds of more samples.
     pub nests_step: Option<u32>,
+    /// The raster of all samples, where its heights are means of them.
+    pub all_samples: Option<Box<dyn Windows + Send>>,
 }
 
 /// Reads the document's elevation files, as far as they are needed, and brings them to a metric system.
@@ -85,8 +88,8 @@ pub fn load(
         findings.add(FindingCode::LengthsNotTrue, span, note.as_str());
     }
     let stated_crs = read.off_scale.map_or_else(|| crs.clone(), |off| off.stated);
-    let (source, nests_step) = (Arc::new(read.held), read.nests_step);
-    Ok(LoadedGround { source, lattice, crs, stated_crs, scale_note, findings, nests_step })
+    let (source, nests_step, all_samples) = (Arc::new(read.held), read.nests_step, read.all_samples);
+    Ok(LoadedGround { source, lattice, crs, stated_crs, scale_note, findings, nests_step, all_samples })
 }
 
 /// The part of the elevation that the scene is made of, in a metric system; `source` is what is read of it, without voids.

@@ -152,7 +152,7 @@ fn read_features(
 }
 
 fn on_ground(attributes: &Attributes, crs: &Crs, frame: &WorldFrame<'_>, lattice: &Lattice) -> Option<Vec3> {
-    place(attributes.geometry()?, crs, frame, lattice)
+    Some(place(attributes.geometry()?, crs, frame, lattice)?.as_vec3())
 }
 
 fn frameless(code: &SymbolCode) -> String {

@@ -5,6 +5,7 @@
 //! and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`. `picture` turns a
 //! scene and a camera into a draw list.
 
+mod all_samples;
 pub mod areas;
 pub mod assets;
 pub mod attributes;
@@ -16,6 +17,7 @@ pub mod buildings;
 pub mod crossed_shapes;
 pub mod earthworks;
 mod elevation;
+mod exact_ground;
 mod facade;
 pub mod feature_labels;
 pub mod feature_origin;
@@ -49,6 +51,7 @@ pub mod report;
 pub mod roads;
 pub mod scatter;
 pub mod scene_findings;
+pub mod seen_ground;
 pub mod sight_layers;
 pub mod source_reach;
 pub mod sources;

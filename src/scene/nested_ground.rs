@@ -99,7 +99,8 @@ fn nested_ground(
     finer: &FinerElevation,
     plan: &NestedPlan,
 ) -> Result<NestedGround, Diagnostic> {
-    let document = part_document(outer, &finer.document, &plan.rect)?;
+    let frame = WorldFrame::new(&finer.document, &outer.crs, &outer.stated_crs, outer.lattice.origin());
+    let document = part_document(&frame, &plan.rect)?;
     let need = ElevationNeed::Nested { step: plan.step };
     let mut scene = build_with(&document, &finer.assets, need, &|_| ())?;
     scene.table = TableTop::None;
@@ -112,15 +113,19 @@ fn nested_ground(
     Ok(ground.with_sea_of(outer))
 }
 
-/// The document of a part: without what the outer scene draws, and what stands elsewhere.
-fn part_document(outer: &SceneModel, document: &Document, rect: &Rect) -> Result<Document, Diagnostic> {
-    let frame = WorldFrame::new(document, &outer.crs, &outer.stated_crs, outer.lattice.origin());
+/// The document of the part of a scene in a rectangle of world space: without what the outer scene draws, and what stands
+/// elsewhere.
+///
+/// # Errors
+/// The rectangle has no place in the system of inline points.
+pub(super) fn part_document(frame: &WorldFrame<'_>, rect: &Rect) -> Result<Document, Diagnostic> {
+    let document = frame.document;
     let dem = &document.terrain.dem;
     let Rect { min, max } = *rect;
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
     let stated: Result<Vec<[f64; 2]>, _> = corners
         .iter()
-        .map(|&corner| outer.crs.transform(&frame.points_crs, frame.origin + corner).map(Into::into))
+        .map(|&corner| frame.crs.transform(&frame.points_crs, frame.origin + corner).map(Into::into))
         .collect();
     let mut part = document.clone();
     part.terrain.extent = Some(Stated::unstated(stated.map_err(|error| document.error(dem, error))?));

@@ -9,13 +9,17 @@ use crate::description::document::Document;
 use crate::description::finding_code::FindingCode;
 use crate::geom::crs::Crs;
 use crate::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
+use crate::scene::exact_ground::depends_on_samples;
 use crate::scene::nested_plan::level_samples;
-use crate::scene::picture::shown_step::{UnreadGround, depends_on_samples, shown_step};
+use crate::scene::picture::shown_step::{UnreadGround, shown_step};
 use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
 use crate::scene::scene_findings::SceneFindings;
 
 /// Means of samples are held everywhere where they are fewer than this many times the samples that pictures read whole.
 const MOST_MEANS: u64 = 2;
+
+/// What a finding adds where a scene [depends on samples](depends_on_samples).
+const EXACT: &str = "; heights in numbers and what is in sight are those of all samples";
 
 /// A smaller raster.
 pub(super) struct ReducedElevation {
@@ -24,6 +28,8 @@ pub(super) struct ReducedElevation {
     /// The side of the squares of samples that each of its samples is the mean of, where pictures show nested grounds of
     /// more samples in it.
     pub nests_step: Option<u32>,
+    /// The raster of all samples.
+    pub whole: Box<dyn Windows + Send>,
 }
 
 /// The smaller raster of one that is too large for the memory, or for what pictures show of it; `None` where all of it is
@@ -41,8 +47,8 @@ pub(super) fn reduced_as_needed(
         ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => 1,
     };
     let fitting = fitting_step((width, height));
-    let nests = nests(need, document)
-        && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
+    let nests =
+        nests(need) && (shown == 1 || samples((width, height), shown) >= MOST_MEANS * PICTURED_SAMPLES.get());
     let step = if nests { least_step((width, height), level_samples()) } else { shown.max(fitting) };
     if step == 1 {
         return Ok(None);
@@ -51,35 +57,34 @@ pub(super) fn reduced_as_needed(
     let raster = of_overview.unwrap_or_else(|| reduced(&mut windows, step));
     let raster = raster.map_err(|error| document.error(dem, error))?;
     let span = dem.span().unwrap_or_default();
+    let exact = if depends_on_samples(document) { EXACT } else { "" };
     if nests {
         let message = format!(
             "of the {width} x {height} samples of the elevation model pictures take all that they show near the eye; beyond, each \
-             height is the mean of up to {step} x {step} of them"
+             height is the mean of up to {step} x {step} of them{exact}"
         );
         findings.add(FindingCode::SamplesAveraged, span, message);
     } else if fitting > shown {
         let message = format!(
             "the elevation model has {width} x {height} samples, more than the {RASTER_SAMPLES} of a scene: each height is \
-             that of {step} x {step} of them"
+             that of {step} x {step} of them{exact}"
         );
         let help = "name a part with `extent`, which is taken in full";
         findings.add_with_help(FindingCode::ElevationReduced, span, message, help);
     } else {
         let message = format!(
             "of the {width} x {height} samples of the elevation model the picture shows {step} x {step} within a pixel: each \
-             height is their mean"
+             height is their mean{exact}"
         );
         findings.add(FindingCode::SamplesAveraged, span, message);
     }
-    Ok(Some(ReducedElevation { raster, nests_step: nests.then_some(step) }))
+    Ok(Some(ReducedElevation { raster, nests_step: nests.then_some(step), whole: windows }))
 }
 
 /// Whether pictures may show nested grounds of more samples than the scene's.
-fn nests(need: ElevationNeed<'_>, document: &Document) -> bool {
+fn nests(need: ElevationNeed<'_>) -> bool {
     match need {
-        ElevationNeed::Pictures(pictures) => {
-            pictures.near == NearGround::Nested && !depends_on_samples(document)
-        }
+        ElevationNeed::Pictures(pictures) => pictures.near == NearGround::Nested,
         ElevationNeed::All | ElevationNeed::AllThatFit | ElevationNeed::Nested { .. } => false,
     }
 }

@@ -1,24 +1,29 @@
-//! Sight as a layer of the scene: viewsheds, lines of sight, and ranges, placed. What they show is computed when a picture
-//! first needs it, by the same functions as the commands' answers.
+//! Sight as a layer of the scene: viewsheds, lines of sight, and ranges, placed. What they show is found by the same functions as
+//! the commands' answers; see [`crate::scene::seen_ground`].
 
-use std::sync::OnceLock;
+use std::borrow::Cow;
 
 use glam::DVec2;
 
 use crate::description::diagnostic::Diagnostic;
 use crate::description::document::Document;
+use crate::description::finding_code::FindingCode;
 use crate::description::stated::Stated;
 use crate::description::words::{GraphicSide, RangeExtent, ViewshedTint};
 use crate::draw::list::FeatureId;
 use crate::geom::crs::Crs;
+use crate::limits::RASTER_SAMPLES;
 use crate::scene::FeatureKind;
+use crate::scene::all_samples::TooManyPosts;
 use crate::scene::builder::SceneBuilder;
+use crate::scene::exact_ground::{ExactGround, ExactPartError};
 use crate::scene::feature_origin::FeatureOrigin;
+use crate::scene::seen_ground::{SceneSight, SceneViewshed};
 use crate::scene::world_frame::WorldFrame;
 use crate::symbology::graphic::check::MOST_RANGES;
 use crate::terrain::lattice::Lattice;
-use crate::terrain::sight::line::SightEnd;
-use crate::terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed};
+use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use crate::terrain::sight::viewshed::{Sector, ViewshedOptions};
 
 /// More observers of a viewshed take longer than anybody waits for a picture.
 const MOST_OBSERVERS: usize = 64;
@@ -35,31 +40,6 @@ pub struct SightLayers {
     pub sights: Vec<SceneSight>,
     /// Rings and fans.
     pub ranges: Vec<SceneRange>,
-}
-
-/// What observers see.
-pub struct SceneViewshed {
-    /// Its name for the legend; may be empty.
-    pub name: String,
-    /// One for each observer, in map coordinates.
-    pub observers: Vec<ViewshedOptions>,
-    /// Which ground is tinted.
-    pub tint: ViewshedTint,
-    /// The feature it is.
-    pub feature: FeatureId,
-    seen: OnceLock<Option<Viewshed>>,
-}
-
-/// Lines of sight from an observer.
-pub struct SceneSight {
-    /// Its name for the legend; may be empty.
-    pub name: String,
-    /// The observer, in map coordinates.
-    pub observer: SightEnd,
-    /// What is looked at.
-    pub targets: Vec<SightEnd>,
-    /// The feature it is.
-    pub feature: FeatureId,
 }
 
 /// Rings and fans about a place.
@@ -80,6 +60,54 @@ pub struct SceneRange {
     pub sight: SceneViewshed,
     /// The feature it is.
     pub feature: FeatureId,
+    /// Whether the ground of each piece of each ring is in sight, where that was found beforehand.
+    found: Option<Vec<Vec<bool>>>,
+}
+
+/// Pieces of a whole ring whose sight is tried one by one.
+const RING_PIECES: f64 = 180.0;
+
+impl SceneRange {
+    /// The azimuths of places round the sector, its borders among them.
+    pub fn azimuths_deg(&self) -> Vec<f64> {
+        let steps = (RING_PIECES * self.sector.width_deg / 360.0).ceil().max(1.0);
+        let step_deg = self.sector.width_deg / steps;
+        (0..=steps as u32).map(|step| self.sector.from_deg + f64::from(step) * step_deg).collect()
+    }
+
+    /// The places round the sector at a distance, world X and Y.
+    pub fn ring(&self, radius_m: f64) -> Vec<DVec2> {
+        self.azimuths_deg().into_iter().map(|azimuth| self.at + heading(azimuth) * radius_m).collect()
+    }
+
+    /// Whether the ground of each piece of each ring is in sight, on `lattice` unless it was found before; of a range that is not
+    /// of what is seen, all is.
+    pub fn pieces_seen(&self, lattice: &Lattice) -> Cow<'_, [Vec<bool>]> {
+        match &self.found {
+            Some(found) => Cow::Borrowed(found),
+            None => Cow::Owned(self.seen_on(lattice, lattice.origin())),
+        }
+    }
+
+    /// [`SceneRange::pieces_seen`] on ground in the frame of the map; `origin` is that of world space.
+    fn seen_on(&self, lattice: &Lattice, origin: DVec2) -> Vec<Vec<bool>> {
+        let is_seen = |at: DVec2| {
+            let Some(options) = self.sight.observers.first() else { return false };
+            let target = SightEnd { at: at + origin, above_m: options.target_above_m };
+            self.fill != RangeExtent::Seen
+                || line_of_sight(lattice, options.observer, target, options.curvature) == Sight::Clear
+        };
+        let pieces = |radius_m: &f64| {
+            self.ring(*radius_m).windows(2).map(|pair| is_seen(pair[0].midpoint(pair[1]))).collect()
+        };
+        self.distances_m.iter().map(pieces).collect()
+    }
+}
+
+/// The direction of an azimuth.
+pub(super) fn heading(azimuth_deg: f64) -> DVec2 {
+    let angle = azimuth_deg.to_radians();
+    DVec2::new(libm::sin(angle), libm::cos(angle))
 }
 
 impl SightLayers {
@@ -89,48 +117,12 @@ impl SightLayers {
     }
 }
 
-impl SceneViewshed {
-    fn new(name: String, observers: Vec<ViewshedOptions>, tint: ViewshedTint, feature: FeatureId) -> Self {
-        Self { name, observers, tint, feature, seen: OnceLock::new() }
-    }
-
-    /// What is in sight of one of the observers at least, computed on first use; `None` without observers on the ground.
-    pub fn seen(&self, lattice: &Lattice) -> Option<&Viewshed> {
-        self.seen.get_or_init(|| self.compute(lattice)).as_ref()
-    }
-
-    fn compute(&self, lattice: &Lattice) -> Option<Viewshed> {
-        let mut observers = self.observers.iter().filter_map(|options| viewshed(lattice, options).ok());
-        let mut seen = observers.next()?;
-        for other in observers {
-            for (post, other) in seen.posts.iter_mut().zip(other.posts) {
-                *post = either(*post, other);
-            }
-        }
-        Some(seen)
-    }
-}
-
-/// What two observers see of a post together.
-fn either(one: PostVisibility, other: PostVisibility) -> PostVisibility {
-    use PostVisibility::{Beyond, Hidden, NoData, Visible};
-    match (one, other) {
-        (Visible, _) | (_, Visible) => Visible,
-        (Hidden, _) | (_, Hidden) => Hidden,
-        (NoData, _) | (_, NoData) => NoData,
-        (Beyond, Beyond) => Beyond,
-    }
-}
-
 /// Places the document's layers of sight.
 ///
 /// # Errors
 /// An observer or a target lies off the ground, or there are more than a picture can show.
-pub fn lay(
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
-    collected: &mut SceneBuilder,
-) -> Result<SightLayers, Diagnostic> {
+pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Result<SightLayers, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
     let document = frame.document;
     let mut layers = SightLayers::default();
     let sector =
@@ -147,13 +139,24 @@ pub fn lay(
         let feature =
             collected.add(FeatureKind::Sight, name.clone(), FeatureOrigin::stated(table.observers.span()));
         let observers = observers.iter().map(options).collect();
-        layers.viewsheds.push(SceneViewshed::new(name, observers, table.tint, feature));
+        let layer = SceneViewshed::new(name, observers, table.tint, feature);
+        let help = if table.range.is_some() { "state a smaller `range`" } else { "state `range`, in meters" };
+        let part = layer.find(exact).map_err(|error| failed(document, &table.observers, error, help))?;
+        if let Some(part) = part.filter(|_| table.range.is_none()) {
+            let (columns, rows) = (part.held().width(), part.held().height());
+            let message = format!(
+                "this viewshed has no `range`, and took all {columns} x {rows} samples of the elevation model"
+            );
+            let span = table.observers.span().unwrap_or_default();
+            collected.findings.add_with_help(FindingCode::RangeMissing, span, message, help);
+        }
+        layers.viewsheds.push(layer);
     }
     for table in &document.sights {
         let observer = place(frame, lattice, &table.observer, table.crs.as_ref())?;
         let targets = places(frame, lattice, &table.targets, table.crs.as_ref(), MOST_TARGETS)?;
         let name = table.name.clone().unwrap_or_default();
-        layers.sights.push(SceneSight {
+        let mut layer = SceneSight {
             feature: collected.add(
                 FeatureKind::Sight,
                 name.clone(),
@@ -162,7 +165,11 @@ pub fn lay(
             name,
             observer: end(frame, observer, table.observer_height),
             targets: targets.into_iter().map(|at| end(frame, at, table.target_height)).collect(),
-        });
+            found: None,
+        };
+        let help = "look less far";
+        layer.find(exact).map_err(|error| failed(document, &table.targets, error, help))?;
+        layers.sights.push(layer);
     }
     for table in &document.ranges {
         let at = place(frame, lattice, &table.at, table.crs.as_ref())?;
@@ -178,7 +185,7 @@ pub fn lay(
             ..ViewshedOptions::new(end(frame, at, table.height))
         };
         let sight = SceneViewshed::new(String::new(), vec![options], ViewshedTint::Seen, feature);
-        layers.ranges.push(SceneRange {
+        let mut layer = SceneRange {
             name,
             at,
             distances_m,
@@ -187,9 +194,30 @@ pub fn lay(
             fill: table.fill,
             sight,
             feature,
-        });
+            found: None,
+        };
+        if table.fill == RangeExtent::Seen {
+            let help = "state smaller `distances`";
+            let part = layer.sight.find(exact).map_err(|error| failed(document, &table.at, error, help))?;
+            layer.found = part.map(|part| layer.seen_on(&part, frame.origin));
+        }
+        layers.ranges.push(layer);
     }
     Ok(layers)
+}
+
+/// The error about a layer whose ground cannot be had; `help` says how it needs less.
+fn failed<T>(document: &Document, stated: &Stated<T>, error: ExactPartError, help: &str) -> Diagnostic {
+    match error {
+        ExactPartError::Failed(error) => error,
+        ExactPartError::TooLarge(TooManyPosts { columns, rows }) => {
+            let message = format!(
+                "{columns} x {rows} samples of the elevation model are within reach of this, more than the {RASTER_SAMPLES} that are \
+                 read at once"
+            );
+            document.error(stated, message).with_help(format!("{help}, or {RASTER_SAMPLES:#}"))
+        }
+    }
 }
 
 /// An end of a line of sight at a place in world space.

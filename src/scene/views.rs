@@ -11,6 +11,7 @@ use crate::description::stated::Stated;
 use crate::description::words::CameraProjection;
 use crate::geom::rect::Rect;
 use crate::scene::attributes::Attributes;
+use crate::scene::exact_ground::ExactGround;
 use crate::scene::feature_labels;
 use crate::scene::label_course::LabelCourse;
 use crate::scene::paper_sheet::PaperSheet;
@@ -26,16 +27,16 @@ use crate::terrain::query::{Interpolation, ground_height};
 ///
 /// # Errors
 /// A label with `at` lies off the ground, or a file cannot be read or holds no feature that matches.
-pub fn labels(
+pub(super) fn labels(
     sources: &Sources<'_>,
-    lattice: &Lattice,
+    exact: &ExactGround<'_>,
     findings: &mut SceneFindings,
 ) -> Result<Vec<SceneLabel>, Diagnostic> {
     let mut labels = Vec::new();
     for table in &sources.frame.document.labels {
         match &table.at {
-            Some(at) => labels.push(label(table, at, sources.frame, lattice)?),
-            None => labels.extend(feature_labels::labels(table, sources, lattice, findings)?),
+            Some(at) => labels.push(label(table, at, exact)?),
+            None => labels.extend(feature_labels::labels(table, sources, exact, findings)?),
         }
     }
     Ok(labels)
@@ -44,14 +45,17 @@ pub fn labels(
 fn label(
     table: &LabelTable,
     at: &Stated<[f64; 2]>,
-    frame: &WorldFrame<'_>,
-    lattice: &Lattice,
+    exact: &ExactGround<'_>,
 ) -> Result<SceneLabel, Diagnostic> {
+    let (frame, lattice) = (exact.frame, exact.lattice);
     let world = frame.point(at, table.crs.as_ref())?;
     let ground = frame.on_ground(lattice, at, world)?;
-    let elevation = whole_meters(frame.scale.elevation_m(ground.z));
+    let text = match table.text.contains("{height}") {
+        true => table.text.replace("{height}", &whole_meters(exact.elevation_m(world, ground.z)?)),
+        false => table.text.to_string(),
+    };
     Ok(SceneLabel {
-        text: table.text.replace("{height}", &elevation),
+        text,
         stated: table.text.span().unwrap_or_default(),
         ground,
         anchor: ground + Vec3::Z * table.height as f32,

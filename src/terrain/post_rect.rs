@@ -28,6 +28,16 @@ impl PostRect {
         low.cmple(high).all().then(rect)
     }
 
+    /// The posts around the grid positions from `low` to `high`, at least two a side, in a lattice of `columns` and `rows`;
+    /// those nearest to positions beyond its border.
+    pub fn around((columns, rows): (u32, u32), low: DVec2, high: DVec2) -> Self {
+        let far = DVec2::new(f64::from(columns - 1), f64::from(rows - 1));
+        let first = Post::at_grid(low.floor().clamp(DVec2::ZERO, far - 1.0));
+        let last = Post::at_grid(high.ceil().clamp(DVec2::ONE, far));
+        let last = Post { column: last.column.max(first.column + 1), row: last.row.max(first.row + 1) };
+        Self { first, last }
+    }
+
     /// The posts within a rectangle in world space; `None` for none.
     pub fn within(lattice: &Lattice, rect: &Rect) -> Option<Self> {
         Self::between(lattice, lattice.grid_at(rect.min), lattice.grid_at(rect.max))

@@ -13,6 +13,7 @@ mod hostile_data;
 mod info;
 #[cfg(unix)]
 mod interrupts;
+mod large_heights;
 mod licenses;
 mod limits;
 mod lod;

@@ -14,7 +14,7 @@ mod rows;
 pub(in crate::dem) mod storage;
 pub(in crate::dem) mod unpack;
 pub mod windows;
-mod write;
+pub(crate) mod write;
 mod write_geokeys;
 
 use std::io::{Read, Seek};

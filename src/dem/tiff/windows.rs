@@ -271,7 +271,12 @@ impl<R: FileContent> Windows for GeoTiffWindows<R> {
         if is_large && self.bands_at_once(window) >= rayon::current_num_threads() {
             return self.large_window(window);
         }
-        let mut out = Samples::absent(window.samples(), self.is_wide());
+        // Zeros come from the system as they are needed; blocks cover all of them.
+        let count = window.samples();
+        let mut out = match self.is_wide() {
+            true => Samples::F64(vec![0.0; count]),
+            false => Samples::F32(vec![0.0; count]),
+        };
         let blocks: Vec<TiffBlock> = self.heights.blocks_meeting(window).collect();
         self.each_block(blocks.into_iter(), |at, block| {
             for (from, to) in at.window.shared_rows(window) {

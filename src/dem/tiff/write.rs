@@ -32,6 +32,11 @@ const TILE: u32 = 256;
 
 /// Writes a raster; every raster can be.
 pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteError> {
+    Ok(write_described(raster, ""))
+}
+
+/// [`write`] with a description of what it shows, as `gdalinfo` prints it; empty for none.
+pub(crate) fn write_described(raster: &Raster, description: &str) -> WrittenDem {
     let is_named = name_of_length(raster.meters_per_z).is_some();
     let raster = if is_named { Cow::Borrowed(raster) } else { raster.in_meters() };
     let stored = StoredSamples::new(&raster);
@@ -41,9 +46,13 @@ pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteErr
         .map(|index| tile(&raster, stored, (index % across) * TILE, (index / across) * TILE))
         .collect();
     let lengths: Vec<u32> = tiles.iter().map(|tile| tile.len() as u32).collect();
-    let mut bytes = head(tags(&raster, stored), &lengths);
+    let mut tags = tags(&raster, stored);
+    if !description.is_empty() {
+        tags.push((270, TiffField::text(description)));
+    }
+    let mut bytes = head(tags, &lengths);
     tiles.iter().for_each(|tile| bytes.extend(tile));
-    Ok(WrittenDem { notes: notes(is_named), ..WrittenDem::new(bytes, stored.sample.gdal_name()) })
+    WrittenDem { notes: notes(is_named), ..WrittenDem::new(bytes, stored.sample.gdal_name()) }
 }
 
 /// Samples that are looked at together before the first is written: 16 or 32 MiB.

@@ -76,12 +76,12 @@ enum MetricMaking {
 }
 
 impl MetricPlan {
-    /// What [`to_metric`](crate::dem::warp::to_metric) makes of `source` without a target.
+    /// What [`to_metric`](crate::dem::warp::to_metric) makes of `source`.
     ///
     /// # Errors
     /// [`WarpWindowsError`].
-    pub fn new(source: &mut (impl Windows + ?Sized)) -> Result<Self, WarpWindowsError> {
-        searched(source, plan)
+    pub fn new(source: &mut (impl Windows + ?Sized), target: Option<&Crs>) -> Result<Self, WarpWindowsError> {
+        searched(source, |raster, search| plan(raster, target, search))
     }
 
     /// The result without its samples.
@@ -160,9 +160,13 @@ fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (
 }
 
 /// The steps of [`to_metric`](crate::dem::warp::to_metric) but for the samples.
-fn plan<W: Windows + ?Sized>(raster: &Raster, search: &ValidSearch<'_, W>) -> Result<MetricPlan, WarpError> {
-    let MetricSystem { crs: system, off_scale } = MetricSystem::found(raster, None, search)?;
-    let own = raster.crs.as_ref().or(system.as_ref());
+fn plan<W: Windows + ?Sized>(
+    raster: &Raster,
+    target: Option<&Crs>,
+    search: &ValidSearch<'_, W>,
+) -> Result<MetricPlan, WarpError> {
+    let MetricSystem { crs: system, off_scale } = MetricSystem::found(raster, target, search)?;
+    let own = raster.crs.as_ref().or(target).or(system.as_ref());
     let (north_up, making) = if own == system.as_ref() && raster.is_axis_aligned() {
         let axes = raster.map_from_grid.matrix2;
         let (mirrors_x, mirrors_y) = (axes.x_axis.x < 0.0, axes.y_axis.y > 0.0);

@@ -55,26 +55,16 @@ pub(in crate::scene) struct UnreadGround<'a> {
 }
 
 /// The greatest power of two so that squares of as many by as many samples are no wider than [`SQUARE_PX`] in all of
-/// `pictures` of `document`; 1 where a camera may come near the ground, and where the scene [depends on
-/// samples](depends_on_samples).
+/// `pictures` of `document`; 1 where a camera may come near the ground.
 pub(in crate::scene) fn shown_step(
     pictures: &PlannedPictures,
     document: &Document,
     ground: &UnreadGround<'_>,
 ) -> u32 {
-    let widest = if depends_on_samples(document) { None } else { widest_square(pictures, document, ground) };
+    let widest = widest_square(pictures, document, ground);
     let most = ground.whole.width.min(ground.whole.height) / LEAST_SIDE;
     let step = widest.unwrap_or(1.0).clamp(1.0, f64::from(most.max(1)));
     1 << (step as u32).ilog2()
-}
-
-/// Whether pictures of a scene show heights of places in numbers, or what is seen from a place, which depend on single samples.
-pub(in crate::scene) fn depends_on_samples(document: &Document) -> bool {
-    let prints_heights = document.labels.iter().any(|label| label.text.contains("{height}"));
-    prints_heights
-        || document.style.spot_heights > 0
-        || !document.viewsheds.is_empty()
-        || !document.sights.is_empty()
 }
 
 /// Samples along the side of the widest square that no picture shows wider than [`SQUARE_PX`]; `None` where that is not known.

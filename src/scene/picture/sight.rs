@@ -21,13 +21,10 @@ use crate::scene::picture::add_mesh;
 use crate::scene::picture::graphic_colors::{self, HIDDEN, SEEN, side_color};
 use crate::scene::picture::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
 use crate::scene::picture::placed_text::{PlacedCourse, PlacedText};
-use crate::scene::sight_layers::{SceneRange, SceneSight, SceneViewshed};
+use crate::scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenLine, SeenPosts};
+use crate::scene::sight_layers::{SceneRange, heading};
 use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::profile::profile;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use crate::terrain::sight::outlook::visible_stretches;
+use crate::terrain::sight::line::SightEnd;
 use crate::terrain::sight::viewshed::{PostVisibility, Viewshed};
 
 /// Tints lie under lines.
@@ -45,9 +42,6 @@ const FILL_ALPHA: u8 = 84;
 
 /// The most texels of a tint along either side: finer than any picture shows at once.
 const MOST_TEXELS: u32 = 2048;
-
-/// Pieces of a whole ring whose sight is tried one by one.
-const RING_PIECES: f64 = 180.0;
 
 /// The radius of the ring about a target and an observer, in text heights.
 const MARK_EM: f64 = 0.6;
@@ -136,20 +130,29 @@ pub(super) fn draw(
 
 /// The tint of the seen and the hidden posts of a viewshed over `lattice`; `None` where nobody looked.
 pub(super) fn seen_tint(seen: &Viewshed, lattice: &Lattice) -> Option<TintPlan> {
-    posts_tint(seen, lattice, [Some(SEEN), Some(HIDDEN)], FeatureId::GROUND)
+    let pen =
+        TintPen { origin: lattice.origin(), colors: [Some(SEEN), Some(HIDDEN)], feature: FeatureId::GROUND };
+    posts_tint(seen, &PostFrame::of(lattice), &pen)
 }
 
 fn viewshed_tint(layer: &SceneViewshed, lattice: &Lattice, colors: [Option<Srgba>; 2]) -> Option<TintPlan> {
-    posts_tint(layer.seen(lattice)?, lattice, colors, layer.feature)
+    let SeenPosts { viewshed, frame } = layer.seen(lattice)?;
+    posts_tint(viewshed, frame, &TintPen { origin: lattice.origin(), colors, feature: layer.feature })
+}
+
+/// How a tint of posts is drawn.
+struct TintPen {
+    /// The map coordinates of world X and Y 0.
+    origin: DVec2,
+    /// Of seen and of hidden posts.
+    colors: [Option<Srgba>; 2],
+    /// Whose it is.
+    feature: FeatureId,
 }
 
 /// The seen and the hidden posts in two colors; `None` where nobody looked.
-fn posts_tint(
-    seen: &Viewshed,
-    lattice: &Lattice,
-    colors: [Option<Srgba>; 2],
-    feature: FeatureId,
-) -> Option<TintPlan> {
+fn posts_tint(seen: &Viewshed, frame: &PostFrame, pen: &TintPen) -> Option<TintPlan> {
+    let TintPen { origin, colors, feature } = *pen;
     // Only the posts that somebody looked at.
     let columns = seen.columns as usize;
     let is_looked_at =
@@ -192,11 +195,11 @@ fn posts_tint(
         }
         blended(sum, count, colors)
     });
-    let first = lattice.map_position(Post { column: min.x, row: min.y }) - lattice.origin();
-    let texel_m = lattice.cell() * f64::from(stride);
+    let first = frame.map_position(Post { column: min.x, row: min.y }) - origin;
+    let texel_m = frame.cell * f64::from(stride);
     // A post is in the middle of its texel; the tint ends half a texel from the border, where the texture would repeat.
-    let posts_m = lattice.cell() * (size - 1).as_dvec2();
-    let offset = lattice.cell() * f64::from(stride - 1) / 2.0;
+    let posts_m = frame.cell * (size - 1).as_dvec2();
+    let offset = frame.cell * f64::from(stride - 1) / 2.0;
     let corner = |share: DVec2| {
         let at = first + posts_m * share;
         let texel = (at - first - offset) / texel_m + 0.5;
@@ -235,28 +238,13 @@ pub(super) fn add_material(list: &mut DrawList, color: Srgba, texture: Option<Pi
     })
 }
 
-/// The direction of an azimuth.
-fn heading(azimuth_deg: f64) -> DVec2 {
-    let angle = azimuth_deg.to_radians();
-    DVec2::new(libm::sin(angle), libm::cos(angle))
-}
-
-/// The azimuths of places round a sector, its borders among them.
-fn azimuths_deg(range: &SceneRange) -> Vec<f64> {
-    let steps = (RING_PIECES * range.sector.width_deg / 360.0).ceil().max(1.0);
-    let step_deg = range.sector.width_deg / steps;
-    (0..=steps as u32).map(|step| range.sector.from_deg + f64::from(step) * step_deg).collect()
-}
-
 /// The sector as a fan of triangles.
 fn sector_plan(range: &SceneRange) -> PlanMesh {
     let mut plan = PlanMesh::default();
     let Some(&radius_m) = range.distances_m.last() else { return plan };
     let center = plan.vertex(PlanVertex { at: range.at, uv: Vec2::ZERO });
-    let rim: Vec<_> = azimuths_deg(range)
-        .into_iter()
-        .map(|azimuth| plan.vertex(PlanVertex { at: range.at + heading(azimuth) * radius_m, uv: Vec2::ZERO }))
-        .collect();
+    let rim: Vec<_> =
+        range.ring(radius_m).into_iter().map(|at| plan.vertex(PlanVertex { at, uv: Vec2::ZERO })).collect();
     // Azimuths turn clockwise.
     rim.windows(2).for_each(|pair| plan.triangle([center, pair[1], pair[0]]));
     plan
@@ -271,23 +259,14 @@ fn draw_range(
     texts: &mut Vec<PlacedText>,
 ) {
     let color = side_color(range.side);
-    let azimuths = azimuths_deg(range);
-    let Some(options) = range.sight.observers.first() else { return };
-    let origin = scene.lattice.origin();
-    let is_seen = |at: DVec2| {
-        let target = SightEnd { at: at + origin, above_m: options.target_above_m };
-        range.fill != RangeExtent::Seen
-            || line_of_sight(&scene.lattice, options.observer, target, options.curvature) == Sight::Clear
-    };
+    let azimuths = range.azimuths_deg();
     let is_sector = range.sector.width_deg < 360.0;
     let middle = azimuths[azimuths.len() / 2];
-    for &radius_m in &range.distances_m {
-        let places: Vec<DVec2> =
-            azimuths.iter().map(|&azimuth| range.at + heading(azimuth) * radius_m).collect();
+    for (&radius_m, pieces) in range.distances_m.iter().zip(&*range.pieces_seen(&scene.lattice)) {
+        let places = range.ring(radius_m);
         let mut piece: Vec<DVec2> = vec![places[0]];
         let mut was_seen = None;
-        for pair in places.windows(2) {
-            let seen = is_seen(pair[0].midpoint(pair[1]));
+        for (pair, &seen) in places.windows(2).zip(pieces) {
             if was_seen.is_some_and(|was| was != seen) {
                 view.draw(pen, &piece, LineLook { color, is_dashed: was_seen == Some(false) }, range.feature);
                 piece = vec![pair[0]];
@@ -337,17 +316,13 @@ fn distance_text(radius_m: f64) -> String {
 
 /// Lines of sight: green over ground that is seen, red over hidden ground; each target ringed by whether it is seen itself.
 fn draw_sight(sight: &SceneSight, scene: &SceneModel, view: &GraphicView<'_>, pen: &mut GraphicPen) {
-    let lattice = &*scene.lattice;
-    let (origin, curvature) = (lattice.origin(), Curvature::default());
-    let observer = sight.observer;
-    let Some(foot_m) = ground_height(lattice, Interpolation::Planar, observer.at).height_m() else { return };
-    for target in &sight.targets {
+    let (origin, observer) = (scene.lattice.origin(), sight.observer);
+    for (target, line) in sight.targets.iter().zip(&*sight.lines(&scene.lattice)) {
+        let Some(SeenLine { stretches, is_clear }) = line else { return };
         let length_m = observer.at.distance(target.at);
-        let stations = profile(lattice, &[observer.at, target.at]);
-        let seen = visible_stretches(&stations, foot_m + observer.above_m, curvature);
         let at = |station_m: f64| observer.at.lerp(target.at, station_m / length_m) - origin;
         let mut from_m = 0.0;
-        for stretch in &seen {
+        for stretch in stretches {
             if stretch.from_m > from_m {
                 view.draw(pen, &[at(from_m), at(stretch.from_m)], HIDDEN_LINE, sight.feature);
             }
@@ -357,8 +332,7 @@ fn draw_sight(sight: &SceneSight, scene: &SceneModel, view: &GraphicView<'_>, pe
         if from_m < length_m {
             view.draw(pen, &[at(from_m), at(length_m)], HIDDEN_LINE, sight.feature);
         }
-        let is_clear = line_of_sight(lattice, observer, *target, curvature) == Sight::Clear;
-        let look = if is_clear { SEEN_LINE } else { HIDDEN_LINE };
+        let look = if *is_clear { SEEN_LINE } else { HIDDEN_LINE };
         let place = target.at - origin;
         view.draw(pen, &circle(place, MARK_EM * view.em_at(place)), look, sight.feature);
     }

@@ -102,6 +102,9 @@ struct Lake {
     level: LakeLevel,
 }
 
+/// The rule of a level that the scene states.
+const GIVEN: &str = "given";
+
 /// A lake's level with the rule it was found by.
 struct LakeLevel {
     level_m: f64,
@@ -177,7 +180,11 @@ impl Lake {
             cut: volumes.cut_m3,
             fill: volumes.fill_m3,
         });
-        collected.lakes.push(LakeSurface { outline: self.shape.exterior.clone(), level_m });
+        collected.lakes.push(LakeSurface {
+            outline: self.shape.exterior.clone(),
+            level_m,
+            is_stated: self.level.rule == GIVEN,
+        });
         collected.add(FeatureKind::Lake, self.name.clone(), self.origin.clone())
     }
 }
@@ -202,7 +209,7 @@ fn level_of(
     collected: &mut SceneBuilder,
 ) -> Result<LakeLevel, Diagnostic> {
     if let Some(level_m) = attributes.value(lake.level.as_ref()) {
-        return Ok(LakeLevel { level_m, rule: "given" });
+        return Ok(LakeLevel { level_m, rule: GIVEN });
     }
     let rule = lake.level_rule;
     count_default(lake.level.as_ref(), "the lowest height along the shore", &mut collected.default_counts);

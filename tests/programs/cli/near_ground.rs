@@ -7,10 +7,10 @@ use crate::cli::run_in;
 use crate::common::scratch::Scratch;
 
 /// A limit by which the ground below is large: its outer ground has an eighth of the posts a side.
-const LARGE: [&str; 2] = ["--limit", "pictured-samples=400k"];
+pub const LARGE: [&str; 2] = ["--limit", "pictured-samples=400k"];
 
 /// Samples along a side of the ground.
-const SIDE: u32 = 900;
+pub const SIDE: u32 = 900;
 
 /// Hills of several sizes with a road, a river, a house, a hedge and a name, and cameras that see them.
 const SCENE: &str = r#"
@@ -52,13 +52,15 @@ projection = "plan"
 shows = [[503000, 4002500], [504500, 4003500]]
 "#;
 
-fn height(column: u32, row: u32) -> f64 {
+/// The height of a sample, counted from the south-west.
+pub fn height(column: u32, row: u32) -> f64 {
     let (x, y) = (f64::from(column), f64::from(row));
     let hills = 120.0 * libm::sin(x * 0.011) * libm::cos(y * 0.013) + 25.0 * libm::sin(x * 0.07 + y * 0.05);
     300.0 + hills + 2.0 * libm::sin(x * 0.9) * libm::sin(y * 1.1)
 }
 
-fn scene() -> Scratch {
+/// A folder with a scene on the ground.
+pub fn scene(text: &str) -> Scratch {
     let scratch = Scratch::new();
     let row = |row: u32| {
         let heights = (0..SIDE).map(|column| format!("{:.2}", height(column, SIDE - 1 - row)));
@@ -68,7 +70,7 @@ fn scene() -> Scratch {
     let head = format!("ncols {SIDE}\nnrows {SIDE}\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n");
     scratch.write("hill.asc", head + &rows.join("\n"));
     run_in(scratch.folder(), &["dem", "convert", "hill.asc", "hill.tif", "--source-crs", "EPSG:32616"]).ok();
-    scratch.write("s.toml", SCENE);
+    scratch.write("s.toml", text);
     scratch
 }
 
@@ -103,7 +105,7 @@ impl NearPicture {
 
 #[test]
 fn from_near_by_large_ground_looks_as_with_all_of_its_samples() {
-    let scratch = scene();
+    let scratch = scene(SCENE);
     // The ground that is far from a high eye has fewer posts than pixels.
     for (camera, least) in [("near", 0.99), ("high", 0.91), ("part", 0.99)] {
         let whole = NearPicture::of(&scratch, camera, &[]);
@@ -122,7 +124,7 @@ fn from_near_by_large_ground_looks_as_with_all_of_its_samples() {
 
 #[test]
 fn each_thing_on_nested_ground_is_drawn_once() {
-    let scratch = scene();
+    let scratch = scene(SCENE);
     let [whole, nested] = [&[][..], &LARGE].map(|more| NearPicture::of(&scratch, "near", more));
     assert_eq!(whole.number("/triangles/buildings"), nested.number("/triangles/buildings"));
     for kind in ["lines", "roads"] {
@@ -135,7 +137,7 @@ fn each_thing_on_nested_ground_is_drawn_once() {
 
 #[test]
 fn pictures_of_all_cameras_are_those_of_each_alone() {
-    let scratch = scene();
+    let scratch = scene(SCENE);
     let size = ["--size", "240x135"];
     let all = [&["render", "s.toml", "--all-cameras", "-o", "all.png"], &size[..], &LARGE].concat();
     run_in(scratch.folder(), &all).ok();

@@ -1,0 +1,190 @@
+//! What is in sight of an observer: on the ground of the picture when a picture first needs it, or found beforehand on the part of
+//! the samples that it reaches, where the picture's ground is of means of them.
+
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use glam::DVec2;
+
+use crate::description::words::ViewshedTint;
+use crate::draw::list::FeatureId;
+use crate::geom::rect::Rect;
+use crate::scene::exact_ground::{ExactGround, ExactPartError};
+use crate::terrain::lattice::{Lattice, Post};
+use crate::terrain::profile::profile;
+use crate::terrain::query::{Interpolation, ground_height};
+use crate::terrain::sight::Curvature;
+use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use crate::terrain::sight::outlook::{VisibleStretch, visible_stretches};
+use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed};
+
+/// What observers see.
+pub struct SceneViewshed {
+    /// Its name for the legend; may be empty.
+    pub name: String,
+    /// One for each observer, in map coordinates.
+    pub observers: Vec<ViewshedOptions>,
+    /// Which ground is tinted.
+    pub tint: ViewshedTint,
+    /// The feature it is.
+    pub feature: FeatureId,
+    seen: OnceLock<Option<SeenPosts>>,
+}
+
+/// Which posts are in sight, and where they lie.
+pub struct SeenPosts {
+    /// The posts.
+    pub viewshed: Viewshed,
+    /// Their places.
+    pub frame: PostFrame,
+}
+
+/// The places of the posts that a lattice holds.
+#[derive(Clone, Copy, Debug)]
+pub struct PostFrame {
+    origin: DVec2,
+    /// The distance of posts, meters.
+    pub cell: DVec2,
+    /// The first post that is held, on the grid from `origin` on.
+    first: DVec2,
+}
+
+/// What is in sight along a line.
+#[derive(Clone)]
+pub struct SeenLine {
+    /// The ground in sight of the observer.
+    pub stretches: Vec<VisibleStretch>,
+    /// Whether the target is.
+    pub is_clear: bool,
+}
+
+impl PostFrame {
+    /// Those of a lattice.
+    pub fn of(lattice: &Lattice) -> Self {
+        let first = lattice.first().grid() + lattice.held().first.grid();
+        Self { origin: lattice.origin(), cell: lattice.cell(), first }
+    }
+
+    /// The map position of a post, counted from the first that is held.
+    pub fn map_position(&self, post: Post) -> DVec2 {
+        self.origin + (post.grid() + self.first) * self.cell
+    }
+}
+
+impl SceneViewshed {
+    /// Of observers, on the ground of the picture.
+    pub fn new(
+        name: String,
+        observers: Vec<ViewshedOptions>,
+        tint: ViewshedTint,
+        feature: FeatureId,
+    ) -> Self {
+        Self { name, observers, tint, feature, seen: OnceLock::new() }
+    }
+
+    /// Finds what is in sight on all samples where the picture's ground is of means of them, and gives the ground that this
+    /// took; `None` where it is not.
+    ///
+    /// # Errors
+    /// The range is too large, or the samples cannot be read.
+    pub(super) fn find(&self, exact: &ExactGround<'_>) -> Result<Option<Lattice>, ExactPartError> {
+        let Some(reach) = self.reach() else { return Ok(None) };
+        let part = exact.part(&reach)?;
+        if let Some(part) = &part {
+            self.seen.get_or_init(|| self.compute(part));
+        }
+        Ok(part)
+    }
+
+    /// The rectangle within reach of the observers, map coordinates; may be infinite. `None` without observers.
+    fn reach(&self) -> Option<Rect> {
+        let corners = |options: &ViewshedOptions| {
+            let at = options.observer.at;
+            [at - options.range_m, at + options.range_m]
+        };
+        let around = Rect::around(self.observers.iter().flat_map(corners));
+        (!around.is_empty()).then_some(around)
+    }
+
+    /// What is in sight of one of the observers at least, on `lattice` unless it was found before, computed on first use; `None`
+    /// without observers on the ground.
+    pub fn seen(&self, lattice: &Lattice) -> Option<&SeenPosts> {
+        self.seen.get_or_init(|| self.compute(lattice)).as_ref()
+    }
+
+    fn compute(&self, lattice: &Lattice) -> Option<SeenPosts> {
+        let mut observers = self.observers.iter().filter_map(|options| viewshed(lattice, options).ok());
+        let mut seen = observers.next()?;
+        for other in observers {
+            for (post, other) in seen.posts.iter_mut().zip(other.posts) {
+                *post = either(*post, other);
+            }
+        }
+        Some(SeenPosts { viewshed: seen, frame: PostFrame::of(lattice) })
+    }
+}
+
+/// What two observers see of a post together.
+fn either(one: PostVisibility, other: PostVisibility) -> PostVisibility {
+    use PostVisibility::{Beyond, Hidden, NoData, Visible};
+    match (one, other) {
+        (Visible, _) | (_, Visible) => Visible,
+        (Hidden, _) | (_, Hidden) => Hidden,
+        (NoData, _) | (_, NoData) => NoData,
+        (Beyond, Beyond) => Beyond,
+    }
+}
+
+/// Lines of sight from an observer.
+pub struct SceneSight {
+    /// Its name for the legend; may be empty.
+    pub name: String,
+    /// The observer, in map coordinates.
+    pub observer: SightEnd,
+    /// What is looked at.
+    pub targets: Vec<SightEnd>,
+    /// The feature it is.
+    pub feature: FeatureId,
+    /// What is in sight along each line, where that was found beforehand; `None` without ground under the observer.
+    pub(super) found: Option<Vec<Option<SeenLine>>>,
+}
+
+impl SceneSight {
+    /// Finds what is in sight on all samples where the picture's ground is of means of them.
+    ///
+    /// # Errors
+    /// A line is too long, or the samples cannot be read.
+    pub(super) fn find(&mut self, exact: &ExactGround<'_>) -> Result<(), ExactPartError> {
+        let mut found = Vec::new();
+        for target in &self.targets {
+            let Some(part) = exact.part(&Rect::around([self.observer.at, target.at]))? else { return Ok(()) };
+            found.push(SeenLine::on(&part, self.observer, *target));
+        }
+        self.found = Some(found);
+        Ok(())
+    }
+
+    /// What is in sight along the line to each target, on `lattice` unless it was found before; `None` without ground under the
+    /// observer.
+    pub fn lines(&self, lattice: &Lattice) -> Cow<'_, [Option<SeenLine>]> {
+        match &self.found {
+            Some(found) => Cow::Borrowed(found),
+            None => {
+                let line = |target: &SightEnd| SeenLine::on(lattice, self.observer, *target);
+                Cow::Owned(self.targets.iter().map(line).collect())
+            }
+        }
+    }
+}
+
+impl SeenLine {
+    /// That of a line on `lattice`; `None` without ground under the observer.
+    fn on(lattice: &Lattice, observer: SightEnd, target: SightEnd) -> Option<Self> {
+        let curvature = Curvature::default();
+        let foot_m = ground_height(lattice, Interpolation::Planar, observer.at).height_m()?;
+        let stations = profile(lattice, &[observer.at, target.at]);
+        let stretches = visible_stretches(&stations, foot_m + observer.above_m, curvature);
+        let is_clear = line_of_sight(lattice, observer, target, curvature) == Sight::Clear;
+        Some(Self { stretches, is_clear })
+    }
+}
