@@ -16,7 +16,8 @@
 //!
 //! It is fast because a post lower than the least horizon all around it (most of them, in hills) is hidden, and edges
 //! between two such posts do not change the horizon. A rung or a diagonal matters only where it rises above both rings that
-//! it joins, as a ridge does, which two interpolations decide.
+//! it joins, as a ridge does, which two interpolations decide. Where ground faces the observer, each ring is compared with the
+//! one before alone ([`RingStep`]).
 
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
