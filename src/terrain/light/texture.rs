@@ -116,37 +116,23 @@ impl TextureLevel {
 
     /// A row smoothed northward.
     fn smooth_row(&self, at: usize) -> Vec<f32> {
-        let [south_2, south, own, north, north_2] = around(at, self.rows).map(|row| self.row(row));
-        let sides = south.iter().zip(north);
-        let far = south_2.iter().zip(north_2);
-        let smooth = |((own, (south, north)), (south_2, north_2)): ((&f32, (&f32, &f32)), (&f32, &f32))| {
-            spline([*south_2, *south, *own, *north, *north_2])
-        };
-        own.iter().zip(sides).zip(far).map(smooth).collect()
+        let rows = around(at, self.rows).map(|row| self.row(row));
+        (0..self.columns).map(|column| spline(rows.map(|row| row[column]))).collect()
     }
 
     /// The values along a row of the finer level of `count` columns, by the spline through this one's values as weights.
     fn finer_row(&self, row: usize, count: usize, halving: TextureHalving) -> Vec<f32> {
-        let line = if halving.rows {
-            let [south, own, north] = beside(row / 2, self.rows).map(|row| self.row(row));
-            let finer = if row.is_multiple_of(2) { at_weight } else { between_weights };
-            let pairs = south.iter().zip(own).zip(north);
-            pairs.map(|((&south, &own), &north)| finer(south, own, north)).collect()
+        let line: Vec<f32> = if halving.rows {
+            let rows = beside(row / 2, self.rows).map(|row| self.row(row));
+            (0..self.columns).map(|column| finer_value(row, rows.map(|row| row[column]))).collect()
         } else {
             self.row(row).to_vec()
         };
         if !halving.columns {
             return line;
         }
-        let value = |column: usize| {
-            let [west, own, east] = beside(column / 2, line.len()).map(|column| line[column]);
-            if column.is_multiple_of(2) {
-                at_weight(west, own, east)
-            } else {
-                between_weights(west, own, east)
-            }
-        };
-        (0..count).map(value).collect()
+        let beside = |column: usize| beside(column / 2, self.columns).map(|column| line[column]);
+        (0..count).map(|column| finer_value(column, beside(column))).collect()
     }
 }
 
@@ -169,12 +155,9 @@ fn spline([before_2, before, own, after, after_2]: [f32; 5]) -> f32 {
     (before_2 + after_2 + 4.0 * (before + after) + 6.0 * own) * (1.0 / 16.0)
 }
 
-fn at_weight(before: f32, own: f32, after: f32) -> f32 {
-    (before + after + 6.0 * own) * 0.125
-}
-
-fn between_weights(_before: f32, own: f32, after: f32) -> f32 {
-    (own + after) * 0.5
+/// The spline at index `at` of a finer level: at a weight where that is even, else half way to the next.
+fn finer_value(at: usize, [before, own, after]: [f32; 3]) -> f32 {
+    if at.is_multiple_of(2) { (before + after + 6.0 * own) * 0.125 } else { (own + after) * 0.5 }
 }
 
 #[cfg(test)]
