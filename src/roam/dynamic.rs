@@ -18,7 +18,7 @@ use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeG
 use crate::roam::criterion::Criterion;
 use crate::roam::criterion::spheres::Spheres;
 use crate::roam::culling::{NO_DATA, PatchHeights, drawn_range, joined};
-use crate::roam::edit::{Mended, has_moved, mend_exact, mend_midpoint, mend_spheres};
+use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::exact::own_errors;
 use crate::roam::graph::Vertex;
@@ -212,11 +212,10 @@ impl DynamicTerrain {
         let (mut vertices, mut erring) = (Vec::with_capacity(2 * posts), Vec::new());
         for change in &changes.pieces {
             self.renew_heights(change);
-            self.add_moved(change, &mut vertices);
+            let moved = self.add_moved(change, &mut vertices);
             let [errors, spheres] = self.mend(change);
-            let is_moved = |&vertex: &Vertex| has_moved(&self.lattice, change, self.layout.post(vertex));
-            vertices.extend(spheres.vertices.into_iter().filter(|vertex| !is_moved(vertex)));
-            erring.extend(errors.vertices.into_iter().filter(|vertex| !is_moved(vertex)));
+            vertices.extend(spheres.vertices.into_iter().filter(|&vertex| !moved.holds(vertex)));
+            erring.extend(errors.vertices.into_iter().filter(|&vertex| !moved.holds(vertex)));
         }
         let placed = vertices.len();
         vertices.append(&mut erring);
@@ -242,21 +241,23 @@ impl DynamicTerrain {
         [errors, spheres]
     }
 
-    /// Adds the vertices whose height changed to `vertices`.
-    fn add_moved(&self, change: &Change, vertices: &mut Vec<Vertex>) {
+    /// Adds the vertices whose height changed to `vertices`, and returns them.
+    fn add_moved(&self, change: &Change, vertices: &mut Vec<Vertex>) -> MovedVertices {
         let rect = VertexRect::from_posts(&self.layout, &change.posts);
         let (first, last) = (change.posts.first, change.posts.last);
+        let width = (rect.max.x - rect.min.x + 1) as usize;
+        let mut are_moved = Vec::with_capacity(width * (rect.max.y - rect.min.y + 1) as usize);
         for y in rect.min.y..=rect.max.y {
             let row = self.layout.post(Vertex::new(rect.min.x, y)).row;
             let [before, now] = change.row(&self.lattice, row, (first.column, last.column));
-            let is_moved = |at: usize| before[at].to_bits() != now[at].to_bits();
-            let inside =
-                (0..now.len()).filter(|&at| is_moved(at)).map(|at| Vertex::new(rect.min.x + at as i32, y));
-            vertices.extend(inside);
-            if is_moved(now.len() - 1) {
-                vertices.extend((last.column as i32 + 1..=rect.max.x).map(|x| Vertex::new(x, y)));
-            }
+            let start = are_moved.len();
+            are_moved.extend(before.iter().zip(now).map(|(before, now)| before.to_bits() != now.to_bits()));
+            // Vertices beyond the east border have the last post's height.
+            are_moved.resize(start + width, are_moved[are_moved.len() - 1]);
+            let columns = (rect.min.x..).zip(&are_moved[start..]);
+            vertices.extend(columns.filter(|&(_, &moved)| moved).map(|(x, _)| Vertex::new(x, y)));
         }
+        MovedVertices { corner: rect.min, width, are_moved }
     }
 
     /// Updates the ranges of the patches that `change` touches: widened by the new heights, or measured again where the
@@ -304,6 +305,25 @@ impl DynamicTerrain {
         dirty.sort_unstable_by_key(|&corner| layout.patch_index(corner));
         dirty.iter().for_each(|&corner| self.dirty[layout.patch_index(corner)] = false);
         dirty
+    }
+}
+
+/// Which vertices of a rectangle an edit has moved.
+struct MovedVertices {
+    /// The south-west corner of the rectangle.
+    corner: Vertex,
+    /// Vertices in a row.
+    width: usize,
+    /// Row by row.
+    are_moved: Vec<bool>,
+}
+
+impl MovedVertices {
+    #[inline]
+    fn holds(&self, vertex: Vertex) -> bool {
+        let (x, y) = (i64::from(vertex.x - self.corner.x), i64::from(vertex.y - self.corner.y));
+        let is_inside = (0..self.width as i64).contains(&x) && y >= 0;
+        is_inside && self.are_moved.get(y as usize * self.width + x as usize).is_some_and(|&moved| moved)
     }
 }
 

@@ -216,9 +216,7 @@ fn relief(lattice: &Lattice, posts: [Post; 3]) -> f64 {
     a.max(b).max(c) - a.min(b).min(c)
 }
 
-/// Whether `change` gave a post another height.
-#[inline]
-pub(super) fn has_moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
+fn has_moved(lattice: &Lattice, change: &Change, post: Post) -> bool {
     change.posts.contains(post) && change.height_before(post).to_bits() != lattice.height(post).to_bits()
 }
 
