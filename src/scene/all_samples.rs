@@ -30,9 +30,9 @@ const VOID_MARGIN: u32 = 512;
 /// Memory for a post of a part: its height, whether it is pinned and whether it is in sight.
 const BYTES_PER_POST: usize = 8;
 
-/// More posts than are read at once.
+/// A part of more posts than are read at once.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TooManyPosts {
+pub(super) struct PartTooLarge {
     /// In a row.
     pub columns: usize,
     /// Rows.
@@ -115,14 +115,14 @@ impl AllSamples {
     ///
     /// # Errors
     /// They are more than a raster in memory has.
-    pub fn posts_around(&self, rect: &Rect) -> Result<PostRect, TooManyPosts> {
+    pub fn posts_around(&self, rect: &Rect) -> Result<PostRect, PartTooLarge> {
         let (origin, cell) = self.frame;
         let header = self.plan.header();
         let (low, high) = ((rect.min - origin) / cell - HALO, (rect.max - origin) / cell + HALO);
         let posts = PostRect::around((header.width, header.height), low, high);
         let (columns, rows) = (posts.width(), posts.height());
         match columns as u64 * rows as u64 > RASTER_SAMPLES.get() {
-            true => Err(TooManyPosts { columns, rows }),
+            true => Err(PartTooLarge { columns, rows }),
             false => Ok(posts),
         }
     }

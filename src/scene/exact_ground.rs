@@ -22,7 +22,7 @@ use crate::description::features::FenceTable;
 use crate::description::finding_code::FindingCode;
 use crate::description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
 use crate::geom::rect::Rect;
-use crate::scene::all_samples::{AllSamples, TooManyPosts};
+use crate::scene::all_samples::{AllSamples, PartTooLarge};
 use crate::scene::assets::Assets;
 use crate::scene::build::part_ground;
 use crate::scene::nested_ground::part_document;
@@ -71,7 +71,7 @@ fn shapes_ground(document: &Document) -> bool {
 /// A part of the ground that cannot be had.
 pub(super) enum ExactPartError {
     /// It is too large.
-    TooLarge(TooManyPosts),
+    TooLarge(PartTooLarge),
     /// It cannot be read or built.
     Failed(Diagnostic),
 }

@@ -51,7 +51,7 @@ pub struct PostFrame {
 
 /// What is in sight along a line.
 #[derive(Clone)]
-pub struct SeenLine {
+pub struct SightedLine {
     /// The ground in sight of the observer.
     pub stretches: Vec<VisibleStretch>,
     /// Whether the target is.
@@ -146,7 +146,7 @@ pub struct SceneSight {
     /// The feature it is.
     pub feature: FeatureId,
     /// What is in sight along each line, where that was found beforehand; `None` without ground under the observer.
-    pub(super) found: Option<Vec<Option<SeenLine>>>,
+    pub(super) found: Option<Vec<Option<SightedLine>>>,
 }
 
 impl SceneSight {
@@ -158,7 +158,7 @@ impl SceneSight {
         let mut found = Vec::new();
         for target in &self.targets {
             let Some(part) = exact.part(&Rect::around([self.observer.at, target.at]))? else { return Ok(()) };
-            found.push(SeenLine::on(&part, self.observer, *target));
+            found.push(SightedLine::on(&part, self.observer, *target));
         }
         self.found = Some(found);
         Ok(())
@@ -166,18 +166,18 @@ impl SceneSight {
 
     /// What is in sight along the line to each target, on `lattice` unless it was found before; `None` without ground under the
     /// observer.
-    pub fn lines(&self, lattice: &Lattice) -> Cow<'_, [Option<SeenLine>]> {
+    pub fn lines(&self, lattice: &Lattice) -> Cow<'_, [Option<SightedLine>]> {
         match &self.found {
             Some(found) => Cow::Borrowed(found),
             None => {
-                let line = |target: &SightEnd| SeenLine::on(lattice, self.observer, *target);
+                let line = |target: &SightEnd| SightedLine::on(lattice, self.observer, *target);
                 Cow::Owned(self.targets.iter().map(line).collect())
             }
         }
     }
 }
 
-impl SeenLine {
+impl SightedLine {
     /// That of a line on `lattice`; `None` without ground under the observer.
     fn on(lattice: &Lattice, observer: SightEnd, target: SightEnd) -> Option<Self> {
         let curvature = Curvature::default();

@@ -14,7 +14,7 @@ use crate::draw::list::FeatureId;
 use crate::geom::crs::Crs;
 use crate::limits::RASTER_SAMPLES;
 use crate::scene::FeatureKind;
-use crate::scene::all_samples::TooManyPosts;
+use crate::scene::all_samples::PartTooLarge;
 use crate::scene::builder::SceneBuilder;
 use crate::scene::exact_ground::{ExactGround, ExactPartError};
 use crate::scene::feature_origin::FeatureOrigin;
@@ -210,7 +210,7 @@ pub(super) fn lay(exact: &ExactGround<'_>, collected: &mut SceneBuilder) -> Resu
 fn failed<T>(document: &Document, stated: &Stated<T>, error: ExactPartError, help: &str) -> Diagnostic {
     match error {
         ExactPartError::Failed(error) => error,
-        ExactPartError::TooLarge(TooManyPosts { columns, rows }) => {
+        ExactPartError::TooLarge(PartTooLarge { columns, rows }) => {
             let message = format!(
                 "{columns} x {rows} samples of the elevation model are within reach of this, more than the {RASTER_SAMPLES} that are \
                  read at once"

@@ -167,7 +167,7 @@ fn a_viewshed_of_two_observers_is_what_either_sees() {
         .iter()
         .map(|options| viewshed(&scene.lattice, options).expect("an observer on the ground"))
         .collect();
-    for (index, post) in seen.posts.iter().enumerate() {
+    for (index, post) in seen.viewshed.posts.iter().enumerate() {
         let either = alone.iter().any(|one| one.posts[index] == PostVisibility::Visible);
         assert_eq!(*post == PostVisibility::Visible, either, "post {index}");
     }

@@ -21,7 +21,7 @@ use crate::scene::picture::add_mesh;
 use crate::scene::picture::graphic_colors::{self, HIDDEN, SEEN, side_color};
 use crate::scene::picture::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
 use crate::scene::picture::placed_text::{PlacedCourse, PlacedText};
-use crate::scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenLine, SeenPosts};
+use crate::scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenPosts, SightedLine};
 use crate::scene::sight_layers::{SceneRange, heading};
 use crate::terrain::lattice::{Lattice, Post};
 use crate::terrain::sight::line::SightEnd;
@@ -318,7 +318,7 @@ fn distance_text(radius_m: f64) -> String {
 fn draw_sight(sight: &SceneSight, scene: &SceneModel, view: &GraphicView<'_>, pen: &mut GraphicPen) {
     let (origin, observer) = (scene.lattice.origin(), sight.observer);
     for (target, line) in sight.targets.iter().zip(&*sight.lines(&scene.lattice)) {
-        let Some(SeenLine { stretches, is_clear }) = line else { return };
+        let Some(SightedLine { stretches, is_clear }) = line else { return };
         let length_m = observer.at.distance(target.at);
         let at = |station_m: f64| observer.at.lerp(target.at, station_m / length_m) - origin;
         let mut from_m = 0.0;
