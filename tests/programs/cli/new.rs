@@ -141,7 +141,8 @@ fn the_layers_of_an_openstreetmap_extract_are_told_apart() {
 fn a_scene_of_a_web_mercator_model_shows_what_its_cameras_name() {
     let Some(dem) = data("dem/tin_valid_raster_3857.tif") else { return };
     let scratch = Scratch::new();
-    let arguments = ["new".as_ref(), scratch.at("scene").as_os_str(), "--dem".as_ref(), dem.as_os_str()];
+    let folder = scratch.at("scene");
+    let arguments = ["new".as_ref(), folder.as_os_str(), "--dem".as_ref(), dem.as_os_str()];
     let out = run_in(scratch.folder(), &arguments).ok();
     let text = std::fs::read_to_string(scratch.at("scene/scene.toml")).expect("it was written");
     // Inline points stay in the system of the file, whose lengths are not those of the ground.
