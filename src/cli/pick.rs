@@ -24,7 +24,7 @@ pub struct PickArguments {
     /// The pixels, column and row each
     #[arg(long, value_name = "X,Y", required = true, num_args = 1.., value_parser = pixel)]
     pub pixel: Vec<[u32; 2]>,
-    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080; in plan, as many in the shape of the ground]
+    /// Size of the picture in pixels [default: the camera's paper, 1920x1080, or in plan the shape of the ground]
     #[arg(long, value_name = "WxH", value_parser = picture_size)]
     pub size: Option<PictureSize>,
     /// The camera of the scene that the picture is seen through [default: its first]

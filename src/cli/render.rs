@@ -35,7 +35,7 @@ pub struct RenderArguments {
     /// Write to this .png, .pdf or .svg file; several scenes to this folder [default: the scene's name]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Size of the picture in pixels [default: that of the camera's paper, or 1920x1080; in plan, as many in the shape of the ground]
+    /// Size of the picture in pixels [default: the camera's paper, 1920x1080, or in plan the shape of the ground]
     #[arg(long, value_name = "WxH", value_parser = picture_size)]
     pub size: Option<PictureSize>,
     /// The camera of the scene to look through [default: its first]

@@ -22,6 +22,10 @@ pub fn outside_note(answers: &[Answer], at: &[DVec2], crs: &Crs, header: &Raster
     let covered = header.extent();
     let which = if at.len() == 1 { "the position lies" } else { "all positions lie" };
     let tried = &at[..at.len().min(MOST_TRIED)];
+    if tried.iter().any(|at| crs.transform(own, *at).is_ok_and(|at| covered.contains(at))) {
+        // The ground of a scene is smaller than its elevation.
+        return None;
+    }
     let found = misplacement(tried, crs, own, &covered).or_else(|| {
         let zone = zone_of(&covered, own)?;
         let is_there = |at: &&DVec2| zone.transform(own, **at).is_ok_and(|at| covered.contains(at));

@@ -52,7 +52,9 @@ fn heights_are_brought_to_the_ellipsoid_where_it_is_known_what_they_count_from()
         )
     };
     // The grid lies elsewhere; at its own corner the geoid is asked for.
-    assert!(height(&[]).ok().ends_with(",Outside\n"));
+    let outside = height(&[]);
+    assert!(outside.code == 0 && outside.out.ends_with(",Outside\n"), "{outside:?}");
+    assert!(outside.err.contains("which covers 0 to 40 and 0 to 30 in EPSG:32632"), "{outside:?}");
     let at =
         |more: &[&str]| run_in(scratch.folder(), &[&["height", "grid.asc", "--at", "5,25"], more].concat());
     let stated = at(&["--vertical-datum", "egm96", "--above", "ellipsoid", "--json"]).ok();
@@ -195,7 +197,15 @@ fn points_may_be_in_another_system_and_one_that_cannot_be_reached_is_refused() {
         )
     };
     assert!(ask("EPSG:4326").ok().ends_with(",1,Ok\n"));
-    assert!(ask("EPSG:32612").ok().ends_with(",,Outside\n"));
+    let taken_for_meters = ask("EPSG:32612");
+    assert!(
+        taken_for_meters.code == 0 && taken_for_meters.out.ends_with(",,Outside\n"),
+        "{taken_for_meters:?}"
+    );
+    assert!(
+        taken_for_meters.err.ends_with("in EPSG:4326 it is on it: say --crs EPSG:4326\n"),
+        "{taken_for_meters:?}"
+    );
     let refused = ask("EPSG:26712").failed(1);
     assert!(refused.contains("utm.asc") && refused.contains("datum"), "{refused}");
     let refused = ask("somewhere").failed(2);

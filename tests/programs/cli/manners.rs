@@ -96,7 +96,7 @@ fn nothing_moves_where_nobody_watches() {
 #[test]
 fn a_reader_that_leaves_is_no_reason_to_panic() {
     let scratch = Scratch::new();
-    scratch.write("points.csv", "1,2\n".repeat(200_000));
+    scratch.write("points.csv", "-84.2,36.3\n".repeat(200_000));
     let (dem, model, scene) =
         (project("assets/jacksboro/dem.tif"), project("assets/models/tent.glb"), project("scenes/road.toml"));
     for arguments in [
