@@ -21,7 +21,7 @@ impl PatchMesh {
         let node = &topology.nodes()[vertex as usize];
         let at = topology.places()[vertex as usize];
         let (active, may_split) = (self.is_active(vertex), self.may_split(vertex));
-        let inside_m = station.inside_m(self.sphere(vertex));
+        let inside_m = station.inside_m(self.sphere(topology, vertex));
         let ready = |parent: u16| parent == NONE || self.is_active(parent);
         assert_eq!(may_split, ready(node.ring[1]) && ready(node.ring[3]), "the parents of {at:?} by count");
         assert_eq!(active, inside_m > 0.0 && may_split, "{at:?} is active, against its sphere and parents");
@@ -55,7 +55,7 @@ impl PatchMesh {
             } else if self.is_shown(topology, at) {
                 shown += 1;
             } else {
-                let is_missing = self.slot(at).is_none() && self.is_missing(corners);
+                let is_missing = self.slot(at).is_none() && self.is_missing(topology, corners);
                 assert!(is_missing, "the leaf {corners:?} is not in the index list");
             }
         }

@@ -266,7 +266,8 @@ impl<S: BlockSource> Deferred<S> {
     fn miss_renewed(&mut self, mesh: u32) {
         let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
         let patch = &mut self.meshes[slot];
-        let renewed = patch.take_renewed(&self.topologies[patch.parity]);
+        let topology = &self.topologies[patch.parity];
+        let renewed = patch.take_renewed(topology);
         for &vertex in renewed.iter().filter(|&&vertex| !Topology::is_corner(vertex)) {
             let waits = patch.is_waiting(vertex);
             if !waits && !patch.may_change(vertex) {
@@ -274,7 +275,7 @@ impl<S: BlockSource> Deferred<S> {
                 continue;
             }
             if waits {
-                let inside = self.station.inside_m(patch.sphere(vertex));
+                let inside = self.station.inside_m(patch.sphere(topology, vertex));
                 let is_soon_enough = (inside > 0.0) == patch.is_active(vertex)
                     && self.station.due(inside.abs()) >= self.wheel.begin(patch.list(vertex));
                 if is_soon_enough {
@@ -432,7 +433,7 @@ impl<S: BlockSource> Deferred<S> {
         inside_m.extend(due.iter().map(|&entry| {
             let patch = &mut self.meshes[(entry >> VERTEX_BITS) as usize];
             patch.leave(vertex_of(entry));
-            self.station.inside_m(patch.sphere(vertex_of(entry)))
+            self.station.inside_m(patch.sphere(&self.topologies[patch.parity], vertex_of(entry)))
         }));
         for (&entry, &inside) in due.iter().zip(&inside_m) {
             let mesh = (entry >> VERTEX_BITS) as usize;

@@ -47,7 +47,7 @@ impl<'a, S: BlockSource> DeferredSurface<'a, S> {
         };
         let descent = FacetDescent { mesh, topology, rect };
         for &root in topology.roots() {
-            let facet = root.map(|number| position(mesh, number));
+            let facet = root.map(|number| position(mesh, topology, number));
             descent.visit(triangle(root[0], 0), root, facet, visit);
         }
     }
@@ -74,13 +74,13 @@ impl FacetDescent<'_> {
         }
         let middle = self.topology.middle(at);
         if middle == NONE || !self.mesh.is_active(middle) {
-            if self.mesh.is_displayed(corners) {
+            if self.mesh.is_displayed(self.topology, corners) {
                 visit(&facet);
             }
             return;
         }
         let side = usize::from(self.topology.nodes()[middle as usize].ring[3] == corners[0]);
-        let split = position(self.mesh, middle);
+        let split = position(self.mesh, self.topology, middle);
         let half =
             |[of, next]: [usize; 2]| ([middle, corners[of], corners[next]], [split, facet[of], facet[next]]);
         for (half, (corners, facet)) in [(1, half([0, 1])), (0, half([2, 0]))] {
@@ -89,8 +89,8 @@ impl FacetDescent<'_> {
     }
 }
 
-fn position(mesh: &PatchMesh, number: u16) -> Vec3 {
-    let [x, y, z, _] = mesh.sphere(number);
+fn position(mesh: &PatchMesh, topology: &Topology, number: u16) -> Vec3 {
+    let [x, y, z, _] = mesh.sphere(topology, number);
     Vec3::new(x, y, z)
 }
 
