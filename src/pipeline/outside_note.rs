@@ -54,8 +54,7 @@ pub fn outside_note(answers: &[Answer], at: &[DVec2], crs: &Crs, header: &Raster
 /// The UTM zone of the middle of elevation in degrees.
 fn zone_of(covered: &Rect, own: &Crs) -> Option<Crs> {
     let middle = Some(covered.center()).filter(|_| own.is_geographic())?;
-    let zone = ((middle.x + 180.0) / 6.0).floor().rem_euclid(60.0) as u32 + 1;
-    Crs::from_epsg(if middle.y < 0.0 { 32700 } else { 32600 } + zone).ok()
+    Some(Crs::utm_at(middle.x, middle.y))
 }
 
 #[cfg(test)]

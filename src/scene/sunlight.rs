@@ -20,14 +20,14 @@ pub struct Sunlight {
 }
 
 /// The sun's height in degrees where it is not stated: low enough that gentle forms show.
-const ALTITUDE_DEG: f64 = 40.0;
+pub(crate) const ALTITUDE_DEG: f64 = 40.0;
 
 /// The light follows the camera in steps of this many degrees, so that a small turn does not move the shadows.
 const STEP_DEG: f32 = 15.0;
 
 /// How far to the left of the viewing direction the light comes from, degrees: in a view from above, where light from
 /// below right would turn hills into holes; and in a view from the side, where fronts of buildings would be dark.
-const LEFT_DEG: [f32; 2] = [45.0, 100.0];
+pub(crate) const LEFT_DEG: [f32; 2] = [45.0, 100.0];
 /// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
 const PITCH_DEG: [f32; 2] = [40.0, 22.0];
 

@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use crate::geom::rect::Rect;
 use crate::scene::SceneModel;
+use crate::scene::sunlight::{ALTITUDE_DEG, LEFT_DEG};
 use crate::terrain::lattice::{Lattice, Post};
 
 /// A fitted camera as its table states it; angles in degrees.
@@ -30,10 +31,6 @@ const LOW_PITCH_DEG: f64 = 14.0;
 /// The directions in which the low camera may look: light from the upper left models the ground.
 const LOW_AZIMUTHS_DEG: [f64; 5] = [0.0, -30.0, 30.0, -60.0, 60.0];
 
-/// How far to the left of a low view its light comes from, and how high above the horizon, degrees; see [`Sunlight`].
-///
-/// [`Sunlight`]: crate::scene::sunlight::Sunlight
-const LIGHT_DEG: (f64, f64) = (100.0, 40.0);
 /// Ground whose normal has less than this of the light's direction looks dark, whatever it is made of.
 const DARK: f64 = 0.25;
 /// Where the ground before a block is looked at, in sixteenths of its longer side from its middle: fine enough for a ridge.
@@ -136,8 +133,9 @@ fn places(block: Rect) -> impl Iterator<Item = DVec2> {
 
 /// The share of a block that is dark in a low view toward `azimuth_deg`, without cast shadows.
 fn dark_share(lattice: &Lattice, block: Rect, azimuth_deg: f64, exaggeration: f64) -> f64 {
-    let (left, altitude) = (LIGHT_DEG.0, LIGHT_DEG.1.to_radians());
-    let azimuth = (azimuth_deg - left).to_radians();
+    let [_, left_of_low_view] = LEFT_DEG;
+    let altitude = ALTITUDE_DEG.to_radians();
+    let azimuth = (azimuth_deg - f64::from(left_of_low_view)).to_radians();
     let level = libm::cos(altitude);
     let to_sun = DVec3::new(libm::sin(azimuth) * level, libm::cos(azimuth) * level, libm::sin(altitude));
     let normals = places(block).filter_map(|at| {
