@@ -209,12 +209,6 @@ impl Crs {
         self.inner.epsg
     }
 
-    /// The well-known text, version 1, that the EPSG registry has for this system; `None` where it has no code.
-    pub(crate) fn registered_wkt(&self) -> Option<&'static str> {
-        let definition = crs_definitions::from_code(u16::try_from(self.epsg()?).ok()?)?;
-        (!definition.wkt.is_empty()).then_some(definition.wkt)
-    }
-
     /// Whether coordinates are longitude and latitude in degrees.
     pub fn is_geographic(&self) -> bool {
         self.inner.proj.is_latlong()
@@ -237,19 +231,23 @@ impl Crs {
 
     /// Its parameters; `None` for [`Crs::local`] and for a projection that [`Definition`] cannot express.
     pub fn definition(&self) -> Option<Definition> {
+        Definition::from_proj(ProjString(&self.inner.text), self.geodetic_definition())
+    }
+
+    /// Its datum and unit, without a projection.
+    pub(crate) fn geodetic_definition(&self) -> Definition {
         let (major_m, minor_m) = self.ellipsoid();
         // Ellipsoids are defined with nine decimals; those computed from the axes have noise behind them.
         let rounded = |value: f64| (value * 1e9).round() / 1e9;
         let inverse_flattening =
             if major_m == minor_m { 0.0 } else { rounded(major_m / (major_m - minor_m)) };
         let ellipsoid = Ellipsoid { major_m, inverse_flattening };
-        let text = ProjString(&self.inner.text);
-        let base = Definition {
+        let datum = Datum::from_proj(ProjString(&self.inner.text));
+        Definition {
             prime_meridian_deg: self.inner.proj.from_greenwich().to_degrees(),
             meters_per_unit: self.meters_per_unit(),
-            ..Definition::geographic(self.name().into(), Some(ellipsoid), Datum::from_proj(text))
-        };
-        Definition::from_proj(text, base)
+            ..Definition::geographic(self.name().into(), Some(ellipsoid), datum)
+        }
     }
 
     /// Longitude and latitude in degrees on the datum of a projected system: WGS 84 where the shift to it is known, so that

@@ -36,4 +36,5 @@ pub mod sun_position;
 pub mod tight_bend;
 pub mod triangle;
 pub mod wkt;
+pub(crate) mod wkt_registered;
 pub mod wkt_writer;
