@@ -51,8 +51,6 @@ pub(crate) struct SampleSurvey {
     /// Values that may mean no data.
     possible: Vec<f64>,
     found: SurveyedSamples,
-    /// Samples with data.
-    pub valid: u64,
     samples: u64,
 }
 
@@ -93,7 +91,7 @@ impl SampleSurvey {
             kept: vec![true; integers.len()],
             taken: vec![false; possible.len()],
         };
-        Self { integers, float, own: raster.nodata, possible, found, valid: 0, samples: 0 }
+        Self { integers, float, own: raster.nodata, possible, found, samples: 0 }
     }
 
     /// Looks at the next samples.
@@ -110,7 +108,6 @@ impl SampleSurvey {
         if let Some(found) = found.reduce_with(SurveyedSamples::and) {
             self.found = self.found.clone().and(found);
         }
-        self.valid = self.found.valid;
     }
 
     /// What a few samples rule out that is not ruled out yet.
@@ -143,7 +140,7 @@ impl SampleSurvey {
 
     /// The value for no data; the outer `None` where every candidate of the type is a height.
     fn nodata(&self, sample: SampleType) -> Option<Option<f64>> {
-        let has_holes = self.valid < self.samples;
+        let has_holes = self.found.valid < self.samples;
         if !has_holes && self.own.is_none() {
             return Some(None);
         }

@@ -167,6 +167,12 @@ pub trait Windows {
         None
     }
 
+    /// Whether all samples are bytes other than the value for no data, or NaN: a file of them need not be read to know how to
+    /// store it.
+    fn are_bytes(&self) -> bool {
+        false
+    }
+
     /// Announces windows that are read next, so that they can be read together: on all threads, what they share once.
     /// Has no effect on what they hold; errors wait for the reading.
     fn announce(&mut self, _windows: &[RasterWindow]) {}

@@ -9,9 +9,8 @@ use crate::geom::wkt_writer::WktProjection;
 pub(super) fn registered_projection(text: ProjString<'_>) -> Option<WktProjection> {
     let word = |key: &str| text.number(key);
     let latitude_deg = word("lat_0").unwrap_or(0.0);
-    let origin = || {
-        vec![("latitude_of_origin", latitude_deg), ("central_meridian", word("lon_0").unwrap_or(0.0))]
-    };
+    let origin =
+        || vec![("latitude_of_origin", latitude_deg), ("central_meridian", word("lon_0").unwrap_or(0.0))];
     let center = |meridian: &str| {
         vec![("latitude_of_center", latitude_deg), ("longitude_of_center", word(meridian).unwrap_or(0.0))]
     };
@@ -24,7 +23,10 @@ pub(super) fn registered_projection(text: ProjString<'_>) -> Option<WktProjectio
         "cass" => ("Cassini_Soldner", origin()),
         "cea" => (
             "Cylindrical_Equal_Area",
-            vec![("standard_parallel_1", word("lat_ts").unwrap_or(0.0)), ("central_meridian", word("lon_0")?)],
+            vec![
+                ("standard_parallel_1", word("lat_ts").unwrap_or(0.0)),
+                ("central_meridian", word("lon_0")?),
+            ],
         ),
         "eqc" if word("lat_ts").is_none_or(|parallel| parallel == 0.0) => ("Equirectangular", origin()),
         "krovak" => {

@@ -69,6 +69,10 @@ impl<F: Fn(usize, &mut [f32]) + Sync> Windows for PostWindows<F> {
         window.assert_within(self.size());
         Ok(Samples::F32(self.values(window)))
     }
+
+    fn are_bytes(&self) -> bool {
+        true
+    }
 }
 
 /// The gray of every post: 1 facing away from the sun, 255 facing it.
@@ -79,4 +83,39 @@ pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs
         values.iter_mut().zip(&grays[first..]).for_each(|(place, &gray)| *place = value(gray));
     };
     PostBytes { name: "hillshade", fill, nodata: f64::from(hillshade::NO_DATA) }.raster(lattice, crs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::formats::DemFormat;
+    use crate::dem::write::write;
+    use glam::DVec2;
+    use std::io::Cursor;
+
+    #[test]
+    fn made_window_by_window_bytes_are_stored_as_all_at_once() {
+        // More than a tile across, all zeros in one of them, and holes.
+        let (columns, rows) = (300_u32, 530_u32);
+        let heights = vec![0.0; (columns * rows) as usize];
+        let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights).expect("a lattice");
+        let value = |index: usize| match index % columns as usize {
+            column if column < 280 && index < 80_000 => 0.0,
+            column if column % 7 == 3 => f32::NAN,
+            column => (column % 255) as f32,
+        };
+        let fill = |first: usize, values: &mut [f32]| {
+            (first..).zip(values).for_each(|(index, place)| *place = value(index));
+        };
+        let bytes = || PostBytes { name: "test", fill, nodata: 255.0 };
+        let format = DemFormat::to_write("tif").expect("a GeoTIFF");
+        let wanted = write(&bytes().raster(&lattice, &Crs::local()), format, "").expect("any raster");
+        let mut out = Cursor::new(Vec::new());
+        let writer = format.windows_writer.expect("a GeoTIFF is written in windows");
+        let written = writer(&mut bytes().windows(&lattice, &Crs::local()), &mut out).expect("memory");
+        assert!(out.into_inner() == wanted.bytes);
+        assert_eq!(written.stored, "byte");
+        let holes = (0..(columns * rows) as usize).filter(|&index| value(index).is_nan()).count();
+        assert_eq!(written.valid, u64::from(columns * rows) - holes as u64);
+    }
 }

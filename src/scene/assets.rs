@@ -110,7 +110,11 @@ impl AssetError {
     }
 }
 
-impl FileContent for File {}
+impl FileContent for File {
+    fn local_file(&self) -> Option<File> {
+        self.try_clone().ok()
+    }
+}
 
 fn did_you_mean(name: Option<&str>) -> String {
     name.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default()

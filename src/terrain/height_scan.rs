@@ -2,14 +2,16 @@
 
 use rayon::prelude::*;
 
+use crate::terrain::vectorized::vectorized;
+
 /// Heights that a thread scans together: some tens of microseconds.
 const SCANNED_TOGETHER: usize = 1 << 16;
 
 /// Heights of which it is asked at once whether any is beyond a limit.
 const LOOKED_AT_TOGETHER: usize = 1024;
 
-/// Ranges that are widened in turn, so that none waits for the one before.
-const LANES: usize = 8;
+/// Bounds that are moved in turn, so that none waits for the one before.
+const LANES: usize = 32;
 
 /// The least and the greatest height; (∞, −∞) where all are NaN.
 pub(in crate::terrain) fn range(heights: &[f32]) -> (f32, f32) {
@@ -40,16 +42,27 @@ fn scanned<T: Send>(
 }
 
 fn range_of(heights: &[f32]) -> (f32, f32) {
-    let none = (f32::INFINITY, f32::NEG_INFINITY);
-    let mut ranges = [none; LANES];
+    vectorized(
+        #[inline(always)]
+        || range_in_lanes(heights),
+    )
+}
+
+#[inline(always)]
+fn range_in_lanes(heights: &[f32]) -> (f32, f32) {
+    let (mut lows, mut highs) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
     let (groups, rest) = heights.as_chunks::<LANES>();
     for group in groups {
-        ranges.iter_mut().zip(group).for_each(|(range, &height)| *range = wider(*range, (height, height)));
+        for lane in 0..LANES {
+            (lows[lane], highs[lane]) = wider((lows[lane], highs[lane]), (group[lane], group[lane]));
+        }
     }
-    rest.iter().map(|&height| (height, height)).chain(ranges).fold(none, wider)
+    let all = lows.into_iter().zip(highs).chain(rest.iter().map(|&height| (height, height)));
+    all.fold((f32::INFINITY, f32::NEG_INFINITY), wider)
 }
 
 /// A range that holds both. Comparisons with NaN are false; unlike `min` and `max` they are vectorized.
+#[inline(always)]
 fn wider(range: (f32, f32), other: (f32, f32)) -> (f32, f32) {
     let low = if other.0 < range.0 { other.0 } else { range.0 };
     (low, if other.1 > range.1 { other.1 } else { range.1 })

@@ -23,6 +23,7 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
+use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 
@@ -69,11 +70,20 @@ impl<C: Write + Seek + Send> WrittenContent for C {}
 pub trait FileContent: Read + Seek + Send {
     /// Says which bytes are read next, in ascending order, to content that is far away and fetches them together.
     fn announce(&mut self, _ranges: &[Range<u64>]) {}
+
+    /// The file, of content that is one on this machine: threads read its bytes by their place without waiting for each other.
+    fn local_file(&self) -> Option<File> {
+        None
+    }
 }
 
 impl<C: FileContent + ?Sized> FileContent for Box<C> {
     fn announce(&mut self, ranges: &[Range<u64>]) {
         (**self).announce(ranges);
+    }
+
+    fn local_file(&self) -> Option<File> {
+        (**self).local_file()
     }
 }
 

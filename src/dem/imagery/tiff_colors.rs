@@ -20,7 +20,7 @@ use crate::dem::tiff::geotiff::{GeoTiffHeader, limits};
 use crate::dem::tiff::image_kind;
 use crate::dem::tiff::jpeg_block::{self, JpegBlock};
 use crate::dem::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
-use crate::dem::tiff::unpack::Unpacker;
+use crate::dem::tiff::unpack::{Unpacker, packed};
 use crate::dem::windows::RasterWindow;
 use crate::limits::{TIFF_IMAGES, WINDOWED_SAMPLES};
 
@@ -180,7 +180,7 @@ impl TiffColors {
             let mut row_bytes = storage.row_bytes();
             if storage.packing == Packing::Jpeg {
                 let mut file = bytes;
-                let packed = unpacker.packed(&mut file, of_band)?;
+                let packed = packed(storage, &mut file, of_band)?;
                 let photometric = self.layout.photometric;
                 let JpegBlock { samples, row_bytes: of_stream } =
                     jpeg_block::decode(&packed, storage, of_band, photometric)?;

@@ -105,7 +105,7 @@ pub(crate) fn block(
 }
 
 /// Decodes blocks of an image, reusing its buffers.
-struct BlockDecoder<'a> {
+pub(crate) struct BlockDecoder<'a> {
     storage: &'a Storage,
     nodata: Option<f64>,
     unpacker: Unpacker<'a>,
@@ -115,7 +115,7 @@ struct BlockDecoder<'a> {
 }
 
 impl<'a> BlockDecoder<'a> {
-    fn new(storage: &'a Storage, nodata: Option<f64>) -> Result<Self, DemErrorKind> {
+    pub fn new(storage: &'a Storage, nodata: Option<f64>) -> Result<Self, DemErrorKind> {
         Ok(Self {
             storage,
             nodata,
@@ -127,7 +127,7 @@ impl<'a> BlockDecoder<'a> {
     }
 
     /// Decodes a block to `out`, which is zeros; its rows lie `stride` apart and start where the block's do.
-    fn decode<E: SampleFloat>(
+    pub fn decode<E: SampleFloat>(
         &mut self,
         file: &mut impl BlockBytes,
         block: TiffBlock,

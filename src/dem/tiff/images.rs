@@ -1,6 +1,7 @@
 //! The images of a GeoTIFF that stays on disk, and its file, which they and the threads that decode blocks share.
 
 use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, BufReader, SeekFrom};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -45,19 +46,22 @@ pub(super) struct LaterImages {
 /// A file that a raster shares with its overviews.
 pub(super) struct SharedFile<R> {
     file: Arc<Mutex<R>>,
+    /// Where threads need not wait for each other.
+    local: Option<Arc<File>>,
     pub length: usize,
 }
 
 impl<R> Clone for SharedFile<R> {
     fn clone(&self) -> Self {
-        Self { file: Arc::clone(&self.file), length: self.length }
+        Self { file: Arc::clone(&self.file), local: self.local.clone(), length: self.length }
     }
 }
 
 impl<R: FileContent> SharedFile<R> {
     pub fn new(mut file: R) -> io::Result<Self> {
         let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
-        Ok(Self { file: Arc::new(Mutex::new(file)), length })
+        let local = file.local_file().filter(|_| READS_BY_PLACE).map(Arc::new);
+        Ok(Self { file: Arc::new(Mutex::new(file)), local, length })
     }
 
     pub fn lock(&self) -> MutexGuard<'_, R> {
@@ -127,19 +131,51 @@ impl<R: FileContent> BlockBytes for SharedFile<R> {
     }
 
     fn bytes(&mut self, range: Range<usize>) -> io::Result<Cow<'_, [u8]>> {
-        let mut file = self.lock();
-        file.seek(SeekFrom::Start(range.start as u64))?;
-        // In one read: a file on a server is not asked for many small parts.
-        let (mut bytes, mut filled) = (vec![0; range.len()], 0);
-        while filled < bytes.len() {
-            match file.read(&mut bytes[filled..]) {
-                Ok(0) => break,
-                Ok(count) => filled += count,
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error),
-            }
-        }
-        bytes.truncate(filled);
+        let mut bytes = Vec::new();
+        self.read_into(range, &mut bytes)?;
         Ok(Cow::Owned(bytes))
     }
+
+    fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> io::Result<()> {
+        out.resize(range.len(), 0);
+        let start = range.start as u64;
+        let filled = match &self.local {
+            Some(file) => filled(out, |rest, at| read_by_place(file, rest, start + at as u64))?,
+            None => {
+                let mut file = self.lock();
+                file.seek(SeekFrom::Start(start))?;
+                filled(out, |rest, _| file.read(rest))?
+            }
+        };
+        out.truncate(filled);
+        Ok(())
+    }
+}
+
+/// Fills `out` as far as there are bytes, asking for all that is missing at once: a file on a server is not asked for many
+/// small parts. `read` gets what is not filled yet and how much is.
+fn filled(out: &mut [u8], mut read: impl FnMut(&mut [u8], usize) -> io::Result<usize>) -> io::Result<usize> {
+    let mut filled = 0;
+    while filled < out.len() {
+        match read(&mut out[filled..], filled) {
+            Ok(0) => break,
+            Ok(count) => filled += count,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(filled)
+}
+
+/// Whether the system reads a file by its place, without a position that threads would share.
+const READS_BY_PLACE: bool = cfg!(unix);
+
+#[cfg(unix)]
+fn read_by_place(file: &File, out: &mut [u8], start: u64) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, out, start)
+}
+
+#[cfg(not(unix))]
+fn read_by_place(_: &File, _: &mut [u8], _: u64) -> io::Result<usize> {
+    Err(io::ErrorKind::Unsupported.into())
 }

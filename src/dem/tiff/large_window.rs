@@ -90,7 +90,17 @@ impl<R: FileContent> GeoTiffWindows<R> {
 
     fn fill<E: SampleFloat>(&self, band: &mut Band<'_, E>) -> Result<(), DemErrorKind> {
         let mut file = self.run_of(band.window).map_err(|error| FORMAT.unread(error))?;
+        let mut decoder = self.plain_decoder()?;
+        let RasterWindow { column, row, width, .. } = band.window;
         for at in self.blocks_meeting(band.window) {
+            if let Some(decoder) =
+                decoder.as_mut().filter(|_| band.window.intersection(at.window) == Some(at.window))
+            {
+                let start =
+                    (at.window.row - row) as usize * width as usize + (at.window.column - column) as usize;
+                decoder.decode(&mut file, at, &mut band.samples[start..], width as usize)?;
+                continue;
+            }
             let block = self.decode(&mut file, at)?;
             let block = E::values(&block).expect("blocks have the precision of the raster");
             for (from, to) in at.window.shared_rows(band.window) {
@@ -126,6 +136,15 @@ impl<F: BlockBytes> BlockBytes for RunBytes<F> {
             Some(held) => Ok(Cow::Borrowed(held)),
             None => self.file.bytes(range),
         }
+    }
+
+    fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> io::Result<()> {
+        if self.held.is_empty() {
+            return self.file.read_into(range, out);
+        }
+        out.clear();
+        out.extend_from_slice(&self.bytes(range)?);
+        Ok(())
     }
 }
 

@@ -33,6 +33,13 @@ pub(crate) trait BlockBytes {
 
     /// The bytes in a range within the file; fewer where the file has shrunk.
     fn bytes(&mut self, range: Range<usize>) -> std::io::Result<Cow<'_, [u8]>>;
+
+    /// [`BlockBytes::bytes`] into memory that is used again.
+    fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> std::io::Result<()> {
+        out.clear();
+        out.extend_from_slice(&self.bytes(range)?);
+        Ok(())
+    }
 }
 
 impl BlockBytes for &[u8] {
@@ -47,11 +54,11 @@ impl BlockBytes for &[u8] {
 
 pub(crate) struct Unpacker<'a> {
     storage: &'a Storage,
-    decompressor: Decompressor,
+    /// None where blocks are as their rows.
+    decompressor: Option<Decompressor>,
 }
 
 enum Decompressor {
-    Plain,
     Deflate(Decompress),
     Lzw(weezl::decode::Decoder),
     PackBits,
@@ -62,14 +69,14 @@ enum Decompressor {
 impl<'a> Unpacker<'a> {
     pub fn new(storage: &'a Storage) -> Self {
         let decompressor = match storage.packing {
-            Packing::Plain => Decompressor::Plain,
+            Packing::Plain => return Self { storage, decompressor: None },
             Packing::Deflate => Decompressor::Deflate(Decompress::new(true)),
             Packing::Lzw => Decompressor::Lzw(LzwDecoder::with_tiff_size_switch(BitOrder::Msb, 8)),
             Packing::PackBits => Decompressor::PackBits,
             Packing::Zstd => Decompressor::Zstd(Box::default()),
             Packing::Jpeg => Decompressor::Jpeg,
         };
-        Self { storage, decompressor }
+        Self { storage, decompressor: Some(decompressor) }
     }
 
     /// Unpacks the rows of a block that lie in the image into `rows`, which is resized.
@@ -83,10 +90,15 @@ impl<'a> Unpacker<'a> {
         rows: &mut Vec<u8>,
     ) -> Result<(), DemErrorKind> {
         let needed = self.storage.row_bytes() * block.window.height as usize;
-        let packed = self.packed(file, block)?;
+        let Some(decompressor) = &mut self.decompressor else {
+            let Range { start, end } = packed_range(self.storage, block, file.length())?;
+            let range = start..end.min(start.saturating_add(needed));
+            file.read_into(range, rows).map_err(|error| FORMAT.unread(error))?;
+            return whole(block, rows.len(), needed);
+        };
+        let packed = packed(self.storage, file, block)?;
         rows.resize(needed, 0);
-        let unpacked = match &mut self.decompressor {
-            Decompressor::Plain => copy(&packed, rows),
+        let unpacked = match decompressor {
             Decompressor::Deflate(inflater) => inflate(inflater, &packed, rows),
             Decompressor::Lzw(_) if is_ancient_lzw(&packed) => {
                 return Err(FORMAT.unsupported("LZW in the bit order of before 1991", TO_DEFLATE));
@@ -105,25 +117,29 @@ impl<'a> Unpacker<'a> {
                 needed
             }
         };
-        if unpacked == needed {
-            return Ok(());
-        }
-        let index = block.index;
-        Err(FORMAT.broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
+        whole(block, unpacked, needed)
     }
+}
 
-    /// The packed bytes of a block.
-    ///
-    /// # Errors
-    /// The tables do not list the block, or it cannot be read.
-    pub fn packed<'f, F: BlockBytes>(
-        &self,
-        file: &'f mut F,
-        block: TiffBlock,
-    ) -> Result<Cow<'f, [u8]>, DemErrorKind> {
-        let range = packed_range(self.storage, block, file.length())?;
-        file.bytes(range).map_err(|error| FORMAT.unread(error))
+/// The packed bytes of a block.
+///
+/// # Errors
+/// The tables do not list the block, or it cannot be read.
+pub(crate) fn packed<'f, F: BlockBytes>(
+    storage: &Storage,
+    file: &'f mut F,
+    block: TiffBlock,
+) -> Result<Cow<'f, [u8]>, DemErrorKind> {
+    let range = packed_range(storage, block, file.length())?;
+    file.bytes(range).map_err(|error| FORMAT.unread(error))
+}
+
+fn whole(block: TiffBlock, unpacked: usize, needed: usize) -> Result<(), DemErrorKind> {
+    if unpacked == needed {
+        return Ok(());
     }
+    let index = block.index;
+    Err(FORMAT.broken(format!("block {index} holds {unpacked} of the {needed} bytes of its rows")))
 }
 
 /// Where the packed bytes of a block lie in a file; empty beyond its end.

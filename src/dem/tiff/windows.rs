@@ -28,7 +28,7 @@ use crate::dem::error::{DemError, DemErrorKind};
 use crate::dem::formats::FileContent;
 use crate::dem::raster::{Raster, Samples};
 use crate::dem::read::{DemFile, DemHints};
-use crate::dem::tiff::blocks;
+use crate::dem::tiff::blocks::{self, BlockDecoder};
 use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
 use crate::dem::tiff::images::{LaterImages, Overview, SharedFile};
 use crate::dem::tiff::mask;
@@ -169,6 +169,12 @@ impl<R: FileContent> GeoTiffWindows<R> {
             mask::each_hidden(file, mask, at.window, |index| samples.set(index, f64::NAN))?;
         }
         Ok(samples.scaled(*scale, *offset))
+    }
+
+    /// What decodes blocks straight to samples, where these are as they are stored: neither scaled nor masked.
+    pub(super) fn plain_decoder(&self) -> Result<Option<BlockDecoder<'_>>, DemErrorKind> {
+        let is_plain = self.mask.is_none() && self.header.scale == 1.0 && self.header.offset == 0.0;
+        is_plain.then(|| BlockDecoder::new(&self.heights, self.header.raster.nodata)).transpose()
     }
 
     /// The file.

@@ -75,11 +75,11 @@ pub struct Sector {
 }
 
 /// The visibility of a post.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Zeroable)]
 #[repr(u8)]
 pub enum PostVisibility {
     /// Beyond the range or out of the sector.
-    Beyond,
+    Beyond = 0,
     /// There is no data.
     NoData,
     /// Terrain blocks the line of sight.
@@ -165,8 +165,8 @@ pub fn viewshed_until(
     stop: &StopFlag,
 ) -> Result<Option<Viewshed>, Answer> {
     let observer = Observer::new(lattice, options)?;
-    let visible: Vec<AtomicBool> =
-        lattice.held_heights().par_iter().map(|_| AtomicBool::new(false)).collect();
+    // Zeros come from the system as they are needed: behind a ridge, nothing is.
+    let visible: Vec<AtomicBool> = bytemuck::zeroed_vec(lattice.held_heights().len());
     let sees = |post: Post| !stop.is_stopped() && observer.reaches(post) && observer.sees(post);
     let is_clear_near = |post: Post, part: f64| observer.is_clear_up_to(post, part);
     // Lines from a post meet no diagonal but at its ends.
@@ -199,7 +199,8 @@ pub fn viewshed_until(
 
 /// The visibility of posts that are all looked at, from whether they were found in sight, and their heights.
 fn seen_posts(mut visible: Vec<AtomicBool>, heights: &[f32]) -> Vec<PostVisibility> {
-    let mut posts = vec![PostVisibility::Hidden; heights.len()];
+    // Zeros come from the system as they are needed, in the task that overwrites them.
+    let mut posts: Vec<PostVisibility> = bytemuck::zeroed_vec(heights.len());
     let parts = posts.par_chunks_mut(LOOKED_AT_TOGETHER).zip(visible.par_chunks_mut(LOOKED_AT_TOGETHER));
     parts.zip(heights.par_chunks(LOOKED_AT_TOGETHER)).for_each(|((posts, visible), heights)| {
         for ((post, is_visible), height) in posts.iter_mut().zip(visible).zip(heights) {
