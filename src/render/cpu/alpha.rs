@@ -6,7 +6,7 @@
 //! as long as wide. Blending two levels, as colors need, would not show: a reading ends as yes or no, and the samples
 //! of a pixel are averaged after it.
 
-use glam::Vec2;
+use glam::{UVec2, Vec2};
 
 use crate::draw::pixels::Pixels;
 
@@ -27,15 +27,18 @@ pub struct MaskFootprint {
 struct AlphaLevel {
     size: [u32; 2],
     alphas: Vec<u8>,
+    /// The least and the greatest alpha of the square of [`AROUND`] texels a side that begins at each texel, as far as there
+    /// are any: where all are far from the cutoff, no sample of a pixel need be read.
+    extremes: Vec<[u8; 2]>,
 }
+
+/// The side of the squares of which extremes are known. Two of them reach across the texels of most pixels.
+const AROUND: u32 = 4;
 
 impl AlphaMask {
     pub fn new(base: &Pixels, smaller: &[Pixels]) -> Self {
         let is_opaque = base.data().iter().all(|color| color.0[3] == u8::MAX);
-        let levels = std::iter::once(base).chain(smaller).map(|level| AlphaLevel {
-            size: [level.width(), level.height()],
-            alphas: level.data().iter().map(|color| color.0[3]).collect(),
-        });
+        let levels = std::iter::once(base).chain(smaller).map(AlphaLevel::new);
         Self { levels: if is_opaque { Vec::new() } else { levels.collect() } }
     }
 
@@ -55,6 +58,16 @@ impl AlphaMask {
         let taps = taps.clamp(1.0, most_taps.max(1) as f32);
         let axis = if across > along { right } else { down };
         MaskFootprint { level: nearest_level(longer / (taps * taps)).min(last), taps: taps as u32, axis }
+    }
+
+    /// Bounds of [`AlphaMask::sample`] at all places up to `reach` around `uv`, each way; `None` where these are many, or the
+    /// texture repeats between them.
+    pub fn bounds(&self, uv: Vec2, reach: Vec2, footprint: &MaskFootprint) -> Option<[f32; 2]> {
+        let level = self.levels.get(footprint.level)?;
+        let reach = if footprint.taps == 1 { reach } else { reach + footprint.axis.abs() * 0.5 };
+        let [least, greatest] = level.extremes_within(uv - reach, uv + reach)?;
+        // Half a step of alpha is more than any rounding.
+        Some([(f32::from(least) - 0.5) / 255.0, (f32::from(greatest) + 0.5) / 255.0])
     }
 
     /// The alpha around `uv`, 0..=1; the texture repeats in both directions.
@@ -77,6 +90,47 @@ fn nearest_level(area: f32) -> usize {
 }
 
 impl AlphaLevel {
+    fn new(pixels: &Pixels) -> Self {
+        let size = [pixels.width(), pixels.height()];
+        let alphas: Vec<u8> = pixels.data().iter().map(|color| color.0[3]).collect();
+        let width = size[0].max(1) as usize;
+        let wider =
+            |[least, greatest]: [u8; 2], other: [u8; 2]| [least.min(other[0]), greatest.max(other[1])];
+        // Along the rows, then along the columns.
+        let mut extremes: Vec<[u8; 2]> = alphas.iter().map(|&alpha| [alpha; 2]).collect();
+        for row in extremes.chunks_exact_mut(width) {
+            for at in 0..width {
+                let next = &row[at..width.min(at + AROUND as usize)];
+                row[at] = next.iter().copied().fold(row[at], wider);
+            }
+        }
+        for at in 0..extremes.len() {
+            let below = extremes[at..].iter().step_by(width).take(AROUND as usize);
+            extremes[at] = below.copied().fold(extremes[at], wider);
+        }
+        Self { size, alphas, extremes }
+    }
+
+    /// The extremes of the texels that bilinear readings between two places take in.
+    fn extremes_within(&self, from: Vec2, to: Vec2) -> Option<[u8; 2]> {
+        let size = Vec2::from(self.size.map(|side| side as f32));
+        let (low, high) = (from * size - 0.5, to * size - 0.5);
+        if !(low.cmpge(Vec2::ZERO).all() && high.cmplt(size - 1.0).all()) {
+            return None;
+        }
+        // The second texel of the last reading.
+        let (first, last) = (low.as_uvec2(), high.as_uvec2() + 1);
+        if (last - first).max_element() >= 2 * AROUND {
+            return None;
+        }
+        let second = (last + 1).saturating_sub(UVec2::splat(AROUND)).max(first);
+        let at = |x: u32, y: u32| self.extremes[(y * self.size[0] + x) as usize];
+        let corners =
+            [at(first.x, first.y), at(second.x, first.y), at(first.x, second.y), at(second.x, second.y)];
+        let [least, greatest] = [0, 1].map(|bound| corners.map(|corner| corner[bound]));
+        Some([least.into_iter().min()?, greatest.into_iter().max()?])
+    }
+
     fn bilinear(&self, uv: Vec2) -> f32 {
         let [width, height] = self.size;
         let [x, y] = (Vec2::new(uv.x * width as f32, uv.y * height as f32) - 0.5).to_array();
@@ -153,6 +207,38 @@ mod tests {
     }
 
     #[test]
+    fn no_reading_is_beyond_the_bounds_of_its_place() {
+        // Leaves: islands of either with ragged borders, and a wide hole.
+        let hash = |x: u32, y: u32| (x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b)) >> 13;
+        let alpha = |x: u32, y: u32| match hash(x / 5, y / 7) % 3 {
+            0 => 0,
+            1 => 255,
+            _ => hash(x, y) as u8,
+        };
+        let pixels = Pixels::from_fn(61, 47, |x, y| Srgba([0, 0, 0, if x > 44 { 0 } else { alpha(x, y) }]));
+        let mask = AlphaMask::new(&pixels, &smaller_levels(&pixels));
+        let (mut bounded, mut decided) = (0, 0);
+        for step in 0..4000_u32 {
+            let part = |salt: u32| (hash(step, salt) % 10_007) as f32 / 10_007.0;
+            let uv = Vec2::new(part(1), part(2));
+            let (right, down) = (Vec2::new(part(3), part(4)) * 0.05, Vec2::new(-part(5), part(6)) * 0.05);
+            let footprint = mask.footprint(right * 0.35, down * 0.35, 8);
+            let Some([least, greatest]) = mask.bounds(uv, (right.abs() + down.abs()) * 0.44, &footprint)
+            else {
+                continue;
+            };
+            bounded += 1;
+            decided += u32::from(least > 0.5 || greatest < 0.5);
+            for sample in 0..9_u32 {
+                let [x, y] = [(sample % 3) as f32 - 1.0, (sample / 3) as f32 - 1.0].map(|way| way * 0.44);
+                let read = mask.sample(uv + right * x + down * y, &footprint);
+                assert!(least <= read && read <= greatest, "{read} is not in {least}..={greatest}");
+            }
+        }
+        assert!(bounded > 2000 && decided > 400, "{bounded} {decided}");
+    }
+
+    #[test]
     fn opaque_textures_and_hostile_coordinates_give_an_answer() {
         let opaque = AlphaMask::new(&Pixels::filled(4, 4, Srgba::WHITE), &[]);
         assert_eq!(opaque.sample(Vec2::ZERO, &opaque.footprint(Vec2::X, Vec2::Y, 8)), 1.0);
@@ -160,6 +246,7 @@ mod tests {
         for coordinate in [f32::NAN, f32::INFINITY, f32::MAX, -f32::MAX] {
             let footprint = alpha.footprint(Vec2::splat(coordinate), Vec2::ONE, 8);
             alpha.sample(Vec2::splat(coordinate), &footprint);
+            alpha.bounds(Vec2::splat(coordinate), Vec2::splat(coordinate.abs()), &footprint);
         }
     }
 }

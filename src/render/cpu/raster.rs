@@ -153,9 +153,11 @@ fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) 
             return 0;
         }
         if center + edge.least < 0 {
-            for (sample, offset) in edge.samples.iter().enumerate() {
-                mask &= !(SampleMask::from(center + offset < 0) << sample);
-            }
+            // By its sign, without a branch.
+            let sign = |value: i64| value as u64 >> 63;
+            let outside = edge.samples.iter().enumerate();
+            let outside = outside.fold(0, |bits, (sample, offset)| bits | (sign(center + offset) << sample));
+            mask &= !(outside as SampleMask);
         }
     }
     mask
