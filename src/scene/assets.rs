@@ -16,6 +16,8 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::dem::formats::FileContent;
+#[cfg(unix)]
+use crate::dem::formats::ReadByPlace;
 use crate::dem::raster::Raster;
 use crate::limits::{ASSET_BYTES, COMPANION_BYTES};
 use crate::message::suggest::{nearest, quoted};
@@ -111,8 +113,20 @@ impl AssetError {
 }
 
 impl FileContent for File {
-    fn local_file(&self) -> Option<File> {
-        self.try_clone().ok()
+    #[cfg(unix)]
+    fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
+        Some(Arc::new(FileByPlace(self.try_clone().ok()?)))
+    }
+}
+
+/// A file of a system that reads by place.
+#[cfg(unix)]
+struct FileByPlace(File);
+
+#[cfg(unix)]
+impl ReadByPlace for FileByPlace {
+    fn read_by_place(&self, out: &mut [u8], start: u64) -> io::Result<usize> {
+        std::os::unix::fs::FileExt::read_at(&self.0, out, start)
     }
 }
 

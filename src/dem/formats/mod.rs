@@ -23,9 +23,9 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
-use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::Raster;
@@ -71,10 +71,19 @@ pub trait FileContent: Read + Seek + Send {
     /// Says which bytes are read next, in ascending order, to content that is far away and fetches them together.
     fn announce(&mut self, _ranges: &[Range<u64>]) {}
 
-    /// The file, of content that is one on this machine: threads read its bytes by their place without waiting for each other.
-    fn local_file(&self) -> Option<File> {
+    /// The same content for threads that read it by the place of its bytes; `None` where these wait for each other.
+    fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
         None
     }
+}
+
+/// Content that any number of threads read at once: it has no position that they would share.
+pub trait ReadByPlace: Send + Sync {
+    /// Reads bytes from `start` on, as [`Read::read`] does.
+    ///
+    /// # Errors
+    /// The content cannot be read.
+    fn read_by_place(&self, out: &mut [u8], start: u64) -> io::Result<usize>;
 }
 
 impl<C: FileContent + ?Sized> FileContent for Box<C> {
@@ -82,8 +91,8 @@ impl<C: FileContent + ?Sized> FileContent for Box<C> {
         (**self).announce(ranges);
     }
 
-    fn local_file(&self) -> Option<File> {
-        (**self).local_file()
+    fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
+        (**self).by_place()
     }
 }
 

@@ -1,7 +1,6 @@
 //! The images of a GeoTIFF that stays on disk, and its file, which they and the threads that decode blocks share.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{self, BufReader, SeekFrom};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,7 +9,7 @@ use glam::UVec2;
 use tiff::decoder::Decoder;
 
 use crate::dem::error::DemErrorKind;
-use crate::dem::formats::FileContent;
+use crate::dem::formats::{FileContent, ReadByPlace};
 use crate::dem::tiff::geotiff::{self, FORMAT};
 use crate::dem::tiff::image_kind;
 use crate::dem::tiff::mask::IS_MASK;
@@ -47,21 +46,21 @@ pub(super) struct LaterImages {
 pub(super) struct SharedFile<R> {
     file: Arc<Mutex<R>>,
     /// Where threads need not wait for each other.
-    local: Option<Arc<File>>,
+    by_place: Option<Arc<dyn ReadByPlace>>,
     pub length: usize,
 }
 
 impl<R> Clone for SharedFile<R> {
     fn clone(&self) -> Self {
-        Self { file: Arc::clone(&self.file), local: self.local.clone(), length: self.length }
+        Self { file: Arc::clone(&self.file), by_place: self.by_place.clone(), length: self.length }
     }
 }
 
 impl<R: FileContent> SharedFile<R> {
     pub fn new(mut file: R) -> io::Result<Self> {
         let length = usize::try_from(file.seek(SeekFrom::End(0))?).map_err(io::Error::other)?;
-        let local = file.local_file().filter(|_| READS_BY_PLACE).map(Arc::new);
-        Ok(Self { file: Arc::new(Mutex::new(file)), local, length })
+        let by_place = file.by_place();
+        Ok(Self { file: Arc::new(Mutex::new(file)), by_place, length })
     }
 
     pub fn lock(&self) -> MutexGuard<'_, R> {
@@ -139,8 +138,8 @@ impl<R: FileContent> BlockBytes for SharedFile<R> {
     fn read_into(&mut self, range: Range<usize>, out: &mut Vec<u8>) -> io::Result<()> {
         out.resize(range.len(), 0);
         let start = range.start as u64;
-        let filled = match &self.local {
-            Some(file) => filled(out, |rest, at| read_by_place(file, rest, start + at as u64))?,
+        let filled = match &self.by_place {
+            Some(file) => filled(out, |rest, at| file.read_by_place(rest, start + at as u64))?,
             None => {
                 let mut file = self.lock();
                 file.seek(SeekFrom::Start(start))?;
@@ -165,17 +164,4 @@ fn filled(out: &mut [u8], mut read: impl FnMut(&mut [u8], usize) -> io::Result<u
         }
     }
     Ok(filled)
-}
-
-/// Whether the system reads a file by its place, without a position that threads would share.
-const READS_BY_PLACE: bool = cfg!(unix);
-
-#[cfg(unix)]
-fn read_by_place(file: &File, out: &mut [u8], start: u64) -> io::Result<usize> {
-    std::os::unix::fs::FileExt::read_at(file, out, start)
-}
-
-#[cfg(not(unix))]
-fn read_by_place(_: &File, _: &mut [u8], _: u64) -> io::Result<usize> {
-    Err(io::ErrorKind::Unsupported.into())
 }
