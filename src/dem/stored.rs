@@ -51,13 +51,13 @@ pub(crate) struct SampleSurvey {
     /// Values that may mean no data.
     possible: Vec<f64>,
     found: SurveyedSamples,
-    samples: u64,
 }
 
 /// What some samples rule out.
 #[derive(Clone)]
 struct SurveyedSamples {
-    valid: u64,
+    /// Whether one has no data.
+    has_holes: bool,
     /// Whether each type of integers keeps all heights.
     kept: Vec<bool>,
     /// Whether each value that may mean no data is a height.
@@ -66,7 +66,7 @@ struct SurveyedSamples {
 
 impl SurveyedSamples {
     fn and(mut self, other: Self) -> Self {
-        self.valid += other.valid;
+        self.has_holes |= other.has_holes;
         self.kept.iter_mut().zip(other.kept).for_each(|(kept, other)| *kept &= other);
         self.taken.iter_mut().zip(other.taken).for_each(|(taken, other)| *taken |= other);
         self
@@ -87,11 +87,11 @@ impl SampleSurvey {
         let possible = types.flat_map(candidates).copied().chain(raster.nodata);
         let possible: Vec<f64> = possible.filter(|value| !value.is_nan()).collect();
         let found = SurveyedSamples {
-            valid: 0,
+            has_holes: false,
             kept: vec![true; integers.len()],
             taken: vec![false; possible.len()],
         };
-        Self { integers, float, own: raster.nodata, possible, found, samples: 0 }
+        Self { integers, float, own: raster.nodata, possible, found }
     }
 
     /// Looks at the next samples.
@@ -103,7 +103,6 @@ impl SampleSurvey {
     }
 
     fn add_values<T: SampleFloat>(&mut self, values: &[T]) {
-        self.samples += values.len() as u64;
         let found = values.par_chunks(SURVEYED_TOGETHER).map(|values| self.surveyed(values));
         if let Some(found) = found.reduce_with(SurveyedSamples::and) {
             self.found = self.found.clone().and(found);
@@ -112,7 +111,8 @@ impl SampleSurvey {
 
     /// What a few samples rule out that is not ruled out yet.
     fn surveyed<T: SampleFloat>(&self, values: &[T]) -> SurveyedSamples {
-        let valid = values.iter().filter(|&&value| !value.into().is_nan()).count() as u64;
+        // A loop that may end early is not vectorized.
+        let has_holes = values.iter().fold(false, |any, &value| any | value.into().is_nan());
         let mut kept = vec![false; self.integers.len()];
         let mut bytes = false;
         for (index, sample) in self.integers.iter().enumerate() {
@@ -125,7 +125,7 @@ impl SampleSurvey {
             let equal = || values.iter().filter(|&&value| value.into() == candidate).count();
             !is_taken && (!bytes || SampleType::U8.keeps(candidate)) && equal() > 0
         });
-        SurveyedSamples { valid, taken: taken.collect(), kept }
+        SurveyedSamples { has_holes, taken: taken.collect(), kept }
     }
 
     /// How the samples are stored without a loss.
@@ -140,7 +140,7 @@ impl SampleSurvey {
 
     /// The value for no data; the outer `None` where every candidate of the type is a height.
     fn nodata(&self, sample: SampleType) -> Option<Option<f64>> {
-        let has_holes = self.found.valid < self.samples;
+        let has_holes = self.found.has_holes;
         if !has_holes && self.own.is_none() {
             return Some(None);
         }

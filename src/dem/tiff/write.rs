@@ -167,16 +167,18 @@ fn byte_tile(raster: &Raster, nodata: u8, column: u32, row: u32) -> Vec<u8> {
 
 /// [`tile_row`] as bytes, `nodata` for NaN.
 fn byte_row(raster: &Raster, nodata: u8, (column, row): (u32, u32), bytes: &mut [u8; TILE as usize]) {
+    fn store<T: SampleFloat>(samples: &[T], nodata: u8, bytes: &mut [u8]) {
+        for (byte, &value) in bytes.iter_mut().zip(samples) {
+            let value = value.into();
+            *byte = if value.is_nan() { nodata } else { value as u8 };
+        }
+    }
     let count = TILE.min(raster.width - column) as usize;
     let start = row as usize * raster.width as usize + column as usize;
     let (held, beyond) = bytes.split_at_mut(count);
     match &raster.samples {
-        Samples::F32(samples) => held.iter_mut().zip(&samples[start..]).for_each(|(byte, &value)| {
-            *byte = if value.is_nan() { nodata } else { value as u8 };
-        }),
-        Samples::F64(samples) => held.iter_mut().zip(&samples[start..]).for_each(|(byte, &value)| {
-            *byte = if value.is_nan() { nodata } else { value as u8 };
-        }),
+        Samples::F32(samples) => store(&samples[start..], nodata, held),
+        Samples::F64(samples) => store(&samples[start..], nodata, held),
     }
     beyond.fill(held[count - 1]);
 }
