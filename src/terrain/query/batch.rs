@@ -8,6 +8,9 @@
 //!              (vectors)              (reads only)            (vectors)
 //! ```
 //!
+//! Between the corners, the second pass reads the positions of the next chunk ([`ReadAhead`]). The first pass would have
+//! nothing to do while it waits for them, and in a batch that leaves the cache it would wait as long as all passes take.
+//!
 //! No pass branches on its data. A position outside, or one that a special rule applies to, gets NaN as its part of the
 //! cell; a hole has NaN as its height. Both yield NaN heights, which are then queried one by one. So the rules for special
 //! cases are written once, and the passes need only be right for ordinary positions.
@@ -110,6 +113,19 @@ struct CellCorners<S> {
     next: [[S; 2]; CHUNK],
 }
 
+/// The positions of a chunk, whose places are taken by those of the next chunk one by one.
+struct ReadAhead<'a> {
+    at: [DVec2; CHUNK],
+    next: &'a [DVec2; CHUNK],
+}
+
+impl ReadAhead<'_> {
+    #[inline(always)]
+    fn read(&mut self, index: usize) {
+        self.at[index] = self.next[index];
+    }
+}
+
 impl CellPositions {
     const EMPTY: Self = Self { column: [0.0; CHUNK], row: [0.0; CHUNK], x: [0.0; CHUNK], y: [0.0; CHUNK] };
 
@@ -191,13 +207,13 @@ fn ground_passes(
         at,
         out,
         #[inline(always)]
-        |at, heights_m| {
-            place_in_cells(&axes, at, &mut positions);
+        |ahead, heights_m| {
+            place_in_cells(&axes, &ahead.at, &mut positions);
             let is_scattered = positions.are_scattered();
             scattered += CHUNK * usize::from(is_scattered);
             match tiles.filter(|_| is_scattered) {
-                Some(tiles) => gather_tiles(tiles, &positions, &mut corners),
-                None => gather(lattice.heights(), lattice.columns(), &positions, &mut corners),
+                Some(tiles) => gather_tiles(tiles, &positions, ahead, &mut corners),
+                None => gather(lattice.heights(), lattice.columns(), &positions, ahead, &mut corners),
             }
             mix(&positions, &corners, heights_m);
         },
@@ -246,9 +262,9 @@ fn sample_passes<S: Copy + Default + Into<f64>>(
         at,
         out,
         #[inline(always)]
-        |at, heights_m| {
-            place_between_samples(raster, grid_from_map, at, &mut positions);
-            gather(samples, raster.width, &positions, &mut corners);
+        |ahead, heights_m| {
+            place_between_samples(raster, grid_from_map, &ahead.at, &mut positions);
+            gather(samples, raster.width, &positions, ahead, &mut corners);
             mix_by_weights(&positions, &corners, raster.meters_per_z, heights_m);
         },
         |at| raster_height(raster, Interpolation::Bilinear, at),
@@ -260,16 +276,24 @@ fn sample_passes<S: Copy + Default + Into<f64>>(
 #[inline(always)]
 fn in_chunks(
     at: &[DVec2],
-    mut out: HeightSlices<'_>,
-    mut passes: impl FnMut(&[DVec2; CHUNK], &mut [f64; CHUNK]),
+    out: HeightSlices<'_>,
+    mut passes: impl FnMut(&mut ReadAhead<'_>, &mut [f64; CHUNK]),
     single: impl Fn(DVec2) -> Answer,
 ) {
     out.check_len(at.len());
-    for (at, mut out) in at.chunks(CHUNK).zip(out.chunks_mut(CHUNK)) {
-        let Ok(positions) = at.try_into() else { return out.fill(at, &single) };
-        passes(positions, (&mut *out.heights_m).try_into().expect("as long as its positions"));
-        mend(at, &mut out, &single);
+    let (chunks, rest) = at.as_chunks();
+    let (heights_m, rest_m) = out.heights_m.as_chunks_mut();
+    let (statuses, rest_statuses) = out.statuses.as_chunks_mut();
+    if let Some(first) = chunks.first() {
+        let mut ahead = ReadAhead { at: *first, next: first };
+        let nexts = chunks.iter().skip(1).chain([first]);
+        for (((at, next), heights_m), statuses) in chunks.iter().zip(nexts).zip(heights_m).zip(statuses) {
+            ahead.next = next;
+            passes(&mut ahead, heights_m);
+            mend(at, heights_m, statuses, &single);
+        }
     }
+    HeightSlices { heights_m: rest_m, statuses: rest_statuses }.fill(rest, &single);
 }
 
 /// One axis of a lattice.
@@ -367,13 +391,20 @@ pub(in crate::terrain::query) fn index_of(whole: f64) -> usize {
 
 /// Reads the corners from rows of `columns` samples.
 #[inline(always)]
-fn gather<S: Copy>(samples: &[S], columns: u32, positions: &CellPositions, corners: &mut CellCorners<S>) {
+fn gather<S: Copy>(
+    samples: &[S],
+    columns: u32,
+    positions: &CellPositions,
+    ahead: &mut ReadAhead<'_>,
+    corners: &mut CellCorners<S>,
+) {
     let stride = columns as usize;
     let mut indices = [0usize; CHUNK];
     for (index, (row, column)) in indices.iter_mut().zip(positions.row.iter().zip(&positions.column)) {
         *index = index_of(row * f64::from(columns) + column);
     }
     for (index, &start) in indices.iter().enumerate() {
+        ahead.read(index);
         let cell = &samples[start..][..stride + 2];
         corners.first[index] = [cell[0], cell[1]];
         corners.next[index] = [cell[stride], cell[stride + 1]];
@@ -382,12 +413,18 @@ fn gather<S: Copy>(samples: &[S], columns: u32, positions: &CellPositions, corne
 
 /// Reads the corners from tiles.
 #[inline(always)]
-fn gather_tiles(tiles: &HeightTiles, positions: &CellPositions, corners: &mut CellCorners<f32>) {
+fn gather_tiles(
+    tiles: &HeightTiles,
+    positions: &CellPositions,
+    ahead: &mut ReadAhead<'_>,
+    corners: &mut CellCorners<f32>,
+) {
     let mut slots = [TileSlot::default(); CHUNK];
     for (slot, (&column, &row)) in slots.iter_mut().zip(positions.column.iter().zip(&positions.row)) {
         *slot = tiles.slot(column, row);
     }
     for (index, &slot) in slots.iter().enumerate() {
+        ahead.read(index);
         [corners.first[index], corners.next[index]] = tiles.corners(slot);
     }
 }
@@ -423,14 +460,19 @@ fn mix_by_weights<S: Copy + Into<f64>>(
 
 /// Sets the statuses of a chunk, and queries every position whose height is NaN by itself.
 #[inline(always)]
-fn mend(at: &[DVec2], out: &mut HeightSlices<'_>, answer: impl Fn(DVec2) -> Answer) {
-    out.statuses.fill(Status::Ok);
+fn mend(
+    at: &[DVec2; CHUNK],
+    heights_m: &mut [f64; CHUNK],
+    statuses: &mut [Status; CHUNK],
+    answer: impl Fn(DVec2) -> Answer,
+) {
+    statuses.fill(Status::Ok);
     // Counted rather than searched: a loop that may end early is not vectorized.
-    let missing: u64 = out.heights_m.iter().map(|height_m| u64::from(height_m.is_nan())).sum();
+    let missing: u64 = heights_m.iter().map(|height_m| u64::from(height_m.is_nan())).sum();
     if missing == 0 {
         return;
     }
-    for ((&at, height_m), status) in at.iter().zip(&mut *out.heights_m).zip(&mut *out.statuses) {
+    for ((&at, height_m), status) in at.iter().zip(heights_m).zip(statuses) {
         if height_m.is_nan() {
             (*height_m, *status) = answer(at).parts();
         }
