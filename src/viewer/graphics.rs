@@ -82,7 +82,9 @@ impl WindowGraphics {
         let format = formats.iter().copied().find(|format| !format.is_srgb()).unwrap_or(configuration.format);
         let configuration = wgpu::SurfaceConfiguration { format, ..configuration };
         surface.configure(&device, &configuration);
-        let painter = Renderer::new(&device, format, RendererOptions::default());
+        // The scene's picture among the panels is shown as it is.
+        let options = RendererOptions { dithering: false, ..RendererOptions::default() };
+        let painter = Renderer::new(&device, format, options);
         Ok(Self { window, instance, adapter, device, queue, surface, configuration, painter })
     }
 

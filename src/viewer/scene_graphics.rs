@@ -21,6 +21,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The renderer of scenes and its picture.
 pub struct SceneGraphics {
     renderer: LiveRenderer,
+    /// What the renderer draws to: [`FORMAT`], or the same texture seen as one that encodes colors.
+    drawn: wgpu::TextureFormat,
     picture: Option<ScenePicture>,
     /// The picture among the panels' textures.
     pub texture: Option<TextureId>,
@@ -39,7 +41,10 @@ impl SceneGraphics {
     pub fn new(graphics: &WindowGraphics) -> Result<Self, GpuError> {
         let (device, queue) = (graphics.device.clone(), graphics.queue.clone());
         let gpu = Gpu::from_parts(graphics.adapter(), device, queue);
-        Ok(Self { renderer: LiveRenderer::new(&gpu, FORMAT)?, picture: None, texture: None })
+        let flags = graphics.adapter().get_downlevel_capabilities().flags;
+        let has_views = flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
+        let drawn = if has_views { FORMAT.add_srgb_suffix() } else { FORMAT };
+        Ok(Self { renderer: LiveRenderer::new(&gpu, drawn)?, drawn, picture: None, texture: None })
     }
 
     /// What prepares scenes for this renderer on other threads.
@@ -107,10 +112,13 @@ impl SceneGraphics {
             dimension: wgpu::TextureDimension::D2,
             format: FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
+            view_formats: &[self.drawn],
         });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        self.texture = Some(graphics.show_texture(self.texture, &view));
+        let seen_as = |format| {
+            texture.create_view(&wgpu::TextureViewDescriptor { format: Some(format), ..Default::default() })
+        };
+        self.texture = Some(graphics.show_texture(self.texture, &seen_as(FORMAT)));
+        let view = seen_as(self.drawn);
         self.picture = Some(ScenePicture { view: view.clone(), size });
         view
     }

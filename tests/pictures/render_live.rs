@@ -143,7 +143,12 @@ impl Window {
 
 /// A renderer of the best quality with the scene loaded and all its ground shown.
 fn loaded(gpu: &Gpu, list: &DrawList, format: wgpu::TextureFormat) -> LiveRenderer {
-    let quality = LiveQuality { samples: 4, anisotropy: 16 };
+    loaded_with(gpu, list, format, 4)
+}
+
+/// The same with so many samples per pixel.
+fn loaded_with(gpu: &Gpu, list: &DrawList, format: wgpu::TextureFormat, samples: u32) -> LiveRenderer {
+    let quality = LiveQuality { samples, anisotropy: 16 };
     let mut renderer =
         LiveRenderer::with_quality(gpu, format, quality).unwrap_or_else(|error| panic!("{error}"));
     renderer.load(list).unwrap_or_else(|error| panic!("{error}"));
@@ -176,6 +181,39 @@ fn a_frame_is_the_picture_of_the_same_scene() {
         let apart = share_apart(&window.frame(&mut renderer, &camera), &picture);
         assert!(apart < 1e-3, "{apart} of the pixels differ on {}", gpu.name());
         assert!(bare > 0.01, "without its shadows a frame differs, {bare} on {}", gpu.name());
+    }
+}
+
+#[test]
+fn with_one_sample_a_pixel_surfaces_look_as_in_the_picture() {
+    let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
+    for gpu in gpus() {
+        let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        let mut renderer = loaded_with(gpu, &list, WINDOW, 1);
+        let shadows = LiveShadows::new(&list, &camera).unwrap_or_else(|error| panic!("{error}"));
+        renderer.set_shadows(&shadows).unwrap_or_else(|error| panic!("{error}"));
+        let frame = Window::new(gpu, WINDOW).frame(&mut renderer, &camera);
+        // Where all around is of one feature and the depth has no step: not at the edges of the surfaces.
+        let columns = SIZE.0 as usize;
+        let is_inside = |index: &usize| {
+            let sides = [index.saturating_sub(1), index + 1, index.saturating_sub(columns), index + columns];
+            let around = sides.into_iter();
+            let (feature, depth_m) = (picture.features[*index], picture.depth_m[*index]);
+            around.filter(|&at| at < picture.features.len()).all(|at| {
+                picture.features[at] == feature && (picture.depth_m[at] / depth_m - 1.0).abs() < 0.02
+            })
+        };
+        for feature in [FeatureId::GROUND, HOUSE, LAKE, ROAD] {
+            let inside: Vec<usize> = (0..picture.features.len())
+                .filter(|&index| picture.features[index] == feature)
+                .filter(is_inside)
+                .collect();
+            let colors = inside.iter().map(|&index| picture.pixels.data()[index].0).collect::<Vec<_>>();
+            let apart = share_apart(inside.iter().map(|&index| &frame[index]), &colors);
+            let share = apart * f64::from(SIZE.0 * SIZE.1) / inside.len() as f64;
+            assert!(share < 0.02, "{share} of {} pixels of {feature:?} on {}", inside.len(), gpu.name());
+            assert!(inside.len() > 200, "{} pixels of {feature:?}", inside.len());
+        }
     }
 }
 
@@ -348,7 +386,7 @@ fn a_pixel_picked_shows_the_feature_and_depth_of_the_picture() {
     let (list, camera) = (scene(), camera(SIZE.0, SIZE.1));
     for gpu in gpus() {
         let picture = render_on(gpu, &list, &camera).unwrap_or_else(|error| panic!("{error}"));
-        let renderer = loaded(gpu, &list, WINDOW);
+        let mut renderer = loaded(gpu, &list, WINDOW);
         for feature in [FeatureId::NONE, FeatureId::GROUND, HOUSE, LAKE, ROAD] {
             let seen: Vec<usize> =
                 (0..picture.features.len()).filter(|&index| picture.features[index] == feature).collect();

@@ -39,6 +39,8 @@ pub struct Gpu {
     pub(super) anisotropy: u16,
     /// Whether the processor draws.
     pub(super) is_software: bool,
+    /// Whether it reads from a buffer what a call is to draw.
+    pub(super) draws_indirectly: bool,
     api: GpuApi,
     name: String,
     failure: DeviceFailure,
@@ -91,6 +93,8 @@ impl Gpu {
                 false => 1,
             },
             is_software: is_software(adapter),
+            draws_indirectly: flags
+                .contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION | wgpu::DownlevelFlags::BASE_VERTEX),
             api,
             name: format!("{} ({api:?})", info.name),
         }

@@ -3,6 +3,7 @@
 
 // The share of its posts from its border over which a window fades into what is coarser; not where the map ends, too.
 const WINDOW_BAND = 1.0 / 16.0;
+const MOST_WINDOWS = 8u;
 
 // A place counted in the posts of a window, from its first.
 fn place_in_window(at: vec2f, window: u32) -> vec2f {
@@ -13,7 +14,7 @@ fn place_in_window(at: vec2f, window: u32) -> vec2f {
 // How many windows are shown at a place: with a part, the last fades into the one before.
 fn windows_over(at: vec2f) -> f32 {
     var over = 0.0;
-    for (var window = 0u; window < frame.window_size.x; window += 1u) {
+    for (var window = 0u; window < MOST_WINDOWS; window += 1u) {
         let last = vec2f(frame.ground_windows[window].zw) - 1.0;
         let place = place_in_window(at, window);
         let first = vec2f(frame.ground_windows[window].xy);
@@ -23,7 +24,8 @@ fn windows_over(at: vec2f) -> f32 {
             select(place, beyond, first == vec2f(0.0)),
             select(last - place, beyond, first + last >= end),
         );
-        let share = clamp(min(inside.x, inside.y) / (WINDOW_BAND * min(last.x, last.y)), 0.0, 1.0);
+        let part = clamp(min(inside.x, inside.y) / (WINDOW_BAND * min(last.x, last.y)), 0.0, 1.0);
+        let share = select(0.0, part, window < frame.window_size.x);
         over += share;
         if share < 1.0 {
             break;

@@ -43,7 +43,7 @@ use crate::render::gpu::ground::row_bits;
 use crate::render::gpu::materials::{GpuMaterials, TexturePlaces, TextureScope};
 use crate::render::gpu::memory::{Loader, view};
 use crate::render::gpu::parts::ShaderParts;
-use crate::render::gpu::passes::{PassViews, ScenePass};
+use crate::render::gpu::passes::{PassStage, PassViews, ScenePass};
 use crate::render::gpu::pipelines::{COLOR, FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
 use crate::render::gpu::plan::{PipelineKey, Plan};
 use crate::render::gpu::readback::Targets;
@@ -106,6 +106,7 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
             [&targets.samples, &targets.color, &targets.sample_depth, &targets.feature, &targets.depth]
                 .map(view);
         let colors = PassViews {
+            stage: PassStage::Whole,
             label: "colors",
             color: if is_multisampled { &samples } else { &resolved },
             resolved: is_multisampled.then_some(&resolved),
@@ -115,7 +116,8 @@ pub fn render_on(gpu: &Gpu, list: &DrawList, camera: &Camera) -> Result<Renderin
         pass.sky();
         pass.draw(&geometry, plan.color.iter().chain(plan.transparent(camera)), parts);
         drop(pass);
-        let features = PassViews { label: "features", color: &seen, resolved: None, depth: &depth };
+        let stage = PassStage::Whole;
+        let features = PassViews { stage, label: "features", color: &seen, resolved: None, depth: &depth };
         let mut pass = ScenePass::new(features.begin(&mut encoder, &frame.group), &feature, &materials);
         pass.draw(&geometry, &plan.features, parts);
         drop(pass);

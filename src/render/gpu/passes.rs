@@ -1,7 +1,7 @@
-//! Recording the two passes of a picture.
+//! Recording the passes of a picture.
 //!
 //! Colors and features need separate passes: a pixel's color is the mean of its samples, and a mean of two feature
-//! numbers is a third feature.
+//! numbers is a third feature. Where the ground is shaded pixel by pixel, colors take three passes ([`PassStage`]).
 
 use crate::render::gpu::geometry::GpuGeometry;
 use crate::render::gpu::materials::{ArrayId, GpuMaterials};
@@ -9,8 +9,23 @@ use crate::render::gpu::parts::ShaderParts;
 use crate::render::gpu::pipelines::Pipelines;
 use crate::render::gpu::plan::{DrawCall, PipelineKey};
 
+/// What a pass draws of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PassStage {
+    /// All, over the color black and nothing, and the farthest depth.
+    Whole,
+    /// Depths, over the farthest one.
+    Depths,
+    /// Colors, over black and nothing, of what has drawn its depth, which shaders may read meanwhile.
+    Pixels,
+    /// All else, over both.
+    Rest,
+}
+
 /// The textures that a pass draws to.
+#[derive(Clone, Copy)]
 pub struct PassViews<'a> {
+    pub stage: PassStage,
     pub label: &'static str,
     pub color: &'a wgpu::TextureView,
     /// Where the samples of `color` are averaged, if it has several.
@@ -28,25 +43,39 @@ pub struct ScenePass<'e, 'a> {
 }
 
 impl PassViews<'_> {
-    /// Begins the pass, with the color black and nothing, and the depth cleared to zero: the farthest.
+    /// Another pass over the same textures.
+    pub fn of(self, stage: PassStage, label: &'static str) -> Self {
+        Self { stage, label, ..self }
+    }
+
+    /// Begins the pass. The farthest depth is zero.
     pub fn begin<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
         frame: &wgpu::BindGroup,
     ) -> wgpu::RenderPass<'e> {
-        let store = if self.resolved.is_some() { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
-        let color = wgpu::RenderPassColorAttachment {
+        use wgpu::{LoadOp, StoreOp};
+        let store = if self.resolved.is_some() { StoreOp::Discard } else { StoreOp::Store };
+        let (color_load, depth_ops) = match self.stage {
+            PassStage::Whole => {
+                (Some(LoadOp::Clear(wgpu::Color::TRANSPARENT)), Some((LoadOp::Clear(0.0), StoreOp::Discard)))
+            }
+            PassStage::Depths => (None, Some((LoadOp::Clear(0.0), StoreOp::Store))),
+            PassStage::Pixels => (Some(LoadOp::Clear(wgpu::Color::TRANSPARENT)), None),
+            PassStage::Rest => (Some(LoadOp::Load), Some((LoadOp::Load, StoreOp::Discard))),
+        };
+        let color = color_load.map(|load| wgpu::RenderPassColorAttachment {
             view: self.color,
             depth_slice: None,
             resolve_target: self.resolved,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store },
-        };
-        let depth_ops =
-            Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard });
+            ops: wgpu::Operations { load, store },
+        });
+        let depth_ops = depth_ops.map(|(load, store)| wgpu::Operations { load, store });
         let depth = wgpu::RenderPassDepthStencilAttachment { view: self.depth, depth_ops, stencil_ops: None };
+        let colors = [color];
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(self.label),
-            color_attachments: &[Some(color)],
+            color_attachments: if self.stage == PassStage::Depths { &[] } else { &colors },
             depth_stencil_attachment: Some(depth),
             ..Default::default()
         });
@@ -64,6 +93,16 @@ impl<'e, 'a> ScenePass<'e, 'a> {
     pub fn sky(&mut self) {
         if let Some(sky) = self.pipelines.get(PipelineKey::SKY) {
             self.pass.set_pipeline(sky);
+            self.pass.draw(0..3, 0..1);
+            self.pipeline = None;
+        }
+    }
+
+    /// Shades the ground whose depths are drawn and read as group 2.
+    pub fn ground_pixels(&mut self, key: PipelineKey, depths: &wgpu::BindGroup) {
+        if let Some(pixels) = self.pipelines.get(key) {
+            self.pass.set_pipeline(pixels);
+            self.pass.set_bind_group(2, depths, &[]);
             self.pass.draw(0..3, 0..1);
             self.pipeline = None;
         }

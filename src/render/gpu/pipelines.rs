@@ -30,6 +30,8 @@ const SHADER: &str = concat!(
     "\n",
     include_str!("ground_windows.wgsl"),
     "\n",
+    include_str!("ground_pixels.wgsl"),
+    "\n",
     include_str!("whole_picture.wgsl"),
     "\n",
     include_str!("sky.wgsl")
@@ -75,6 +77,8 @@ pub struct Layouts {
     pub frame: wgpu::BindGroupLayout,
     /// Group 1: the table of materials, an array of textures and its sampler.
     pub materials: wgpu::BindGroupLayout,
+    /// Group 2 where the ground is shaded pixel by pixel: its depths.
+    pub depths: wgpu::BindGroupLayout,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,6 +104,7 @@ pub struct Pipelines {
     shader: wgpu::ShaderModule,
     items: wgpu::PipelineLayout,
     sky: wgpu::PipelineLayout,
+    pixels: wgpu::PipelineLayout,
     by_key: BTreeMap<PipelineKey, wgpu::RenderPipeline>,
 }
 
@@ -157,6 +162,7 @@ impl Layouts {
                     (fragment, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
                 ],
             ),
+            depths: group("depths", &[(fragment, texture(wgpu::TextureSampleType::Depth))]),
         }
     }
 }
@@ -173,6 +179,7 @@ impl Pipelines {
             shader: shader.clone(),
             items: layout("items", &[Some(&layouts.frame), Some(&layouts.materials)]),
             sky: layout("sky", &[Some(&layouts.frame)]),
+            pixels: layout("pixels", &[Some(&layouts.frame), None, Some(&layouts.depths)]),
             by_key: BTreeMap::new(),
         }
     }
@@ -192,6 +199,12 @@ impl Pipelines {
         self.by_key.extend(made.by_key);
     }
 
+    /// Whether the ground of a window is shaded pixel by pixel, once its depths are drawn, rather than triangle by triangle:
+    /// where a pixel has one sample, so that its depth is that of all of it. OpenGL's shaders cannot read depths.
+    pub fn shade_pixels(&self, gpu: &Gpu) -> bool {
+        self.target.samples == 1 && gpu.api() == GpuApi::Vulkan
+    }
+
     /// The pipeline of a key; `None` before it is made.
     pub fn get(&self, key: PipelineKey) -> Option<&wgpu::RenderPipeline> {
         self.by_key.get(&key)
@@ -202,7 +215,9 @@ impl Pipelines {
         let nearer = match key.rule {
             DepthRule::Drape => DRAPE_NEARER,
             DepthRule::Lines => LINES_NEARER,
-            DepthRule::Solid | DepthRule::Blend | DepthRule::Sky => 1.0,
+            DepthRule::Solid | DepthRule::Blend | DepthRule::Sky | DepthRule::DepthOnly | DepthRule::Seen => {
+                1.0
+            }
         };
         let nearer_px = if key.rule == DepthRule::Drape { f64::from(DRAPE_NEARER_PX) } else { 0.0 };
         let vertex_constants = [("nearer", nearer)];
@@ -210,15 +225,22 @@ impl Pipelines {
         let parts = f64::from(key.parts.0);
         let fragment_constants =
             [("nearer", nearer), ("nearer_px", nearer_px), ("textured", textured), ("parts", parts)];
-        let is_sky = key.source == VertexSource::None;
+        let is_sky = key.rule == DepthRule::Sky;
+        let layout = match key.rule {
+            DepthRule::Sky => &self.sky,
+            DepthRule::Seen => &self.pixels,
+            _ => &self.items,
+        };
         let (vertex, buffers) = match key.source {
             VertexSource::Merged => ("merged_vertex", &MERGED_BUFFERS[..]),
             VertexSource::Placed => ("placed_vertex", &PLACED_BUFFERS[..]),
+            VertexSource::Patch if key.rule == DepthRule::DepthOnly => ("patch_depth", &PATCH_BUFFERS[..]),
             VertexSource::Patch => ("patch_vertex", &PATCH_BUFFERS[..]),
             VertexSource::None => ("whole_picture", &[][..]),
         };
         let fragment = match (target.pass, gpu.api()) {
             _ if is_sky => "sky_color",
+            _ if key.rule == DepthRule::Seen => "ground_pixel",
             _ if key.rule == DepthRule::Lines => "line_color",
             (GpuPass::Feature, _) => "feature",
             (GpuPass::Color, GpuApi::Gl) => "color_and_depth",
@@ -227,11 +249,11 @@ impl Pipelines {
         };
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(&format!("{vertex}, {fragment}, {:?}", key.rule)),
-            layout: Some(if is_sky { &self.sky } else { &self.items }),
+            layout: Some(layout),
             vertex: wgpu::VertexState {
                 module: shader,
                 entry_point: Some(vertex),
-                compilation_options: options(if is_sky { &[] } else { &vertex_constants }),
+                compilation_options: options(if buffers.is_empty() { &[] } else { &vertex_constants }),
                 buffers,
             },
             primitive: wgpu::PrimitiveState {
@@ -244,7 +266,7 @@ impl Pipelines {
             },
             depth_stencil: Some(depth_state(key.rule)),
             multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
-            fragment: Some(wgpu::FragmentState {
+            fragment: (key.rule != DepthRule::DepthOnly).then_some(wgpu::FragmentState {
                 module: shader,
                 entry_point: Some(fragment),
                 compilation_options: options(if is_sky { &[] } else { &fragment_constants }),
@@ -271,8 +293,10 @@ fn options<'a>(constants: &'a [(&'a str, f64)]) -> wgpu::PipelineCompilationOpti
 /// Depth is reversed: greater is nearer.
 fn depth_state(rule: DepthRule) -> wgpu::DepthStencilState {
     let (writes, compare) = match rule {
-        DepthRule::Sky => (false, wgpu::CompareFunction::Always),
-        DepthRule::Solid => (true, wgpu::CompareFunction::Greater),
+        // What covers the picture is as far as can be.
+        DepthRule::Sky => (false, wgpu::CompareFunction::GreaterEqual),
+        DepthRule::Solid | DepthRule::DepthOnly => (true, wgpu::CompareFunction::Greater),
+        DepthRule::Seen => (false, wgpu::CompareFunction::Less),
         DepthRule::Blend => (false, wgpu::CompareFunction::Greater),
         DepthRule::Drape | DepthRule::Lines => (false, wgpu::CompareFunction::GreaterEqual),
     };
@@ -319,11 +343,13 @@ mod tests {
                 "merged_vertex",
                 "placed_vertex",
                 "patch_vertex",
+                "patch_depth",
                 "line_color",
                 "color",
                 "masked_color",
                 "color_and_depth",
                 "feature",
+                "ground_pixel",
                 "whole_picture",
                 "sky_color",
             ]

@@ -37,8 +37,12 @@ pub enum DepthRule {
     Drape,
     /// Lines blended where not farther than a little behind; writes no depth.
     Lines,
-    /// Drawn everywhere; writes no depth.
+    /// Drawn where nothing has written its depth; writes none.
     Sky,
+    /// Writes its depth where nearer, and no color.
+    DepthOnly,
+    /// Drawn where something has written its depth; writes none.
+    Seen,
 }
 
 /// Where a vertex shader reads corners from.
@@ -135,6 +139,12 @@ impl PipelineKey {
         textured: false,
         parts: ShaderParts::NONE,
     };
+
+    /// The depth of bare ground by patches.
+    pub const PATCH_DEPTHS: Self = Self { rule: DepthRule::DepthOnly, ..Self::PATCH };
+
+    /// The color of bare ground whose depth is drawn.
+    pub const GROUND_PIXELS: Self = Self { rule: DepthRule::Seen, ..Self::SKY };
 
     /// The edges of bare ground by patches.
     pub const PATCH_LINES: Self = Self { rule: DepthRule::Lines, two_sided: true, ..Self::PATCH };

@@ -4,6 +4,10 @@
 // `feature` writes the feature's number and the depth in meters. Depth is reversed: with the clip planes
 // folded into A and B, the buffer holds A / d − B, which is 1 at the near plane and 0 at the far plane, so
 // that a float buffer resolves equal ratios of depth equally well everywhere. With parallel rays it holds A − B · d.
+//
+// No branch depends on the constants of a frame alone: for such a shader, Mesa's Vulkan on the processor writes the constants
+// into its code and compiles it anew for every frame. Where one decides, both sides are computed, or what decides is joined
+// with what changes from pixel to pixel by an operator that has no branch of its own.
 
 struct Frame {
     eye: vec4f,           // xyz, 1 where rays are parallel
@@ -179,12 +183,10 @@ fn projected(world: vec3f) -> Varying {
     let depth = dot(offset, frame.forward.xyz);
     var out: Varying;
     let across = vec2f(dot(offset, frame.right.xyz) * frame.right.w, dot(offset, frame.up.xyz) * frame.up.w);
-    if is_parallel() {
-        let raised = (nearer - 1.0) * PARALLEL_NEARER;
-        out.clip = vec4f(across, frame.depth.x - frame.depth.y * depth + raised, 1.0);
-    } else {
-        out.clip = vec4f(across, frame.depth.x * nearer - frame.depth.y * depth, depth);
-    }
+    let raised = (nearer - 1.0) * PARALLEL_NEARER;
+    let parallel = vec2f(frame.depth.x - frame.depth.y * depth + raised, 1.0);
+    let central = vec2f(frame.depth.x * nearer - frame.depth.y * depth, depth);
+    out.clip = vec4f(across, select(central, parallel, is_parallel()));
     out.world = world;
     return out;
 }
@@ -222,6 +224,12 @@ fn patch_vertex(@location(0) position: vec3f) -> Varying {
     out.color = vec4f(1.0);
     out.feature = 1u;
     return out;
+}
+
+// The same where nothing but the depth is drawn.
+@vertex
+fn patch_depth(@location(0) position: vec3f) -> @invariant @builtin(position) vec4f {
+    return projected(position).clip;
 }
 
 fn material_bits(index: u32, texel: u32) -> vec4u {
@@ -363,7 +371,7 @@ fn water_at(height: f32) -> vec3f {
 fn draped_at(at: vec2f, right: vec2f, down: vec2f) -> vec4f {
     let part = (at - frame.imagery.xy) * frame.imagery.zw;
     let is_within = all(part >= vec2f(0.0)) && all(part <= vec2f(1.0));
-    if frame.imagery_size.z < 0.5 || !is_within {
+    if (frame.imagery_size.z < 0.5) | !is_within {
         return vec4f(0.0);
     }
     let texel = 0.5 / frame.imagery_size.xy;
@@ -446,7 +454,7 @@ fn contour_fade(spacing: f32, per_pixel: f32) -> f32 {
 // Contours: how much of a pixel a line covers, where height changes by `per_pixel` across one.
 fn contour_cover(height: f32, per_pixel: f32) -> f32 {
     let interval = frame.contour_shape.x;
-    if !(interval > 0.0 && per_pixel > interval * 1e-6) {
+    if !((interval > 0.0) & (per_pixel > interval * 1e-6)) {
         return 0.0;
     }
     let line = round(height / interval);
@@ -560,13 +568,13 @@ fn face_rise(normal: vec3f) -> vec2f {
 
 // ShadowMap::sun.
 fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
-    if !has(SUN_SHADOWS_PART) || frame.shadows[0].toward.w == 0.0 {
+    if !has(SUN_SHADOWS_PART) {
         return 1.0;
     }
     let offset = world - frame.shadows[0].eye.xyz;
     let place = shadow_place(0u, offset);
     let highest = shadow_height(shadow_highest(place), on_solid) - place.height;
-    if highest <= 0.0 {
+    if (frame.shadows[0].toward.w == 0.0) | (highest <= 0.0) {
         return 1.0;
     }
     let rise = face_rise(turned(0u, normal)) * place.texel_m;
@@ -591,13 +599,14 @@ fn sun_share(world: vec3f, normal: vec3f, on_solid: bool) -> f32 {
 
 // ShadowMap::contact.
 fn contact_share(world: vec3f, on_solid: bool) -> f32 {
-    if !has(SKY_SHADOWS_PART) || frame.shadows[1].toward.w == 0.0 {
+    if !has(SKY_SHADOWS_PART) {
         return 1.0;
     }
     let place = shadow_place(1u, world - frame.shadows[1].eye.xyz);
     let highest = shadow_highest(place);
     let reach = CONTACT_RADIUS * place.texel_m;
-    if select(highest.x <= place.height, highest.y <= place.height - reach, on_solid) {
+    let is_open = select(highest.x <= place.height, highest.y <= place.height - reach, on_solid);
+    if (frame.shadows[1].toward.w == 0.0) | is_open {
         return 1.0;
     }
     let radius = select(CONTACT_RADIUS, WALL_RADIUS, on_solid);
@@ -773,9 +782,10 @@ struct GroundColor {
 
 fn ground_color(at: vec2f, post: Post, right: vec2f, down: vec2f, grain: f32) -> GroundColor {
     var seen = GroundColor(ramp_at(post.height), 0.0, 0.0);
-    if has(COVER_PART) && frame.cover.z > 0.0 {
+    if has(COVER_PART) {
         let pixel = max(length(right), length(down));
-        seen.color = with_cover(seen.color, post, cover_noise(at, pixel));
+        let covered = with_cover(seen.color, post, cover_noise(at, pixel));
+        seen.color = select(seen.color, covered, frame.cover.z > 0.0);
     }
     if has(MAP_WATER_PART) {
         seen.color = mix(seen.color, frame.undergrowth.rgb, clamp(-post.visibility.z, 0.0, 1.0) * frame.undergrowth.w);
@@ -806,47 +816,93 @@ fn ground_color(at: vec2f, post: Post, right: vec2f, down: vec2f, grain: f32) ->
     return seen;
 }
 
+// What a pixel spans of a surface along its row and down its column, in meters.
+struct Footprint {
+    right: vec3f,
+    down: vec3f,
+}
+
+fn face_of(span: Footprint) -> vec3f {
+    return cross(span.right, span.down);
+}
+
+fn pixel_m(span: Footprint) -> f32 {
+    return max(length(span.right.xy), length(span.down.xy));
+}
+
+// The color of a surface, how light it is, and the share of it that is water.
+struct Shaded {
+    color: vec4f,
+    light: vec3f,
+    water_share: f32,
+}
+
+// The share of water of a surface that the ground gives no color.
+fn water_of(flags: u32) -> f32 {
+    return select(0.0, 1.0, has(WATER_PART) && (flags & WATER) != 0u);
+}
+
+// What the ground gives a surface of a color that lies on it.
+fn on_ground(color: vec4f, flags: u32, world: vec3f, span: Footprint) -> Shaded {
+    var shaded = Shaded(color, color.rgb, water_of(flags));
+    let post = ground_at(world.xy, span.right.xy, span.down.xy);
+    var grain = 1.0;
+    if has(GRAIN_PART) && (flags & (FROM_GROUND_ALBEDO | NATURAL)) != 0u {
+        grain = ground_grain(world.xy, pixel_m(span), length(post.slope));
+    }
+    if has(NATURAL_PART) && (flags & NATURAL) != 0u {
+        shaded.color = vec4f(color.rgb * grain, color.a);
+    }
+    var unlit = 0.0;
+    if has(GROUND_COLOR_PART) && (flags & FROM_GROUND_ALBEDO) != 0u {
+        let seen = ground_color(world.xy, post, span.right.xy, span.down.xy, grain);
+        shaded.color = vec4f(seen.color, 1.0);
+        shaded.water_share = seen.water_share;
+        unlit = seen.unlit;
+    }
+    if has(GROUND_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) != 0u {
+        let received = vec2f(sun_share(world, face_of(span), false), contact_share(world, false));
+        let base = shaded.color.rgb;
+        shaded.light = mix(relief_lit(base, post, world.xy, received), base, unlit);
+    }
+    return shaded;
+}
+
+fn mirrored_sky(light: vec3f, water_share: f32, world: vec3f, span: Footprint) -> vec3f {
+    if has(WATER_PART | MAP_WATER_PART) {
+        return mirror_sky(light, from_eye(world), water_share, world.xy, pixel_m(span));
+    }
+    return light;
+}
+
+fn in_haze(light: vec3f, world: vec3f) -> vec3f {
+    if has(HAZE_PART) {
+        let clear = exp(-max(distance(world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
+        return mix(frame.haze.rgb, light, clear);
+    }
+    return light;
+}
+
 fn shade(in: Varying, front: bool) -> vec4f {
     let flags = material.flags.x;
     var color = surface(in);
     let normal = vertex_normal(in, front);
     var light = color.rgb;
-    var water_share = 0.0;
-    if has(WATER_PART) {
-        water_share = select(0.0, 1.0, (flags & WATER) != 0u);
-    }
-    let right = dpdx(in.world.xy);
-    let down = dpdy(in.world.xy);
-    let face = cross(dpdx(in.world), dpdy(in.world));
-    let pixel = max(length(right), length(down));
+    var water_share = water_of(flags);
+    let span = Footprint(dpdx(in.world), dpdy(in.world));
     let from_ground = FROM_GROUND_NORMAL | FROM_GROUND_ALBEDO;
     if has(GROUND_COLOR_PART | GROUND_LIGHT_PART) && (flags & from_ground) != 0u {
-        let post = ground_at(in.world.xy, right, down);
-        var grain = 1.0;
-        if has(GRAIN_PART) && (flags & (FROM_GROUND_ALBEDO | NATURAL)) != 0u {
-            grain = ground_grain(in.world.xy, pixel, length(post.slope));
-        }
-        if has(NATURAL_PART) && (flags & NATURAL) != 0u {
-            color = vec4f(color.rgb * grain, color.a);
-        }
-        var unlit = 0.0;
-        if has(GROUND_COLOR_PART) && (flags & FROM_GROUND_ALBEDO) != 0u {
-            let seen = ground_color(in.world.xy, post, right, down, grain);
-            color = vec4f(seen.color, 1.0);
-            water_share = seen.water_share;
-            unlit = seen.unlit;
-        }
-        if has(GROUND_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) != 0u {
-            let received = vec2f(sun_share(in.world, face, false), contact_share(in.world, false));
-            light = mix(relief_lit(color.rgb, post, in.world.xy, received), color.rgb, unlit);
-        }
+        let ground = on_ground(color, flags, in.world, span);
+        color = ground.color;
+        light = ground.light;
+        water_share = ground.water_share;
     }
     if has(OWN_LIGHT_PART) && (flags & FROM_GROUND_NORMAL) == 0u {
         var received = vec2f(1.0, 1.0);
         if (flags & IN_ALL_LIGHT) == 0u {
             received.y = contact_share(in.world, true);
             if dot(normal, frame.to_sun.xyz) > 0.0 {
-                received.x = sun_share(in.world, face, true);
+                received.x = sun_share(in.world, face_of(span), true);
             }
         }
         light = lit(color.rgb, normal, received);
@@ -854,17 +910,12 @@ fn shade(in: Varying, front: bool) -> vec4f {
     if has(HATCHING_PART) && (flags & HATCHING) != 0u {
         light = color.rgb;
     }
-    if has(WATER_PART | MAP_WATER_PART) {
-        light = mirror_sky(light, from_eye(in.world), water_share, in.world.xy, pixel);
-    }
+    light = mirrored_sky(light, water_share, in.world, span);
     if has(EDGES_PART) {
         let cover = edge_cover(in.uv);
         light = mix(light, LINE_COLOR, select(0.0, cover * LINE_ALPHA, (flags & EDGES) != 0u));
     }
-    if has(HAZE_PART) {
-        let clear = exp(-max(distance(in.world, frame.eye.xyz) - frame.zenith.w, 0.0) * frame.haze.w);
-        light = mix(frame.haze.rgb, light, clear);
-    }
+    light = in_haze(light, in.world);
     return vec4f(light, select(1.0, color.a, (flags & BLEND) != 0u));
 }
 
@@ -873,10 +924,9 @@ fn shade(in: Varying, front: bool) -> vec4f {
 fn reversed_depth(in: Varying) -> f32 {
     let change = max(abs(dpdx(in.clip.w)), abs(dpdy(in.clip.w)));
     let change_parallel = max(abs(dpdx(in.clip.z)), abs(dpdy(in.clip.z)));
-    if is_parallel() {
-        return in.clip.z + nearer_px * change_parallel;
-    }
-    return frame.depth.x * (nearer * in.clip.w + nearer_px * change) - frame.depth.y;
+    let parallel = in.clip.z + nearer_px * change_parallel;
+    let central = frame.depth.x * (nearer * in.clip.w + nearer_px * change) - frame.depth.y;
+    return select(central, parallel, is_parallel());
 }
 
 fn shade_or_discard(in: Varying, front: bool) -> vec4f {

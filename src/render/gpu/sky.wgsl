@@ -5,11 +5,9 @@
 @fragment
 fn sky_color(@builtin(position) pixel: vec4f) -> @location(0) vec4f {
     let down = pixel.y / frame.depth.w;
-    if frame.studio_top.w > 0.5 {
-        return vec4f(mix(frame.studio_top.rgb, frame.studio_bottom.rgb, down), 1.0);
-    }
+    let studio = mix(frame.studio_top.rgb, frame.studio_bottom.rgb, down);
     let x = (pixel.x / frame.depth.z * 2.0 - 1.0) / frame.right.w;
     let y = (1.0 - down * 2.0) / frame.up.w;
     let ray = normalize(frame.forward.xyz + frame.right.xyz * x + frame.up.xyz * y);
-    return vec4f(sky_at(ray), 1.0);
+    return vec4f(select(sky_at(ray), studio, frame.studio_top.w > 0.5), 1.0);
 }

@@ -26,6 +26,18 @@ pub struct StoredRange {
     bytes: Range<u64>,
 }
 
+impl StoredRange {
+    /// The number of its block.
+    pub fn block(&self) -> usize {
+        self.block
+    }
+
+    /// Its first byte in the block.
+    pub fn start(&self) -> u64 {
+        self.bytes.start
+    }
+}
+
 #[derive(Debug)]
 pub struct Arena {
     label: &'static str,
@@ -87,6 +99,11 @@ impl Arena {
     pub fn slice(&self, range: &StoredRange) -> Option<wgpu::BufferSlice<'_>> {
         let block = self.blocks.get(range.block)?.as_ref()?;
         Some(block.buffer.slice(range.bytes.clone()))
+    }
+
+    /// The whole block of what is stored, to be bound; `None` for a range of another arena.
+    pub fn block(&self, range: &StoredRange) -> Option<wgpu::BufferSlice<'_>> {
+        Some(self.blocks.get(range.block)?.as_ref()?.buffer.slice(..))
     }
 
     /// The size of all blocks in bytes.

@@ -19,6 +19,7 @@
 
 mod arena;
 mod encode;
+mod ground_calls;
 mod ground_map;
 mod patches;
 pub mod pick;
@@ -32,7 +33,7 @@ use glam::Vec2;
 use crate::draw::ground::GroundMap;
 use crate::draw::lighting::Lighting;
 use crate::draw::list::{DrawList, DrawListError};
-use crate::draw::patches::GroundChanges;
+use crate::draw::patches::{GroundChanges, PatchId};
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::frame::{FrameGroup, FrameTextures};
@@ -46,7 +47,7 @@ use crate::render::gpu::live::targets::{LiveFormat, LiveTargets};
 use crate::render::gpu::materials::GpuMaterials;
 use crate::render::gpu::memory::Loader;
 use crate::render::gpu::parts::ShaderParts;
-use crate::render::gpu::passes::{PassViews, ScenePass};
+use crate::render::gpu::passes::{PassStage, PassViews, ScenePass};
 use crate::render::gpu::pipelines::{FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
 use crate::render::gpu::plan::{DrawCall, PipelineKey, Plan};
 use crate::render::gpu::shadow::ShadowView;
@@ -202,7 +203,7 @@ impl LiveRenderer {
         let samples = if quality.samples >= gpu.samples { gpu.samples } else { 1 };
         let anisotropy = quality.anisotropy.clamp(1, gpu.anisotropy);
         let gpu = gpu.with_anisotropy(anisotropy);
-        let format = LiveFormat { window: format, samples };
+        let mut format = LiveFormat { window: format, samples, shade_pixels: false };
         let made = gpu.guarded("building its shaders", || {
             let layouts = Layouts::new(&gpu);
             let shader = shader(&gpu);
@@ -215,6 +216,7 @@ impl LiveRenderer {
             Ok((Arc::new(layouts), colors, features, encoder))
         });
         let (layouts, colors, features, encoder) = made?;
+        format.shade_pixels = colors.shade_pixels(&gpu);
         Ok(Self { gpu, format, layouts, colors, features, encoder, targets: None, scene: None })
     }
 
@@ -369,26 +371,48 @@ impl LiveRenderer {
         let (gpu, format) = (&self.gpu, self.format);
         let known = self.targets.take().filter(|targets| targets.size == size);
         let targets = gpu.guarded("resizing its textures", || {
-            known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), format, size), Ok)
+            known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), &self.layouts, format, size), Ok)
         })?;
         let drawn = gpu.guarded("drawing a frame", || {
             scene.frame.write(gpu, &scene.constants(camera, size));
+            let patches = scene.patches.shown(camera);
+            let ground = scene.patches.ground_calls(gpu, &patches)?;
             if options.wireframe {
-                let shown = scene.patches.shown(camera);
-                scene.patches.store_lines(gpu, &shown)?;
+                scene.patches.store_lines(gpu, &patches)?;
                 self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
             }
             let shown = targets.linear.as_ref().unwrap_or(target);
             let views = PassViews {
+                stage: PassStage::Whole,
                 label: "frame",
                 color: targets.samples.as_ref().unwrap_or(shown),
                 resolved: targets.samples.is_some().then_some(shown),
                 depth: &targets.depth,
             };
-            let pass = views.begin(encoder, &scene.frame.group);
-            let mut pass = ScenePass::new(pass, &self.colors, &scene.materials);
-            pass.sky();
-            let drawn = scene.draw(&mut pass, GpuPass::Color, camera, *options);
+            let (colors, parts) = (&self.colors, scene.parts);
+            let mut drawn;
+            let mut pass = match &targets.depths_read {
+                Some(depths) => {
+                    let stage = views.of(PassStage::Depths, "depths of the ground");
+                    let mut pass = scene.begin(&stage, encoder, colors);
+                    drawn = scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH_DEPTHS);
+                    drop(pass);
+                    let stage = views.of(PassStage::Pixels, "pixels of the ground");
+                    let mut pass = scene.begin(&stage, encoder, colors);
+                    pass.ground_pixels(ground_key(PipelineKey::GROUND_PIXELS, parts), depths);
+                    pass.sky();
+                    drop(pass);
+                    scene.begin(&views.of(PassStage::Rest, "frame"), encoder, colors)
+                }
+                None => {
+                    let mut pass = scene.begin(&views, encoder, colors);
+                    pass.sky();
+                    let key = ground_key(PipelineKey::PATCH, parts);
+                    drawn = scene.patches.draw_ground(&mut pass, &ground, key);
+                    pass
+                }
+            };
+            drawn.add(scene.draw_rest(&mut pass, GpuPass::Color, camera, (&patches, *options)));
             drop(pass);
             if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
                 encode.record(gpu, encoder, linear, target);
@@ -404,8 +428,8 @@ impl LiveRenderer {
     ///
     /// # Errors
     /// See [`GpuError`].
-    pub fn pick(&self, camera: &Camera, pixel: Vec2) -> Result<Option<PickedPoint>, GpuError> {
-        let Some(scene) = &self.scene else { return Ok(None) };
+    pub fn pick(&mut self, camera: &Camera, pixel: Vec2) -> Result<Option<PickedPoint>, GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(None) };
         let size = camera.size();
         let is_inside = pixel.cmpge(Vec2::ZERO).all() && pixel.x < size.0 as f32 && pixel.y < size.1 as f32;
         if !is_inside {
@@ -414,10 +438,13 @@ impl LiveRenderer {
         let gpu = &self.gpu;
         gpu.guarded("picking a pixel", || {
             scene.frame.write(gpu, &scene.constants(camera, size));
+            let patches = scene.patches.shown(camera);
+            let ground = scene.patches.ground_calls(gpu, &patches)?;
             let mut encoder = gpu.encoder("pick");
             let pass = scene.pick.begin(&mut encoder, &scene.frame.group, pixel, size);
             let mut pass = ScenePass::new(pass, &self.features, &scene.materials);
-            scene.draw(&mut pass, GpuPass::Feature, camera, LiveOptions::default());
+            scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH);
+            scene.draw_rest(&mut pass, GpuPass::Feature, camera, (&patches, LiveOptions::default()));
             drop(pass);
             scene.pick.read(gpu, encoder)
         })
@@ -437,14 +464,14 @@ impl LoadedScene {
     /// Makes the pipelines that it draws with and that are missing.
     fn make(&self, gpu: &Gpu, colors: &mut Pipelines, features: &mut Pipelines) {
         let [color_keys, feature_keys] = self.plan.keys(self.parts);
-        let patches = |which| {
-            let drapes = self.patches.keys(which, self.parts);
-            drapes.chain([patch_key(which, self.parts)])
+        let ground = match colors.shade_pixels(gpu) {
+            true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, self.parts)],
+            false => vec![ground_key(PipelineKey::PATCH, self.parts)],
         };
-        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]));
-        colors.make(gpu, patches(GpuPass::Color));
-        features.make(gpu, feature_keys);
-        features.make(gpu, patches(GpuPass::Feature));
+        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground));
+        colors.make(gpu, self.patches.keys(GpuPass::Color, self.parts));
+        features.make(gpu, feature_keys.into_iter().chain([PipelineKey::PATCH]));
+        features.make(gpu, self.patches.keys(GpuPass::Feature, self.parts));
     }
 
     fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
@@ -454,20 +481,27 @@ impl LoadedScene {
         FrameUniforms::new(scene, camera).with_size(size)
     }
 
-    /// Draws everything but the sky.
-    fn draw(
+    fn begin<'e, 'a>(
+        &'a self,
+        views: &PassViews<'_>,
+        encoder: &'e mut wgpu::CommandEncoder,
+        colors: &'a Pipelines,
+    ) -> ScenePass<'e, 'a> {
+        ScenePass::new(views.begin(encoder, &self.frame.group), colors, &self.materials)
+    }
+
+    /// Draws everything but the sky and the ground; `patches` are those shown.
+    fn draw_rest(
         &self,
         pass: &mut ScenePass<'_, '_>,
         which: GpuPass,
         camera: &Camera,
-        options: LiveOptions,
+        (patches, options): (&[PatchId], LiveOptions),
     ) -> LiveStatistics {
-        let shown = self.patches.shown(camera);
         let parts = self.parts;
-        let mut drawn = self.patches.draw_ground(pass, &shown, patch_key(which, parts));
-        drawn.add(self.patches.draw_drapes(pass, which, &shown, parts));
+        let mut drawn = self.patches.draw_drapes(pass, which, patches, parts);
         if options.wireframe {
-            drawn.add(self.patches.draw_lines(pass, &shown));
+            drawn.add(self.patches.draw_lines(pass, patches));
         }
         let calls: Vec<&DrawCall> = match which {
             GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
@@ -479,10 +513,7 @@ impl LoadedScene {
     }
 }
 
-/// What the ground's patches are drawn with.
-fn patch_key(which: GpuPass, picture: ShaderParts) -> PipelineKey {
-    match which {
-        GpuPass::Color => PipelineKey::PATCH.with_parts(ShaderParts::GROUND.in_picture(picture)),
-        GpuPass::Feature => PipelineKey::PATCH,
-    }
+/// What draws the ground's colors, of pixels or of patches.
+fn ground_key(key: PipelineKey, picture: ShaderParts) -> PipelineKey {
+    key.with_parts(ShaderParts::GROUND.in_picture(picture))
 }

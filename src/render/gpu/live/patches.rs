@@ -17,6 +17,7 @@ use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::geometry::{CornerUv, MergedTriangles, SurfaceOwner};
 use crate::render::gpu::live::arena::{Arena, StoredRange};
+use crate::render::gpu::live::ground_calls::{GroundCall, GroundCalls};
 use crate::render::gpu::live::{LiveStatistics, UploadedBytes};
 use crate::render::gpu::materials::{ArrayId, TexturePlaces};
 use crate::render::gpu::parts::ShaderParts;
@@ -33,6 +34,8 @@ pub struct PatchStore {
     triangles: Arena,
     drapes: Arena,
     drape_indices: Arena,
+    /// What the device reads of the calls of the ground.
+    call_arguments: Option<wgpu::Buffer>,
     /// How each material of the list is draped.
     materials: Vec<DrapeMaterial>,
 }
@@ -128,6 +131,7 @@ impl PatchStore {
             triangles: Arena::new("triangles of the ground", indices),
             drapes: Arena::new("what lies on the ground", vertices),
             drape_indices: Arena::new("triangles of what lies on the ground", indices),
+            call_arguments: None,
             materials: list.materials.iter().enumerate().map(material).collect(),
         }
     }
@@ -178,31 +182,27 @@ impl PatchStore {
         order.into_iter().map(|(_, id)| id).collect()
     }
 
+    /// The ground of patches, to be drawn before the next submission.
+    pub fn ground_calls(&mut self, gpu: &Gpu, shown: &[PatchId]) -> Result<GroundCalls, GpuError> {
+        let call = |patch: &StoredPatch| {
+            let (vertices, triangles) = (patch.positions.clone()?, patch.triangles.as_ref()?);
+            Some(GroundCall { vertices, indices: triangles.indices.clone(), triangles: triangles.count })
+        };
+        let calls = shown.iter().filter_map(|id| call(self.patches.get(id)?)).collect();
+        GroundCalls::new(gpu, calls, &mut self.call_arguments)
+    }
+
     /// Draws the ground of patches.
     pub fn draw_ground(
         &self,
         pass: &mut ScenePass<'_, '_>,
-        shown: &[PatchId],
+        calls: &GroundCalls,
         key: PipelineKey,
     ) -> LiveStatistics {
-        let mut drawn = LiveStatistics::default();
-        if !pass.set(key, ArrayId::NONE) {
-            return drawn;
+        match pass.set(key, ArrayId::NONE) {
+            true => calls.draw(&mut pass.pass, &self.positions, &self.triangles),
+            false => LiveStatistics::default(),
         }
-        for patch in shown.iter().filter_map(|id| self.patches.get(id)) {
-            let (Some(positions), Some(triangles)) = (&patch.positions, &patch.triangles) else { continue };
-            let Some((vertices, indices)) =
-                self.positions.slice(positions).zip(self.triangles.slice(&triangles.indices))
-            else {
-                continue;
-            };
-            pass.pass.set_vertex_buffer(0, vertices);
-            pass.pass.set_index_buffer(indices, wgpu::IndexFormat::Uint16);
-            pass.pass.draw_indexed(0..triangles.count * 3, 0, 0..1);
-            drawn.count(triangles.count);
-            drawn.patches += 1;
-        }
-        drawn
     }
 
     /// Sends the edges of patches that have none yet.

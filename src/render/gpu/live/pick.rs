@@ -6,7 +6,7 @@ use crate::draw::list::FeatureId;
 use crate::render::gpu::adapter::Gpu;
 use crate::render::gpu::error::GpuError;
 use crate::render::gpu::memory::{Loader, view};
-use crate::render::gpu::passes::PassViews;
+use crate::render::gpu::passes::{PassStage, PassViews};
 use crate::render::gpu::readback::{Targets, TextureCopy, feature_and_depth, wait};
 
 /// What a pixel shows at its center.
@@ -38,7 +38,8 @@ impl PickTarget {
         size: (u32, u32),
     ) -> wgpu::RenderPass<'e> {
         let [color, depth] = [&self.targets.feature, &self.targets.depth].map(view);
-        let views = PassViews { label: "pick", color: &color, resolved: None, depth: &depth };
+        let stage = PassStage::Whole;
+        let views = PassViews { stage, label: "pick", color: &color, resolved: None, depth: &depth };
         let mut pass = views.begin(encoder, frame);
         let corner = -pixel.floor();
         pass.set_viewport(corner.x, corner.y, size.0 as f32, size.1 as f32, 0.0, 1.0);

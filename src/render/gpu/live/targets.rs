@@ -2,8 +2,8 @@
 //! them.
 
 use crate::render::gpu::error::GpuError;
-use crate::render::gpu::memory::{Loader, texture, view};
-use crate::render::gpu::pipelines::{COLOR, DEPTH};
+use crate::render::gpu::memory::{Loader, bind, texture, view};
+use crate::render::gpu::pipelines::{COLOR, DEPTH, Layouts};
 
 /// The textures for frames of one size.
 #[derive(Debug)]
@@ -14,6 +14,8 @@ pub struct LiveTargets {
     /// Colors to be encoded, where the window's texture does not encode them.
     pub linear: Option<wgpu::TextureView>,
     pub depth: wgpu::TextureView,
+    /// The same for shaders, where the ground is shaded pixel by pixel.
+    pub depths_read: Option<wgpu::BindGroup>,
 }
 
 /// What the textures of frames depend on.
@@ -22,6 +24,8 @@ pub struct LiveFormat {
     /// Of the window's texture.
     pub window: wgpu::TextureFormat,
     pub samples: u32,
+    /// Whether the ground is shaded pixel by pixel.
+    pub shade_pixels: bool,
 }
 
 impl LiveFormat {
@@ -32,7 +36,12 @@ impl LiveFormat {
 }
 
 impl LiveTargets {
-    pub fn new(loader: &Loader<'_>, format: LiveFormat, size: (u32, u32)) -> Result<Self, GpuError> {
+    pub fn new(
+        loader: &Loader<'_>,
+        layouts: &Layouts,
+        format: LiveFormat,
+        size: (u32, u32),
+    ) -> Result<Self, GpuError> {
         let (width, height) = size;
         let what = || format!("the {width}×{height} pixels of the window");
         let create = |label, texels, sample_count, usage| {
@@ -47,11 +56,10 @@ impl LiveTargets {
         let drawn = format.drawn();
         let samples = (format.samples > 1).then(|| create("color samples", drawn, format.samples, kept));
         let linear = (drawn != format.window).then(|| create("colors to encode", drawn, 1, read));
-        Ok(Self {
-            size,
-            samples: samples.transpose()?,
-            linear: linear.transpose()?,
-            depth: create("depths", DEPTH, format.samples, kept)?,
-        })
+        let depth = create("depths", DEPTH, format.samples, if format.shade_pixels { read } else { kept })?;
+        let depths_read = format.shade_pixels.then(|| {
+            bind(loader.gpu, "depths", &layouts.depths, [wgpu::BindingResource::TextureView(&depth)])
+        });
+        Ok(Self { size, samples: samples.transpose()?, linear: linear.transpose()?, depth, depths_read })
     }
 }
