@@ -50,7 +50,7 @@ table! {
     struct FeatureSource [const LEAST: usize] {
         /// Inline coordinates, each in ±10⁹. The last point of a ring may repeat its first.
         points: Option<Stated<Vec<[f64; 2]>>> = key::points(LEAST), otherwise "by `file`", unless ["file"];
-        /// A vector file: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
+        /// A vector file, or its address: GeoJSON, shapefile, GeoPackage, FlatGeobuf, GPX, KML or OpenStreetMap.
         file: Option<Stated<String>> = key::file(), otherwise "by `points`", unless ["points"];
         /// With `file`: the layer of a file that holds several.
         layer: Option<Stated<String>> = key::filled_text(), otherwise "the file's only layer", unless ["points"];
@@ -255,7 +255,7 @@ table! {
     struct ModelPlacement {
         /// Name for messages and the feature list.
         name: Option<String> = key::text(), otherwise "the property `name`";
-        /// The model file, or the bare name of a built-in model: `conifer`, `broadleaf`, `walnut`, `beech`, `poplar`, `pine`, `shrub` or `rock`.
+        /// The model file, its address, or the bare name of a built-in model: `conifer`, `broadleaf`, `walnut`, `beech`, `poplar`, `pine`, `shrub` or `rock`.
         file: Stated<String> = key::file(), required;
         /// Place of its origin.
         at: Option<Stated<[f64; 2]>> = key::point(), otherwise "by `instances`", unless ["instances"];

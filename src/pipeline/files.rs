@@ -29,7 +29,9 @@ pub enum ReadFileCause {
     TooLarge(u64),
     #[error("byte {0} is not UTF-8 text")]
     NotText(usize),
-    #[error("this is an address: elevation alone is read by its address; fetch the file")]
+    #[error(
+        "this is an address: elevation and what a scene names are read by address, nothing else; fetch the file"
+    )]
     Address,
     #[error(
         "its server states neither an ETag nor a time of change, so that no worker would know whether it is the file that was \

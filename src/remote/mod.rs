@@ -1,4 +1,4 @@
-//! Elevation by address: `https://`, `s3://`, `gs://` and `az://`, read in parts where they are needed.
+//! Files by address: `https://`, `s3://`, `gs://` and `az://`; elevation is read in parts where they are needed.
 //!
 //! ```text
 //! address ─► store ─► http_client ─► the server        one request for neighboring blocks, retried with back-off

@@ -5,7 +5,8 @@
 //! allows besides. A path is judged twice: as it is written, before the disk is asked whether it exists, and
 //! as the system resolves it, so that a symbolic link leads nowhere that a plain path would not.
 //!
-//! Elevation may have an address in place of a path: it is read from the hosts that the user allows, and from no others.
+//! A file may have an address in place of a path: it is read from the hosts that the user allows, and from no others. What a
+//! model at an address names lies there too.
 //!
 //! Paths are written with `/`; `\` is taken for it, so that a scene reads alike on every system.
 
@@ -19,7 +20,7 @@ use crate::dem::formats::FileContent;
 #[cfg(unix)]
 use crate::dem::formats::ReadByPlace;
 use crate::dem::raster::Raster;
-use crate::limits::{ASSET_BYTES, COMPANION_BYTES};
+use crate::limits::ASSET_BYTES;
 use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
 use crate::model::error::CompanionError;
@@ -189,26 +190,13 @@ impl Assets {
         Ok(Some(elevation))
     }
 
-    /// The bytes of the elevation file that the scene calls `name`, which may be an address.
-    ///
-    /// # Errors
-    /// [`AssetError`].
-    pub fn read_elevation(&self, name: &str) -> Result<Vec<u8>, AssetError> {
-        if !is_address(name) {
-            return self.read(name);
-        }
-        let bytes = open::read(name, ASSET_BYTES.get()).map_err(AssetError::remote(name))?;
-        self.note_address(name);
-        Ok(bytes)
-    }
-
-    /// The bytes of a companion of an elevation file; `None` where there is none.
+    /// The bytes of a companion of a file; `None` where there is none.
     ///
     /// # Errors
     /// A server does not answer.
     pub fn read_companion(&self, name: &str) -> Result<Option<Vec<u8>>, AssetError> {
         match is_address(name) {
-            true => open::read_companion(name, COMPANION_BYTES.get()).map_err(AssetError::remote(name)),
+            true => open::read_companion(name, ASSET_BYTES.get()).map_err(AssetError::remote(name)),
             false => Ok(self.read(name).ok()),
         }
     }
@@ -218,13 +206,18 @@ impl Assets {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(PathBuf::from(name));
     }
 
-    /// The bytes of the file that the scene calls `name`, relative to the scene file, or absolute under an
-    /// allowed folder.
+    /// The bytes of the file that the scene calls `name`: relative to the scene file, absolute under an allowed folder, or an
+    /// address.
     ///
     /// # Errors
     /// [`AssetError`].
     pub fn read(&self, name: &str) -> Result<Vec<u8>, AssetError> {
-        self.read_resolved(self.resolve(name)?)
+        if !is_address(name) {
+            return self.read_resolved(self.resolve(name)?);
+        }
+        let bytes = open::read(name, ASSET_BYTES.get()).map_err(AssetError::remote(name))?;
+        self.note_address(name);
+        Ok(bytes)
     }
 
     /// The elevation file that the scene calls `name`, of any size, to be read in parts, and its first bytes: `head` of one on
@@ -300,6 +293,9 @@ impl Assets {
     /// # Errors
     /// As [`Self::resolve`].
     pub fn beside(&self, name: &str) -> Result<SiblingFiles<'_>, AssetError> {
+        if is_address(name) {
+            return Ok(SiblingFiles { assets: self, folder: PathBuf::from(address_folder(name)) });
+        }
         let model = self.resolve(name)?;
         let folder = model.parent().unwrap_or(&self.folder).to_path_buf();
         Ok(SiblingFiles { assets: self, folder })
@@ -351,6 +347,7 @@ impl Assets {
 #[derive(Clone, Debug)]
 pub struct SiblingFiles<'a> {
     assets: &'a Assets,
+    /// Their folder, or its address.
     folder: PathBuf,
 }
 
@@ -376,6 +373,24 @@ impl SiblingFiles<'_> {
         found.ok_or(first)
     }
 
+    /// A file beside a model at an address: as named, or else by its bare name beside the model.
+    fn read_beside(&self, folder: &str, name: &str) -> Result<Vec<u8>, AssetError> {
+        let refused = || AssetError::NotAPath {
+            name: quoted(name),
+            reason: "it leads away from the server that the model is on",
+        };
+        let read = |name: &str| {
+            let address = address_beside(folder, &checked(name)?).ok_or_else(refused)?;
+            self.assets.read(&address)
+        };
+        let slashed = name.replace('\\', "/");
+        let bare = slashed.rsplit('/').next().unwrap_or(&slashed);
+        read(name).or_else(|first| match bare == slashed {
+            true => Err(first),
+            false => read(bare).map_err(|_| first),
+        })
+    }
+
     /// `name` as the disk writes it, looked up beside the model.
     fn in_any_case(&self, name: &str) -> Option<String> {
         checked(name).ok().filter(|_| !is_absolute(name))?;
@@ -397,8 +412,32 @@ impl SiblingFiles<'_> {
 
 impl Companions for SiblingFiles<'_> {
     fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
-        Ok(self.assets.read_resolved(self.resolve(name)?)?)
+        match self.folder.to_str().filter(|folder| is_address(folder)) {
+            Some(folder) => Ok(self.read_beside(folder, name)?),
+            None => Ok(self.assets.read_resolved(self.resolve(name)?)?),
+        }
     }
+}
+
+/// The address of the folder of a file with an address.
+fn address_folder(address: &str) -> &str {
+    address.rsplit_once('/').map_or(address, |(folder, _)| folder)
+}
+
+/// The address of a file from that of a folder; `None` where the way leads out of the host or bucket.
+fn address_beside(folder: &str, name: &Path) -> Option<String> {
+    let (scheme, rest) = folder.split_once("://")?;
+    let mut parts: Vec<&str> = rest.split('/').collect();
+    for component in name.components() {
+        match component {
+            Component::CurDir => {}
+            // The first part is the host or bucket.
+            Component::ParentDir if parts.len() > 1 => drop(parts.pop()),
+            Component::Normal(part) => parts.push(part.to_str()?),
+            _ => return None,
+        }
+    }
+    Some(format!("{scheme}://{}", parts.join("/")))
 }
 
 fn canonical(path: &Path) -> Result<PathBuf, AssetError> {
@@ -506,6 +545,16 @@ mod tests {
         }
         assert_eq!(checked("a\\b.tif").expect("a path"), Path::new("a/b.tif"));
         assert!(checked("über 山/a (1).tif").is_ok());
+    }
+
+    #[test]
+    fn what_a_model_at_an_address_names_lies_on_its_server() {
+        let folder = address_folder("https://example.org/models/barn.gltf");
+        let beside = |name: &str| address_beside(folder, Path::new(name));
+        assert_eq!(beside("a b/roof.png").as_deref(), Some("https://example.org/models/a b/roof.png"));
+        assert_eq!(beside("./../wood.png").as_deref(), Some("https://example.org/wood.png"));
+        assert_eq!(beside("../../wood.png"), None);
+        assert_eq!(beside("/wood.png"), None);
     }
 
     #[test]

@@ -35,6 +35,7 @@ use crate::limits::{PICTURED_SAMPLES, RASTER_SAMPLES};
 use crate::message::suggest::quoted;
 use crate::remote::address::is_address;
 use crate::scene::assets::{AssetError, Assets};
+use crate::scene::companions::CompanionAssets;
 use crate::scene::overridden_crs::OverriddenCrs;
 use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::reduced_elevation::{ReducedElevation, reduced_as_needed};
@@ -250,7 +251,7 @@ impl TileList {
                 list.files.push(TileFile::alone(name.clone()));
                 continue;
             }
-            let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
+            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
             let mut vrt = VrtTiles::read(&bytes).map_err(|error| document.error(dem, error))?;
             if is_address(name) {
                 vrt.check_beside().map_err(|error| document.error(dem, error))?;
@@ -357,7 +358,7 @@ impl TileList {
             let name = &file.name;
             let options = file.options(&own);
             let hints = DemHints { options, overridden: &note, companions: &|name| companions.get(name) };
-            let bytes = assets.read_elevation(name).map_err(|error| document.error(dem, error))?;
+            let bytes = assets.read(name).map_err(|error| document.error(dem, error))?;
             let tile = read::read(name, &bytes, &hints);
             companions.check().map_err(|error| document.error(dem, error))?;
             let mut tile = tile.map_err(|error| document.error(dem, error))?;
@@ -423,29 +424,6 @@ fn open_windows(
             Ok(Some(source.taken_windows(windows).map_err(failed)?))
         }
         (_, windows) => Ok(windows),
-    }
-}
-
-/// The companions of elevation files. One that is not there is none; a server that does not answer is an error.
-struct CompanionAssets<'a> {
-    assets: &'a Assets,
-    fault: RefCell<Option<AssetError>>,
-}
-
-impl<'a> CompanionAssets<'a> {
-    fn of(assets: &'a Assets) -> Self {
-        Self { assets, fault: RefCell::default() }
-    }
-
-    fn get(&self, name: &str) -> Option<Vec<u8>> {
-        self.assets.read_companion(name).unwrap_or_else(|error| {
-            self.fault.borrow_mut().get_or_insert(error);
-            None
-        })
-    }
-
-    fn check(&self) -> Result<(), AssetError> {
-        self.fault.take().map_or(Ok(()), Err)
     }
 }
 

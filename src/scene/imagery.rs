@@ -20,6 +20,7 @@ use crate::draw::pixels::Pixels;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::scene::assets::Assets;
+use crate::scene::companions::CompanionAssets;
 use crate::terrain::lattice::Lattice;
 
 /// The longest side in pixels: more than a screen of 4K shows of the ground, and 64 MiB at the most. Finer pictures lose
@@ -41,13 +42,14 @@ pub fn load(
 ) -> Result<Option<GroundImagery>, Diagnostic> {
     let Some(table) = &document.style.imagery else { return Ok(None) };
     let bytes = assets.read(&table.file).map_err(|error| document.error(&table.file, error))?;
-    let companions = |name: &str| assets.read(name).ok();
+    let companions = CompanionAssets::of(assets);
     let hints = DemHints {
-        companions: &companions,
+        companions: &|name| companions.get(name),
         ..DemOptions { crs: table.crs.clone(), ..DemOptions::default() }.into()
     };
-    let imagery =
-        Imagery::open(&table.file, &bytes, &hints).map_err(|error| document.error(&table.file, error))?;
+    let imagery = Imagery::open(&table.file, &bytes, &hints);
+    companions.check().map_err(|error| document.error(&table.file, error))?;
+    let imagery = imagery.map_err(|error| document.error(&table.file, error))?;
     let own = imagery.crs.clone().ok_or_else(|| {
         let message = format!("{} names no coordinate system", *table.file);
         document.error(&table.file, message).with_help("state it with the key `crs` under [style.imagery]")

@@ -18,6 +18,7 @@ use crate::limits::RING_CROSSINGS;
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
+use crate::scene::companions::CompanionAssets;
 use crate::scene::source_reach::SourceReach;
 use crate::scene::world_frame::WorldFrame;
 use crate::vector::error::{VectorError, did_you_mean, list};
@@ -251,12 +252,13 @@ impl<'a> Sources<'a> {
             return Ok(Arc::clone(layer));
         }
         let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
-        let companions = |name: &str| self.assets.read(name).ok();
+        let companions = CompanionAssets::of(self.assets);
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
-        let hints =
-            VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &companions };
-        let layer = read::read(file, &bytes, &hints).map_err(|error| self.unread(file, wanted, error))?;
-        let layer = Arc::new(layer);
+        let found = |name: &str| companions.get(name);
+        let hints = VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &found };
+        let layer = read::read(file, &bytes, &hints);
+        companions.check().map_err(|error| self.frame.document.error(file, error))?;
+        let layer = Arc::new(layer.map_err(|error| self.unread(file, wanted, error))?);
         self.layers.borrow_mut().insert(key, Arc::clone(&layer));
         Ok(layer)
     }

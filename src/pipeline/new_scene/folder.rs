@@ -27,7 +27,9 @@ pub enum FolderCause {
     Nowhere,
     #[error("there is no such file")]
     NoFile,
-    #[error("this is an address: elevation alone is read by its address; fetch the file")]
+    #[error(
+        "this is an address: elevation and what a scene names are read by address, nothing else; fetch the file"
+    )]
     Address,
     #[error("this is not a file")]
     NotAFile,

@@ -18,7 +18,7 @@ fn a_program_without_the_feature_says_how_it_is_built() {
 fn only_elevation_has_an_address_and_no_output() {
     let dem = crate::cli::project("assets/jacksboro/dem.tif");
     let error = run(&["check", "https://example.org/scene.toml"]).failed(1);
-    assert!(error.contains("elevation alone is read by its address"), "{error}");
+    assert!(error.contains("elevation and what a scene names are read by address"), "{error}");
     let error = run(&["dem", "convert", &dem, "-o", "s3://bucket/out.tif"]).failed(1);
     assert!(error.contains("results are written to files"), "{error}");
     let error = run(&["height", "--allow-remote", "https://a.org", &dem, "--at", "1,2"]).failed(2);
@@ -31,7 +31,7 @@ mod with_moto {
     use std::path::PathBuf;
 
     use crate::cli::remote_servers::TestServer;
-    use crate::cli::{program, ran};
+    use crate::cli::{program, project, ran};
     use crate::common::data::data;
     use crate::common::scratch::Scratch;
 
@@ -164,6 +164,60 @@ mod with_moto {
             let (there, here) = (store.scratch.at("there.obj"), store.scratch.at("here.obj"));
             assert!(std::fs::read(there).ok() == std::fs::read(here).ok(), "{path}: the meshes differ");
         }
+    }
+
+    #[test]
+    fn a_scene_whose_files_are_on_a_server_is_the_picture_of_those_on_disk() {
+        let Some(mut store) = TestServer::s3() else { return };
+        let assets = PathBuf::from(project("assets"));
+        for folder in ["jacksboro", "models"] {
+            for entry in std::fs::read_dir(assets.join(folder)).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                let name = path.file_name().and_then(|name| name.to_str()).expect("UTF-8");
+                store.put(&path, &format!("{folder}/{name}"));
+            }
+        }
+        let here = std::fs::read_to_string(project("scenes/jacksboro.toml")).expect("readable");
+        let there = here.replace("\"../assets/", "\"s3://terrain/");
+        assert!(!there.contains("../"), "all of its files are on the server");
+        store.scratch.write("far.toml", &there);
+        let size = ["--size", "320x180", "-o"];
+        store.fetched("a", &[&["render", "far.toml"], &size[..], &["far.png"]].concat());
+        local_run(
+            &store,
+            &[&["render", &project("scenes/jacksboro.toml")], &size[..], &["near.png"]].concat(),
+        );
+        let picture = |name: &str| std::fs::read(store.scratch.at(name)).expect("drawn");
+        assert!(picture("far.png") == picture("near.png"), "the pictures differ");
+
+        // A file that is not there is an error of the scene, and so is one beside a model; a companion is none.
+        store.scratch.write("gone.toml", there.replace("roads.geojson", "paths.geojson"));
+        let gone = store.run("a", &["check", "gone.toml"]);
+        assert!(gone.code == 1 && gone.err.contains("s3://terrain/jacksboro/paths.geojson"), "{gone:?}");
+        assert!(gone.err.contains("gone.toml:"), "{gone:?}");
+    }
+
+    #[test]
+    fn a_shapefile_on_a_server_has_its_companions_there() {
+        let Some(mut store) = TestServer::s3() else { return };
+        for end in ["shp", "dbf", "prj", "cpg"] {
+            let Some(file) = data(&format!("scenes/swellendam_za/rivers.{end}")) else { return };
+            store.put(&file, &format!("rivers.{end}"));
+        }
+        let Some(dem) = data("scenes/swellendam_za/dem_srtm_utm33s_i16.tif") else { return };
+        let Some(rivers) = data("scenes/swellendam_za/rivers.shp") else { return };
+        let scene = |rivers: &str| {
+            format!(
+                "title = \"Rivers\"\n[terrain]\ndem = {dem:?}\n[[river]]\nfile = \"{rivers}\"\nwidth = 20\n\
+                 [[camera]]\nname = \"top\"\n"
+            )
+        };
+        store.scratch.write("far.toml", scene("s3://terrain/rivers.shp"));
+        store.scratch.write("near.toml", scene(rivers.to_str().expect("UTF-8")));
+        let folder = dem.parent().and_then(|folder| folder.to_str()).expect("UTF-8").to_owned();
+        let (far, _) = store.fetched("a", &["report", "far.toml", "--json", "--allow", &folder]);
+        let (near, _) = local_run(&store, &["report", "near.toml", "--json", "--allow", &folder]);
+        assert_eq!(far, near);
     }
 
     #[track_caller]

@@ -55,5 +55,5 @@ fn a_new_scene_names_the_address_of_its_elevation() {
     done(&server, &["check", "made/scene.toml"]);
     let refused =
         server.run("blocks", &["new", "roads", "--dem", ADDRESS, "--vectors", "s3://terrain/roads.geojson"]);
-    assert!(refused.failed(1).contains("elevation alone is read by its address"));
+    assert!(refused.failed(1).contains("elevation and what a scene names are read by address"));
 }
