@@ -12,6 +12,9 @@ use winit::window::Window;
 
 use crate::viewer::error::ViewerError;
 
+/// How often in turn a surface may fail to fit its window before that is an error: more than a second of frames.
+const MOST_FAILED_CONFIGURATIONS: u32 = 1000;
+
 /// The device, the surface and what paints the panels.
 pub struct WindowGraphics {
     window: Arc<Window>,
@@ -23,6 +26,8 @@ pub struct WindowGraphics {
     pub queue: wgpu::Queue,
     surface: wgpu::Surface<'static>,
     configuration: wgpu::SurfaceConfiguration,
+    /// How often in turn the surface could not be made as it is to be.
+    failed_configurations: u32,
     painter: Renderer,
 }
 
@@ -85,7 +90,18 @@ impl WindowGraphics {
         // The scene's picture among the panels is shown as it is.
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         let painter = Renderer::new(&device, format, options);
-        Ok(Self { window, instance, adapter, device, queue, surface, configuration, painter })
+        let failed_configurations = 0;
+        Ok(Self {
+            window,
+            instance,
+            adapter,
+            device,
+            queue,
+            surface,
+            configuration,
+            failed_configurations,
+            painter,
+        })
     }
 
     /// The adapter's name and interface.
@@ -112,7 +128,33 @@ impl WindowGraphics {
         let longest = self.longest_side();
         self.configuration.width = width.min(longest);
         self.configuration.height = height.min(longest);
+        // What fails now is done by the next frame.
+        let _ = self.configure();
+    }
+
+    /// Whether a frame is of the size that the panels are laid out for.
+    fn fits(&self, frame: &wgpu::SurfaceTexture) -> bool {
+        let wgpu::SurfaceConfiguration { width, height, .. } = self.configuration;
+        (frame.texture.width(), frame.texture.height()) == (width, height)
+    }
+
+    /// Makes the surface as it is to be. That fails while another thread sends to the device; the surface then stays as it was,
+    /// and a frame that does not fit it does this again.
+    fn configure(&mut self) -> Result<(), ViewerError> {
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         self.surface.configure(&self.device, &self.configuration);
+        let Some(error) = pollster::block_on(scope.pop()) else {
+            self.failed_configurations = 0;
+            return Ok(());
+        };
+        self.failed_configurations += 1;
+        match self.failed_configurations < MOST_FAILED_CONFIGURATIONS {
+            true => Ok(()),
+            false => Err(ViewerError::Adapter {
+                doing: "fitting its surface to the window",
+                cause: error.to_string(),
+            }),
+        }
     }
 
     /// Shows a texture of the device as `known`, or as a new texture of the panels.
@@ -164,15 +206,15 @@ impl WindowGraphics {
     ) -> Result<(FramePresented, Option<wgpu::SurfaceTexture>, Vec<wgpu::CommandBuffer>), ViewerError> {
         use wgpu::CurrentSurfaceTexture as Current;
         let (frame, presented) = match self.surface.get_current_texture() {
-            Current::Success(frame) => (frame, FramePresented::Yes),
-            Current::Suboptimal(frame) => {
+            Current::Success(frame) if self.fits(&frame) => (frame, FramePresented::Yes),
+            Current::Success(frame) | Current::Suboptimal(frame) => {
                 drop(frame);
-                self.surface.configure(&self.device, &self.configuration);
+                self.configure()?;
                 return Ok((FramePresented::Again, None, Vec::new()));
             }
             Current::Timeout | Current::Occluded => return Ok((FramePresented::Hidden, None, Vec::new())),
             Current::Outdated | Current::Validation => {
-                self.surface.configure(&self.device, &self.configuration);
+                self.configure()?;
                 return Ok((FramePresented::Again, None, Vec::new()));
             }
             Current::Lost => {
@@ -182,7 +224,7 @@ impl WindowGraphics {
                     cause: error.to_string(),
                 };
                 self.surface = surface.map_err(failed)?;
-                self.surface.configure(&self.device, &self.configuration);
+                self.configure()?;
                 return Ok((FramePresented::Again, None, Vec::new()));
             }
         };
