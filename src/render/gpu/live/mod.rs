@@ -11,6 +11,12 @@
 //! The ground and what lies on it come by patches ([`crate::draw::patches`]); everything else is drawn as in a picture, by
 //! the same shaders and the same rules of depth.
 //!
+//! # Ground
+//! One call draws all patches (`ground_calls`). With several samples a pixel their triangles are shaded as they are drawn.
+//! With one, as where the processor draws, only their depths are, and what each pixel then shows is shaded once
+//! (`ground_pixels.wgsl`): a driver that shades blocks of pixels does most of its work for nothing where triangles are as small
+//! as pixels.
+//!
 //! # Shadows
 //! Shadow maps of solids are made for a camera, by the processor, in some ten milliseconds: too long for every frame. A map
 //! is therefore kept while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye;
@@ -351,8 +357,8 @@ impl LiveRenderer {
     }
 
     /// Records a frame to `target`, a texture of the renderer's format and of `size` pixels, as `camera` sees it, whose
-    /// picture should have that size. Nothing is drawn where a side is zero or no scene is loaded. The camera of the last
-    /// frame recorded before a submission counts for all of them.
+    /// picture should have that size. Nothing is drawn where a side is zero or no scene is loaded. The camera and the patches
+    /// of the last frame recorded before a submission count for all of them.
     ///
     /// # Errors
     /// See [`GpuError`]; after [`GpuError::Driver`] the device is to be opened anew.
