@@ -8,7 +8,7 @@
 //!              (vectors)              (reads only)            (vectors)
 //! ```
 //!
-//! Between the corners, the second pass reads the positions of the next chunk ([`ReadAhead`]). The first pass would have
+//! Between the corners, the second pass reads the positions of the next chunk (`ReadAhead`). The first pass would have
 //! nothing to do while it waits for them, and in a batch that leaves the cache it would wait as long as all passes take.
 //!
 //! No pass branches on its data. A position outside, or one that a special rule applies to, gets NaN as its part of the
