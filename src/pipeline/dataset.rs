@@ -23,7 +23,7 @@ use crate::pipeline::ground::{self, GroundError, QueriedGround};
 use crate::pipeline::scene_file::{OpenSceneError, open_scene_ground};
 use crate::pipeline::windowed_elevation::{GroundReach, WindowedElevation};
 use crate::remote::address::is_address_path;
-use crate::scene::SceneGround;
+use crate::scene::build::SceneGround;
 use crate::terrain::query::batch::HeightSlices;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::query::source::source_heights_apart;

@@ -12,12 +12,12 @@ use crate::message::suggest::{quoted, remedy};
 use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::lint::cause_code::coded;
 use crate::pipeline::lint::lint;
+use crate::scene::SceneModel;
 use crate::scene::assets::{AssetError, Assets};
-use crate::scene::build::{build, build_ground, build_with};
+use crate::scene::build::{SceneGround, build, build_ground, build_with};
 use crate::scene::flights::{SceneFlight, flight};
 use crate::scene::picture::camera;
 use crate::scene::planned_pictures::ElevationNeed;
-use crate::scene::{SceneGround, SceneModel};
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]

@@ -19,6 +19,7 @@ use crate::earthworks::brush::Change;
 use crate::earthworks::held_posts::HeldPosts;
 use crate::geom::crs::Crs;
 use crate::roam::layout::{DEFAULT_PATCH, PatchLayout};
+use crate::scene::SceneModel;
 use crate::scene::areas;
 use crate::scene::assets::Assets;
 use crate::scene::attributes;
@@ -46,11 +47,22 @@ use crate::scene::sunlight::Sunlight;
 use crate::scene::views;
 use crate::scene::water::{lakes, rivers};
 use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneGround, SceneModel};
 use crate::terrain::lattice::Lattice;
 use crate::terrain::query::deck::Deck;
 use crate::terrain::query::service::HeightService;
 use crate::terrain::triangle_surface::SurfaceTriangle;
+
+/// The ground of a scene: all that height queries, profiles and lines of sight need.
+pub struct SceneGround {
+    /// Answers height queries in map coordinates.
+    pub heights: HeightService,
+    /// The system that the scene file or its elevation states in meters: that of positions unless another is named.
+    pub stated_crs: Crs,
+    /// A note where that is not the ground's, because its lengths are not true.
+    pub scale_note: Option<String>,
+    /// The files it was made of, besides the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
+}
 
 /// Builds the ground of the scene that `document` describes, with the decks over it. Of the models, only those that have
 /// the ground leveled are read.

@@ -1,9 +1,9 @@
 //! From a scene file to a draw list.
 //!
-//! `build` turns a document and its assets into a [`SceneGround`] or a [`SceneModel`], one pass a file: the ground (`ground`),
-//! ribbons (`areas`, `water`, `roads`), solids (`buildings`, `fences`, `bridges`), models (`models`, `scatter`; `footprint`
-//! and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`. `picture` turns a
-//! scene and a camera into a draw list.
+//! `build` turns a document and its assets into a [`SceneGround`](build::SceneGround) or a [`SceneModel`], one pass a file: the
+//! ground (`ground`), ribbons (`areas`, `water`, `roads`), solids (`buildings`, `fences`, `bridges`), models (`models`,
+//! `scatter`; `footprint` and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`.
+//! `picture` turns a scene and a camera into a draw list.
 
 mod all_samples;
 pub mod areas;
@@ -221,18 +221,6 @@ pub struct SceneModel {
     pub profiles: Vec<RoadProfile>,
     /// The longitudinal profiles of bridges.
     pub bridge_profiles: Vec<BridgeProfile>,
-    /// The files it was made of, besides the scene file itself.
-    pub files: Vec<std::path::PathBuf>,
-}
-
-/// The ground of a scene: all that height queries, profiles and lines of sight need.
-pub struct SceneGround {
-    /// Answers height queries in map coordinates.
-    pub heights: HeightService,
-    /// The system that the scene file or its elevation states in meters: that of positions unless another is named.
-    pub stated_crs: Crs,
-    /// A note where that is not the ground's, because its lengths are not true.
-    pub scale_note: Option<String>,
     /// The files it was made of, besides the scene file itself.
     pub files: Vec<std::path::PathBuf>,
 }

@@ -10,7 +10,7 @@ const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/render/gpu");
 
 /// The modules, as files that are joined.
 const MODULES: [&[&str]; 2] = [
-    &["shader.wgsl", "ground_windows.wgsl", "whole_picture.wgsl", "sky.wgsl"],
+    &["shader.wgsl", "ground_windows.wgsl", "ground_pixels.wgsl", "whole_picture.wgsl", "sky.wgsl"],
     &["whole_picture.wgsl", "encode.wgsl"],
 ];
 
