@@ -190,13 +190,13 @@ impl Assets {
         Ok(Some(elevation))
     }
 
-    /// The bytes of a companion of a file; `None` where there is none.
+    /// The bytes of a companion of a file, of which a server sends at most `most`; `None` where there is none.
     ///
     /// # Errors
     /// A server does not answer.
-    pub fn read_companion(&self, name: &str) -> Result<Option<Vec<u8>>, AssetError> {
+    pub fn read_companion(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, AssetError> {
         match is_address(name) {
-            true => open::read_companion(name, ASSET_BYTES.get()).map_err(AssetError::remote(name)),
+            true => open::read_companion(name, most).map_err(AssetError::remote(name)),
             false => Ok(self.read(name).ok()),
         }
     }

@@ -19,6 +19,7 @@ use crate::draw::ground_imagery::GroundImagery;
 use crate::draw::pixels::Pixels;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
+use crate::limits::COMPANION_BYTES;
 use crate::scene::assets::Assets;
 use crate::scene::companions::CompanionAssets;
 use crate::terrain::lattice::Lattice;
@@ -42,7 +43,7 @@ pub fn load(
 ) -> Result<Option<GroundImagery>, Diagnostic> {
     let Some(table) = &document.style.imagery else { return Ok(None) };
     let bytes = assets.read(&table.file).map_err(|error| document.error(&table.file, error))?;
-    let companions = CompanionAssets::of(assets);
+    let companions = CompanionAssets::of(assets, COMPANION_BYTES.get());
     let hints = DemHints {
         companions: &|name| companions.get(name),
         ..DemOptions { crs: table.crs.clone(), ..DemOptions::default() }.into()

@@ -14,7 +14,7 @@ use crate::description::selection::Selection;
 use crate::description::stated::Stated;
 use crate::geom::crs::{Crs, CrsError};
 use crate::geom::self_crossing::count_crossings;
-use crate::limits::RING_CROSSINGS;
+use crate::limits::{ASSET_BYTES, RING_CROSSINGS};
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
@@ -252,7 +252,8 @@ impl<'a> Sources<'a> {
             return Ok(Arc::clone(layer));
         }
         let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
-        let companions = CompanionAssets::of(self.assets);
+        // A table of attributes may be as large as the file itself.
+        let companions = CompanionAssets::of(self.assets, ASSET_BYTES.get());
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
         let found = |name: &str| companions.get(name);
         let hints = VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &found };

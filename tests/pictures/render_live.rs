@@ -197,9 +197,8 @@ fn with_one_sample_a_pixel_surfaces_look_as_in_the_picture() {
         let columns = SIZE.0 as usize;
         let is_inside = |index: &usize| {
             let sides = [index.saturating_sub(1), index + 1, index.saturating_sub(columns), index + columns];
-            let around = sides.into_iter();
             let (feature, depth_m) = (picture.features[*index], picture.depth_m[*index]);
-            around.filter(|&at| at < picture.features.len()).all(|at| {
+            sides.into_iter().filter(|&at| at < picture.features.len()).all(|at| {
                 picture.features[at] == feature && (picture.depth_m[at] / depth_m - 1.0).abs() < 0.02
             })
         };

@@ -15,7 +15,7 @@ fn a_program_without_the_feature_says_how_it_is_built() {
 }
 
 #[test]
-fn only_elevation_has_an_address_and_no_output() {
+fn a_scene_file_has_no_address_and_no_output_has_one() {
     let dem = crate::cli::project("assets/jacksboro/dem.tif");
     let error = run(&["check", "https://example.org/scene.toml"]).failed(1);
     assert!(error.contains("elevation and what a scene names are read by address"), "{error}");
@@ -190,7 +190,7 @@ mod with_moto {
         let picture = |name: &str| std::fs::read(store.scratch.at(name)).expect("drawn");
         assert!(picture("far.png") == picture("near.png"), "the pictures differ");
 
-        // A file that is not there is an error of the scene, and so is one beside a model; a companion is none.
+        // A file that is not there is an error of the scene.
         store.scratch.write("gone.toml", there.replace("roads.geojson", "paths.geojson"));
         let gone = store.run("a", &["check", "gone.toml"]);
         assert!(gone.code == 1 && gone.err.contains("s3://terrain/jacksboro/paths.geojson"), "{gone:?}");
