@@ -284,21 +284,11 @@ impl DynamicTerrain {
 
     /// The corners of the patches that the vertices belong to, in the layout's order.
     fn patches_of(&mut self, vertices: &[Vertex]) -> Vec<Vertex> {
-        let (layout, mut dirty, mut last) = (self.layout, Vec::new(), [(-1, -1); 2]);
-        let patches_east = layout.patch_grid().0;
-        for &vertex in vertices {
-            let span = layout.patches_at(vertex);
-            if span == last {
-                continue;
-            }
-            last = span;
-            let [(west, south), (east, north)] = span;
-            for y in south..=north {
-                for x in west..=east {
-                    let index = y as usize * patches_east + x as usize;
-                    if !std::mem::replace(&mut self.dirty[index], true) {
-                        dirty.push(Vertex::new(x * layout.patch(), y * layout.patch()));
-                    }
+        let (layout, mut dirty) = (self.layout, Vec::new());
+        for (span, _) in layout.runs(vertices) {
+            for corner in layout.patches_within(span.first, span.last) {
+                if !std::mem::replace(&mut self.dirty[layout.patch_index(corner)], true) {
+                    dirty.push(corner);
                 }
             }
         }
@@ -321,9 +311,9 @@ struct MovedVertices {
 impl MovedVertices {
     #[inline]
     fn holds(&self, vertex: Vertex) -> bool {
-        let (x, y) = (i64::from(vertex.x - self.corner.x), i64::from(vertex.y - self.corner.y));
-        let is_inside = (0..self.width as i64).contains(&x) && y >= 0;
-        is_inside && self.are_moved.get(y as usize * self.width + x as usize).is_some_and(|&moved| moved)
+        // A vertex west or south of the corner is far east or north of it.
+        let [x, y] = [vertex.x - self.corner.x, vertex.y - self.corner.y].map(|off| off as u32 as usize);
+        x < self.width && self.are_moved.get(y * self.width + x).is_some_and(|&moved| moved)
     }
 }
 

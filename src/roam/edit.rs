@@ -45,7 +45,7 @@ impl Mended {
         self.rects.get(pass).copied().unwrap_or(VertexRect::EMPTY)
     }
 
-    /// Calls `renew` for the rows of the pass inside `rect`; `renew` adds the vertices that changed.
+    /// Calls `renew` for the rows of the pass inside `rect`; `renew` adds the vertices that changed, from the west.
     fn sweep(
         &mut self,
         layout: &PatchLayout,
@@ -53,12 +53,17 @@ impl Mended {
         rect: VertexRect,
         mut renew: impl FnMut(PassRow, &mut Vec<Vertex>),
     ) {
-        let before = self.vertices.len();
+        let mut around = VertexRect::EMPTY;
         if !rect.is_empty() {
-            pass.rows_within(layout, &rect).for_each(|row| renew(row, &mut self.vertices));
+            for row in pass.rows_within(layout, &rect) {
+                let before = self.vertices.len();
+                renew(row, &mut self.vertices);
+                if let (Some(&west), Some(&east)) = (self.vertices.get(before), self.vertices.last()) {
+                    around = around.with(west).with(east);
+                }
+            }
         }
-        let changed = self.vertices[before..].iter();
-        self.rects.push(changed.fold(VertexRect::EMPTY, |rect, &vertex| rect.with(vertex)));
+        self.rects.push(around);
     }
 
     /// The rectangle around the parents, in `pass`, of the changed vertices; `pass` is the next to be swept.
@@ -243,7 +248,7 @@ pub fn mend_spheres(
     let field = HeightField::new(ground);
     prefetch(spheres.values(), ground.layout, changed.grown(1, 1));
     let last_error = errors.rects.iter().rposition(|rect| !rect.is_empty());
-    let mut mended = Mended::with_capacity_for(change);
+    let (mut mended, mut held) = (Mended::with_capacity_for(change), Vec::new());
     for (index, pass) in passes(ground.layout).enumerate() {
         let half = (pass.step / 2).max(1);
         let (moved, near) = (changed.snapped(half), rough.snapped(pass.step));
@@ -256,7 +261,7 @@ pub fn mend_spheres(
         let corners = changed.snapped(pass.step).grown(pass.step, pass.step);
         let rect = corners.union(children).union(near).union(errors.rect(index)).union(mended.above(pass));
         mended.sweep(ground.layout, pass, rect, |row, changed| {
-            spheres.renew_row(ground, &field, row, own, changed);
+            spheres.renew_row(ground, &field, row, own, &mut held, changed);
         });
     }
     mended

@@ -20,6 +20,31 @@ pub struct PatchLayout {
     last_row: i32,
 }
 
+/// Neighboring patches, and the vertices that belong to just these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PatchSpan {
+    /// The south-western one, counted in patches east and north.
+    pub first: (i32, i32),
+    /// The north-eastern one.
+    pub last: (i32, i32),
+    /// The south-western of the vertices.
+    min: Vertex,
+    /// The north-eastern of them.
+    max: Vertex,
+}
+
+impl PatchSpan {
+    /// Whether a vertex belongs to just these patches.
+    #[inline]
+    pub fn holds(&self, vertex: Vertex) -> bool {
+        // Without jumps: among the vertices of a patch those on its border come as a surprise.
+        (vertex.x >= self.min.x)
+            & (vertex.x <= self.max.x)
+            & (vertex.y >= self.min.y)
+            & (vertex.y <= self.max.y)
+    }
+}
+
 /// The default number of cells along a patch's side: 65² vertices keep an index list within 16 bits, and culling a patch
 /// saves up to 8,192 triangles.
 pub const DEFAULT_PATCH: u32 = 64;
@@ -97,14 +122,34 @@ impl PatchLayout {
         self.patches_within((before(min.x), before(min.y)), (max.x / self.patch, max.y / self.patch))
     }
 
-    /// The first and the last of the patches that a vertex of the layout belongs to, counted in patches east and north: the
-    /// same unless it lies on a border between patches.
-    #[inline]
-    pub fn patches_at(&self, vertex: Vertex) -> [(i32, i32); 2] {
-        let shift = self.patch.trailing_zeros();
-        let first = ((vertex.x - 1).max(0) >> shift, (vertex.y - 1).max(0) >> shift);
-        let (east, north) = (self.patches_east - 1, self.patches_north - 1);
-        [first, ((vertex.x >> shift).min(east), (vertex.y >> shift).min(north))]
+    /// The patches that a vertex of the layout belongs to: one, unless it lies on a border between patches.
+    pub fn patches_at(&self, vertex: Vertex) -> PatchSpan {
+        let [x, y] = [(vertex.x, self.patches_east), (vertex.y, self.patches_north)].map(|(at, count)| {
+            let (first, last) = ((at - 1).max(0) / self.patch, (at / self.patch).min(count - 1));
+            if first < last {
+                return [(first, at), (last, at)];
+            }
+            let west = first * self.patch + i32::from(first > 0);
+            [(first, west), (last, (last + 1) * self.patch - i32::from(last < count - 1))]
+        });
+        let [[(west, min_x), (east, max_x)], [(south, min_y), (north, max_y)]] = [x, y];
+        PatchSpan {
+            first: (west, south),
+            last: (east, north),
+            min: Vertex::new(min_x, min_y),
+            max: Vertex::new(max_x, max_y),
+        }
+    }
+
+    /// Vertices of the layout in runs that belong to the same patches.
+    pub fn runs<'a>(&self, mut vertices: &'a [Vertex]) -> impl Iterator<Item = (PatchSpan, &'a [Vertex])> {
+        std::iter::from_fn(move || {
+            let span = self.patches_at(*vertices.first()?);
+            let count = vertices.iter().position(|&vertex| !span.holds(vertex)).unwrap_or(vertices.len());
+            let (run, rest) = vertices.split_at(count);
+            vertices = rest;
+            Some((span, run))
+        })
     }
 
     /// The place of the patch with south-west corner `corner` in [`PatchLayout::patches`].
@@ -225,10 +270,22 @@ mod tests {
     fn the_patches_at_a_vertex_are_those_that_meet_it() {
         let layout = PatchLayout::new(40, 21, 8).expect("sound");
         for vertex in layout.vertices() {
-            let [first, last] = layout.patches_at(vertex);
+            let span = layout.patches_at(vertex);
             let meeting = layout.patches_meeting(vertex, vertex);
-            assert!(meeting.eq(layout.patches_within(first, last)), "{vertex:?}: {first:?} to {last:?}");
+            assert!(meeting.eq(layout.patches_within(span.first, span.last)), "{vertex:?}: {span:?}");
+            let same = layout.vertices().filter(|&other| layout.patches_at(other) == span);
+            assert!(same.eq(layout.vertices().filter(|&other| span.holds(other))), "{vertex:?}: {span:?}");
         }
+    }
+
+    #[test]
+    fn runs_are_as_long_as_the_patches_are_the_same() {
+        let layout = PatchLayout::new(40, 21, 8).expect("sound");
+        let vertices: Vec<Vertex> = layout.vertices().collect();
+        let runs: Vec<_> = layout.runs(&vertices).collect();
+        assert!(runs.iter().flat_map(|(_, run)| run.iter()).eq(&vertices));
+        assert!(runs.iter().all(|(span, run)| run.iter().all(|&vertex| layout.patches_at(vertex) == *span)));
+        assert!(runs.windows(2).all(|pair| pair[0].0 != pair[1].0));
     }
 
     #[test]

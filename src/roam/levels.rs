@@ -7,7 +7,6 @@
 
 use rayon::prelude::*;
 
-use crate::roam::errors::scan::larger;
 use crate::roam::graph::{Vertex, VertexKind};
 use crate::roam::layout::PatchLayout;
 use crate::terrain::post_rect::PostRect;
@@ -46,6 +45,15 @@ impl LevelPass {
         posts.grown(dx, dy)
     }
 
+    /// Where the children of its vertices are; `None` where they have none.
+    pub fn children(self) -> Option<ChildPlaces> {
+        match (self.child_reach(), self.kind) {
+            (0, _) => None,
+            (reach, VertexKind::Center) => Some(ChildPlaces::Along(reach)),
+            (reach, _) => Some(ChildPlaces::Aslant(reach)),
+        }
+    }
+
     /// The rows of the pass's vertices inside the rectangle and the layout, from the south.
     pub fn rows_within(
         self,
@@ -57,25 +65,69 @@ impl LevelPass {
         let from = |first: i32, low: i32| first + ((low - first).max(0) + stride - 1) / stride * stride;
         let (x, y) = (from(dx, rect.min.x), from(dy, rect.min.y));
         let end = (rect.max.x.min(limit.0 - 1) + 1, rect.max.y.min(limit.1 - 1) + 1);
-        let rows = if x < end.0 { y..end.1 } else { 0..0 };
-        rows.step_by(stride as usize).map(move |y| PassRow {
+        let count = |first: i32, end: i32| (end - first + stride - 1).max(0) as usize >> (self.shift());
+        let (columns, rows) = (count(x, end.0), count(y, end.1));
+        let rows = if columns == 0 { 0 } else { rows };
+        (0..rows).map(move |row| PassRow {
             pass: self,
-            y: y as usize,
-            first: x as usize,
-            end: end.0 as usize,
+            y: y as usize + (row << self.shift()),
+            columns: StridedColumns { first: x as usize, shift: self.shift(), count: columns },
         })
+    }
+
+    /// The binary logarithm of the distance between its vertices along a row or a column.
+    fn shift(self) -> u32 {
+        self.step.trailing_zeros() + 1
     }
 
     /// Whether the hypotenuse of the center in column `x` and row `y` runs from south-west to north-east.
     #[inline]
     pub fn rises(self, x: usize, y: usize) -> bool {
-        let side = self.step.trailing_zeros() + 1;
-        ((x >> side) + (y >> side)) & 1 == 0
+        ((x >> self.shift()) + (y >> self.shift())) & 1 == 0
     }
 
     /// The distance of its vertices' children, along both axes or along one of them; 0 where they have none.
     pub fn child_reach(self) -> usize {
         (if self.kind == VertexKind::Center { self.step } else { self.step / 2 }) as usize
+    }
+}
+
+/// Where the children of a vertex are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChildPlaces {
+    /// This far along both axes at once: those of an edge middle.
+    Aslant(usize),
+    /// This far along one axis: those of a center.
+    Along(usize),
+}
+
+/// Columns at equal distances, a power of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StridedColumns {
+    /// The first.
+    pub first: usize,
+    /// The binary logarithm of the distance.
+    pub shift: u32,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl StridedColumns {
+    /// Those from `first` on that are less than `end`.
+    pub fn until(first: usize, end: usize, shift: u32) -> Self {
+        Self { first, shift, count: (end + (1 << shift) - 1).saturating_sub(first) >> shift }
+    }
+
+    /// A column by its place among them.
+    #[inline]
+    pub fn at(self, index: usize) -> usize {
+        self.first + (index << self.shift)
+    }
+
+    /// All of them.
+    #[inline]
+    pub fn iter(self) -> impl ExactSizeIterator<Item = usize> {
+        (0..self.count).map(move |index| self.at(index))
     }
 }
 
@@ -86,8 +138,8 @@ pub struct PassRow {
     pub pass: LevelPass,
     /// The row.
     pub y: usize,
-    first: usize,
-    end: usize,
+    /// The columns of the vertices.
+    pub columns: StridedColumns,
 }
 
 /// A row of values, one a vertex, and the rows of its vertices' children.
@@ -101,12 +153,6 @@ pub struct ChildRows<'a> {
 }
 
 impl PassRow {
-    /// The columns of its vertices.
-    #[inline]
-    pub fn columns(self) -> impl Iterator<Item = usize> {
-        (self.first..self.end).step_by(2 * self.pass.step as usize)
-    }
-
     /// The rows of the children south and north, of the layout's `rows`: twice the same where the border leaves one out.
     #[inline]
     pub fn child_rows(self, rows: usize) -> [usize; 2] {
@@ -127,35 +173,20 @@ impl PassRow {
         ChildRows { south: row(south), north: row(north), here }
     }
 
-    /// Sets the value of each of its vertices again and adds the vertices whose value changed to `changed`. The value is
-    /// the larger of `own`, by column, and that of the children, by `below_edge` for edge middles and `below_center` for
-    /// centers.
+    /// Sets the value of each of its vertices again, by its place among them and its column, and adds the vertices whose
+    /// value changed to `changed`.
     #[inline]
     pub(in crate::roam) fn renew(
         self,
-        mut rows: ChildRows<'_>,
-        mut own: impl FnMut(usize) -> f32,
-        below_edge: impl Fn(&ChildRows<'_>, usize) -> f32,
-        below_center: impl Fn(&ChildRows<'_>, usize) -> f32,
+        rows: &mut ChildRows<'_>,
+        mut value: impl FnMut(&ChildRows<'_>, usize, usize) -> f32,
         changed: &mut Vec<Vertex>,
     ) {
-        let mut put = |rows: &mut ChildRows<'_>, x: usize, below: f32| {
-            let value = larger(own(x), below);
+        for index in 0..self.columns.count {
+            let x = self.columns.at(index);
+            let value = value(rows, index, x);
             if std::mem::replace(&mut rows.here[x], value) != value {
                 changed.push(Vertex::new(x as i32, self.y as i32));
-            }
-        };
-        if self.pass.child_reach() == 0 {
-            self.columns().for_each(|x| put(&mut rows, x, 0.0));
-        } else if self.pass.kind == VertexKind::Center {
-            for x in self.columns() {
-                let below = below_center(&rows, x);
-                put(&mut rows, x, below);
-            }
-        } else {
-            for x in self.columns() {
-                let below = below_edge(&rows, x);
-                put(&mut rows, x, below);
             }
         }
     }
@@ -289,7 +320,7 @@ mod tests {
     use super::*;
 
     fn within(pass: LevelPass, layout: &PatchLayout, rect: &VertexRect) -> impl Iterator<Item = Vertex> {
-        let vertices = |row: PassRow| row.columns().map(move |x| Vertex::new(x as i32, row.y as i32));
+        let vertices = |row: PassRow| row.columns.iter().map(move |x| Vertex::new(x as i32, row.y as i32));
         pass.rows_within(layout, rect).flat_map(vertices)
     }
 

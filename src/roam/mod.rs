@@ -5,7 +5,7 @@
 //!
 //! - `graph`, `bintree`, `quadtree`: arithmetic of vertices, triangles and quadtree nodes, without heights.
 //! - `layout`, `patched_ground`, `field`: patches over a lattice of any size, and the positions of their vertices.
-//! - `errors`, `roughness`, `spheres`: measures of each vertex, computed once; `block` is one patch of spheres.
+//! - `errors`, `roughness`, `spheres`, `sphere_nest`: measures of each vertex, computed once; `block` is one patch of spheres.
 //! - `active`: the bits; activating a vertex first activates its parents (the forced split).
 //! - `criterion`, `culling`: whether a vertex is wanted in a view, and which patches are in view.
 //! - `refine`: policies that set the bits; `closure`: the fewest bits that keep an error bound.
@@ -48,5 +48,6 @@ pub mod quadtree;
 pub mod refine;
 pub mod roughness;
 pub mod shown;
+mod sphere_nest;
 pub mod sphere_task;
 pub mod spheres;

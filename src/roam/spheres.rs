@@ -12,17 +12,14 @@ use rayon::prelude::*;
 use crate::roam::errors::ErrorMap;
 use crate::roam::errors::midpoint::midpoint_error_at;
 use crate::roam::errors::scan::larger;
-use crate::roam::field::{FieldRow, HeightField};
+use crate::roam::field::HeightField;
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{PassRow, SweepRows, both_sides, for_rows};
+use crate::roam::levels::{ChildPlaces, PassRow, StridedColumns, SweepRows, both_sides, for_rows};
 use crate::roam::patched_ground::PatchedGround;
 use crate::roam::roughness::Roughness;
+use crate::roam::sphere_nest::{MARGIN, SphereNest};
 use crate::view::camera::Camera;
-
-/// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never let a child's
-/// sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
-const MARGIN: f64 = 1e-6;
 
 /// The radius of every vertex's sphere, meters in world space about the displayed vertex.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,21 +171,18 @@ impl SphereMap {
         let columns = layout.columns();
         let mut step = 1;
         while step < layout.patch() as usize {
+            let (half, shift) = (step / 2, step.trailing_zeros() + 1);
             if step > 1 {
-                let half = step / 2;
-                for_rows(&mut radii, columns, half, SweepRows::Even, |y, row, beside| {
-                    let nest = SphereNest::new(&field, y, both_sides(y, half, layout.rows()));
+                for_rows(&mut radii, columns, half, SweepRows::Even, |y, row, [south, north]| {
+                    let sides = both_sides(y, half, layout.rows());
+                    let nest = SphereNest::new(&field, y, sides, ChildPlaces::Aslant(half));
                     let first = if (y / step).is_multiple_of(2) { step } else { 0 };
-                    for x in (first..columns).step_by(2 * step) {
-                        row[x] = larger(row[x], nest.about_edge(half, x, beside));
-                    }
+                    nest.grow(StridedColumns::until(first, columns, shift), row, [south, north]);
                 });
             }
-            for_rows(&mut radii, columns, step, SweepRows::Odd, |y, row, beside| {
-                let nest = SphereNest::new(&field, y, [y - step, y + step]);
-                for x in (step..columns).step_by(2 * step) {
-                    row[x] = larger(row[x], nest.about_center(step, x, row, beside));
-                }
+            for_rows(&mut radii, columns, step, SweepRows::Odd, |y, row, [south, north]| {
+                let nest = SphereNest::new(&field, y, [y - step, y + step], ChildPlaces::Along(step));
+                nest.grow(StridedColumns::until(step, columns, shift), row, [south, north]);
             });
             step *= 2;
         }
@@ -199,6 +193,12 @@ impl SphereMap {
     #[inline]
     pub fn at(&self, layout: &PatchLayout, vertex: Vertex) -> f32 {
         self.radii[layout.index(vertex)]
+    }
+
+    /// The radii of the row of vertices `y`.
+    #[inline]
+    pub(in crate::roam) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
+        &self.radii[y * layout.columns()..][..layout.columns()]
     }
 
     /// All radii, in the order of [`PatchLayout::index`].
@@ -223,108 +223,35 @@ impl SphereMap {
     }
 
     /// Sets the radii of a row of a pass again from the vertices' own radii and their children's spheres; adds the vertices
-    /// whose radius changed to `changed`.
+    /// whose radius changed to `changed`. `held` is scratch.
     pub(in crate::roam) fn renew_row(
         &mut self,
         ground: PatchedGround<'_>,
         field: &HeightField<'_>,
         row: PassRow,
         own: &OwnRadius<'_>,
+        held: &mut Vec<f32>,
         changed: &mut Vec<Vertex>,
     ) {
-        match *own {
-            OwnRadius::Plain { errors, reach } => {
-                let errors = errors.row(ground.layout, row.y);
-                self.renew_row_by(ground.layout, field, row, |x| plain_radius(errors[x], reach), changed);
+        let layout = ground.layout;
+        let mut rows = row.values(&mut self.radii, layout);
+        match row.pass.children() {
+            Some(places) => {
+                let nest = SphereNest::new(field, row.y, row.child_rows(layout.rows()), places);
+                nest.measure(row.columns, [rows.here, rows.south, rows.north], held);
             }
-            _ => {
-                let own = |x: usize| own.at(ground, Vertex::new(x as i32, row.y as i32));
-                self.renew_row_by(ground.layout, field, row, own, changed);
+            None => {
+                held.clear();
+                held.resize(row.columns.count, 0.0);
             }
         }
+        if let OwnRadius::Plain { errors, reach } = *own {
+            let errors = errors.row(layout, row.y);
+            let radius = |x: usize| plain_radius(errors[x], reach);
+            row.renew(&mut rows, |_, index, x| larger(radius(x), held[index]), changed);
+        } else {
+            let radius = |x: usize| own.at(ground, Vertex::new(x as i32, row.y as i32));
+            row.renew(&mut rows, |_, index, x| larger(radius(x), held[index]), changed);
+        }
     }
-
-    #[inline]
-    fn renew_row_by(
-        &mut self,
-        layout: &PatchLayout,
-        field: &HeightField<'_>,
-        row: PassRow,
-        own: impl Fn(usize) -> f32,
-        changed: &mut Vec<Vertex>,
-    ) {
-        let nest = SphereNest::new(field, row.y, row.child_rows(layout.rows()));
-        let reach = row.pass.child_reach();
-        row.renew(
-            row.values(&mut self.radii, layout),
-            own,
-            |rows, x| nest.about_edge(reach, x, [rows.south, rows.north]),
-            |rows, x| nest.about_center(reach, x, rows.here, [rows.south, rows.north]),
-            changed,
-        );
-    }
-}
-
-/// The positions of a row of vertices and of the rows of their children.
-struct SphereNest<'a> {
-    here: FieldRow<'a>,
-    beside: [FieldRow<'a>; 2],
-}
-
-impl<'a> SphereNest<'a> {
-    fn new(field: &HeightField<'a>, y: usize, beside: [usize; 2]) -> Self {
-        Self { here: field.row(y), beside: beside.map(|y| field.row(y)) }
-    }
-
-    /// The radius about the edge middle in column `x` that holds the spheres of the centers around it, whose radii are in
-    /// the rows `south` and `north`.
-    #[inline(always)]
-    fn about_edge(&self, reach: usize, x: usize, [south, north]: [&[f32]; 2]) -> f32 {
-        let [below, above] = &self.beside;
-        let [west, east] = both_sides(x, reach, south.len());
-        let (at, z) = (self.here.x(x), self.here.z(x));
-        let [aside, ahead] = [west, east].map(|x| at - self.here.x(x));
-        let [down, up] = [below, above].map(|row| self.here.y - row.y);
-        let squares = [
-            square(aside, down, z - below.z(west)),
-            square(ahead, down, z - below.z(east)),
-            square(aside, up, z - above.z(west)),
-            square(ahead, up, z - above.z(east)),
-        ];
-        holding(squares, [south[west], south[east], north[west], north[east]])
-    }
-
-    /// The radius about the center in column `x` that holds the spheres of the edge middles around it; `row` has the radii
-    /// of its own row.
-    #[inline(always)]
-    fn about_center(&self, reach: usize, x: usize, row: &[f32], [south, north]: [&[f32]; 2]) -> f32 {
-        let [below, above] = &self.beside;
-        let (west, east) = (x - reach, x + reach);
-        let (at, z) = (self.here.x(x), self.here.z(x));
-        let squares = [
-            square(at - self.here.x(west), 0.0, z - self.here.z(west)),
-            square(at - self.here.x(east), 0.0, z - self.here.z(east)),
-            square(0.0, self.here.y - below.y, z - below.z(x)),
-            square(0.0, self.here.y - above.y, z - above.z(x)),
-        ];
-        holding(squares, [row[west], row[east], south[x], north[x]])
-    }
-}
-
-#[inline]
-fn square(x: f64, y: f64, z: f64) -> f64 {
-    x * x + y * y + z * z
-}
-
-/// The radius that holds spheres at the given squared distances; those of radius 0 need no room. All four at once: square
-/// roots are computed in pairs.
-#[inline]
-fn holding(squares: [f64; 4], radii: [f32; 4]) -> f32 {
-    let distances = squares.map(f64::sqrt);
-    let mut held = 0f32;
-    for (distance, radius) in distances.into_iter().zip(radii) {
-        let needed = ((distance + f64::from(radius)) * (1.0 + MARGIN)) as f32;
-        held = larger(held, if radius == 0.0 { 0.0 } else { needed });
-    }
-    held
 }

@@ -136,7 +136,7 @@ proptest! {
         columns in 20u32..90, rows in 20u32..90,
         reach in 3f32..60.0,
         edits in proptest::collection::vec((0u32..90, 0u32..90, -60f32..60.0), 1..5),
-        stride in 0f32..40.0,
+        stride in prop_oneof![Just(0f32), 0f32..40.0],
     ) {
         let lattices = edited(columns, rows, &edits);
         let layout = PatchLayout::new(columns, rows, 16).expect("sound");
@@ -193,7 +193,7 @@ proptest! {
         columns in 20u32..90, rows in 20u32..90,
         holes in proptest::collection::vec(0usize..400, 0..4),
         bumps in proptest::collection::vec((0u32..90, 0u32..90, 1u32..20, -40f32..40.0), 1..6),
-        stride in 0f32..40.0,
+        stride in prop_oneof![Just(0f32), 0f32..40.0],
     ) {
         let options =
             DynamicOptions { patch: 16, measure: ErrorMeasure::Midpoint, radius: Radius::Plain, reach: 40.0 };

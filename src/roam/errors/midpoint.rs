@@ -76,11 +76,10 @@ fn off(from: f32, to: f32, at: f32) -> f32 {
 /// [`off`]; infinite where some of the three are NaN, 0 where all are.
 #[inline]
 pub(in crate::roam) fn torn_off(from: f32, to: f32, at: f32) -> f32 {
-    let none = from.is_nan() && to.is_nan() && at.is_nan();
     let off = off(from, to, at);
     if !off.is_nan() {
         off
-    } else if none {
+    } else if from.is_nan() && to.is_nan() && at.is_nan() {
         0.0
     } else {
         f32::INFINITY

@@ -23,7 +23,7 @@ use crate::roam::errors::scan::larger;
 use crate::roam::errors::sweep::{KnownErrors, SweepSource};
 use crate::roam::graph::Vertex;
 use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{PassRow, both_sides};
+use crate::roam::levels::{ChildPlaces, ChildRows, PassRow, both_sides};
 
 /// The object-space error of every vertex, in meters.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,24 +67,29 @@ impl ErrorMap {
         &mut self,
         layout: &PatchLayout,
         row: PassRow,
-        own: impl FnMut(usize) -> f32,
+        mut own: impl FnMut(usize) -> f32,
         changed: &mut Vec<Vertex>,
     ) {
-        let (reach, columns) = (row.pass.child_reach(), layout.columns());
-        row.renew(
-            row.values(&mut self.errors, layout),
-            own,
-            |rows, x| {
-                let [west, east] = both_sides(x, reach, columns);
-                let [south, north] = [rows.south, rows.north].map(|row| larger(row[west], row[east]));
-                larger(south, north)
-            },
-            |rows, x| {
-                let beside = larger(rows.here[x - reach], rows.here[x + reach]);
-                larger(beside, larger(rows.south[x], rows.north[x]))
-            },
-            changed,
-        );
+        let columns = layout.columns();
+        let mut rows = row.values(&mut self.errors, layout);
+        match row.pass.children() {
+            None => row.renew(&mut rows, |_, _, x| own(x), changed),
+            Some(ChildPlaces::Aslant(reach)) => {
+                let below = |rows: &ChildRows<'_>, x: usize| {
+                    let [west, east] = both_sides(x, reach, columns);
+                    let [south, north] = [rows.south, rows.north].map(|row| larger(row[west], row[east]));
+                    larger(south, north)
+                };
+                row.renew(&mut rows, |rows, _, x| larger(own(x), below(rows, x)), changed);
+            }
+            Some(ChildPlaces::Along(reach)) => {
+                let below = |rows: &ChildRows<'_>, x: usize| {
+                    let beside = larger(rows.here[x - reach], rows.here[x + reach]);
+                    larger(beside, larger(rows.south[x], rows.north[x]))
+                };
+                row.renew(&mut rows, |rows, _, x| larger(own(x), below(rows, x)), changed);
+            }
+        }
     }
 
     /// Checks that no vertex has a smaller error than one of its children.

@@ -2,8 +2,10 @@
 
 use crate::roam::block::BlockError;
 use crate::roam::dynamic::{DynamicTerrain, Edit};
+use crate::roam::field::HeightField;
 use crate::roam::graph::Vertex;
 use crate::roam::refine::deferred::Deferred;
+use crate::roam::refine::deferred::patch::RenewedVertex;
 
 impl Deferred<DynamicTerrain> {
     /// Takes over an edit of the source. The next update applies it; [`Deferred::edit`] with the edit's patches does the same
@@ -15,17 +17,13 @@ impl Deferred<DynamicTerrain> {
         self.settled = false;
         let mut reset = Vec::new();
         let layout = self.layout;
-        let are_beside = |a: &Vertex, b: &Vertex| layout.patches_at(*a) == layout.patches_at(*b);
-        for run in edit.vertices[..edit.placed].chunk_by(are_beside) {
-            let [(west, south), (east, north)] = layout.patches_at(run[0]);
-            for corner in layout.patches_within((west, south), (east, north)) {
+        for (span, run) in layout.runs(&edit.vertices[..edit.placed]) {
+            for corner in layout.patches_within(span.first, span.last) {
                 self.renew(corner, run, &mut reset);
             }
         }
         for &corner in &edit.patches {
-            let patch = &mut self.patches[self.layout.patch_index(corner)];
-            patch.due = 0;
-            if let Some(mesh) = patch.mesh {
+            if let Some(mesh) = self.edited_mesh(corner) {
                 self.miss_renewed(mesh);
             }
         }
@@ -37,14 +35,21 @@ impl Deferred<DynamicTerrain> {
     fn renew(&mut self, corner: Vertex, vertices: &[Vertex], reset: &mut Vec<Vertex>) {
         let Some(mesh) = self.patches[self.layout.patch_index(corner)].mesh else { return };
         let (ground, side) = (self.source.ground(), self.layout.patch());
-        let (layout, heights, radii) = (ground.layout, ground.lattice, self.source.spheres().values());
+        let (field, radii) = (HeightField::new(ground), self.source.spheres());
         let mesh = &mut self.meshes[mesh as usize];
         let numbers = self.topologies[mesh.parity].numbers();
-        for &vertex in vertices {
-            let at = (vertex.y - corner.y) * (side + 1) + vertex.x - corner.x;
-            let now = [heights.height(layout.post(vertex)), radii[layout.index(vertex)]];
-            if !mesh.renew(numbers[at as usize], now) {
-                reset.push(corner);
+        let mut mesh = mesh.vertices();
+        for row in vertices.chunk_by(|a, b| a.y == b.y) {
+            let y = row[0].y;
+            let (heights, radii) = (field.row(y as usize), radii.row(ground.layout, y as usize));
+            let first = ((y - corner.y) * (side + 1)) as usize;
+            for vertex in row {
+                let (x, at) = (vertex.x as usize, first + (vertex.x - corner.x) as usize);
+                let vertex =
+                    RenewedVertex { number: numbers[at], at, z: heights.height(x), radius: radii[x] };
+                if !mesh.renew(vertex) {
+                    return reset.push(corner);
+                }
             }
         }
     }

@@ -46,6 +46,9 @@ pub const LARGEST_PATCH: i32 = 128;
 /// Bits of the vertex in an entry of the wheel; the others are the mesh.
 const VERTEX_BITS: u32 = 15;
 
+/// The tick in which edited patches without a mesh may need one: at once.
+const EDITED: u64 = 0;
+
 /// One patch of the walk.
 #[derive(Clone, Copy, Debug, Default)]
 struct WalkedPatch {
@@ -53,6 +56,24 @@ struct WalkedPatch {
     mesh: Option<u32>,
     /// The first tick in which it may need a mesh.
     due: u64,
+    /// The listing in which it was last without a mesh.
+    bare: u64,
+}
+
+/// The list of patches that updates have been about. While it stays the same, an update goes through it only where a patch
+/// without a mesh may need one.
+#[derive(Clone, Debug, Default)]
+struct Listing {
+    /// Counts the times that the list was gone through.
+    number: u64,
+    /// The eye of the last time.
+    eye: Vec3,
+    /// Whether all of it was, so that no listed mesh has vertices to examine but the edited ones.
+    is_whole: bool,
+    /// The first tick in which a listed patch without a mesh may need one; [`EDITED`] where one was edited.
+    due: u64,
+    /// Meshes that an edit gave vertices to examine.
+    edited: Vec<u32>,
 }
 
 /// Scratch lists of an update, kept for their memory.
@@ -72,7 +93,7 @@ pub struct Deferred<S> {
     topologies: [Topology; 2],
     patches: Vec<WalkedPatch>,
     meshes: Vec<PatchMesh>,
-    /// The update in which each mesh was last listed.
+    /// The listing in which each mesh was last.
     seen: Vec<u64>,
     /// Whether each mesh has vertices to examine when it is listed.
     behind: Vec<bool>,
@@ -80,6 +101,7 @@ pub struct Deferred<S> {
     spare: Vec<u32>,
     wheel: Wheel,
     visible: Vec<Vertex>,
+    listing: Listing,
     station: EyeStation,
     /// Whether the listed patches are up to date with the eye.
     settled: bool,
@@ -110,6 +132,7 @@ impl<S: BlockSource> Deferred<S> {
             spare: Vec::new(),
             wheel: Wheel::new(0),
             visible: Vec::new(),
+            listing: Listing::default(),
             station: EyeStation { eye: Vec3::NAN, traveled: 0.0, ticks_per_m: TICKS_PER_POST / cell_m },
             settled: false,
             frame: 0,
@@ -137,9 +160,7 @@ impl<S: BlockSource> Deferred<S> {
         self.scratch.behind.clear();
         self.travel_to(eye);
         self.frame += 1;
-        self.visible.clear();
-        self.visible.extend_from_slice(visible);
-        self.list_patches()?;
+        self.list_patches(visible)?;
         self.examine_due();
         self.catch_up();
         self.changes.splits = self.counts.splits;
@@ -240,14 +261,22 @@ impl<S: BlockSource> Deferred<S> {
     pub fn edit(&mut self, dirty: &[Vertex]) -> Result<(), BlockError> {
         self.settled = false;
         for &corner in dirty {
-            let index = self.layout.patch_index(corner);
-            self.patches[index].due = 0;
-            if let Some(mesh) = self.patches[index].mesh {
+            if let Some(mesh) = self.edited_mesh(corner) {
                 let block = self.source.block(corner)?;
                 self.edit_mesh(mesh, &block);
             }
         }
         Ok(())
+    }
+
+    /// The mesh of an edited patch; one without a mesh may need it at once.
+    fn edited_mesh(&mut self, corner: Vertex) -> Option<u32> {
+        let patch = &mut self.patches[self.layout.patch_index(corner)];
+        patch.due = EDITED;
+        if patch.mesh.is_none() && patch.bare == self.listing.number {
+            self.listing.due = EDITED;
+        }
+        patch.mesh
     }
 
     fn edit_mesh(&mut self, mesh: u32, block: &Arc<PatchBlock>) {
@@ -258,7 +287,14 @@ impl<S: BlockSource> Deferred<S> {
         } else {
             self.wheel.retain(|entry| entry >> VERTEX_BITS != mesh);
             self.meshes[slot].reset(topology, block, entries);
-            self.behind[slot] = true;
+            self.fall_behind(mesh);
+        }
+    }
+
+    /// Notes that an edit gave a mesh vertices to examine.
+    fn fall_behind(&mut self, mesh: u32) {
+        if !std::mem::replace(&mut self.behind[mesh as usize], true) {
+            self.listing.edited.push(mesh);
         }
     }
 
@@ -267,7 +303,8 @@ impl<S: BlockSource> Deferred<S> {
         let (entries, slot) = (mesh << VERTEX_BITS, mesh as usize);
         let patch = &mut self.meshes[slot];
         let topology = &self.topologies[patch.parity];
-        let renewed = patch.take_renewed(topology);
+        let renewed = patch.take_renewed();
+        let mut is_behind = false;
         for &vertex in renewed.iter().filter(|&&vertex| !Topology::is_corner(vertex)) {
             let waits = patch.is_waiting(vertex);
             if !waits && !patch.may_change(vertex) {
@@ -285,9 +322,12 @@ impl<S: BlockSource> Deferred<S> {
                 self.wheel.remove(entries + u32::from(vertex), patch.list(vertex));
             }
             patch.miss(vertex);
-            self.behind[slot] = true;
+            is_behind = true;
         }
         patch.keep(renewed);
+        if is_behind {
+            self.fall_behind(mesh);
+        }
     }
 
     /// The vertices of the patch with south-west corner `corner`; `None` while it has no mesh.
@@ -316,6 +356,7 @@ impl<S: BlockSource> Deferred<S> {
         swap(&mut self.spare, &mut other.spare);
         swap(&mut self.wheel, &mut other.wheel);
         swap(&mut self.visible, &mut other.visible);
+        swap(&mut self.listing, &mut other.listing);
         swap(&mut self.station, &mut other.station);
         swap(&mut self.settled, &mut other.settled);
         swap(&mut self.frame, &mut other.frame);
@@ -334,7 +375,7 @@ impl<S: BlockSource> Deferred<S> {
         let mut held: Vec<(u64, usize, u32)> = (self.patches.iter().enumerate())
             .filter_map(|(index, patch)| Some((index, patch.mesh?)))
             .map(|(index, mesh)| (self.seen[mesh as usize], index, mesh))
-            .filter(|&(seen, ..)| seen < self.frame)
+            .filter(|&(seen, ..)| seen < self.listing.number)
             .collect();
         held.sort_unstable();
         held.truncate(self.meshes().saturating_sub(most));
@@ -377,23 +418,47 @@ impl<S: BlockSource> Deferred<S> {
         self.patches[self.layout.patch_index(corner)].mesh.map(|mesh| &self.meshes[mesh as usize])
     }
 
-    /// Marks the meshes of the listed patches as seen, and gives one to those that need it now.
-    fn list_patches(&mut self) -> Result<(), BlockError> {
+    /// Gives a mesh to the listed patches that need it now, and collects the listed meshes that have vertices to examine.
+    fn list_patches(&mut self, visible: &[Vertex]) -> Result<(), BlockError> {
+        let Listing { eye, is_whole, due, .. } = self.listing;
+        let is_any_due = due == EDITED || (due <= self.station.tick() && eye != self.station.eye);
+        if is_whole && !is_any_due && visible == self.visible {
+            let (seen, number) = (&self.seen, self.listing.number);
+            let listed = self.listing.edited.drain(..).filter(|&mesh| seen[mesh as usize] == number);
+            self.scratch.behind.extend(listed);
+            return Ok(());
+        }
+        self.visible.clear();
+        self.visible.extend_from_slice(visible);
+        self.listing.edited.clear();
+        self.listing = Listing {
+            number: self.listing.number + 1,
+            eye: self.station.eye,
+            is_whole: false,
+            due: u64::MAX,
+            edited: std::mem::take(&mut self.listing.edited),
+        };
         for at in 0..self.visible.len() {
             let corner = self.visible[at];
             let index = self.layout.patch_index(corner);
-            let shown = self.patches[index];
-            match shown.mesh {
-                Some(mesh) => {
-                    self.seen[mesh as usize] = self.frame;
-                    if self.behind[mesh as usize] {
-                        self.scratch.behind.push(mesh);
-                    }
+            let shown = &mut self.patches[index];
+            if let Some(mesh) = shown.mesh {
+                self.seen[mesh as usize] = self.listing.number;
+                if self.behind[mesh as usize] {
+                    self.scratch.behind.push(mesh);
                 }
-                None if shown.due > self.station.tick() => {}
-                None => self.add_mesh_if_needed(corner, index)?,
+                continue;
+            }
+            shown.bare = self.listing.number;
+            if shown.due <= self.station.tick() {
+                self.add_mesh_if_needed(corner, index)?;
+            }
+            let shown = self.patches[index];
+            if shown.mesh.is_none() {
+                self.listing.due = self.listing.due.min(shown.due);
             }
         }
+        self.listing.is_whole = true;
         Ok(())
     }
 
@@ -416,7 +481,7 @@ impl<S: BlockSource> Deferred<S> {
         patch.patch = index;
         patch.reset(&self.topologies[patch.parity], &block, mesh << VERTEX_BITS);
         self.patches[index].mesh = Some(mesh);
-        self.seen[mesh as usize] = self.frame;
+        self.seen[mesh as usize] = self.listing.number;
         self.behind[mesh as usize] = true;
         self.scratch.behind.push(mesh);
         Ok(())
@@ -437,7 +502,7 @@ impl<S: BlockSource> Deferred<S> {
         }));
         for (&entry, &inside) in due.iter().zip(&inside_m) {
             let mesh = (entry >> VERTEX_BITS) as usize;
-            if self.seen[mesh] == self.frame {
+            if self.seen[mesh] == self.listing.number {
                 self.with_patch(mesh, |patch, with| patch.decide(with, vertex_of(entry), inside));
             } else {
                 self.meshes[mesh].miss(vertex_of(entry));

@@ -114,6 +114,54 @@ pub struct PatchMesh {
     renewed: Vec<u16>,
 }
 
+/// A vertex after an edit.
+#[derive(Clone, Copy, Debug)]
+pub struct RenewedVertex {
+    /// Its number in the patch.
+    pub number: u16,
+    /// Its place in the patch's block.
+    pub at: usize,
+    /// Its height, meters; NaN without data.
+    pub z: f32,
+    /// The radius of its sphere, meters.
+    pub radius: f32,
+}
+
+impl RenewedVertex {
+    /// Writes its sphere into its cell and lists it where the sphere is new; false where it gained or lost data.
+    #[inline]
+    fn renew(self, cells: &mut [VertexCell], flags: &[u8], renewed: &mut Vec<u16>) -> bool {
+        if self.z.is_nan() != (flags[self.number as usize] & HOLE != 0) {
+            return false;
+        }
+        let z = if self.z.is_nan() { 0.0 } else { self.z };
+        let cell = &mut cells[self.number as usize];
+        if cell.z.to_bits() != z.to_bits() || cell.radius.to_bits() != self.radius.to_bits() {
+            (cell.z, cell.radius) = (z, self.radius);
+            renewed.push(self.number);
+        }
+        true
+    }
+}
+
+/// The vertices of a mesh and of its block.
+pub struct MeshVertices<'a> {
+    block: &'a mut PatchBlock,
+    cells: &'a mut [VertexCell],
+    flags: &'a [u8],
+    renewed: &'a mut Vec<u16>,
+}
+
+impl MeshVertices<'_> {
+    /// Gives a vertex its height and its radius after an edit; false where it gained or lost data, so that the patch must be
+    /// reset.
+    #[inline]
+    pub fn renew(&mut self, vertex: RenewedVertex) -> bool {
+        (self.block.z[vertex.at], self.block.radii[vertex.at]) = (vertex.z, vertex.radius);
+        vertex.renew(self.cells, self.flags, self.renewed)
+    }
+}
+
 /// The context of a decision.
 pub struct Decider<'a> {
     /// The vertices of the patch.
@@ -213,44 +261,30 @@ impl PatchMesh {
             if same_bits(&old.z[row.clone()], z) && same_bits(&old.radii[row.clone()], radii) {
                 continue;
             }
-            if !row.into_iter().all(|at| self.renew(topology.numbers()[at], [block.z[at], block.radii[at]])) {
+            let numbers = topology.numbers();
+            let in_block = |at: usize| RenewedVertex {
+                number: numbers[at],
+                at,
+                z: block.z[at],
+                radius: block.radii[at],
+            };
+            let Self { cells, flags, renewed, .. } = self;
+            if !row.map(in_block).all(|vertex| vertex.renew(cells, flags, renewed)) {
                 return false;
             }
         }
         true
     }
 
-    /// Gives a vertex its height and its radius after an edit, meters; false where data was added or removed, so that the
-    /// patch must be reset.
-    #[inline]
-    pub fn renew(&mut self, vertex: u16, [z, radius]: [f32; 2]) -> bool {
-        if z.is_nan() != (self.flags[vertex as usize] & HOLE != 0) {
-            return false;
-        }
-        let z = if z.is_nan() { 0.0 } else { z };
-        let cell = &mut self.cells[vertex as usize];
-        if cell.z.to_bits() != z.to_bits() || cell.radius.to_bits() != radius.to_bits() {
-            (cell.z, cell.radius) = (z, radius);
-            self.renewed.push(vertex);
-        }
-        true
+    /// The vertices, in the block too, for an edit.
+    pub fn vertices(&mut self) -> MeshVertices<'_> {
+        let block = Arc::make_mut(&mut self.block);
+        MeshVertices { block, cells: &mut self.cells, flags: &self.flags, renewed: &mut self.renewed }
     }
 
-    /// The vertices that were renewed since this was called last, in the block too; the list is to be given back with
-    /// [`PatchMesh::keep`].
-    pub fn take_renewed(&mut self, topology: &Topology) -> Vec<u16> {
-        let renewed = std::mem::take(&mut self.renewed);
-        if !renewed.is_empty() {
-            let block = Arc::make_mut(&mut self.block);
-            for &vertex in &renewed {
-                let (cell, at) = (self.cells[vertex as usize], topology.row_major(vertex));
-                if self.flags[vertex as usize] & HOLE == 0 {
-                    block.z[at] = cell.z;
-                }
-                block.radii[at] = cell.radius;
-            }
-        }
-        renewed
+    /// The vertices that were renewed since this was called last; the list is to be given back with [`PatchMesh::keep`].
+    pub fn take_renewed(&mut self) -> Vec<u16> {
+        std::mem::take(&mut self.renewed)
     }
 
     /// Takes back the memory of a list.
