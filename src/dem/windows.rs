@@ -125,6 +125,16 @@ impl RasterWindow {
     }
 }
 
+/// A raster of bytes.
+pub trait ByteRows: Sync {
+    /// Fills `out` with the samples of `row` from `column` on; the metadata's `nodata`, a byte that no sample has, without
+    /// data.
+    ///
+    /// # Panics
+    /// Where they reach beyond the raster.
+    fn fill(&self, column: u32, row: u32, out: &mut [u8]);
+}
+
 /// A raster that is read in rectangles.
 pub trait Windows {
     /// The raster's size, place and coordinate system. Its `samples` have the precision of those in windows, and mean
@@ -167,10 +177,10 @@ pub trait Windows {
         None
     }
 
-    /// Whether all samples are bytes other than the value for no data, or NaN: a file of them need not be read to know how to
-    /// store it.
-    fn are_bytes(&self) -> bool {
-        false
+    /// The samples as bytes, where they are some: a file of them is written as it is, and need not be read before to know how
+    /// to store it.
+    fn bytes(&self) -> Option<&dyn ByteRows> {
+        None
     }
 
     /// Announces windows that are read next, so that they can be read together: on all threads, what they share once.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::dem::error::DemErrorKind;
 use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::dem::windows::{ByteRows, RasterWindow, Windows};
 use crate::geom::crs::Crs;
 use crate::terrain::hillshade::{self, HillshadeOptions, hillshade};
 use crate::terrain::lattice::{Lattice, Post};
@@ -13,13 +13,13 @@ use crate::terrain::lattice::{Lattice, Post};
 pub struct PostBytes<F> {
     /// What they are: the raster's driver.
     pub name: &'static str,
-    /// Fills in the bytes of the posts from one on, by its index row by row from the south-west; NaN for no data.
+    /// Fills in the bytes of the posts from one on, by its index row by row from the south-west.
     pub fill: F,
-    /// The byte for no data in a file.
-    pub nodata: f64,
+    /// The byte for no data.
+    pub nodata: u8,
 }
 
-impl<F: Fn(usize, &mut [f32]) + Sync> PostBytes<F> {
+impl<F: Fn(usize, &mut [u8]) + Sync> PostBytes<F> {
     /// The raster of the bytes, north up, its samples at the posts.
     pub fn raster(self, lattice: &Lattice, crs: &Crs) -> Raster {
         let windows = self.windows(lattice, crs);
@@ -35,10 +35,11 @@ impl<F: Fn(usize, &mut [f32]) + Sync> PostBytes<F> {
             driver: self.name,
             data_type: "Byte",
             crs: (*crs != Crs::local()).then(|| crs.clone()),
-            nodata: Some(self.nodata),
+            nodata: Some(f64::from(self.nodata)),
             ..Raster::without_place(columns, rows)
         };
-        PostWindows { header: header.placed(north_up_nodes(north_west, lattice.cell())), fill: self.fill }
+        let header = header.placed(north_up_nodes(north_west, lattice.cell()));
+        PostWindows { header, fill: self.fill, nodata: self.nodata }
     }
 }
 
@@ -46,21 +47,32 @@ impl<F: Fn(usize, &mut [f32]) + Sync> PostBytes<F> {
 pub struct PostWindows<F> {
     header: Raster,
     fill: F,
+    nodata: u8,
 }
 
-impl<F: Fn(usize, &mut [f32]) + Sync> PostWindows<F> {
+impl<F: Fn(usize, &mut [u8]) + Sync> PostWindows<F> {
     fn values(&self, window: RasterWindow) -> Vec<f32> {
-        let (columns, width) = (self.header.width as usize, window.width as usize);
-        let first = (self.header.height - 1 - window.row) as usize * columns + window.column as usize;
+        let width = window.width as usize;
+        let value = |byte: u8| if byte == self.nodata { f32::NAN } else { f32::from(byte) };
         let mut values = vec![0.0; window.samples()];
         values.par_chunks_mut(width).enumerate().for_each(|(down, values)| {
-            (self.fill)(first - down * columns, values);
+            let mut bytes = vec![0; width];
+            self.fill(window.column, window.row + down as u32, &mut bytes);
+            values.iter_mut().zip(bytes).for_each(|(place, byte)| *place = value(byte));
         });
         values
     }
 }
 
-impl<F: Fn(usize, &mut [f32]) + Sync> Windows for PostWindows<F> {
+impl<F: Fn(usize, &mut [u8]) + Sync> ByteRows for PostWindows<F> {
+    fn fill(&self, column: u32, row: u32, out: &mut [u8]) {
+        // Rows of the raster run from the north, those of posts from the south.
+        let row = (self.header.height - 1 - row) as usize;
+        (self.fill)(row * self.header.width as usize + column as usize, out);
+    }
+}
+
+impl<F: Fn(usize, &mut [u8]) + Sync> Windows for PostWindows<F> {
     fn metadata(&self) -> &Raster {
         &self.header
     }
@@ -70,19 +82,16 @@ impl<F: Fn(usize, &mut [f32]) + Sync> Windows for PostWindows<F> {
         Ok(Samples::F32(self.values(window)))
     }
 
-    fn are_bytes(&self) -> bool {
-        true
+    fn bytes(&self) -> Option<&dyn ByteRows> {
+        Some(self)
     }
 }
 
 /// The gray of every post: 1 facing away from the sun, 255 facing it.
 pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs) -> Raster {
     let grays = hillshade(lattice, options);
-    let value = |gray: u8| if gray == hillshade::NO_DATA { f32::NAN } else { f32::from(gray) };
-    let fill = |first: usize, values: &mut [f32]| {
-        values.iter_mut().zip(&grays[first..]).for_each(|(place, &gray)| *place = value(gray));
-    };
-    PostBytes { name: "hillshade", fill, nodata: f64::from(hillshade::NO_DATA) }.raster(lattice, crs)
+    let fill = |first: usize, bytes: &mut [u8]| bytes.copy_from_slice(&grays[first..][..bytes.len()]);
+    PostBytes { name: "hillshade", fill, nodata: hillshade::NO_DATA }.raster(lattice, crs)
 }
 
 #[cfg(test)]
@@ -100,14 +109,14 @@ mod tests {
         let heights = vec![0.0; (columns * rows) as usize];
         let lattice = Lattice::new(DVec2::ZERO, DVec2::splat(10.0), columns, heights).expect("a lattice");
         let value = |index: usize| match index % columns as usize {
-            column if column < 280 && index < 80_000 => 0.0,
-            column if column % 7 == 3 => f32::NAN,
-            column => (column % 255) as f32,
+            column if column < 280 && index < 80_000 => 0,
+            column if column % 7 == 3 => 255,
+            column => (column % 255) as u8,
         };
-        let fill = |first: usize, values: &mut [f32]| {
-            (first..).zip(values).for_each(|(index, place)| *place = value(index));
+        let fill = |first: usize, bytes: &mut [u8]| {
+            (first..).zip(bytes).for_each(|(index, place)| *place = value(index));
         };
-        let bytes = || PostBytes { name: "test", fill, nodata: 255.0 };
+        let bytes = || PostBytes { name: "test", fill, nodata: 255 };
         let format = DemFormat::to_write("tif").expect("a GeoTIFF");
         let wanted = write(&bytes().raster(&lattice, &Crs::local()), format, "").expect("any raster");
         let mut out = Cursor::new(Vec::new());
@@ -115,7 +124,7 @@ mod tests {
         let written = writer(&mut bytes().windows(&lattice, &Crs::local()), &mut out).expect("memory");
         assert!(out.into_inner() == wanted.bytes);
         assert_eq!(written.stored, "byte");
-        let holes = (0..(columns * rows) as usize).filter(|&index| value(index).is_nan()).count();
+        let holes = (0..(columns * rows) as usize).filter(|&index| value(index) == 255).count();
         assert_eq!(written.valid, u64::from(columns * rows) - holes as u64);
     }
 }

@@ -8,7 +8,7 @@ use crate::terrain::lattice::Lattice;
 use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedCounts};
 
 /// The value of posts that were not looked at or have no data.
-const NO_DATA: f64 = 255.0;
+const NO_DATA: u8 = 255;
 
 /// How much is in sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,14 +46,14 @@ pub fn windows(lattice: &Lattice, viewshed: &Viewshed, crs: &Crs) -> impl Window
     bytes(viewshed).windows(lattice, crs)
 }
 
-fn bytes(viewshed: &Viewshed) -> PostBytes<impl Fn(usize, &mut [f32]) + Send + Sync> {
+fn bytes(viewshed: &Viewshed) -> PostBytes<impl Fn(usize, &mut [u8]) + Send + Sync> {
     let value = |post: PostVisibility| match post {
-        PostVisibility::Visible => 1.0,
-        PostVisibility::Hidden => 0.0,
-        PostVisibility::Beyond | PostVisibility::NoData => f32::NAN,
+        PostVisibility::Visible => 1,
+        PostVisibility::Hidden => 0,
+        PostVisibility::Beyond | PostVisibility::NoData => NO_DATA,
     };
-    let fill = move |first: usize, values: &mut [f32]| {
-        values.iter_mut().zip(&viewshed.posts[first..]).for_each(|(place, &post)| *place = value(post));
+    let fill = move |first: usize, bytes: &mut [u8]| {
+        bytes.iter_mut().zip(&viewshed.posts[first..]).for_each(|(place, &post)| *place = value(post));
     };
     PostBytes { name: "viewshed", fill, nodata: NO_DATA }
 }

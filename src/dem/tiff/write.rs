@@ -25,7 +25,7 @@ use crate::dem::stored::{SampleSurvey, StoredSamples};
 use crate::dem::tiff::gdal_metadata::GDAL_METADATA;
 use crate::dem::tiff::write_geokeys::GeoKeyTags;
 use crate::dem::units::name_of_length;
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::dem::windows::{ByteRows, RasterWindow, Windows};
 use crate::dem::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 
 /// Samples along a side of a tile, as GDAL writes them.
@@ -65,20 +65,19 @@ pub(crate) fn write_windows(
     out: &mut dyn WrittenContent,
 ) -> Result<WrittenWindows, WriteWindowsError> {
     let own = source.metadata().without_samples();
+    if let Some(bytes) = source.bytes() {
+        return write_bytes(&own, bytes, out);
+    }
     let is_named = name_of_length(own.meters_per_z).is_some();
     let written = |raster: Raster| if is_named { raster } else { raster.into_meters() };
     let part = |samples: Samples, height: u32| written(Raster { samples, height, ..own.without_samples() });
     let header = written(own.without_samples());
     let all = RasterWindow::all(source.size());
-    let stored = if source.are_bytes() {
-        StoredSamples { sample: SampleType::U8, nodata: header.nodata }
-    } else {
-        let mut survey = SampleSurvey::new(&header);
-        read_ahead(source, all.bands(SURVEYED_SAMPLES), Windows::samples, |window, samples| {
-            survey.add(&part(samples, window.height).samples);
-        })?;
-        survey.stored()
-    };
+    let mut survey = SampleSurvey::new(&header);
+    read_ahead(source, all.bands(SURVEYED_SAMPLES), Windows::samples, |window, samples| {
+        survey.add(&part(samples, window.height).samples);
+    })?;
+    let stored = survey.stored();
     let across = header.width.div_ceil(TILE);
     // The lengths of the tiles are not known yet, but how many there are: the head is as long.
     let mut lengths = vec![0; (across * header.height.div_ceil(TILE)) as usize];
@@ -106,6 +105,39 @@ pub(crate) fn write_windows(
     })
 }
 
+/// [`write_windows`] of bytes, which takes them as they are. Holds a quarter of a hundred packed tiles.
+fn write_bytes(
+    header: &Raster,
+    bytes: &dyn ByteRows,
+    out: &mut dyn WrittenContent,
+) -> Result<WrittenWindows, WriteWindowsError> {
+    /// Tiles that threads pack before they are written.
+    const TOGETHER: usize = 128;
+    let stored = StoredSamples { sample: SampleType::U8, nodata: header.nodata };
+    let across = header.width.div_ceil(TILE);
+    let mut lengths = vec![0; (across * header.height.div_ceil(TILE)) as usize];
+    out.write_all(&head(tags(header, stored), &lengths))?;
+    let mut valid = 0;
+    let tile = |index: usize| {
+        let [column, row] = [index as u32 % across * TILE, index as u32 / across * TILE];
+        let tile = ByteTile::new((header.width, header.height), (column, row), |row, out| {
+            bytes.fill(column, row, out);
+        });
+        (tile.valid(stored.nodata), tile.packed())
+    };
+    for (first, lengths) in (0..).step_by(TOGETHER).zip(lengths.chunks_mut(TOGETHER)) {
+        let tiles: Vec<(u64, Vec<u8>)> = (first..first + lengths.len()).into_par_iter().map(tile).collect();
+        for (length, (count, packed)) in lengths.iter_mut().zip(tiles) {
+            *length = packed.len() as u32;
+            valid += count;
+            out.write_all(&packed)?;
+        }
+    }
+    out.rewind()?;
+    out.write_all(&head(tags(header, stored), &lengths))?;
+    Ok(WrittenWindows { stored: stored.sample.gdal_name().to_ascii_lowercase(), valid, notes: Vec::new() })
+}
+
 /// How many samples have data.
 fn valid_samples(samples: &Samples) -> u64 {
     /// Samples that a thread counts together.
@@ -130,7 +162,9 @@ const BYTES_LEVEL: Compression = Compression::new(4);
 /// One packed tile; beyond the raster its last samples are repeated, which packs to almost nothing.
 fn tile(raster: &Raster, stored: StoredSamples, column: u32, row: u32) -> Vec<u8> {
     if stored.sample == SampleType::U8 {
-        return byte_tile(raster, stored.nodata.unwrap_or(0.0) as u8, column, row);
+        let nodata = stored.nodata.unwrap_or(0.0) as u8;
+        let fill = |row: u32, out: &mut [u8]| byte_row(raster, nodata, (column, row), out);
+        return ByteTile::new((raster.width, raster.height), (column, row), fill).packed();
     }
     let StoredSamples { sample, nodata } = stored;
     let nodata = nodata.unwrap_or(f64::NAN);
@@ -148,39 +182,68 @@ fn tile(raster: &Raster, stored: StoredSamples, column: u32, row: u32) -> Vec<u8
     packed(&predicted, Compression::default())
 }
 
-/// [`tile`] of bytes, of which many are all zeros: nothing is in sight behind a ridge.
-fn byte_tile(raster: &Raster, nodata: u8, column: u32, row: u32) -> Vec<u8> {
-    /// A tile of zeros, packed.
-    static ZEROS: LazyLock<Vec<u8>> = LazyLock::new(|| packed(&[0; (TILE * TILE) as usize], BYTES_LEVEL));
-    let mut predicted = vec![0; (TILE * TILE) as usize];
-    let mut line = [0; TILE as usize];
-    let mut bits = 0;
-    for (y, out) in (row..).zip(predicted.chunks_exact_mut(TILE as usize)) {
-        byte_row(raster, nodata, (column, y.min(raster.height - 1)), &mut line);
-        bits |= line.iter().fold(0, |bits, byte| bits | byte);
-        out[0] = line[0];
-        let pairs = line[1..].iter().zip(&line);
-        out[1..].iter_mut().zip(pairs).for_each(|(out, (byte, before))| *out = byte.wrapping_sub(*before));
-    }
-    if bits == 0 { ZEROS.clone() } else { packed(&predicted, BYTES_LEVEL) }
+/// A tile of bytes.
+struct ByteTile {
+    /// [`TILE`] rows of as many; beyond the raster its last samples are repeated.
+    bytes: Vec<u8>,
+    /// Columns and rows within the raster.
+    within: (usize, usize),
 }
 
-/// [`tile_row`] as bytes, `nodata` for NaN.
-fn byte_row(raster: &Raster, nodata: u8, (column, row): (u32, u32), bytes: &mut [u8; TILE as usize]) {
+impl ByteTile {
+    /// The tile of a raster of a size from `column` and `row` on; `fill` returns the rest of a row of the raster, as far as
+    /// the tile reaches.
+    fn new((width, height): (u32, u32), (column, row): (u32, u32), fill: impl Fn(u32, &mut [u8])) -> Self {
+        let within = (TILE.min(width - column) as usize, TILE.min(height - row) as usize);
+        let mut bytes = vec![0; (TILE * TILE) as usize];
+        for (y, line) in (row..).zip(bytes.chunks_exact_mut(TILE as usize)) {
+            let (held, beyond) = line.split_at_mut(within.0);
+            fill(y.min(height - 1), held);
+            beyond.fill(held[within.0 - 1]);
+        }
+        Self { bytes, within }
+    }
+
+    /// How many samples within the raster are not `nodata`.
+    fn valid(&self, nodata: Option<f64>) -> u64 {
+        let lines = self.bytes.chunks_exact(TILE as usize).take(self.within.1);
+        let valid = |line: &[u8]| line.iter().filter(|&&byte| Some(f64::from(byte)) != nodata).count();
+        lines.map(|line| valid(&line[..self.within.0]) as u64).sum()
+    }
+
+    /// The differences of its rows, packed. Many tiles are all zeros: nothing is in sight behind a ridge.
+    fn packed(&self) -> Vec<u8> {
+        /// A tile of zeros, packed.
+        static ZEROS: LazyLock<Vec<u8>> = LazyLock::new(|| packed(&[0; (TILE * TILE) as usize], BYTES_LEVEL));
+        if self.bytes.iter().fold(0, |bits, byte| bits | byte) == 0 {
+            return ZEROS.clone();
+        }
+        let mut predicted = self.bytes.clone();
+        let lines = self.bytes.chunks_exact(TILE as usize);
+        for (out, line) in predicted.chunks_exact_mut(TILE as usize).zip(lines) {
+            let pairs = line[1..].iter().zip(line);
+            out[1..]
+                .iter_mut()
+                .zip(pairs)
+                .for_each(|(out, (byte, before))| *out = byte.wrapping_sub(*before));
+        }
+        packed(&predicted, BYTES_LEVEL)
+    }
+}
+
+/// A row of bytes from a column on, `nodata` for NaN.
+fn byte_row(raster: &Raster, nodata: u8, (column, row): (u32, u32), bytes: &mut [u8]) {
     fn store<T: SampleFloat>(samples: &[T], nodata: u8, bytes: &mut [u8]) {
         for (byte, &value) in bytes.iter_mut().zip(samples) {
             let value = value.into();
             *byte = if value.is_nan() { nodata } else { value as u8 };
         }
     }
-    let count = TILE.min(raster.width - column) as usize;
     let start = row as usize * raster.width as usize + column as usize;
-    let (held, beyond) = bytes.split_at_mut(count);
     match &raster.samples {
-        Samples::F32(samples) => store(&samples[start..], nodata, held),
-        Samples::F64(samples) => store(&samples[start..], nodata, held),
+        Samples::F32(samples) => store(&samples[start..], nodata, bytes),
+        Samples::F64(samples) => store(&samples[start..], nodata, bytes),
     }
-    beyond.fill(held[count - 1]);
 }
 
 fn packed(bytes: &[u8], level: Compression) -> Vec<u8> {
