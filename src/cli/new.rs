@@ -31,7 +31,7 @@ pub struct NewArguments {
     /// The elevation file, or its address; several are tiles of one raster
     #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
     pub dem: Vec<PathBuf>,
-    /// Vector files for the features on the ground
+    /// Vector files for the features on the ground, or their addresses
     #[arg(long, value_name = "FILE", num_args = 1..)]
     pub vectors: Vec<PathBuf>,
     /// The picture's title [default: the place's name from the vectors, else the elevation file's]
@@ -58,7 +58,7 @@ pub fn run(arguments: &NewArguments) -> Result<(), CliError> {
     let pictures = PlannedPictures::default();
     let scene = open_scene_for(&path, &allowed, None, ElevationNeed::Pictures(&pictures), &progress);
     steps.finish();
-    let hosts = match arguments.dem.iter().any(|file| is_address_path(file)) {
+    let hosts = match arguments.dem.iter().chain(&arguments.vectors).any(|file| is_address_path(file)) {
         true => RemoteAccess::of_run().hosts,
         false => Vec::new(),
     };

@@ -10,8 +10,8 @@ use crate::dem::read::{self, DemHints, DemOptions};
 use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::vrt_source::VrtSource;
 use crate::dem::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
-use crate::limits::RASTER_SAMPLES;
-use crate::pipeline::elevation_files::{self, CompanionFiles};
+use crate::limits::{COMPANION_BYTES, INPUT_BYTES, RASTER_SAMPLES};
+use crate::pipeline::addressed_files::{self, CompanionFiles};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address_path;
@@ -76,7 +76,8 @@ impl TileFiles {
         if !vrt::is_vrt(&files::file_name(path)) || options.raw.is_some() {
             return Ok(None);
         }
-        let mut vrt = VrtTiles::read(&elevation_files::read(path)?).map_err(FileError::at(path))?;
+        let mut vrt =
+            VrtTiles::read(&addressed_files::read(path, INPUT_BYTES.get())?).map_err(FileError::at(path))?;
         if is_address_path(path) {
             vrt.check_beside().map_err(FileError::at(path))?;
         }
@@ -218,8 +219,8 @@ fn open_mosaic(
 
 /// The windows of an elevation file; `None` where its format is read whole.
 fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
-    let (head, content) = elevation_files::open(path)?;
-    let companions = CompanionFiles::beside(path);
+    let (head, content) = addressed_files::open(path)?;
+    let companions = CompanionFiles::beside(path, COMPANION_BYTES.get());
     let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
     let windows = read::open_windows(&files::file_name(path), &head, content, &hints, WINDOW_CACHE_BYTES);
     companions.check()?;
@@ -253,8 +254,8 @@ pub fn format_by_head(path: &Path, options: &DemOptions) -> Option<&'static str>
 }
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
-    let bytes = elevation_files::read(path)?;
-    let companions = CompanionFiles::beside(path);
+    let bytes = addressed_files::read(path, INPUT_BYTES.get())?;
+    let companions = CompanionFiles::beside(path, COMPANION_BYTES.get());
     let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
     let raster = read::read(&files::file_name(path), &bytes, &hints);
     companions.check()?;

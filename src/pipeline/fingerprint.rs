@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-use crate::pipeline::elevation_files;
+use crate::pipeline::addressed_files;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address_path;
 
@@ -19,7 +19,7 @@ pub fn fingerprint(path: &Path, files: &[PathBuf]) -> Result<String, ReadFileErr
     for file in std::iter::once(path).chain(files.iter().map(PathBuf::as_path)) {
         // The hash of each, so that bytes cannot move from one to the next unseen.
         whole.update(match is_address_path(file) {
-            true => Sha256::digest(elevation_files::version(file)?),
+            true => Sha256::digest(addressed_files::version(file)?),
             false => Sha256::digest(files::read(file)?),
         });
     }

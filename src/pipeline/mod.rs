@@ -9,6 +9,7 @@
 //! Programs share these steps. No step reads arguments or the clock, and none prints: a step returns values, notes
 //! for the user and typed errors.
 
+pub mod addressed_files;
 pub mod api;
 pub mod bounded_mesh;
 pub mod choice;
@@ -18,7 +19,6 @@ pub mod csv;
 pub mod dataset;
 pub mod dem;
 pub mod editing;
-pub mod elevation_files;
 pub mod error;
 pub mod export;
 pub mod files;

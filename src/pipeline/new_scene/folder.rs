@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::SystemError;
-use crate::remote::address::{is_address, is_address_path};
+use crate::remote::address::is_address;
 
 /// The folder of a new scene file.
 pub(super) struct SceneFolder {
@@ -27,10 +27,6 @@ pub enum FolderCause {
     Nowhere,
     #[error("there is no such file")]
     NoFile,
-    #[error(
-        "this is an address: elevation and what a scene names are read by address, nothing else; fetch the file"
-    )]
-    Address,
     #[error("this is not a file")]
     NotAFile,
     #[error("its name is not Unicode text; rename it")]
@@ -59,20 +55,16 @@ impl SceneFolder {
         Ok(Self { folder: real.join(rest) })
     }
 
-    /// The name of an elevation file in the scene file: that of [`SceneFolder::relative`], or its address.
+    /// The name of a file in the scene file: relative to its folder, with `/`, or its address.
     ///
     /// # Errors
     /// See [`FolderCause`].
-    pub fn elevation(&self, file: &Path) -> Result<String, FolderError> {
+    pub fn name_of(&self, file: &Path) -> Result<String, FolderError> {
         let address = file.to_str().filter(|name| is_address(name));
         address.map_or_else(|| self.relative(file), |address| Ok(address.to_owned()))
     }
 
-    /// The name of `file` in the scene file: relative to its folder, with `/`.
-    ///
-    /// # Errors
-    /// See [`FolderCause`].
-    pub fn relative(&self, file: &Path) -> Result<String, FolderError> {
+    fn relative(&self, file: &Path) -> Result<String, FolderError> {
         let real = real(file)?;
         let shared = self.folder.components().zip(real.components()).take_while(|(a, b)| a == b).count();
         let up = self.folder.components().skip(shared).map(|_| Some(".."));
@@ -111,9 +103,6 @@ fn outermost(mut folders: Vec<PathBuf>) -> Vec<PathBuf> {
 }
 
 fn real(file: &Path) -> Result<PathBuf, FolderError> {
-    if is_address_path(file) {
-        return Err(FileError::new(file, FolderCause::Address));
-    }
     let real = file.canonicalize().map_err(|_| FileError::new(file, FolderCause::NoFile))?;
     if real.is_file() { Ok(real) } else { Err(FileError::new(file, FolderCause::NotAFile)) }
 }

@@ -54,7 +54,7 @@ pub struct NewSceneOptions {
     pub folder: PathBuf,
     /// Elevation files, tiles of one raster, or their addresses; at least one.
     pub dem: Vec<PathBuf>,
-    /// Vector files.
+    /// Vector files, or their addresses.
     pub vectors: Vec<PathBuf>,
     /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
     /// first elevation file or its folder.
@@ -102,11 +102,11 @@ pub fn write(
         return Err(NewSceneError::Exists(path));
     }
     let folder = SceneFolder::new(&options.folder)?;
-    let dem = options.dem.iter().map(|file| folder.elevation(file)).collect::<Result<Vec<_>, _>>()?;
+    let dem = options.dem.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
     let vectors =
         options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
-    let on_disk = options.dem.iter().filter(|file| !is_address_path(file));
-    let allowed = folder.folders_to_allow(on_disk.chain(&options.vectors))?;
+    let on_disk = options.dem.iter().chain(&options.vectors).filter(|file| !is_address_path(file));
+    let allowed = folder.folders_to_allow(on_disk)?;
 
     progress("reading elevation");
     let draft = SceneDraft { dem, crs: options.crs.clone(), ..SceneDraft::default() };
@@ -129,7 +129,7 @@ pub fn write(
 }
 
 fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewSceneError> {
-    Ok(VectorDraft { file: folder.relative(file)?, layers: survey::layers(file)? })
+    Ok(VectorDraft { file: folder.name_of(file)?, layers: survey::layers(file)? })
 }
 
 /// Completes the draft from the elevation: heights, extent and cameras, and the title where the vectors have one.

@@ -17,6 +17,8 @@ use crate::description::expression::Expression;
 use crate::description::scalar::Scalar;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
+use crate::limits::ASSET_BYTES;
+use crate::pipeline::addressed_files::{self, CompanionFiles};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::new_scene::rules::{BOUNDARIES, LabelRule, RULES, TableRule};
@@ -102,19 +104,20 @@ pub enum SurveyError {
     Vector(#[from] FileError<VectorError>),
 }
 
-/// Surveys each layer of a vector file.
+/// Surveys each layer of a vector file, or of that at an address.
 ///
 /// # Errors
 /// See [`SurveyError`].
 pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
-    let bytes = files::read(file)?;
+    let bytes = addressed_files::read(file, ASSET_BYTES.get())?;
     let name = files::file_name(file);
-    let companions = files::beside(file);
+    let companions = CompanionFiles::beside(file, ASSET_BYTES.get());
+    let found = |name: &str| companions.get(name);
     let read = |layer: Option<&str>| {
-        read::read(&name, &bytes, &VectorHints { layer, companions: &companions, ..VectorHints::default() })
+        read::read(&name, &bytes, &VectorHints { layer, companions: &found, ..VectorHints::default() })
     };
     let vector = FileError::<VectorError>::at(file);
-    match read(None) {
+    let surveyed = match read(None) {
         Ok(layer) => Ok(vec![survey(Arc::new(layer), None, &name)]),
         Err(VectorError::WhichLayer { names, .. }) => {
             let layers = distinct(names).into_iter().map(|name| {
@@ -124,7 +127,9 @@ pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
             layers.collect::<Result<_, _>>().map(without_excerpts)
         }
         Err(error) => Err(vector(error).into()),
-    }
+    };
+    companions.check()?;
+    surveyed
 }
 
 /// The layers of one file without the matches that another layer is named after: of a file with a layer of all

@@ -17,7 +17,8 @@ use sha2::{Digest, Sha256};
 
 use crate::dem::read::is_tile_name;
 use crate::dem::vrt::{VrtTiles, is_vrt};
-use crate::pipeline::elevation_files;
+use crate::limits::INPUT_BYTES;
+use crate::pipeline::addressed_files;
 use crate::pipeline::files::{self, ReadFileCause, ReadFileError, SystemError};
 use crate::pipeline::fingerprint::hexadecimal;
 use crate::pipeline::shards::error::{PlanError, PlanFault, ShardError};
@@ -105,7 +106,7 @@ impl PlanInput {
 
     /// A file with an address.
     fn at_address(path: &Path) -> Result<Self, ReadFileError> {
-        let AddressVersion { bytes, tag } = elevation_files::stated_version(path)?;
+        let AddressVersion { bytes, tag } = addressed_files::stated_version(path)?;
         let version = Some(tag.ok_or_else(|| ReadFileError::new(path, ReadFileCause::NoVersion))?);
         let (path, check) = (path.to_owned(), InputCheck::Version);
         Ok(Self { path, bytes, check, sha256: String::new(), version, modified: None })
@@ -198,7 +199,9 @@ fn addressed_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
     if is_vrt(&files::file_name(path)) {
         // What it says wrong was an error of opening it.
         found.extend(
-            VrtTiles::read(&elevation_files::read(path)?).map(|vrt| vrt.paths(path)).unwrap_or_default(),
+            VrtTiles::read(&addressed_files::read(path, INPUT_BYTES.get())?)
+                .map(|vrt| vrt.paths(path))
+                .unwrap_or_default(),
         );
         return Ok(found);
     }
@@ -206,7 +209,7 @@ fn addressed_files(path: &Path) -> Result<Vec<PathBuf>, ReadFileError> {
     let companions = COMPANIONS.iter().chain(&WORLD_FILES).map(|extension| path.with_extension(extension));
     let after_name = ["hdr", "msk"].map(|extension| path.with_file_name(format!("{name}.{extension}")));
     for companion in companions.chain(after_name).filter(|companion| companion != path) {
-        match elevation_files::stated_version(&companion) {
+        match addressed_files::stated_version(&companion) {
             Ok(_) => found.push(companion),
             Err(ReadFileError { cause: ReadFileCause::Remote(error), .. }) if error.is_absence() => {}
             Err(error) => return Err(error),

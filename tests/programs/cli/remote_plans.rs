@@ -4,6 +4,7 @@ use std::fs;
 
 use crate::cli::project;
 use crate::cli::remote_servers::TestServer;
+use crate::common::data::data;
 
 const ADDRESS: &str = "s3://terrain/dem/terrain.tif";
 
@@ -53,7 +54,58 @@ fn a_new_scene_names_the_address_of_its_elevation() {
     let scene = fs::read_to_string(server.scratch.at("made/scene.toml")).expect("written");
     assert!(scene.contains(&format!("dem = \"{ADDRESS}\"")), "{scene}");
     done(&server, &["check", "made/scene.toml"]);
-    let refused =
-        server.run("blocks", &["new", "roads", "--dem", ADDRESS, "--vectors", "s3://terrain/roads.geojson"]);
-    assert!(refused.failed(1).contains("elevation and what a scene names are read by address"));
+}
+
+#[test]
+fn a_new_scene_surveys_vector_files_by_address_as_those_on_disk() {
+    let Some(mut server) = TestServer::s3() else { return };
+    for file in ["jacksboro/dem.tif", "jacksboro/roads.geojson", "jacksboro/lake.geojson"] {
+        server.put(project(&format!("assets/{file}")).as_ref(), file);
+    }
+    let tables = |folder: &str, from: &str| {
+        let name = |file: &str| format!("{from}{file}");
+        let [dem, roads, lakes] =
+            ["jacksboro/dem.tif", "jacksboro/roads.geojson", "jacksboro/lake.geojson"].map(name);
+        let said = done(&server, &["new", folder, "--dem", &dem, "--vectors", &roads, &lakes]);
+        let scene = fs::read_to_string(server.scratch.at(folder).join("scene.toml")).expect("written");
+        // The same but for the places of files.
+        (
+            said,
+            scene.lines().filter(|line| !line.contains("jacksboro/")).map(str::to_owned).collect::<Vec<_>>(),
+        )
+    };
+    let (said, there) = tables("there", "s3://terrain/");
+    assert!(said.contains(&format!("--allow-remote {}", server.host)), "{said}");
+    let (_, here) = tables("here", &format!("{}/", project("assets")));
+    assert!(
+        here.iter().any(|line| line.contains("[[road]]"))
+            && here.iter().any(|line| line.contains("[[lake]]"))
+    );
+    assert_eq!(there, here);
+    done(&server, &["check", "there/scene.toml"]);
+    let gone = ["new", "gone", "--dem", "s3://terrain/jacksboro/dem.tif", "--vectors", "s3://terrain/no.shp"];
+    let gone = server.run("blocks", &gone).failed(1);
+    assert!(gone.contains("s3://terrain/no.shp") && !server.scratch.at("gone").exists(), "{gone}");
+}
+
+#[test]
+fn a_new_scene_finds_the_tables_of_a_shapefile_on_a_server() {
+    let Some(mut server) = TestServer::s3() else { return };
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/scenes/swellendam_za");
+    for file in ["rivers.shp", "rivers.dbf", "rivers.prj", "rivers.cpg", "dem_srtm_utm33s_i16.tif"] {
+        let Some(path) = data(&format!("scenes/swellendam_za/{file}")) else { return };
+        server.put(&path, file);
+    }
+    let rivers = |name: &str, from: &str| {
+        let [dem, rivers] = ["dem_srtm_utm33s_i16.tif", "rivers.shp"].map(|file| format!("{from}{file}"));
+        done(&server, &["new", name, "--title", "Rivers", "--dem", &dem, "--vectors", &rivers]);
+        let scene = fs::read_to_string(server.scratch.at(name).join("scene.toml")).expect("written");
+        scene
+            .lines()
+            .filter(|line| !line.contains("rivers.shp") && !line.contains("dem_srtm"))
+            .collect::<String>()
+    };
+    let there = rivers("there", "s3://terrain/");
+    assert!(there.contains("[[river]]"), "{there}");
+    assert_eq!(there, rivers("here", &format!("{}/", folder.display())));
 }

@@ -1,11 +1,10 @@
-//! The files that elevation is read of: on disk, or by their addresses.
+//! Files that are read: on disk, or by their addresses.
 
 use std::cell::RefCell;
 use std::path::Path;
 
 use crate::dem::formats::FileContent;
 use crate::dem::read;
-use crate::limits::{COMPANION_BYTES, INPUT_BYTES};
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address;
@@ -21,13 +20,13 @@ fn failed(path: &Path) -> impl Fn(RemoteError) -> ReadFileError + '_ {
     |error| FileError::new(path, error)
 }
 
-/// The bytes of an elevation file.
+/// The bytes of a file, of which a server sends at most `most`.
 ///
 /// # Errors
 /// As [`files::read`]; the server's.
-pub fn read(path: &Path) -> Result<Vec<u8>, ReadFileError> {
+pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, ReadFileError> {
     match address(path) {
-        Some(address) => open::read(address, INPUT_BYTES.get()).map_err(failed(path)),
+        Some(address) => open::read(address, most).map_err(failed(path)),
         None => files::read(path),
     }
 }
@@ -65,16 +64,17 @@ pub fn stated_version(path: &Path) -> Result<AddressVersion, ReadFileError> {
     address.and_then(open::stated_version).map_err(failed(path))
 }
 
-/// The companions of an elevation file. A file that is not there is none; a server that does not answer is an error of all.
+/// The companions of a file. A file that is not there is none; a server that does not answer is an error of all.
 pub struct CompanionFiles<'a> {
     path: &'a Path,
+    most_bytes: u64,
     fault: RefCell<Option<ReadFileError>>,
 }
 
 impl<'a> CompanionFiles<'a> {
-    /// Those of the file at `path`.
-    pub fn beside(path: &'a Path) -> Self {
-        Self { path, fault: RefCell::default() }
+    /// Those of the file at `path`, each of at most `most_bytes` where it has an address.
+    pub fn beside(path: &'a Path, most_bytes: u64) -> Self {
+        Self { path, most_bytes, fault: RefCell::default() }
     }
 
     /// The bytes of one by its name; `None` where there is none.
@@ -87,7 +87,7 @@ impl<'a> CompanionFiles<'a> {
             return None;
         }
         let path = self.path.with_file_name(name);
-        let found = open::read_companion(path.to_str()?, COMPANION_BYTES.get());
+        let found = open::read_companion(path.to_str()?, self.most_bytes);
         found.unwrap_or_else(|error| {
             self.fault.borrow_mut().get_or_insert(failed(&path)(error));
             None
@@ -97,8 +97,8 @@ impl<'a> CompanionFiles<'a> {
     /// Checks that each was found or is not there.
     ///
     /// # Errors
-    /// The first error of a server.
-    pub fn check(self) -> Result<(), ReadFileError> {
-        self.fault.into_inner().map_or(Ok(()), Err)
+    /// The first error of a server since the last check.
+    pub fn check(&self) -> Result<(), ReadFileError> {
+        self.fault.take().map_or(Ok(()), Err)
     }
 }
