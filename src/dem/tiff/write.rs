@@ -105,7 +105,7 @@ pub(crate) fn write_windows(
     })
 }
 
-/// [`write_windows`] of bytes, which takes them as they are. Holds a quarter of a hundred packed tiles.
+/// [`write_windows`] of bytes, which takes them as they are. Memory: some packed tiles.
 fn write_bytes(
     header: &Raster,
     bytes: &dyn ByteRows,
