@@ -157,8 +157,12 @@ impl MeshVertices<'_> {
     /// reset.
     #[inline]
     pub fn renew(&mut self, vertex: RenewedVertex) -> bool {
-        (self.block.z[vertex.at], self.block.radii[vertex.at]) = (vertex.z, vertex.radius);
-        vertex.renew(self.cells, self.flags, self.renewed)
+        let has_kept_data = vertex.renew(self.cells, self.flags, self.renewed);
+        if has_kept_data {
+            // Where it has not, the old block still tells that the patch must be reset.
+            (self.block.z[vertex.at], self.block.radii[vertex.at]) = (vertex.z, vertex.radius);
+        }
+        has_kept_data
     }
 }
 
