@@ -1,10 +1,9 @@
 //! The radii that hold the spheres of children, for the vertices of a row: four at a time where there are as many.
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, SimdInto, dispatch, f64x4};
-
 use crate::roam::errors::scan::larger;
 use crate::roam::field::{FieldRow, HeightField};
 use crate::roam::levels::{ChildPlaces, StridedColumns, both_sides};
+use crate::terrain::vectorized::vectorized;
 
 /// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never let a child's
 /// sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
@@ -42,7 +41,10 @@ impl<'a> SphereNest<'a> {
     /// 0 need no room.
     pub fn measure(&self, columns: StridedColumns, radii: RadiusRows<'_>, held: &mut Vec<f32>) {
         held.clear();
-        dispatch!(Level::new(), simd => self.measure_lanes(simd, columns, radii, held));
+        vectorized(
+            #[inline(always)]
+            || self.measure_lanes(columns, radii, held),
+        );
     }
 
     /// Grows the radii of the vertices in some columns of `row` until they hold the spheres of their children.
@@ -53,21 +55,16 @@ impl<'a> SphereNest<'a> {
     }
 
     #[inline(always)]
-    fn measure_lanes<S: Simd>(
-        &self,
-        simd: S,
-        columns: StridedColumns,
-        radii: RadiusRows<'_>,
-        held: &mut Vec<f32>,
-    ) {
+    fn measure_lanes(&self, columns: StridedColumns, radii: RadiusRows<'_>, held: &mut Vec<f32>) {
         let mut index = 0;
         while index + LANES <= columns.count {
             let at: [usize; LANES] = std::array::from_fn(|lane| columns.at(index + lane));
-            let lanes = holding_lanes(simd, self.children(at, radii));
-            held.extend_from_slice(&std::array::from_fn::<f32, LANES, _>(|lane| lanes[lane] as f32));
+            held.extend_from_slice(&holding(self.children(at, radii)));
             index += LANES;
         }
-        held.extend((index..columns.count).map(|index| holding(self.children([columns.at(index)], radii))));
+        held.extend(
+            (index..columns.count).map(|index| holding(self.children([columns.at(index)], radii))[0]),
+        );
     }
 
     #[inline(always)]
@@ -115,26 +112,22 @@ impl<'a> SphereNest<'a> {
     }
 }
 
-/// The radius that holds the spheres of a vertex's children.
-#[inline]
-fn holding(children: [Children<1>; 4]) -> f32 {
-    let mut held = 0f32;
-    for Children { x: [x], y, z: [z], radius: [radius] } in children {
-        let needed = (((x * x + y * y + z * z).sqrt() + radius) * (1.0 + MARGIN)) as f32;
-        held = larger(held, if radius == 0.0 { 0.0 } else { needed });
-    }
-    held
-}
-
-/// [`holding`] of several vertices, to be rounded. The largest of numbers, rounded, is the largest of the rounded ones.
+/// The radii that hold the spheres of vertices' children: for each vertex the largest of what its children need, which is
+/// rounded at the end, as the largest of the rounded ones is the same.
 #[inline(always)]
-fn holding_lanes<S: Simd>(simd: S, children: [Children<LANES>; 4]) -> f64x4<S> {
-    let zero = f64x4::splat(simd, 0.0);
-    children.into_iter().fold(zero, |held, Children { x, y, z, radius }| {
-        let [x, z, radius]: [f64x4<S>; 3] = [x, z, radius].map(|lanes| lanes.simd_into(simd));
-        let needed = ((x * x + y * y + z * z).sqrt() + radius) * (1.0 + MARGIN);
-        held.max(radius.simd_eq(zero).select(zero, needed))
-    })
+fn holding<const N: usize>(children: [Children<N>; 4]) -> [f32; N] {
+    let mut held = [0.0; N];
+    for Children { x, y, z, radius } in children {
+        // Loops of one step each, over all vertices: so they are vectorized.
+        let squares: [f64; N] = std::array::from_fn(|lane| x[lane] * x[lane] + y * y + z[lane] * z[lane]);
+        let distances = squares.map(f64::sqrt);
+        let needed: [f64; N] = std::array::from_fn(|lane| (distances[lane] + radius[lane]) * (1.0 + MARGIN));
+        for lane in 0..N {
+            let needed = if radius[lane] == 0.0 { 0.0 } else { needed[lane] };
+            held[lane] = if needed > held[lane] { needed } else { held[lane] };
+        }
+    }
+    held.map(|held| held as f32)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub mod stop_flag;
 pub mod support_surface;
 pub mod terraces;
 pub mod triangle_surface;
-mod vectorized;
+pub(crate) mod vectorized;
 pub mod volumes;
 pub mod water_cover;
 pub mod water_shore;
