@@ -1,6 +1,5 @@
 //! Files that are read: on disk, or by their addresses.
 
-use std::cell::RefCell;
 use std::path::Path;
 
 use crate::dem::formats::FileContent;
@@ -8,6 +7,7 @@ use crate::dem::read;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address;
+use crate::remote::companions::{CompanionFiles, FoundCompanion};
 use crate::remote::error::RemoteError;
 use crate::remote::open::{self, AddressVersion};
 
@@ -64,41 +64,17 @@ pub fn stated_version(path: &Path) -> Result<AddressVersion, ReadFileError> {
     address.and_then(open::stated_version).map_err(failed(path))
 }
 
-/// The companions of a file. A file that is not there is none; a server that does not answer is an error of all.
-pub struct CompanionFiles<'a> {
-    path: &'a Path,
-    most_bytes: u64,
-    fault: RefCell<Option<ReadFileError>>,
-}
-
-impl<'a> CompanionFiles<'a> {
-    /// Those of the file at `path`, each of at most `most_bytes` where it has an address.
-    pub fn beside(path: &'a Path, most_bytes: u64) -> Self {
-        Self { path, most_bytes, fault: RefCell::default() }
-    }
-
-    /// The bytes of one by its name; `None` where there is none.
-    pub fn get(&self, name: &str) -> Option<Vec<u8>> {
-        if address(self.path).is_none() {
-            return files::beside(self.path)(name);
+/// The companions of the file at `path`, each of at most `most` bytes where it has an address.
+pub fn companions(
+    path: &Path,
+    most: u64,
+) -> CompanionFiles<impl Fn(&str) -> FoundCompanion<ReadFileError>, ReadFileError> {
+    CompanionFiles::found_by(move |name| {
+        if address(path).is_none() {
+            return Ok(files::beside(path)(name));
         }
-        // A server that is waited for in vain is not waited for again.
-        if self.fault.borrow().is_some() {
-            return None;
-        }
-        let path = self.path.with_file_name(name);
-        let found = open::read_companion(path.to_str()?, self.most_bytes);
-        found.unwrap_or_else(|error| {
-            self.fault.borrow_mut().get_or_insert(failed(&path)(error));
-            None
-        })
-    }
-
-    /// Checks that each was found or is not there.
-    ///
-    /// # Errors
-    /// The first error of a server since the last check.
-    pub fn check(&self) -> Result<(), ReadFileError> {
-        self.fault.take().map_or(Ok(()), Err)
-    }
+        let companion = path.with_file_name(name);
+        let found = companion.to_str().map(|name| open::read_companion(name, most));
+        found.transpose().map(Option::flatten).map_err(failed(&companion))
+    })
 }

@@ -11,7 +11,7 @@ use crate::dem::vrt::{self, VrtTiles};
 use crate::dem::vrt_source::VrtSource;
 use crate::dem::windows::{RasterWindow, WINDOW_CACHE_BYTES, Windows};
 use crate::limits::{COMPANION_BYTES, INPUT_BYTES, RASTER_SAMPLES};
-use crate::pipeline::addressed_files::{self, CompanionFiles};
+use crate::pipeline::addressed_files;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::remote::address::is_address_path;
@@ -220,7 +220,7 @@ fn open_mosaic(
 /// The windows of an elevation file; `None` where its format is read whole.
 fn open_windows(path: &Path, options: &DemOptions) -> Result<Option<Box<dyn Windows + Send>>, OpenDemError> {
     let (head, content) = addressed_files::open(path)?;
-    let companions = CompanionFiles::beside(path, COMPANION_BYTES.get());
+    let companions = addressed_files::companions(path, COMPANION_BYTES.get());
     let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
     let windows = read::open_windows(&files::file_name(path), &head, content, &hints, WINDOW_CACHE_BYTES);
     companions.check()?;
@@ -255,7 +255,7 @@ pub fn format_by_head(path: &Path, options: &DemOptions) -> Option<&'static str>
 
 fn open_file(path: &Path, options: &DemOptions) -> Result<Raster, OpenDemError> {
     let bytes = addressed_files::read(path, INPUT_BYTES.get())?;
-    let companions = CompanionFiles::beside(path, COMPANION_BYTES.get());
+    let companions = addressed_files::companions(path, COMPANION_BYTES.get());
     let hints = DemHints { companions: &|name| companions.get(name), ..options.clone().into() };
     let raster = read::read(&files::file_name(path), &bytes, &hints);
     companions.check()?;

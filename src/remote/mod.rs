@@ -15,6 +15,7 @@ pub mod access;
 pub mod address;
 #[cfg(feature = "cloud")]
 pub(crate) mod blocks_on_disk;
+pub mod companions;
 pub mod error;
 #[cfg(feature = "cloud")]
 pub(crate) mod file;

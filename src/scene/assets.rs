@@ -25,6 +25,7 @@ use crate::message::suggest::{nearest, quoted};
 use crate::model::Companions;
 use crate::model::error::CompanionError;
 use crate::remote::address::is_address;
+use crate::remote::companions::{CompanionFiles, FoundCompanion};
 use crate::remote::error::RemoteError;
 use crate::remote::open;
 
@@ -190,11 +191,15 @@ impl Assets {
         Ok(Some(elevation))
     }
 
-    /// The bytes of a companion of a file, of which a server sends at most `most`; `None` where there is none.
-    ///
-    /// # Errors
-    /// A server does not answer.
-    pub fn read_companion(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, AssetError> {
+    /// The companions of files, by names as the scene's own; of one with an address at most `most` bytes.
+    pub fn companions(
+        &self,
+        most: u64,
+    ) -> CompanionFiles<impl Fn(&str) -> FoundCompanion<AssetError>, AssetError> {
+        CompanionFiles::found_by(move |name| self.read_companion(name, most))
+    }
+
+    fn read_companion(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, AssetError> {
         match is_address(name) {
             true => open::read_companion(name, most).map_err(AssetError::remote(name)),
             false => Ok(self.read(name).ok()),

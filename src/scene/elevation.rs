@@ -35,7 +35,6 @@ use crate::limits::{COMPANION_BYTES, PICTURED_SAMPLES, RASTER_SAMPLES};
 use crate::message::suggest::quoted;
 use crate::remote::address::is_address;
 use crate::scene::assets::{AssetError, Assets};
-use crate::scene::companions::CompanionAssets;
 use crate::scene::overridden_crs::OverriddenCrs;
 use crate::scene::planned_pictures::ElevationNeed;
 use crate::scene::reduced_elevation::{ReducedElevation, reduced_as_needed};
@@ -349,7 +348,7 @@ impl TileList {
         let dem = &document.terrain.dem;
         let failed = |error| document.error(dem, error);
         let overridden = RefCell::new(None);
-        let companions = CompanionAssets::of(assets, COMPANION_BYTES.get());
+        let companions = assets.companions(COMPANION_BYTES.get());
         let note = |own: &Crs| drop(overridden.replace(Some(own.clone())));
         // What the file states is compared with what the scene does.
         let own = DemOptions { vertical_datum: None, ..self.stated.clone() };
@@ -413,7 +412,7 @@ fn open_windows(
 ) -> Result<Option<Box<dyn Windows + Send>>, TileError> {
     let TileFile { name, source } = file;
     let (head, content) = assets.open_elevation(name, read::HEAD_BYTES)?;
-    let companions = CompanionAssets::of(assets, COMPANION_BYTES.get());
+    let companions = assets.companions(COMPANION_BYTES.get());
     let options = file.options(stated);
     let hints = DemHints { options, overridden, companions: &|name| companions.get(name) };
     let windows = read::open_windows(name, &head, content, &hints, WINDOW_CACHE_BYTES);

@@ -21,7 +21,6 @@ use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::COMPANION_BYTES;
 use crate::scene::assets::Assets;
-use crate::scene::companions::CompanionAssets;
 use crate::terrain::lattice::Lattice;
 
 /// The longest side in pixels: more than a screen of 4K shows of the ground, and 64 MiB at the most. Finer pictures lose
@@ -43,7 +42,7 @@ pub fn load(
 ) -> Result<Option<GroundImagery>, Diagnostic> {
     let Some(table) = &document.style.imagery else { return Ok(None) };
     let bytes = assets.read(&table.file).map_err(|error| document.error(&table.file, error))?;
-    let companions = CompanionAssets::of(assets, COMPANION_BYTES.get());
+    let companions = assets.companions(COMPANION_BYTES.get());
     let hints = DemHints {
         companions: &|name| companions.get(name),
         ..DemOptions { crs: table.crs.clone(), ..DemOptions::default() }.into()

@@ -14,7 +14,6 @@ pub mod build;
 pub mod builder;
 pub mod building_colors;
 pub mod buildings;
-mod companions;
 pub mod crossed_shapes;
 pub mod earthworks;
 mod elevation;

@@ -18,7 +18,6 @@ use crate::limits::{ASSET_BYTES, RING_CROSSINGS};
 use crate::message::suggest::quoted;
 use crate::scene::assets::Assets;
 use crate::scene::attributes::Attributes;
-use crate::scene::companions::CompanionAssets;
 use crate::scene::source_reach::SourceReach;
 use crate::scene::world_frame::WorldFrame;
 use crate::vector::error::{VectorError, did_you_mean, list};
@@ -253,7 +252,7 @@ impl<'a> Sources<'a> {
         }
         let bytes = self.assets.read(file).map_err(|error| self.frame.document.error(file, error))?;
         // A table of attributes may be as large as the file itself.
-        let companions = CompanionAssets::of(self.assets, ASSET_BYTES.get());
+        let companions = self.assets.companions(ASSET_BYTES.get());
         let overridden = |own: &Crs| drop(self.overridden.borrow_mut().insert(key.clone(), own.clone()));
         let found = |name: &str| companions.get(name);
         let hints = VectorHints { crs: stated, overridden: &overridden, layer: name, companions: &found };

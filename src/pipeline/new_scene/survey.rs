@@ -18,7 +18,7 @@ use crate::description::scalar::Scalar;
 use crate::geom::crs::Crs;
 use crate::geom::rect::Rect;
 use crate::limits::ASSET_BYTES;
-use crate::pipeline::addressed_files::{self, CompanionFiles};
+use crate::pipeline::addressed_files;
 use crate::pipeline::error::FileError;
 use crate::pipeline::files::{self, ReadFileError};
 use crate::pipeline::new_scene::rules::{BOUNDARIES, LabelRule, RULES, TableRule};
@@ -111,7 +111,7 @@ pub enum SurveyError {
 pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
     let bytes = addressed_files::read(file, ASSET_BYTES.get())?;
     let name = files::file_name(file);
-    let companions = CompanionFiles::beside(file, ASSET_BYTES.get());
+    let companions = addressed_files::companions(file, ASSET_BYTES.get());
     let found = |name: &str| companions.get(name);
     let read = |layer: Option<&str>| {
         read::read(&name, &bytes, &VectorHints { layer, companions: &found, ..VectorHints::default() })
