@@ -49,100 +49,39 @@
 //! World space is right-handed: X east, Y north, Z up, meters from the south-west post. Map coordinates are those of
 //! the terrain's or scene's coordinate system. [`architecture`] draws the modules below.
 
-#![cfg_attr(
-    not(feature = "internals"),
-    allow(
-        dead_code,
-        rustdoc::private_intra_doc_links,
-        reason = "tests, benches and their readers use the rest"
-    )
-)]
-
 #[doc = include_str!("ARCHITECTURE.md")]
 pub mod architecture {}
-#[doc(hidden)]
-#[cfg(feature = "cli")]
-pub mod cli;
-#[doc(hidden)]
-#[cfg(feature = "serve")]
-pub mod serve;
-#[doc(hidden)]
-#[cfg(feature = "viewer")]
-pub mod viewer;
 
-cfg_if::cfg_if! {
-    if #[cfg(feature = "internals")] {
-        pub mod annotate;
-        pub mod archive;
-        pub mod bytes;
-        pub mod dem;
-        pub mod description;
-        pub mod draw;
-        pub mod earthworks;
-        pub mod export;
-        pub mod geom;
-        pub mod limits;
-        pub mod mesh;
-        pub mod message;
-        pub mod model;
-        pub mod pipeline;
-        pub mod remote;
-        pub mod render;
-        pub mod ribbon;
-        pub mod roam;
-        pub mod scene;
-        pub mod structure;
-        pub mod symbology;
-        pub mod terrain;
-        pub mod vector;
-        pub mod view;
-    } else {
-        mod annotate;
-        mod archive;
-        mod bytes;
-        mod dem;
-        mod description;
-        mod draw;
-        mod earthworks;
-        mod export;
-        mod geom;
-        mod limits;
-        mod mesh;
-        mod message;
-        mod model;
-        mod pipeline;
-        mod remote;
-        mod render;
-        mod ribbon;
-        mod roam;
-        mod scene;
-        mod structure;
-        mod symbology;
-        mod terrain;
-        mod vector;
-        mod view;
-    }
-}
+mod api;
 
 pub use glam::{DVec2, DVec3};
 
-pub use crate::dem::answer::{Answer, Status};
-pub use crate::dem::raster::Samples;
-pub use crate::dem::read::DemOptions;
-pub use crate::description::finding::{Finding, Severity};
-pub use crate::geom::crs::Crs;
-pub use crate::limits::{set_limit::set_limit, work_limit::LimitError};
-pub use crate::mesh::trimesh::TriMesh;
-pub use crate::pipeline::api::plan::{GatheredPlan, WorkPlan};
-pub use crate::pipeline::api::scene::{Picture, Scene, SceneOptions, View};
-pub use crate::pipeline::api::{dem::Dem, elevation::Elevation, error::Error, terrain::Terrain};
-pub use crate::pipeline::sight::{SightQuery, SightReport};
-pub use crate::pipeline::{choice::WordError, profile::GroundProfile};
-pub use crate::remote::{access::RemoteAccess, address::AllowedHost};
-pub use crate::terrain::hillshade::HillshadeOptions;
-pub use crate::terrain::profile::{ProfileStation, ProfileSummary, Sampling};
-pub use crate::terrain::query::service::{HeightService, Snapshot};
-pub use crate::terrain::query::{Interpolation, Surface, batch::HeightSlices};
-pub use crate::terrain::sight::viewshed::{Sector, ViewshedOptions};
-pub use crate::terrain::sight::{Curvature, line::Blocker, line::SightEnd, rise::Rise};
-pub use crate::view::camera::Camera;
+pub use sandtable_dem::answer::{Answer, Status};
+pub use sandtable_dem::raster::Samples;
+pub use sandtable_dem::read::DemOptions;
+pub use sandtable_description::finding::{Finding, Severity};
+pub use sandtable_geom::crs::Crs;
+pub use sandtable_base::limits::set_limit::set_limit;
+pub use sandtable_base::limits::work_limit::LimitError;
+pub use sandtable_mesh::trimesh::TriMesh;
+pub use crate::api::plan::{GatheredPlan, WorkPlan};
+pub use crate::api::scene::{Picture, Scene, SceneOptions, View};
+pub use crate::api::dem::Dem;
+pub use crate::api::elevation::Elevation;
+pub use crate::api::error::Error;
+pub use crate::api::terrain::Terrain;
+pub use sandtable_query::sight::{SightQuery, SightReport};
+pub use sandtable_terrain::query::choice::WordError;
+pub use sandtable_query::profile::GroundProfile;
+pub use sandtable_remote::access::RemoteAccess;
+pub use sandtable_remote::address::AllowedHost;
+pub use sandtable_terrain::hillshade::HillshadeOptions;
+pub use sandtable_terrain::profile::{ProfileStation, ProfileSummary, Sampling};
+pub use sandtable_terrain::query::service::{HeightService, Snapshot};
+pub use sandtable_terrain::query::{Interpolation, Surface};
+pub use sandtable_terrain::query::batch::HeightSlices;
+pub use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
+pub use sandtable_terrain::sight::Curvature;
+pub use sandtable_terrain::sight::line::{Blocker, SightEnd};
+pub use sandtable_terrain::sight::rise::Rise;
+pub use sandtable_view::camera::Camera;

@@ -2,20 +2,26 @@
 
 use std::process::ExitCode;
 
-use sandtable::cli::{BuiltInPrograms, ServeProgram, ViewProgram};
+use sandtable_cli::{BuiltInPrograms, OtherRenderer, ServeProgram, ViewProgram};
 
 #[cfg(feature = "serve")]
-const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable::serve::run(options)?));
+const SERVE: Option<ServeProgram> = Some(|options| Ok(sandtable_serve::run(options)?));
 
 #[cfg(not(feature = "serve"))]
 const SERVE: Option<ServeProgram> = None;
 
 #[cfg(feature = "viewer")]
-const VIEW: Option<ViewProgram> = Some(|options| Ok(sandtable::viewer::run(options)?));
+const VIEW: Option<ViewProgram> = Some(|options| Ok(sandtable_viewer::run(options)?));
 
 #[cfg(not(feature = "viewer"))]
 const VIEW: Option<ViewProgram> = None;
 
+#[cfg(feature = "gpu")]
+const GPU: Option<OtherRenderer> = Some(|list, camera| Ok(sandtable_gpu::render(list, camera)?));
+
+#[cfg(not(feature = "gpu"))]
+const GPU: Option<OtherRenderer> = None;
+
 fn main() -> ExitCode {
-    sandtable::cli::main(BuiltInPrograms { serve: SERVE, view: VIEW })
+    sandtable_cli::main(BuiltInPrograms { serve: SERVE, view: VIEW, gpu: GPU })
 }

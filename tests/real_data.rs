@@ -24,16 +24,16 @@ mod whole;
 use std::path::{Path, PathBuf};
 
 use glam::DVec2;
-use sandtable::annotate::paint::annotate;
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::{DepthLayer, FeatureId};
-use sandtable::pipeline::labels::{AnnotatedGround, annotations};
-use sandtable::render::cpu;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
-use sandtable::scene::{FeatureKind, SceneModel};
-use sandtable::terrain::triangle_surface::TriangleSurface;
+use sandtable_annotate::paint::annotate;
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_sheet::labels::{AnnotatedGround, annotations};
+use sandtable_render::cpu;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{ViewDraw, build_draw_list, camera};
+use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 use common::scratch::Scratch;
 

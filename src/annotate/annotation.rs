@@ -5,20 +5,20 @@
 
 use glam::Vec2;
 
-use crate::annotate::class_legend::LegendEntry;
-use crate::annotate::cover::SceneCover;
-use crate::annotate::grid::PictureGrid;
-use crate::annotate::legend::Legend;
-use crate::annotate::margin::MarginNotes;
-use crate::annotate::north::NorthArrow;
-use crate::annotate::rim::RimMark;
-use crate::annotate::scale_bar::ScaleBar;
-use crate::annotate::sheet::Sheet;
-use crate::description::words::LabelKind;
-use crate::draw::color::Srgba;
-use crate::draw::font::FontFile;
-use crate::symbology::symbol::MilitarySymbol;
-use crate::symbology::texts::SymbolNote;
+use crate::class_legend::LegendEntry;
+use crate::cover::SceneCover;
+use crate::grid::PictureGrid;
+use crate::legend::Legend;
+use crate::margin::MarginNotes;
+use crate::north::NorthArrow;
+use crate::rim::RimMark;
+use crate::scale_bar::ScaleBar;
+use crate::sheet::Sheet;
+use sandtable_description::words::LabelKind;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::font::FontFile;
+use sandtable_symbology::symbol::MilitarySymbol;
+use sandtable_symbology::texts::SymbolNote;
 
 /// Everything to paint on one picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -190,7 +190,7 @@ pub enum SymbolHeight {
 
 impl SymbolHeight {
     /// In pixels of a sheet's picture.
-    pub(in crate::annotate) fn pixels(self, sheet: &Sheet) -> f32 {
+    pub(crate) fn pixels(self, sheet: &Sheet) -> f32 {
         match self {
             Self::Design(height) => sheet.px(height),
             Self::Pixels(height) => height,

@@ -7,9 +7,9 @@
 
 use tiny_skia::{ColorU8, FillRule, Paint, PixmapMut, PremultipliedColorU8, Transform};
 
-use crate::annotate::drawing::{Drawing, PaintedPath};
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::drawing::{Drawing, PaintedPath};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// A pixel that is not opaque: its index, its color, and its color multiplied by alpha.
 struct Translucent {
@@ -63,7 +63,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::annotate::pixel_box::PixelBox;
+    use crate::pixel_box::PixelBox;
 
     fn square(color: Srgba) -> Drawing {
         let mut drawing = Drawing::default();

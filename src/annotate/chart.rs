@@ -9,19 +9,19 @@
 //!   start            axis label              end
 //! ```
 //!
-//! [`chart_profile`](crate::annotate::chart_profile) and [`chart_sight`](crate::annotate::chart_sight) draw the plot.
+//! [`chart_profile`](crate::chart_profile) and [`chart_sight`](crate::chart_sight) draw the plot.
 
 use glam::Vec2;
 
-use crate::annotate::canvas::paint;
-use crate::annotate::composer::{Composer, widest};
-use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{Ticks, format_trimmed};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{TextStyle, TypesetLine};
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::canvas::paint;
+use crate::composer::{Composer, widest};
+use crate::drawing::Drawing;
+use crate::nice::{Ticks, format_trimmed};
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::{INK, PAPER, SOFT_INK, Sheet};
+use crate::text::{TextStyle, TypesetLine};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// The plot's background: a pale sky.
 const SKY: Srgba = Srgba::opaque(0xee, 0xf2, 0xf3);
@@ -281,9 +281,9 @@ pub enum LabelSide {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::chart_ground::ChartPoint;
-    use crate::annotate::chart_profile::{ProfileChart, paint};
-    use crate::dem::answer::Answer;
+    use crate::chart_ground::ChartPoint;
+    use crate::chart_profile::{ProfileChart, paint};
+    use sandtable_dem::answer::Answer;
 
     fn chart(heights: &[f64]) -> ProfileChart {
         let point = |(index, &height): (usize, &f64)| ChartPoint {

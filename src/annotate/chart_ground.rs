@@ -2,13 +2,13 @@
 
 use glam::Vec2;
 
-use crate::annotate::chart::Chart;
-use crate::annotate::drawing::{polygon, polyline};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::SOFT_INK;
-use crate::annotate::text::TextStyle;
-use crate::dem::answer::Answer;
-use crate::draw::color::Srgba;
+use crate::chart::Chart;
+use crate::drawing::{polygon, polyline};
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::SOFT_INK;
+use crate::text::TextStyle;
+use sandtable_dem::answer::Answer;
+use sandtable_draw::color::Srgba;
 
 /// The ground's line.
 const RIM: Srgba = Srgba::opaque(0x4a, 0x3f, 0x30);

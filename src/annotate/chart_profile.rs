@@ -1,11 +1,11 @@
 //! The chart of a profile: the ground along a line, with its lowest and highest point marked.
 
-use crate::annotate::chart::{Chart, ChartText, LabelSide};
-use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
-use crate::annotate::nice::format_number;
-use crate::annotate::sheet::INK;
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::chart::{Chart, ChartText, LabelSide};
+use crate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
+use crate::nice::format_number;
+use crate::sheet::INK;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// The ground in section.
 const EARTH: Srgba = Srgba::opaque(0xc8, 0xb8, 0x96);

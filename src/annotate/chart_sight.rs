@@ -3,13 +3,13 @@
 
 use glam::Vec2;
 
-use crate::annotate::chart::{Chart, ChartText, LabelSide};
-use crate::annotate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
-use crate::annotate::pixel_box::PixelSegment;
-use crate::annotate::sheet::{INK, WATER_INK};
-use crate::dem::answer::Answer;
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::chart::{Chart, ChartText, LabelSide};
+use crate::chart_ground::{ChartPoint, fill, hatch_gaps, height_range, rim};
+use crate::pixel_box::PixelSegment;
+use crate::sheet::{INK, WATER_INK};
+use sandtable_dem::answer::Answer;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// Visible ground.
 const LIT: Srgba = Srgba::opaque(0xe2, 0xd3, 0xa8);

@@ -2,15 +2,15 @@
 
 use glam::{UVec2, Vec2};
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, INK};
-use crate::annotate::symbol_drawing::symbol_marks;
-use crate::annotate::text::TextStyle;
-use crate::draw::color::Srgba;
-use crate::draw::print_pattern::PrintPattern;
-use crate::symbology::symbol::MilitarySymbol;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::{FRAME, INK};
+use crate::symbol_drawing::symbol_marks;
+use crate::text::TextStyle;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::print_pattern::PrintPattern;
+use sandtable_symbology::symbol::MilitarySymbol;
 
 /// The size of a swatch, the gap to its text, and the distance of baselines, in design pixels.
 const SWATCH: Vec2 = Vec2::new(34.0, 16.0);
@@ -61,7 +61,7 @@ pub enum LegendSwatch {
 }
 
 /// The legend with its upper left corner at the origin; `None` without classes.
-pub(in crate::annotate) fn compose(entries: &[LegendEntry], composer: &mut Composer) -> Option<Drawing> {
+pub(crate) fn compose(entries: &[LegendEntry], composer: &mut Composer) -> Option<Drawing> {
     if entries.is_empty() {
         return None;
     }
@@ -141,7 +141,7 @@ fn draw_swatch(swatch: &LegendSwatch, area: PixelBox, composer: &mut Composer, d
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symbology::code::SymbolCode;
+    use sandtable_symbology::code::SymbolCode;
 
     fn entry(name: &str) -> LegendEntry {
         let fill = Srgba::opaque(200, 120, 40);
@@ -173,7 +173,7 @@ mod tests {
             LegendEntry { name: "Symbol".into(), swatch: LegendSwatch::Symbol(Box::new(symbol)) },
         ];
         let drawing = compose(&entries, &mut Composer::new(1920, 1080)).expect("classes");
-        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
         assert!(drawing.texts[0].shortened);
     }

@@ -3,11 +3,11 @@
 use parley::fontique::{Collection, CollectionOptions, SourceCache};
 use parley::{FontContext, LayoutContext};
 
-use crate::annotate::fonts::{FontCut, register_fonts};
-use crate::annotate::nice::{Ticks, format_number};
-use crate::annotate::sheet::Sheet;
-use crate::annotate::text::{TextStyle, TypesetLine};
-use crate::draw::font::FontFile;
+use crate::fonts::{FontCut, register_fonts};
+use crate::nice::{Ticks, format_number};
+use crate::sheet::Sheet;
+use crate::text::{TextStyle, TypesetLine};
+use sandtable_draw::font::FontFile;
 
 /// Lays out text on a sheet; holds tables of the embedded fonts and scratch space between lines.
 pub struct Composer {

@@ -2,14 +2,14 @@
 
 use glam::Vec2;
 
-use crate::annotate::canvas::paint;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::{FRAME, INK, PAPER, SOFT_INK};
-use crate::annotate::text::TextStyle;
-use crate::draw::font::FontFile;
-use crate::draw::pixels::Pixels;
+use crate::canvas::paint;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::pixel_box::PixelBox;
+use crate::sheet::{FRAME, INK, PAPER, SOFT_INK};
+use crate::text::TextStyle;
+use sandtable_draw::font::FontFile;
+use sandtable_draw::pixels::Pixels;
 
 /// Heights of the title's and of the captions' lines, and the gap between pictures, in design pixels.
 const TITLE: f32 = 58.0;
@@ -109,7 +109,7 @@ fn copy(from: &Pixels, to: &mut Pixels, [left, top]: [u32; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
+    use sandtable_draw::color::Srgba;
 
     #[test]
     fn pictures_have_the_sheet_s_shape_and_fill_it() {

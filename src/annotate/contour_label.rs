@@ -5,16 +5,16 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::{ContourMarks, LineLabel, LinePlacement, NumberedContour};
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::label_style::LineStyle;
-use crate::annotate::line_label::{LetterTop, PreparedLine};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelPlacer, LabelRequest};
-use crate::annotate::report::SheetBox;
-use crate::description::words::LabelKind;
-use crate::draw::pixels::Pixels;
+use crate::annotation::{ContourMarks, LineLabel, LinePlacement, NumberedContour};
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::label_style::LineStyle;
+use crate::line_label::{LetterTop, PreparedLine};
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::place::{LabelPlacer, LabelRequest};
+use crate::report::SheetBox;
+use sandtable_description::words::LabelKind;
+use sandtable_draw::pixels::Pixels;
 
 /// Rings narrower and lower than this carry no number, in pixels.
 const LEAST_RING_PX: f32 = 20.0;
@@ -133,8 +133,8 @@ fn off_ladder(top: &LetterTop, level: i64, placed: &[PlacedNumber], reach: f32, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::place::LabelField;
-    use crate::draw::color::Srgba;
+    use crate::place::LabelField;
+    use sandtable_draw::color::Srgba;
 
     const BROWN: Srgba = Srgba([112, 74, 40, 150]);
 
@@ -158,7 +158,7 @@ mod tests {
 
     /// The boxes of the numbers: every second mark is a patch.
     fn numbers(drawing: &Drawing) -> Vec<PixelBox> {
-        drawing.marks.iter().step_by(2).map(|mark| crate::annotate::drawing::box_of(&mark.path)).collect()
+        drawing.marks.iter().step_by(2).map(|mark| crate::drawing::box_of(&mark.path)).collect()
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::annotate::pixel_box::PixelBox;
+use crate::pixel_box::PixelBox;
 
 /// The side of the squares that are told apart, pixels: fine enough for panels of some hundred.
 const SIDE: u32 = 8;
@@ -28,7 +28,7 @@ impl SceneCover {
     }
 
     /// The share of a box within the picture that shows the scene, 0..=1; 0 of a box without a whole square.
-    pub(in crate::annotate) fn share(&self, area: &PixelBox) -> f32 {
+    pub(crate) fn share(&self, area: &PixelBox) -> f32 {
         let first = (area.min / SIDE as f32).ceil().as_uvec2().min(self.size);
         let end = (area.max / SIDE as f32).floor().as_uvec2().clamp(first, self.size);
         let squares =

@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::paragraph::written_lines;
-use crate::annotate::sheet::INK;
-use crate::annotate::text::TextStyle;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::paragraph::written_lines;
+use crate::sheet::INK;
+use crate::text::TextStyle;
 
 /// A credit cut shorter than this, in ems, names nobody and is left out.
 const SHORTEST_EM: f32 = 10.0;

@@ -6,10 +6,10 @@
 use glam::Vec2;
 use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Rect, Stroke, Transform};
 
-use crate::annotate::halo::Halo;
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, PANEL, Sheet};
-use crate::draw::color::Srgba;
+use crate::halo::Halo;
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::{FRAME, PANEL, Sheet};
+use sandtable_draw::color::Srgba;
 
 /// Outlines of strokes are approximated to this fraction of a pixel: at 1 the round joins of small type are visible
 /// polygons.

@@ -7,11 +7,11 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::halo::Halo;
-use crate::annotate::sheet::INK;
-use crate::annotate::text::{TextStyle, TypesetLine};
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::halo::Halo;
+use crate::sheet::INK;
+use crate::text::{TextStyle, TypesetLine};
 
 /// The size of plain numbers, of principal digits, and of the digits around them, in design pixels.
 const PLAIN: f32 = 14.0;
@@ -44,7 +44,7 @@ impl From<String> for CoordinateFigure {
 }
 
 /// A coordinate, typeset.
-pub(in crate::annotate) struct SetFigure {
+pub(crate) struct SetFigure {
     /// Lines with the starts of their baselines; the figure's lower left corner is the origin.
     parts: Vec<(TypesetLine, Vec2)>,
     /// Its width, and the height of its capitals.
@@ -52,7 +52,7 @@ pub(in crate::annotate) struct SetFigure {
 }
 
 impl CoordinateFigure {
-    pub(in crate::annotate) fn set(&self, composer: &mut Composer) -> SetFigure {
+    pub(crate) fn set(&self, composer: &mut Composer) -> SetFigure {
         match self {
             Self::Plain(text) => {
                 let line = composer.line(text, composer.style(PLAIN, TextStyle::REGULAR));

@@ -6,16 +6,16 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::OverlayText;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::fonts::FontCut;
-use crate::annotate::halo::Halo;
-use crate::annotate::paragraph::written_lines;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::{AnnotationReport, LabelOutcome};
-use crate::annotate::sheet::INK;
-use crate::annotate::text::TypesetLine;
+use crate::annotation::OverlayText;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::fonts::FontCut;
+use crate::halo::Halo;
+use crate::paragraph::written_lines;
+use crate::pixel_box::PixelBox;
+use crate::report::{AnnotationReport, LabelOutcome};
+use crate::sheet::INK;
+use crate::text::TypesetLine;
 
 /// More texts are not tried.
 const MOST_TEXTS: usize = 4096;

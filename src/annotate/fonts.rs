@@ -9,7 +9,7 @@ use std::sync::Arc;
 use parley::fontique::{Blob, Collection, FontInfoOverride};
 use parley::style::{FontFamily, FontFamilyName};
 
-use crate::draw::font::FontFile;
+use sandtable_draw::font::FontFile;
 
 /// A cut of the embedded family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,8 +91,8 @@ mod tests {
     use parley::layout::PositionedLayoutItem;
 
     use super::*;
-    use crate::annotate::composer::Composer;
-    use crate::annotate::text::TextStyle;
+    use crate::composer::Composer;
+    use crate::text::TextStyle;
 
     const HAN: &[u8] = include_bytes!("../../tests/fonts/han.ttf");
     const ARABIC: &[u8] = include_bytes!("../../tests/fonts/arabic.ttf");

@@ -6,13 +6,13 @@
 use glam::Vec2;
 use tiny_skia::PathBuilder;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::figure::CoordinateFigure;
-use crate::annotate::halo::Halo;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::text::TextStyle;
-use crate::draw::color::Srgba;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::figure::CoordinateFigure;
+use crate::halo::Halo;
+use crate::pixel_box::PixelBox;
+use crate::text::TextStyle;
+use sandtable_draw::color::Srgba;
 
 /// Widths of ordinary lines and of index lines, in design pixels.
 const WIDTHS: [f32; 2] = [0.9, 1.7];
@@ -77,7 +77,7 @@ pub struct SquareName {
 }
 
 /// The lines of a grid: first what lies below, ordinary lines, then index lines.
-pub(in crate::annotate) fn draw_lines(grid: &PictureGrid, composer: &Composer) -> Drawing {
+pub(crate) fn draw_lines(grid: &PictureGrid, composer: &Composer) -> Drawing {
     let sheet = composer.sheet;
     let mut drawing = Drawing::default();
     for (is_index, width) in [(false, WIDTHS[0]), (true, WIDTHS[1])] {
@@ -122,7 +122,7 @@ impl PictureSide {
 
 /// Where the numbers of lines stand that leave the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::annotate) enum FigurePlace {
+pub(crate) enum FigurePlace {
     /// On the picture, inside its border.
     Inside,
     /// Beside the picture, on the margin.
@@ -131,7 +131,7 @@ pub(in crate::annotate) enum FigurePlace {
 
 /// The numbers of the lines where they leave the picture, and the letters of squares: those that find a place off
 /// `taken` and off each other. The first of each axis on a side has its number in full.
-pub(in crate::annotate) fn draw_figures(
+pub(crate) fn draw_figures(
     grid: &PictureGrid,
     taken: &[PixelBox],
     place: FigurePlace,

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::{HALO, INK};
-use crate::draw::color::{Srgba, luminance};
-use crate::draw::pixels::Pixels;
+use crate::pixel_box::PixelBox;
+use crate::sheet::{HALO, INK};
+use sandtable_draw::color::{Srgba, luminance};
+use sandtable_draw::pixels::Pixels;
 
 /// The contrast of letters and halo, as WCAG 2.2, 1.4.3 asks of text.
 const LEAST_CONTRAST: f32 = 4.5;
@@ -113,7 +113,7 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::annotate::sheet::{SOFT_INK, WATER_INK};
+    use crate::sheet::{SOFT_INK, WATER_INK};
 
     #[test]
     fn letters_stand_out_of_their_halo_on_every_ground() {

@@ -2,15 +2,15 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::PictureLabel;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon};
-use crate::annotate::fonts::FontCut;
-use crate::annotate::halo::{Halo, worst_contrast};
-use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet, WATER_INK};
-use crate::annotate::text::TextStyle;
-use crate::description::words::LabelKind;
-use crate::draw::color::Srgba;
+use crate::annotation::PictureLabel;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polygon};
+use crate::fonts::FontCut;
+use crate::halo::{Halo, worst_contrast};
+use crate::sheet::{INK, PAPER, SOFT_INK, Sheet, WATER_INK};
+use crate::text::TextStyle;
+use sandtable_description::words::LabelKind;
+use sandtable_draw::color::Srgba;
 
 /// The look of a label at a place.
 pub struct LabelStyle {

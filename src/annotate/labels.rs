@@ -4,18 +4,18 @@
 //! line come after all names; a name that finds no place along its line is tried at a place then. The numbers of
 //! contour lines come last.
 
-use crate::annotate::annotation::{Annotations, LineLabel, PictureLabel};
-use crate::annotate::composer::Composer;
-use crate::annotate::contour_label::draw_contours;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::line_label::PreparedLine;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::place::{LabelCandidate, LabelField, LabelPlacer, LabelRequest};
-use crate::annotate::point_label::PreparedLabel;
-use crate::annotate::report::{AnnotationReport, LabelMove, LabelOutcome, SheetBox};
-use crate::annotate::sheet::Sheet;
-use crate::description::words::LabelKind;
-use crate::draw::pixels::Pixels;
+use crate::annotation::{Annotations, LineLabel, PictureLabel};
+use crate::composer::Composer;
+use crate::contour_label::draw_contours;
+use crate::drawing::Drawing;
+use crate::line_label::PreparedLine;
+use crate::pixel_box::PixelBox;
+use crate::place::{LabelCandidate, LabelField, LabelPlacer, LabelRequest};
+use crate::point_label::PreparedLabel;
+use crate::report::{AnnotationReport, LabelMove, LabelOutcome, SheetBox};
+use crate::sheet::Sheet;
+use sandtable_description::words::LabelKind;
+use sandtable_draw::pixels::Pixels;
 
 /// More labels are not tried: no picture has room for them, and the time grows with their number.
 const MOST_LABELS: usize = 4096;
@@ -309,8 +309,8 @@ impl<'a> SheetNames<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::annotation::samples::label;
-    use crate::draw::color::Srgba;
+    use crate::annotation::samples::label;
+    use sandtable_draw::color::Srgba;
 
     fn draw(labels: &[PictureLabel]) -> (Drawing, AnnotationReport) {
         let mut report = AnnotationReport::default();

@@ -4,16 +4,16 @@ use std::f32::consts::SQRT_2;
 
 use glam::Vec2;
 
-use crate::annotate::composer::{Composer, widest};
-use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{Ticks, format_trimmed};
-use crate::annotate::paragraph::written_lines;
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::{FRAME, INK, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextStyle, TypesetLine};
-use crate::draw::color::Srgba;
-use crate::draw::ground::ColorRamp;
-use crate::draw::hatching::{PITCH_PX, WIDTH_PX};
+use crate::composer::{Composer, widest};
+use crate::drawing::Drawing;
+use crate::nice::{Ticks, format_trimmed};
+use crate::paragraph::written_lines;
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::{FRAME, INK, SOFT_INK, Sheet};
+use crate::text::{CAP_HEIGHT, TextStyle, TypesetLine};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::ColorRamp;
+use sandtable_draw::hatching::{PITCH_PX, WIDTH_PX};
 
 /// Height of the ramp in design pixels.
 const RAMP_HEIGHT: f32 = 190.0;
@@ -45,7 +45,7 @@ pub struct Legend {
 
 /// The legend on its panel with the upper left corner at the origin; `None` where the range of heights is empty or not
 /// finite.
-pub(in crate::annotate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawing> {
+pub(crate) fn compose(legend: &Legend, composer: &mut Composer) -> Option<Drawing> {
     if !(legend.low_m < legend.high_m && (legend.high_m - legend.low_m).is_finite()) {
         return None;
     }
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn the_panel_holds_everything() {
         let drawing = draw(&legend()).expect("a range");
-        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

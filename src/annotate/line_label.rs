@@ -13,20 +13,20 @@
 use glam::Vec2;
 use tiny_skia::{PathBuilder, Transform};
 
-use crate::annotate::annotation::{LineLabel, LinePlacement};
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::halo::Halo;
-use crate::annotate::label_style::LineStyle;
-use crate::annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, SetLetter};
-use crate::annotate::paragraph::written_lines;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::place::{LabelCandidate, LabelRequest, TextAlignment};
-use crate::annotate::text::{CAP_HEIGHT, DESCENT, TypesetLetters};
-use crate::draw::pixels::Pixels;
-use crate::geom::polyline::Polyline;
-use crate::geom::rect::Rect;
-use crate::geom::smooth::smoothed;
+use crate::annotation::{LineLabel, LinePlacement};
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::halo::Halo;
+use crate::label_style::LineStyle;
+use crate::letter_course::{CourseLetter, LIMITS, LetterCourse, SetLetter};
+use crate::paragraph::written_lines;
+use crate::pixel_box::PixelBox;
+use crate::place::{LabelCandidate, LabelRequest, TextAlignment};
+use crate::text::{CAP_HEIGHT, DESCENT, TypesetLetters};
+use sandtable_draw::pixels::Pixels;
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::smooth::smoothed;
 
 /// A repeated name stands once in so much of the picture's width. Smaller, and names crowd the map; larger, and a reader
 /// loses the river that he follows.
@@ -333,8 +333,8 @@ impl LineSetter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::sheet::INK;
-    use crate::description::words::LabelKind;
+    use crate::sheet::INK;
+    use sandtable_description::words::LabelKind;
 
     fn label(path: Vec<Vec2>) -> LineLabel {
         LineLabel {

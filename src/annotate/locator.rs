@@ -2,12 +2,12 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon};
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::{HALO, INK};
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polygon};
+use crate::pixel_box::PixelBox;
+use crate::sheet::{HALO, INK};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// What the picture shows, on the relief.
 const SEEN: Srgba = Srgba([0xc8, 0x1e, 0x2a, 0x2c]);
@@ -25,7 +25,7 @@ pub struct LocatorMap {
 }
 
 /// What is drawn on the relief, whose upper left corner is the origin.
-pub(in crate::annotate) fn compose(locator: &LocatorMap, composer: &Composer) -> Drawing {
+pub(crate) fn compose(locator: &LocatorMap, composer: &Composer) -> Drawing {
     let sheet = composer.sheet;
     let size = Vec2::new(locator.relief.width() as f32, locator.relief.height() as f32);
     let area = PixelBox { min: Vec2::ZERO, max: size };

@@ -14,18 +14,18 @@
 
 use glam::Vec2;
 
-use crate::annotate::canvas::paint;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polyline};
-use crate::annotate::legend::{self, Legend};
-use crate::annotate::north::{self, NorthArrow};
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::AnnotationReport;
-use crate::annotate::scale_bar;
-use crate::annotate::sheet::{FRAME, HALO, INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::TextStyle;
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::canvas::paint;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polyline};
+use crate::legend::{self, Legend};
+use crate::north::{self, NorthArrow};
+use crate::pixel_box::PixelBox;
+use crate::report::AnnotationReport;
+use crate::scale_bar;
+use crate::sheet::{FRAME, HALO, INK, PAPER, SOFT_INK, Sheet};
+use crate::text::TextStyle;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// Width of the column beside the map, in design pixels.
 const COLUMN: f32 = 268.0;
@@ -210,7 +210,7 @@ fn tints(entries: &[(Srgba, String)], width: f32, composer: &mut Composer) -> Dr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::ground::ColorRamp;
+    use sandtable_draw::ground::ColorRamp;
 
     fn furniture() -> MapFurniture {
         MapFurniture {

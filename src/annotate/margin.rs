@@ -4,20 +4,20 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::Annotations;
-use crate::annotate::class_legend;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::locator::{self, LocatorMap};
-use crate::annotate::norths::{self, ThreeNorths};
-use crate::annotate::paragraph::written_lines;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::FurnitureKind;
-use crate::annotate::sheet::{INK, SOFT_INK};
-use crate::annotate::sheet_frame::SheetFrame;
-use crate::annotate::text::TextStyle;
-use crate::annotate::{legend, north, scale_bar};
-use crate::draw::pixels::Pixels;
+use crate::annotation::Annotations;
+use crate::class_legend;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::locator::{self, LocatorMap};
+use crate::norths::{self, ThreeNorths};
+use crate::paragraph::written_lines;
+use crate::pixel_box::PixelBox;
+use crate::report::FurnitureKind;
+use crate::sheet::{INK, SOFT_INK};
+use crate::sheet_frame::SheetFrame;
+use crate::text::TextStyle;
+use crate::{legend, north, scale_bar};
+use sandtable_draw::pixels::Pixels;
 
 /// Lines of facts and of sources at most.
 const MOST_LINES: usize = 4;
@@ -44,7 +44,7 @@ pub struct MarginNotes {
 }
 
 /// The furniture of a margin.
-pub(in crate::annotate) struct SetMargin {
+pub(crate) struct SetMargin {
     /// Everything drawn.
     pub drawing: Drawing,
     /// A picture that is part of it, and its upper left corner.
@@ -54,7 +54,7 @@ pub(in crate::annotate) struct SetMargin {
 }
 
 /// Lays out the margin of a page; coordinates are those of the page.
-pub(in crate::annotate) fn compose(
+pub(crate) fn compose(
     notes: &MarginNotes,
     annotations: &Annotations,
     composer: &mut Composer,

@@ -7,11 +7,11 @@
 use glam::Vec2;
 use tiny_skia::{Path, PathBuilder, Rect};
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon, polyline};
-use crate::annotate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, TextStyle};
-use crate::view::camera::Camera;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polygon, polyline};
+use crate::sheet::{FRAME, HALO, INK, PANEL, PAPER, Sheet};
+use crate::text::{CAP_HEIGHT, TextStyle};
+use sandtable_view::camera::Camera;
 
 /// The least tilt of a legible needle; views nearer the horizon are drawn with this tilt.
 const FLATTEST: f32 = 0.4;
@@ -44,7 +44,7 @@ impl NorthArrow {
 }
 
 /// The arrow around the origin; `None` where its direction is zero or not finite.
-pub(in crate::annotate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Drawing> {
+pub(crate) fn compose(arrow: &NorthArrow, composer: &mut Composer) -> Option<Drawing> {
     let sheet = composer.sheet;
     let plane = ArrowPlane::new(arrow, sheet.px(RADIUS))?;
     let mut drawing = Drawing::default();
@@ -60,7 +60,7 @@ pub(in crate::annotate) fn compose(arrow: &NorthArrow, composer: &mut Composer) 
 }
 
 /// The farthest that the arrow reaches from its center in any direction: its distance from the border.
-pub(in crate::annotate) fn reach(sheet: &Sheet) -> f32 {
+pub(crate) fn reach(sheet: &Sheet) -> f32 {
     let letter = sheet.type_px(LETTER_SIZE) * (CAP_HEIGHT + LETTER_GAP) + letter_halo(sheet);
     (sheet.px(RADIUS) + letter).ceil()
 }

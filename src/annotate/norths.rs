@@ -5,12 +5,12 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon};
-use crate::annotate::nice::format_number;
-use crate::annotate::pixel_box::PixelSegment;
-use crate::annotate::sheet::{INK, SOFT_INK};
-use crate::annotate::text::TextStyle;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polygon};
+use crate::nice::format_number;
+use crate::pixel_box::PixelSegment;
+use crate::sheet::{INK, SOFT_INK};
+use crate::text::TextStyle;
 
 /// The length of a line, in design pixels.
 const LENGTH: f32 = 64.0;
@@ -29,7 +29,7 @@ pub struct ThreeNorths {
 }
 
 /// The diagram with its upper left corner near the origin.
-pub(in crate::annotate) fn compose(norths: &ThreeNorths, composer: &mut Composer) -> Drawing {
+pub(crate) fn compose(norths: &ThreeNorths, composer: &mut Composer) -> Drawing {
     let sheet = composer.sheet;
     let length = sheet.px(LENGTH);
     let foot = Vec2::new(length * 0.75, length + sheet.px(26.0));

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::pixel_box::{PixelBox, PixelSegment};
 
 /// The side of a cell in pixels: about the length of a short name.
 const CELL_PX: f32 = 64.0;

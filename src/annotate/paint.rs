@@ -2,21 +2,21 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::Annotations;
-use crate::annotate::canvas::paint;
-use crate::annotate::composer::Composer;
-use crate::annotate::cover::SceneCover;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::fixed_text::draw_fixed;
-use crate::annotate::grid::FigurePlace;
-use crate::annotate::labels::draw_labels;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::report::{AnnotationReport, FurnitureKind};
-use crate::annotate::sheet::{PAPER, Sheet};
-use crate::annotate::symbols::draw_symbols;
-use crate::annotate::{class_legend, credit, grid, legend, margin, north, rim, scale_bar, title};
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use crate::annotation::Annotations;
+use crate::canvas::paint;
+use crate::composer::Composer;
+use crate::cover::SceneCover;
+use crate::drawing::Drawing;
+use crate::fixed_text::draw_fixed;
+use crate::grid::FigurePlace;
+use crate::labels::draw_labels;
+use crate::pixel_box::PixelBox;
+use crate::report::{AnnotationReport, FurnitureKind};
+use crate::sheet::{PAPER, Sheet};
+use crate::symbols::draw_symbols;
+use crate::{class_legend, credit, grid, legend, margin, north, rim, scale_bar, title};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// Furniture larger than this share of the picture, in width or height, would hide what it explains.
 const LARGEST_SHARE: Vec2 = Vec2::new(0.63, 0.52);
@@ -26,7 +26,7 @@ pub struct ComposedSheet {
     /// The picture, on paper where the sheet has a margin.
     pub pixels: Pixels,
     /// What is painted on it, in order.
-    pub(in crate::annotate) drawings: Vec<Drawing>,
+    pub(crate) drawings: Vec<Drawing>,
 }
 
 impl ComposedSheet {

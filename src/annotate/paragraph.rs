@@ -1,7 +1,7 @@
 //! Fits text: removes characters that cannot be printed, cuts lines with an ellipsis, breaks lines between words.
 
-use crate::annotate::composer::Composer;
-use crate::annotate::text::{TextStyle, TypesetLine};
+use crate::composer::Composer;
+use crate::text::{TextStyle, TypesetLine};
 
 #[derive(Clone, Debug)]
 pub struct Paragraph {
@@ -99,7 +99,7 @@ impl Composer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::composer::widest;
+    use crate::composer::widest;
 
     const FACE: TextStyle = TextStyle::new(20.0, TextStyle::REGULAR);
 

@@ -17,10 +17,10 @@ use skrifa::instance::{LocationRef, Size as FontSize};
 use skrifa::{FontRef, MetadataProvider};
 use tiny_skia::PathSegment;
 
-use crate::annotate::drawing::{Drawing, PaintedPath};
-use crate::annotate::fonts::FontCut;
-use crate::annotate::paint::ComposedSheet;
-use crate::draw::color::Srgba;
+use crate::drawing::{Drawing, PaintedPath};
+use crate::fonts::FontCut;
+use crate::paint::ComposedSheet;
+use sandtable_draw::color::Srgba;
 
 /// Points per inch.
 const POINTS: f32 = 72.0;
@@ -138,10 +138,10 @@ impl HiddenFont {
 
 #[cfg(test)]
 mod tests {
-    use crate::annotate::annotation::Annotations;
-    use crate::annotate::paint::compose_sheet;
-    use crate::draw::color::Srgba;
-    use crate::draw::pixels::Pixels;
+    use crate::annotation::Annotations;
+    use crate::paint::compose_sheet;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::pixels::Pixels;
 
     #[test]
     fn a_sheet_gives_the_same_bytes_twice_and_its_size_is_that_of_the_print() {

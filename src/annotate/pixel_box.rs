@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use crate::geom::rect::Rect;
+use sandtable_geom::rect::Rect;
 
 /// An upright rectangle on the picture; empty where `min` is not below `max` on both axes.
 #[derive(Clone, Copy, Debug, PartialEq)]

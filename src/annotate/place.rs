@@ -8,8 +8,8 @@
 //! It looks one step ahead: a candidate that would cover the symbol of a later label is taken only where no other
 //! candidate is free.
 
-use crate::annotate::occupied::{OccupiedShape, OccupiedSheet};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
+use crate::occupied::{OccupiedShape, OccupiedSheet};
+use crate::pixel_box::{PixelBox, PixelSegment};
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelCandidate {

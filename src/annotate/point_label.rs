@@ -2,20 +2,20 @@
 
 use glam::Vec2;
 
-use crate::annotate::annotation::PictureLabel;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::halo::Halo;
-use crate::annotate::label_style::LabelStyle;
-use crate::annotate::paragraph::{Paragraph, written_lines};
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, LabelRequest, TextAlignment};
-use crate::annotate::positions::LabelMetrics;
-use crate::annotate::report::LabelOutcome;
-use crate::annotate::sheet::Sheet;
-use crate::annotate::text::{TextStyle, TypesetLine};
-use crate::description::words::LabelKind;
-use crate::draw::pixels::Pixels;
+use crate::annotation::PictureLabel;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::halo::Halo;
+use crate::label_style::LabelStyle;
+use crate::paragraph::{Paragraph, written_lines};
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::place::{LabelCandidate, LabelRequest, TextAlignment};
+use crate::positions::LabelMetrics;
+use crate::report::LabelOutcome;
+use crate::sheet::Sheet;
+use crate::text::{TextStyle, TypesetLine};
+use sandtable_description::words::LabelKind;
+use sandtable_draw::pixels::Pixels;
 
 /// Lines of a label that are drawn; more would hide what they name.
 const MOST_LINES: usize = 4;
@@ -165,7 +165,7 @@ fn uprighted(line: PixelSegment) -> PixelSegment {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::annotation::samples::label;
+    use crate::annotation::samples::label;
 
     #[test]
     fn a_leader_goes_up_whatever_the_top_says() {

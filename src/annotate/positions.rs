@@ -23,8 +23,8 @@
 
 use glam::Vec2;
 
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::place::{LabelCandidate, TextAlignment};
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::place::{LabelCandidate, TextAlignment};
 
 /// The measures from which the candidates of a label are made, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use glam::Vec2;
 
-use crate::annotate::drawing::DrawnText;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::place::LabelCandidate;
+use crate::drawing::DrawnText;
+use crate::pixel_box::PixelBox;
+use crate::place::LabelCandidate;
 
 /// A piece of furniture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -68,12 +68,12 @@ pub struct SheetBox {
 
 impl SheetBox {
     /// The boxes of a label's text, letters and symbol.
-    pub(in crate::annotate) fn of(text: &str, candidate: &LabelCandidate) -> Vec<Self> {
+    pub(crate) fn of(text: &str, candidate: &LabelCandidate) -> Vec<Self> {
         let one = |area: &PixelBox| Self { text: Some(text.to_owned()), min: area.min, max: area.max };
         candidate.boxes().map(one).collect()
     }
 
-    pub(in crate::annotate) fn of_furniture(area: &PixelBox) -> Self {
+    pub(crate) fn of_furniture(area: &PixelBox) -> Self {
         Self { text: None, min: area.min, max: area.max }
     }
 }
@@ -113,7 +113,7 @@ pub struct SymbolReport {
 
 /// What becomes of a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::annotate) enum LabelOutcome {
+pub(crate) enum LabelOutcome {
     Placed(Option<LabelMove>),
     Hidden,
     Outside,
@@ -122,7 +122,7 @@ pub(in crate::annotate) enum LabelOutcome {
 }
 
 impl LabelOutcome {
-    pub(in crate::annotate) fn report(self, text: &str, report: &mut AnnotationReport) {
+    pub(crate) fn report(self, text: &str, report: &mut AnnotationReport) {
         match self {
             Self::Placed(moved) => {
                 report.placed.push(text.to_owned());
@@ -146,7 +146,7 @@ pub struct MissingGlyphs {
 }
 
 impl AnnotationReport {
-    pub(in crate::annotate) fn add_texts(&mut self, texts: &[DrawnText]) {
+    pub(crate) fn add_texts(&mut self, texts: &[DrawnText]) {
         for DrawnText { text, missing, shortened } in texts {
             if *missing > 0 {
                 self.missing_glyphs.push(MissingGlyphs { text: text.clone(), count: *missing });

@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::figure::CoordinateFigure;
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::sheet::INK;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::figure::CoordinateFigure;
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::sheet::INK;
 
 /// The length of a tick, and the gap between it and the number, in design pixels.
 const TICK: f32 = 8.0;
@@ -27,7 +27,7 @@ pub struct RimMark {
 
 /// Draws the marks that fit: inside the margin, off the furniture in `taken`, and off each other, the first before the
 /// later. Returns one drawing per mark that is drawn.
-pub(in crate::annotate) fn draw_marks(
+pub(crate) fn draw_marks(
     marks: &[RimMark],
     taken: &[PixelBox],
     composer: &mut Composer,

@@ -11,13 +11,13 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::nice::{NiceNumber, format_distance, format_number, format_trimmed, grouped};
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::{INK, PAPER, SOFT_INK, Sheet};
-use crate::annotate::text::{CAP_HEIGHT, DESCENT, TextStyle, TypesetLine};
-use crate::view::camera::Camera;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::nice::{NiceNumber, format_distance, format_number, format_trimmed, grouped};
+use crate::pixel_box::PixelBox;
+use crate::sheet::{INK, PAPER, SOFT_INK, Sheet};
+use crate::text::{CAP_HEIGHT, DESCENT, TextStyle, TypesetLine};
+use sandtable_view::camera::Camera;
 
 /// Longest bar, in design pixels. Nice lengths are at most 2.5 times apart, so that bars are at least 104 long.
 const LONGEST: f32 = 260.0;
@@ -109,7 +109,7 @@ fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
 
 /// The scale bar on its panel with the upper left corner at the origin, and `grid` under its note; `None` where the scale
 /// is unusable.
-pub(in crate::annotate) fn compose(
+pub(crate) fn compose(
     bar: &ScaleBar,
     grid: Option<&str>,
     composer: &mut Composer,
@@ -122,7 +122,7 @@ pub(in crate::annotate) fn compose(
 }
 
 /// The scale bar of a map, which has one scale everywhere; otherwise as [`compose`], no longer than `longest_px`.
-pub(in crate::annotate) fn compose_on_map(
+pub(crate) fn compose_on_map(
     pixels_per_meter: f32,
     longest_px: f32,
     composer: &mut Composer,

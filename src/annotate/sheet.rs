@@ -5,8 +5,8 @@
 
 use glam::Vec2;
 
-use crate::annotate::pixel_box::PixelBox;
-use crate::draw::color::Srgba;
+use crate::pixel_box::PixelBox;
+use sandtable_draw::color::Srgba;
 
 /// Letters and lines.
 pub const INK: Srgba = Srgba::opaque(0x1e, 0x23, 0x27);
@@ -89,7 +89,7 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::luminance;
+    use sandtable_draw::color::luminance;
 
     #[test]
     fn sizes_are_as_designed_at_1080_double_at_4k_and_legible_at_270() {

@@ -17,9 +17,9 @@
 
 use glam::{UVec2, Vec2};
 
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::Sheet;
-use crate::description::words::SheetLayout;
+use crate::pixel_box::PixelBox;
+use crate::sheet::Sheet;
+use sandtable_description::words::SheetLayout;
 
 /// Sizes in design pixels: from the page's edge; of a banner; of title and subtitle; of the numbers round the picture; of
 /// the line of facts; the width of a column; the height of columns under the picture.
@@ -38,14 +38,14 @@ const LEAST: f32 = 48.0;
 /// The parts of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetFrame {
-    pub(in crate::annotate) page: UVec2,
+    pub(crate) page: UVec2,
     /// The picture, in whole pixels.
-    pub(in crate::annotate) picture: PixelBox,
-    pub(in crate::annotate) head: PixelBox,
-    pub(in crate::annotate) foot: PixelBox,
-    pub(in crate::annotate) columns: Vec<PixelBox>,
+    pub(crate) picture: PixelBox,
+    pub(crate) head: PixelBox,
+    pub(crate) foot: PixelBox,
+    pub(crate) columns: Vec<PixelBox>,
     /// The bands above and below all else; empty without a classification.
-    pub(in crate::annotate) banners: Vec<PixelBox>,
+    pub(crate) banners: Vec<PixelBox>,
 }
 
 impl SheetFrame {

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use tiny_skia::PathSegment;
 
-use crate::annotate::drawing::PaintedPath;
-use crate::annotate::paint::ComposedSheet;
-use crate::message::xml::escaped;
+use crate::drawing::PaintedPath;
+use crate::paint::ComposedSheet;
+use sandtable_base::message::xml::escaped;
 
 /// Millimeters per inch.
 const INCH_MM: f32 = 25.4;
@@ -65,10 +65,10 @@ fn write_path(mark: &PaintedPath, svg: &mut String) {
 
 #[cfg(test)]
 mod tests {
-    use crate::annotate::annotation::Annotations;
-    use crate::annotate::paint::compose_sheet;
-    use crate::draw::color::Srgba;
-    use crate::draw::pixels::Pixels;
+    use crate::annotation::Annotations;
+    use crate::paint::compose_sheet;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::pixels::Pixels;
 
     #[test]
     fn texts_that_look_like_markup_are_escaped_and_sizes_are_those_of_the_print() {

@@ -3,17 +3,17 @@
 use glam::Vec2;
 use tiny_skia::{LineCap, LineJoin, Path, PathBuilder, Stroke, StrokeDash};
 
-use crate::annotate::annotation::PictureSymbol;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::Drawing;
-use crate::annotate::halo::Halo;
-use crate::annotate::pixel_box::PixelBox;
-use crate::annotate::sheet::{HALO, INK};
-use crate::annotate::text::{TextStyle, TypesetLine};
-use crate::draw::color::Srgba;
-use crate::symbology::drawing::{PathStep, SymbolMark, SymbolPen};
-use crate::symbology::symbol::MilitarySymbol;
-use crate::symbology::texts::{SymbolNote, TextPlace};
+use crate::annotation::PictureSymbol;
+use crate::composer::Composer;
+use crate::drawing::Drawing;
+use crate::halo::Halo;
+use crate::pixel_box::PixelBox;
+use crate::sheet::{HALO, INK};
+use crate::text::{TextStyle, TypesetLine};
+use sandtable_draw::color::Srgba;
+use sandtable_symbology::drawing::{PathStep, SymbolMark, SymbolPen};
+use sandtable_symbology::symbol::MilitarySymbol;
+use sandtable_symbology::texts::{SymbolNote, TextPlace};
 
 /// Outlines of strokes are approximated to this fraction of a pixel.
 const STROKE_PRECISION: f32 = 4.0;
@@ -61,7 +61,7 @@ impl SymbolBlock {
 
 /// A symbol without the text round it, its middle at the origin, `unit_px` pixels a unit of its box; on a halo that reaches so
 /// many pixels, if any.
-pub(in crate::annotate) fn symbol_marks(
+pub(crate) fn symbol_marks(
     symbol: &MilitarySymbol,
     unit_px: f32,
     halo: Option<f32>,

@@ -15,15 +15,15 @@
 use glam::Vec2;
 use tiny_skia::{Stroke, StrokeDash};
 
-use crate::annotate::annotation::PictureSymbol;
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, polygon, polyline};
-use crate::annotate::halo::Halo;
-use crate::annotate::pixel_box::{PixelBox, PixelSegment};
-use crate::annotate::report::SymbolReport;
-use crate::annotate::sheet::{HALO, Sheet};
-use crate::annotate::symbol_drawing::SymbolBlock;
-use crate::draw::color::Srgba;
+use crate::annotation::PictureSymbol;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, polygon, polyline};
+use crate::halo::Halo;
+use crate::pixel_box::{PixelBox, PixelSegment};
+use crate::report::SymbolReport;
+use crate::sheet::{HALO, Sheet};
+use crate::symbol_drawing::SymbolBlock;
+use sandtable_draw::color::Srgba;
 
 /// The staff's length, in heights of a friendly unit's frame, in the order of preference.
 const STAFF_LENGTHS: [f32; 7] = [0.45, 1.1, 1.9, 2.8, 3.8, 5.0, 6.5];
@@ -314,10 +314,10 @@ impl SymbolField {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::annotate::annotation::SymbolHeight;
-    use crate::symbology::code::SymbolCode;
-    use crate::symbology::symbol::MilitarySymbol;
-    use crate::symbology::texts::{SymbolNote, TextPlace};
+    use crate::annotation::SymbolHeight;
+    use sandtable_symbology::code::SymbolCode;
+    use sandtable_symbology::symbol::MilitarySymbol;
+    use sandtable_symbology::texts::{SymbolNote, TextPlace};
 
     fn symbol(name: &str, code: &str, x: f32, y: f32) -> PictureSymbol {
         let code = SymbolCode::parse(code).expect(code);

@@ -14,12 +14,12 @@ use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 use tiny_skia::{Path, PathBuilder};
 
-use crate::annotate::composer::Composer;
-use crate::annotate::drawing::{Drawing, box_of};
-use crate::annotate::fonts::{FontCut, is_joined};
-use crate::annotate::halo::Halo;
-use crate::annotate::pixel_box::PixelBox;
-use crate::draw::color::Srgba;
+use crate::composer::Composer;
+use crate::drawing::{Drawing, box_of};
+use crate::fonts::{FontCut, is_joined};
+use crate::halo::Halo;
+use crate::pixel_box::PixelBox;
+use sandtable_draw::color::Srgba;
 
 /// Height of capitals and figures above the baseline, in ems of the embedded font.
 pub const CAP_HEIGHT: f32 = 0.714;

@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
-use crate::annotate::composer::{Composer, widest};
-use crate::annotate::drawing::Drawing;
-use crate::annotate::paragraph::Paragraph;
-use crate::annotate::sheet::{INK, SOFT_INK, Sheet};
-use crate::annotate::text::TextStyle;
+use crate::composer::{Composer, widest};
+use crate::drawing::Drawing;
+use crate::paragraph::Paragraph;
+use crate::sheet::{INK, SOFT_INK, Sheet};
+use crate::text::TextStyle;
 
 /// The greatest width of the block, as a share of the picture's: the rest is left to the view and the north arrow.
 const WIDEST_SHARE: f32 = 0.62;
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn the_block_holds_its_letters() {
         let drawing = block(Some("Cross Mountain, jgpqy"), Some("Ångström")).expect("a title");
-        let panel = drawing.marks.first().map(|mark| crate::annotate::drawing::box_of(&mark.path));
+        let panel = drawing.marks.first().map(|mark| crate::drawing::box_of(&mark.path));
         assert_eq!(panel, Some(drawing.bounds()));
     }
 

@@ -1,7 +1,7 @@
 //! The address space that `ulimit -v` leaves: a command that could not end well in it is refused before it begins.
 //!
 //! An allocation that fails ends a program by a signal. What is large is asked for by
-//! [its size](crate::limits::memory); what is small is asked for here, all together: each command has a floor of what it was
+//! [its size](sandtable_base::limits::memory); what is small is asked for here, all together: each command has a floor of what it was
 //! measured to need beside that, and uses no more threads than fit above it.
 //!
 //! The C library GNU gives each thread an arena of its own, which takes 128 MiB of addresses while it is made and 64 MiB after,
@@ -11,9 +11,9 @@
 
 use std::fs;
 
-use crate::cli::arguments::{Command, DemCommand};
-use crate::cli::error::CliError;
-use crate::cli::threads;
+use crate::arguments::{Command, DemCommand};
+use crate::error::CliError;
+use crate::threads;
 
 const MIB: u64 = 1 << 20;
 

@@ -2,38 +2,38 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::cli::check::CheckArguments;
-use crate::cli::convert::ConvertArguments;
-use crate::cli::dem_info::DemInfoArguments;
-use crate::cli::explain::ExplainArguments;
-use crate::cli::export::ExportArguments;
-use crate::cli::fly::FlyArguments;
-use crate::cli::gather::GatherArguments;
-use crate::cli::grid::GridArguments;
-use crate::cli::height::HeightQueryArguments;
-use crate::cli::limit::{StatedLimit, stated_limit};
-use crate::cli::lod::LodArguments;
-use crate::cli::los::LosArguments;
-use crate::cli::mesh::MeshArguments;
-use crate::cli::model::ModelArguments;
-use crate::cli::new::NewArguments;
-use crate::cli::pick::PickArguments;
-use crate::cli::plan::PlanCommand;
-use crate::cli::profile::ProfileArguments;
-use crate::cli::render::RenderArguments;
-use crate::cli::report::ReportArguments;
-use crate::cli::serve::ServeArguments;
-use crate::cli::view::ViewArguments;
-use crate::cli::viewshed::ViewshedArguments;
-use crate::cli::work::WorkArguments;
-use crate::remote::address::AllowedHost;
+use crate::check::CheckArguments;
+use crate::convert::ConvertArguments;
+use crate::dem_info::DemInfoArguments;
+use crate::explain::ExplainArguments;
+use crate::export::ExportArguments;
+use crate::fly::FlyArguments;
+use crate::gather::GatherArguments;
+use crate::grid::GridArguments;
+use crate::height::HeightQueryArguments;
+use crate::limit::{StatedLimit, stated_limit};
+use crate::lod::LodArguments;
+use crate::los::LosArguments;
+use crate::mesh::MeshArguments;
+use crate::model::ModelArguments;
+use crate::new::NewArguments;
+use crate::pick::PickArguments;
+use crate::plan::PlanCommand;
+use crate::profile::ProfileArguments;
+use crate::render::RenderArguments;
+use crate::report::ReportArguments;
+use crate::serve::ServeArguments;
+use crate::view::ViewArguments;
+use crate::viewshed::ViewshedArguments;
+use crate::work::WorkArguments;
+use sandtable_remote::address::AllowedHost;
 
 /// Builds digital terrain models from scene files and renders annotated pictures of them.
 #[derive(Debug, Parser)]
 #[command(name = "sandtable", version, propagate_version = true)]
 #[command(after_help = "Exit codes: 0 done, 1 the input is wrong, 2 wrong usage.")]
 pub struct Arguments {
-    /// Set a limit on input or work, as in raster-samples=1G; src/LIMITS.md lists them
+    /// Set a limit on input or work, as in raster-samples=1G; src/base/LIMITS.md lists them
     #[arg(long, global = true, value_name = "NAME=VALUE", value_parser = stated_limit)]
     pub limit: Vec<StatedLimit>,
     /// Let elevation be read by its address from HOST, in a build with the feature `cloud`

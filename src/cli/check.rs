@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
-use crate::cli::output::{print, print_lines, row};
-use crate::cli::progress::StepTimer;
-use crate::cli::values::choice;
-use crate::description::finding::{Finding, Severity};
-use crate::description::source_place::SourcePlace;
-use crate::message::choice::{Choice, ChoiceWord, word};
-use crate::pipeline::scene_file::open_linted;
-use crate::scene::SceneModel;
-use crate::scene::views::whole_meters;
+use crate::error::CliError;
+use crate::options::SceneArguments;
+use crate::output::{print, print_lines, row};
+use crate::progress::StepTimer;
+use crate::values::choice;
+use sandtable_description::finding::{Finding, Severity};
+use sandtable_description::source_place::SourcePlace;
+use sandtable_base::message::choice::{Choice, ChoiceWord, word};
+use sandtable_lint::opened::open_linted;
+use sandtable_scene::SceneModel;
+use sandtable_scene::views::whole_meters;
 
 /// The most notes that are printed: as many as fit on a screen beside the rest.
 const MOST_NOTES: usize = 20;

@@ -5,26 +5,24 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::error::CliError;
-use crate::cli::options::HeightArguments;
-use crate::cli::output::{print_lines, row};
-use crate::cli::output_format::raster_format;
-use crate::cli::progress::StepTimer;
-use crate::cli::values::number;
-use crate::dem::formats::DemFormat;
-use crate::dem::read::DemOptions;
-use crate::dem::warp::WarpError;
-use crate::dem::warp::reproject::Resampling;
-use crate::dem::windows::MOST_KEPT_SAMPLES;
-use crate::dem::write::{WrittenDem, WrittenWindows};
-use crate::geom::crs::Crs;
-use crate::limits::RASTER_SAMPLES;
-use crate::message::chain::error_text;
-use crate::pipeline::convert::{
-    ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
-};
-use crate::pipeline::dem::{self, OpenedDem};
-use crate::pipeline::raster_file;
+use crate::error::CliError;
+use crate::options::HeightArguments;
+use crate::output::{print_lines, row};
+use crate::output_format::raster_format;
+use crate::progress::StepTimer;
+use crate::values::number;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::read::DemOptions;
+use sandtable_dem::warp::WarpError;
+use sandtable_dem::warp::reproject::Resampling;
+use sandtable_dem::windows::MOST_KEPT_SAMPLES;
+use sandtable_dem::write::{WrittenDem, WrittenWindows};
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::message::chain::error_text;
+use sandtable_query::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows};
+use sandtable_query::dem::{self, OpenedDem};
+use sandtable_files::raster_file;
 
 #[derive(Debug, Args)]
 #[command(

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::error::CliError;
-use crate::cli::options::HeightArguments;
-use crate::cli::output::{print, print_lines, row};
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Raster;
-use crate::dem::stats::Stats;
-use crate::dem::void_counts::VoidCounts;
-use crate::limits::RASTER_SAMPLES;
-use crate::pipeline::dem::{self, OpenedDem};
-use crate::pipeline::error::FileError;
+use crate::error::CliError;
+use crate::options::HeightArguments;
+use crate::output::{print, print_lines, row};
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::raster::Raster;
+use sandtable_dem::stats::Stats;
+use sandtable_dem::void_counts::VoidCounts;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_query::dem::{self, OpenedDem};
+use sandtable_files::error::FileError;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\

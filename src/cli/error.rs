@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fmt::Display;
 use std::process::ExitCode;
 
-use crate::cli::output::warn;
-use crate::message::chain::error_text;
-use crate::pipeline::error::diagnostics_text;
+use crate::output::warn;
+use sandtable_base::message::chain::error_text;
+use sandtable_files::error::diagnostics_text;
 
 /// Why a command stopped.
 #[derive(Debug)]

@@ -2,10 +2,10 @@
 
 use clap::Args;
 
-use crate::cli::error::CliError;
-use crate::cli::output::{aligned, print_lines};
-use crate::description::finding_code::FindingCode;
-use crate::message::suggest::{nearest, quoted};
+use crate::error::CliError;
+use crate::output::{aligned, print_lines};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_base::message::suggest::{nearest, quoted};
 
 /// The characters of a line of text.
 const WIDTH: usize = 100;

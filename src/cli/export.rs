@@ -5,17 +5,17 @@ use std::slice::from_ref;
 
 use clap::Args;
 
-use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
-use crate::cli::output::{print_lines, row};
-use crate::cli::output_format::output_format;
-use crate::cli::progress::StepTimer;
-use crate::cli::values::number;
-use crate::pipeline::export::{ExportFormat, export};
-use crate::pipeline::files;
-use crate::pipeline::page::export_page;
-use crate::pipeline::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
-use crate::pipeline::scene_file::{open_scene, open_scene_true_to_scale};
+use crate::error::CliError;
+use crate::options::SceneArguments;
+use crate::output::{print_lines, row};
+use crate::output_format::output_format;
+use crate::progress::StepTimer;
+use crate::values::number;
+use sandtable_export::scene_export::{ExportFormat, export};
+use sandtable_files::disk;
+use sandtable_export::scene_page::export_page;
+use sandtable_export::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
+use sandtable_scene::scene_file::{open_scene, open_scene_true_to_scale};
 
 /// The largest error of exported ground in meters, where none is stated.
 const MAX_ERROR_M: f64 = 1.0;
@@ -132,7 +132,7 @@ fn run_print(arguments: &ExportArguments, format: PrintFormat) -> Result<(), Cli
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
     let scene = open_scene(&scene.scene, &scene.access.allow, &progress)?;
-    files::check_output(out, &scene.files)?;
+    disk::check_output(out, &scene.files)?;
     let size =
         PrintSize { side_mm: arguments.side.unwrap_or(SIDE_MM), bed_mm: arguments.bed.unwrap_or(BED_MM) };
     let model = print_model(&scene, size, &progress)

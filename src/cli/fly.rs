@@ -5,16 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
-use crate::cli::output::{print_lines, row};
-use crate::cli::progress::StepTimer;
-use crate::cli::values::{choice, number, picture_size};
-use crate::limits::FLIGHT_FRAMES;
-use crate::pipeline::fly::{FlyOptions, fly_to_file, fly_to_folder};
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::scene_file::open_scene_with_flight;
-use crate::render::RenderBackend;
+use crate::error::CliError;
+use crate::options::SceneArguments;
+use crate::output::{print_lines, row};
+use crate::progress::StepTimer;
+use crate::values::{choice, number, picture_size};
+use sandtable_base::limits::FLIGHT_FRAMES;
+use sandtable_walk::fly::{FlyOptions, fly_to_file, fly_to_folder};
+use sandtable_sheet::picture::PictureSize;
+use sandtable_walk::flown_scene::open_scene_with_flight;
+use crate::backend::BackendName;
+use sandtable_render::OtherRenderer;
 
 #[derive(Debug, Args)]
 #[command(
@@ -40,11 +41,11 @@ pub struct FlyArguments {
     #[arg(long, value_name = "SECONDS", value_parser = number::<f64>(0.01..=3600.0, "write seconds as a number from 0.01 to 3600"))]
     pub seconds: Option<f64>,
     /// What draws: the processor, the same on every machine, or a graphics adapter
-    #[arg(long, default_value = "cpu", value_parser = choice::<RenderBackend>())]
-    pub backend: RenderBackend,
+    #[arg(long, default_value = "cpu", value_parser = choice::<BackendName>())]
+    pub backend: BackendName,
 }
 
-pub fn run(arguments: &FlyArguments) -> Result<(), CliError> {
+pub fn run(arguments: &FlyArguments, gpu: Option<OtherRenderer>) -> Result<(), CliError> {
     let SceneArguments { scene: file, access } = &arguments.scene;
     let steps = StepTimer::default();
     let progress = |step| steps.begin(step);
@@ -62,7 +63,7 @@ pub fn run(arguments: &FlyArguments) -> Result<(), CliError> {
         size: arguments.size,
         frames: frames as u32,
         fps: arguments.fps,
-        backend: arguments.backend,
+        backend: arguments.backend.renderer(gpu),
     };
     let bar = ProgressBar::new(u64::from(options.frames));
     let style = ProgressStyle::with_template("{bar:30} frame {pos} of {len} [{elapsed} of about {duration}]");

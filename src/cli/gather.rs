@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::error::CliError;
-use crate::cli::output::{print, print_lines};
-use crate::pipeline::shards::gather::{PlanProgress, gather};
-use crate::pipeline::shards::plan::ShardPlan;
-use crate::pipeline::shards::record::ShardState;
+use crate::error::CliError;
+use crate::output::{print, print_lines};
+use sandtable_shards::gather::{PlanProgress, gather};
+use sandtable_shards::plan::ShardPlan;
+use sandtable_shards::record::ShardState;
 
 /// Shards that a message names.
 const MOST_NAMED: usize = 20;

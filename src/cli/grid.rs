@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use glam::DVec2;
 
-use crate::cli::error::CliError;
-use crate::cli::output::print;
-use crate::cli::output_format::raster_format;
-use crate::cli::progress::StepTimer;
-use crate::cli::values::{choice, numbers};
-use crate::dem::cell_grid::CellGrid;
-use crate::dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
-use crate::dem::points::PointCloud;
-use crate::dem::write::WrittenDem;
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
-use crate::pipeline::error::FileError;
-use crate::pipeline::gridding::PointSources;
-use crate::pipeline::raster_file;
+use crate::error::CliError;
+use crate::output::print;
+use crate::output_format::raster_format;
+use crate::progress::StepTimer;
+use crate::values::{choice, numbers};
+use sandtable_dem::cell_grid::CellGrid;
+use sandtable_dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
+use sandtable_dem::points::PointCloud;
+use sandtable_dem::write::WrittenDem;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_files::error::FileError;
+use sandtable_query::gridding::PointSources;
+use sandtable_files::raster_file;
 
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]

@@ -7,20 +7,20 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::json;
 
-use crate::cli::error::CliError;
-use crate::cli::options::DatasetArguments;
-use crate::cli::output::{stream, warn};
-use crate::cli::values::choice;
-use crate::dem::answer::Answer;
-use crate::dem::height_datum::HeightDatum;
-use crate::geom::geoid::Geoid;
-use crate::pipeline::error::FileError;
-use crate::pipeline::files;
-use crate::pipeline::heights_above::bring_heights;
-use crate::pipeline::outside_note::outside_note;
-use crate::pipeline::positions::{WrittenPosition, parse_positions};
-use crate::pipeline::shards::heights::csv::{HEADER, write_row};
-use crate::terrain::query::{Interpolation, Surface};
+use crate::error::CliError;
+use crate::options::DatasetArguments;
+use crate::output::{stream, warn};
+use crate::values::choice;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_geom::geoid::Geoid;
+use sandtable_files::error::FileError;
+use sandtable_files::disk;
+use sandtable_query::heights_above::bring_heights;
+use sandtable_query::outside_note::outside_note;
+use sandtable_query::positions::{WrittenPosition, parse_positions};
+use sandtable_shards::heights::csv::{HEADER, write_row};
+use sandtable_terrain::query::{Interpolation, Surface};
 
 #[derive(Debug, Args)]
 #[command(
@@ -57,9 +57,9 @@ pub struct PointQueryArguments {
 /// Prints `x,y,height,status` for every point, in order; x and y as they were written.
 pub fn run(arguments: &HeightQueryArguments) -> Result<(), CliError> {
     let dataset = arguments.dataset.open()?;
-    let text = arguments.points.as_deref().map(files::read_text).transpose()?;
+    let text = arguments.points.as_deref().map(disk::read_text).transpose()?;
     let points = match (&arguments.points, &text) {
-        (Some(path), Some(text)) => parse_positions(&files::display_name(path), text)?,
+        (Some(path), Some(text)) => parse_positions(&disk::display_name(path), text)?,
         _ => arguments.at.clone(),
     };
     let at: Vec<DVec2> = points.iter().map(|point| point.at).collect();

@@ -1,7 +1,7 @@
 //! `sandtable licenses`: the notices of what the program is made of.
 
-use crate::cli::error::CliError;
-use crate::cli::output::print;
+use crate::error::CliError;
+use crate::output::print;
 
 /// Made by `tests/tools/notices.py`.
 const NOTICES: &str = include_str!("../../assets/NOTICES.txt");

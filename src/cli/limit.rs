@@ -3,11 +3,11 @@
 use std::env::args_os;
 use std::ffi::OsString;
 
-use crate::cli::error::CliError;
-use crate::limits::all;
-use crate::limits::set_limit::set_limit;
-use crate::limits::work_limit::LimitError;
-use crate::message::suggest::{nearest, quoted};
+use crate::error::CliError;
+use sandtable_base::limits::all;
+use sandtable_base::limits::set_limit::set_limit;
+use sandtable_base::limits::work_limit::LimitError;
+use sandtable_base::message::suggest::{nearest, quoted};
 
 /// A limit's name and what it is to be.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,20 +7,20 @@ use std::time::Instant;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::error::CliError;
-use crate::cli::lod_selection::MethodFilter;
-use crate::cli::options::HeightArguments;
-use crate::cli::output::{aligned, print, print_lines, warn};
-use crate::cli::progress::StepTimer;
-use crate::cli::values::{choice, number};
-use crate::message::choice::Choice;
-use crate::pipeline::dem;
-use crate::pipeline::error::FileError;
-use crate::pipeline::ground::MetricGround;
-use crate::pipeline::lod::flight_path::FlightPath;
-use crate::pipeline::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
-use crate::pipeline::lod::lod_ground::LodGround;
-use crate::pipeline::lod::method::{CriterionKind, Emit, Refine};
+use crate::error::CliError;
+use crate::lod_selection::MethodFilter;
+use crate::options::HeightArguments;
+use crate::output::{aligned, print, print_lines, warn};
+use crate::progress::StepTimer;
+use crate::values::{choice, number};
+use sandtable_base::message::choice::Choice;
+use sandtable_query::dem;
+use sandtable_files::error::FileError;
+use sandtable_query::ground::MetricGround;
+use sandtable_walk::lod::flight_path::FlightPath;
+use sandtable_walk::lod::flight_run::{FlightPlan, FlightReport, MEASURED};
+use sandtable_walk::lod::lod_ground::LodGround;
+use sandtable_walk::lod::method::{CriterionKind, Emit, Refine};
 
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]

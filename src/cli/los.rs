@@ -4,19 +4,19 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::annotate::chart_sight::paint;
-use crate::annotate::nice;
-use crate::cli::error::CliError;
-use crate::cli::options::{ChartArguments, DatasetArguments};
-use crate::cli::output::{print, print_lines, row};
-use crate::cli::values::{RaisedPosition, number, raised_position};
-use crate::pipeline::files;
-use crate::pipeline::positions::format_position;
-use crate::pipeline::sight::{GroundedEnd, SightQuery, SightReport};
-use crate::pipeline::windowed_elevation::GroundReach;
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Blocker, SightEnd};
-use crate::terrain::sight::rise::Rise;
+use sandtable_annotate::chart_sight::paint;
+use sandtable_annotate::nice;
+use crate::error::CliError;
+use crate::options::{ChartArguments, DatasetArguments};
+use crate::output::{print, print_lines, row};
+use crate::values::{RaisedPosition, number, raised_position};
+use sandtable_files::disk;
+use sandtable_query::positions::format_position;
+use sandtable_query::sight::{GroundedEnd, SightQuery, SightReport};
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::{Blocker, SightEnd};
+use sandtable_terrain::sight::rise::Rise;
 
 #[derive(Debug, Args)]
 #[command(
@@ -68,7 +68,7 @@ pub fn run(arguments: &LosArguments) -> Result<(), CliError> {
     if let Some(path) = &arguments.chart.output {
         let size = arguments.chart.size;
         let chart = report.chart(&ground, arguments.dataset.chart_title("Line of sight"))?;
-        files::write_picture(path, &paint((size.width, size.height), &chart))?;
+        disk::write_picture(path, &paint((size.width, size.height), &chart))?;
     }
     if arguments.dataset.json { print(&format!("{}\n", json(&report))) } else { print_lines(&text(&report)) }
 }

@@ -6,29 +6,29 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use crate::cli::convert::place_error;
-use crate::cli::error::CliError;
-use crate::cli::options::HeightArguments;
-use crate::cli::output::{print_lines, row, warn};
-use crate::cli::output_format::output_format;
-use crate::cli::progress::StepTimer;
-use crate::cli::values::number;
-use crate::dem::raster::Raster;
-use crate::dem::read::DemOptions;
-use crate::dem::windows::MOST_KEPT_SAMPLES;
-use crate::geom::crs::Crs;
-use crate::mesh::source::{MeshSize, MeshSource};
-use crate::mesh::write::{self, MeshFormat, Remarks};
-use crate::pipeline::bounded_mesh::{BoundedMesh, MeshError};
-use crate::pipeline::dem::{self, OpenedDem};
-use crate::pipeline::error::FileError;
-use crate::pipeline::files;
-use crate::pipeline::ground::{GroundError, MetricGround};
-use crate::pipeline::parted_elevation::PartedElevation;
-use crate::pipeline::windowed_elevation::WindowedElevation;
-use crate::roam::bound::Deviation;
-use crate::roam::parts::PartedGround;
-use crate::terrain::lattice::Lattice;
+use crate::convert::place_error;
+use crate::error::CliError;
+use crate::options::HeightArguments;
+use crate::output::{print_lines, row, warn};
+use crate::output_format::output_format;
+use crate::progress::StepTimer;
+use crate::values::number;
+use sandtable_dem::raster::Raster;
+use sandtable_dem::read::DemOptions;
+use sandtable_dem::windows::MOST_KEPT_SAMPLES;
+use sandtable_geom::crs::Crs;
+use sandtable_mesh::source::{MeshSize, MeshSource};
+use sandtable_mesh::write::{self, MeshFormat, Remarks};
+use sandtable_query::bounded_mesh::{BoundedMesh, MeshError};
+use sandtable_query::dem::{self, OpenedDem};
+use sandtable_files::error::FileError;
+use sandtable_files::disk;
+use sandtable_query::ground::{GroundError, MetricGround};
+use sandtable_query::parted_elevation::PartedElevation;
+use sandtable_query::windowed_elevation::WindowedElevation;
+use sandtable_roam::bound::Deviation;
+use sandtable_roam::parts::PartedGround;
+use sandtable_terrain::lattice::Lattice;
 
 #[derive(Debug, Args)]
 #[command(
@@ -116,7 +116,7 @@ where
     let deviation = *bounded.deviation();
     let remarks = remarks(arguments, lattice, crs, deviation);
     let written =
-        files::write_with(&arguments.output, |out| write::write(format, &mut bounded, &remarks, out));
+        disk::write_with(&arguments.output, |out| write::write(format, &mut bounded, &remarks, out));
     if let Some(error) = bounded.take_fault() {
         return Err(failed(arguments, error));
     }
@@ -159,7 +159,7 @@ fn resampled(raster: &Raster, lattice: &Lattice, crs: &Crs) -> Option<String> {
 fn remarks(arguments: &MeshArguments, lattice: &Lattice, crs: &Crs, deviation: Deviation) -> Remarks {
     let (origin, crs) = (lattice.origin(), crs.name());
     let lines = [
-        format!("terrain mesh of {}, written by sandtable", files::file_name(&arguments.file)),
+        format!("terrain mesh of {}, written by sandtable", disk::file_name(&arguments.file)),
         "meters from the south-west post: X east, Y north, Z up".to_owned(),
         format!(
             "origin: X 0, Y 0 is easting {} northing {} in {crs}; Z is the elevation",

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::error::CliError;
-use crate::cli::output::{print, print_lines, row};
-use crate::geom::aabb::Aabb;
-use crate::pipeline::model_file;
+use crate::error::CliError;
+use crate::output::{print, print_lines, row};
+use sandtable_geom::aabb::Aabb;
+use sandtable_scene::model_file;
 
 #[derive(Debug, Args)]
 pub struct ModelArguments {

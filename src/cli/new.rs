@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::check::contents;
-use crate::cli::error::CliError;
-use crate::cli::output::print_lines;
-use crate::cli::progress::StepTimer;
-use crate::pipeline::new_scene::{self, NewSceneOptions, WrittenScene};
-use crate::pipeline::scene_file::open_scene_for;
-use crate::remote::access::RemoteAccess;
-use crate::remote::address::{AllowedHost, is_address_path};
-use crate::scene::planned_pictures::{ElevationNeed, PlannedPictures};
+use crate::check::contents;
+use crate::error::CliError;
+use crate::output::print_lines;
+use crate::progress::StepTimer;
+use sandtable_new::{self as new_scene, NewSceneOptions, WrittenScene};
+use sandtable_scene::scene_file::open_scene_for;
+use sandtable_remote::access::RemoteAccess;
+use sandtable_remote::address::{AllowedHost, is_address_path};
+use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
 
 #[derive(Debug, Args)]
 #[command(after_help = "\

@@ -4,20 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::error::CliError;
-use crate::cli::output::warn;
-use crate::cli::values::picture_size;
-use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::dem::formats::raw::RawLayout;
-use crate::dem::height_datum::HeightDatum;
-use crate::dem::read::DemOptions;
-use crate::geom::crs::Crs;
-use crate::geom::datum_shift::DatumShift;
-use crate::pipeline::dataset::{Dataset, DatasetOptions};
-use crate::pipeline::files;
-use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::windowed_elevation::GroundReach;
+use crate::error::CliError;
+use crate::output::warn;
+use crate::values::picture_size;
+use sandtable_dem::formats::height_encoding::HeightEncoding;
+use sandtable_dem::formats::raw::RawLayout;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_dem::read::DemOptions;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::datum_shift::DatumShift;
+use sandtable_query::dataset::{Dataset, DatasetOptions};
+use sandtable_files::disk;
+use sandtable_query::ground::QueriedGround;
+use sandtable_sheet::picture::PictureSize;
+use sandtable_query::windowed_elevation::GroundReach;
 
 /// The scene file of a command, and the files it may read.
 #[derive(Debug, Args)]
@@ -148,7 +148,7 @@ impl DatasetArguments {
 
     /// The title of a chart of the dataset.
     pub fn chart_title(&self, what: &str) -> String {
-        format!("{what} · {}", files::file_name(&self.file))
+        format!("{what} · {}", disk::file_name(&self.file))
     }
 }
 
@@ -156,7 +156,7 @@ impl ChartArguments {
     /// Checks that the chart could be written.
     pub fn check(&self, input: &PathBuf) -> Result<(), CliError> {
         match &self.output {
-            Some(path) => Ok(files::check_picture_output(path, std::slice::from_ref(input))?),
+            Some(path) => Ok(disk::check_picture_output(path, std::slice::from_ref(input))?),
             None => Ok(()),
         }
     }

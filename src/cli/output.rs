@@ -4,7 +4,7 @@
 
 use std::io::{self, BufWriter, Write};
 
-use crate::cli::error::CliError;
+use crate::error::CliError;
 
 /// Standard output cannot be written.
 #[derive(Debug, thiserror::Error)]

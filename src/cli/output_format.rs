@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::error::CliError;
-use crate::dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
-use crate::pipeline::files;
+use crate::error::CliError;
+use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
+use sandtable_files::disk;
 
 /// The format that `from_extension` finds for the extension of `path`, where a file could be written there that
 /// replaces none of `inputs`. `written` names the extensions in messages.
@@ -17,7 +17,7 @@ pub fn output_format<F>(
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     let format = from_extension(&extension)
         .ok_or_else(|| CliError::usage(format!("{}: {written}; name a file that ends so", path.display())))?;
-    files::check_output(path, inputs)?;
+    disk::check_output(path, inputs)?;
     Ok(format)
 }
 

@@ -3,16 +3,16 @@
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
-use crate::cli::output::{print, print_lines, row};
-use crate::cli::progress::StepTimer;
-use crate::cli::render::find_camera;
-use crate::cli::values::{picture_size, pixel};
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::picture_buffers::{PickedPlace, pick};
-use crate::pipeline::scene_file::open_scene;
-use crate::scene::SceneModel;
+use crate::error::CliError;
+use crate::options::SceneArguments;
+use crate::output::{print, print_lines, row};
+use crate::progress::StepTimer;
+use crate::render::find_camera;
+use crate::values::{picture_size, pixel};
+use sandtable_sheet::picture::PictureSize;
+use sandtable_sheet::picture_buffers::{PickedPlace, pick};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::SceneModel;
 
 #[derive(Debug, Args)]
 #[command(

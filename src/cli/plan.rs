@@ -6,27 +6,27 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::json;
 
-use crate::cli::error::CliError;
-use crate::cli::height::PointQueryArguments;
-use crate::cli::options::{AccessArguments, DatasetArguments, HeightArguments, SceneArguments};
-use crate::cli::output::print;
-use crate::cli::values::{choice, number};
-use crate::cli::viewshed::SightConditions;
-use crate::description::document::PAPER_DPI;
-use crate::description::words::PaperName;
-use crate::geom::crs::Crs;
-use crate::pipeline::files;
-use crate::pipeline::shards::atlas::arguments::{AtlasArguments, atlas_scene, pixel_m};
-use crate::pipeline::shards::atlas::plan::plan as plan_atlas;
-use crate::pipeline::shards::heights::arguments::HeightsArguments;
-use crate::pipeline::shards::heights::plan::plan as plan_heights;
-use crate::pipeline::shards::plan_path::written;
-use crate::pipeline::shards::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
-use crate::pipeline::shards::tiles::encoding::TileEncoding;
-use crate::pipeline::shards::tiles::plan::{TilesRequest, plan as plan_tiles};
-use crate::pipeline::shards::viewsheds::arguments::ViewshedsArguments;
-use crate::pipeline::shards::viewsheds::plan::plan as plan_viewsheds;
-use crate::terrain::query::Surface;
+use crate::error::CliError;
+use crate::height::PointQueryArguments;
+use crate::options::{AccessArguments, DatasetArguments, HeightArguments, SceneArguments};
+use crate::output::print;
+use crate::values::{choice, number};
+use crate::viewshed::SightConditions;
+use sandtable_description::document::PAPER_DPI;
+use sandtable_description::words::PaperName;
+use sandtable_geom::crs::Crs;
+use sandtable_files::disk;
+use sandtable_shards::atlas::arguments::{AtlasArguments, atlas_scene, pixel_m};
+use sandtable_shards::atlas::plan::plan as plan_atlas;
+use sandtable_shards::heights::arguments::HeightsArguments;
+use sandtable_shards::heights::plan::plan as plan_heights;
+use sandtable_shards::plan_path::written;
+use sandtable_shards::planned_dataset::{PlannedDataset, PlannedWord, QueriedDataset};
+use sandtable_shards::tiles::encoding::TileEncoding;
+use sandtable_shards::tiles::plan::{TilesRequest, plan as plan_tiles};
+use sandtable_shards::viewsheds::arguments::ViewshedsArguments;
+use sandtable_shards::viewsheds::plan::plan as plan_viewsheds;
+use sandtable_terrain::query::Surface;
 
 /// What is planned.
 #[derive(Debug, Subcommand)]
@@ -180,7 +180,7 @@ fn run_atlas(arguments: &PlanAtlasArguments) -> Result<(), CliError> {
     let SceneArguments { scene, access } = &arguments.scene;
     let opened = atlas_scene(scene, &access.allow, pixel_m(arguments.scale, arguments.dpi))?;
     let folder = &arguments.output;
-    files::make_folder(folder)?;
+    disk::make_folder(folder)?;
     let planned = AtlasArguments {
         scene: written(scene, folder),
         allow: access.allow.iter().map(|allowed| written(allowed, folder)).collect(),
@@ -199,7 +199,7 @@ fn run_tiles(arguments: &PlanTilesArguments) -> Result<(), CliError> {
     let crs = Some(Crs::wgs84());
     let dataset = DatasetArguments { file: file.clone(), crs, json: arguments.json, heights, access };
     let opened = dataset.open()?;
-    files::make_folder(output)?;
+    disk::make_folder(output)?;
     let queried = QueriedDataset { path: file.clone(), crs: dataset.crs(&opened), dataset: opened };
     let request = TilesRequest { encoding: *encoding, max_zoom: *max_zoom };
     let shards = plan_tiles(planned(&dataset, output), &queried, request, output)?;
@@ -219,7 +219,7 @@ fn open<'a>(
     }
     let opened = dataset.open()?;
     let crs = dataset.crs(&opened);
-    files::make_folder(&plan.output)?;
+    disk::make_folder(&plan.output)?;
     Ok((QueriedDataset { path: dataset.file.clone(), dataset: opened, crs }, &plan.output))
 }
 

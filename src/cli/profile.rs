@@ -7,19 +7,19 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::annotate::chart_profile::paint;
-use crate::cli::error::CliError;
-use crate::cli::options::{ChartArguments, DatasetArguments};
-use crate::cli::output::{print, stream};
-use crate::cli::values::{PositionList, choice, positions};
-use crate::geom::crs::Crs;
-use crate::pipeline::dataset::{Dataset, QueryError, transform};
-use crate::pipeline::files;
-use crate::pipeline::positions::{InputLine, read_line};
-use crate::pipeline::profile::{GroundProfile, ProfileError};
-use crate::pipeline::windowed_elevation::GroundReach;
-use crate::terrain::profile::{Extreme, ProfileStation, Sampling};
-use crate::terrain::query::Interpolation;
+use sandtable_annotate::chart_profile::paint;
+use crate::error::CliError;
+use crate::options::{ChartArguments, DatasetArguments};
+use crate::output::{print, stream};
+use crate::values::{PositionList, choice, positions};
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::{Dataset, QueryError, transform};
+use sandtable_files::disk;
+use sandtable_query::positions::{InputLine, read_line};
+use sandtable_query::profile::{GroundProfile, ProfileError};
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_terrain::profile::{Extreme, ProfileStation, Sampling};
+use sandtable_terrain::query::Interpolation;
 
 #[derive(Debug, Args)]
 #[command(
@@ -62,7 +62,7 @@ pub fn run(arguments: &ProfileArguments) -> Result<(), CliError> {
     if let Some(path) = &arguments.chart.output {
         let size = arguments.chart.size;
         let chart = profile.chart(arguments.dataset.chart_title("Profile"));
-        files::write_picture(path, &paint((size.width, size.height), &chart))?;
+        disk::write_picture(path, &paint((size.width, size.height), &chart))?;
     }
     if arguments.dataset.json {
         return print(&format!("{}\n", json(&profile)?));

@@ -2,12 +2,12 @@
 
 use std::env;
 
-use crate::cli::error::CliError;
-use crate::cli::limit::check_side;
-use crate::cli::output::warn;
-use crate::remote::access::RemoteAccess;
-use crate::remote::address::AllowedHost;
-use crate::remote::traffic::Traffic;
+use crate::error::CliError;
+use crate::limit::check_side;
+use crate::output::warn;
+use sandtable_remote::access::RemoteAccess;
+use sandtable_remote::address::AllowedHost;
+use sandtable_remote::traffic::Traffic;
 
 /// Sets which hosts may be read from, before anything is read.
 ///

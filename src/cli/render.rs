@@ -5,22 +5,23 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::annotate::report::{AnnotationReport, LabelMove, SymbolReport};
-use crate::cli::check::{contents, counted};
-use crate::cli::error::CliError;
-use crate::cli::options::AccessArguments;
-use crate::cli::output::{print, print_lines, row, warn};
-use crate::cli::progress::StepTimer;
-use crate::cli::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
-use crate::cli::threads;
-use crate::cli::values::{choice, picture_size};
-use crate::description::finding::{Finding, Severity};
-use crate::message::suggest::{nearest, quoted};
-use crate::pipeline::files::{self, WriteFileCause, WriteFileError};
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::picture_statistics::Lightness;
-use crate::render::RenderBackend;
-use crate::scene::{SceneModel, SceneView};
+use sandtable_annotate::report::{AnnotationReport, LabelMove, SymbolReport};
+use crate::check::{contents, counted};
+use crate::error::CliError;
+use crate::options::AccessArguments;
+use crate::output::{print, print_lines, row, warn};
+use crate::progress::StepTimer;
+use crate::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
+use crate::threads;
+use crate::values::{choice, picture_size};
+use sandtable_description::finding::{Finding, Severity};
+use sandtable_base::message::suggest::{nearest, quoted};
+use sandtable_files::disk::{self, WriteFileCause, WriteFileError};
+use sandtable_sheet::picture::PictureSize;
+use sandtable_sheet::picture_statistics::Lightness;
+use crate::backend::BackendName;
+use sandtable_render::OtherRenderer;
+use sandtable_scene::{SceneModel, SceneView};
 
 /// The longest text of a label in the summary, in characters.
 const LONGEST_LABEL: usize = 60;
@@ -51,8 +52,8 @@ pub struct RenderArguments {
     #[arg(long, conflicts_with = "phase")]
     pub all_phases: bool,
     /// What draws: the processor, the same on every machine, or a graphics adapter
-    #[arg(long, default_value = "cpu", value_parser = choice::<RenderBackend>())]
-    pub backend: RenderBackend,
+    #[arg(long, default_value = "cpu", value_parser = choice::<BackendName>())]
+    pub backend: BackendName,
     /// How many threads to use [default: one per core]; the picture is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -78,14 +79,19 @@ impl RenderArguments {
 }
 
 /// Renders with `threads` threads.
-pub fn run(arguments: &RenderArguments, threads: usize) -> Result<(), CliError> {
+pub fn run(
+    arguments: &RenderArguments,
+    threads: usize,
+    gpu: Option<OtherRenderer>,
+) -> Result<(), CliError> {
     let pool = threads::pool(threads)?;
+    let backend = arguments.backend.renderer(gpu);
     let outputs = outputs(arguments)?;
     let is_batch = outputs.len() > 1;
     let (mut failures, mut values) = (Vec::new(), Vec::new());
     for (file, path) in &outputs {
         let steps = StepTimer::default();
-        match pool.install(|| render(arguments, file, path, &steps)) {
+        match pool.install(|| render(arguments, backend, file, path, &steps)) {
             Ok(RenderedFile { scenes, failures: missing }) => {
                 let times = steps.finish();
                 match arguments.json {
@@ -125,7 +131,7 @@ fn outputs(arguments: &RenderArguments) -> Result<Vec<(&Path, PathBuf)>, CliErro
         )));
     }
     if arguments.output.is_some() {
-        files::make_folder(folder)?;
+        disk::make_folder(folder)?;
     }
     let mut outputs: Vec<(&Path, PathBuf)> = Vec::new();
     for scene in &arguments.scenes {

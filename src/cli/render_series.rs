@@ -3,27 +3,28 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::annotate::contact_sheet::{ContactPicture, ContactSheet};
-use crate::annotate::report::AnnotationReport;
-use crate::cli::error::CliError;
-use crate::cli::progress::StepTimer;
-use crate::cli::render::{RenderArguments, find_camera, named_by_option};
-use crate::draw::list::DrawList;
-use crate::draw::pixels::Pixels;
-use crate::export::encode_png;
-use crate::message::suggest::quoted;
-use crate::pipeline::files;
-use crate::pipeline::fingerprint::fingerprint;
-use crate::pipeline::output_files::OutputFiles;
-use crate::pipeline::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
-use crate::pipeline::picture_buffers::PictureBuffers;
-use crate::pipeline::picture_statistics::PictureStatistics;
-use crate::pipeline::scene_file::{open_scene_for, phases};
-use crate::pipeline::sheet_file::{picture_description, write_sheet};
-use crate::pipeline::sidecar::SidecarDraft;
-use crate::render::RenderBackend;
-use crate::scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
-use crate::scene::{SceneModel, SceneView};
+use sandtable_annotate::contact_sheet::{ContactPicture, ContactSheet};
+use sandtable_annotate::report::AnnotationReport;
+use crate::error::CliError;
+use crate::progress::StepTimer;
+use crate::render::{RenderArguments, find_camera, named_by_option};
+use sandtable_draw::list::DrawList;
+use sandtable_draw::pixels::Pixels;
+use sandtable_files::png::encode_png;
+use sandtable_base::message::suggest::quoted;
+use sandtable_files::disk;
+use sandtable_files::fingerprint::fingerprint;
+use sandtable_files::output_files::OutputFiles;
+use sandtable_sheet::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
+use sandtable_sheet::picture_buffers::PictureBuffers;
+use sandtable_sheet::picture_statistics::PictureStatistics;
+use sandtable_scene::scene_file::{open_scene_for, phases};
+use sandtable_sheet::sheet_file::{picture_description, write_sheet};
+use sandtable_sheet::sidecar::SidecarDraft;
+use crate::backend::BackendName;
+use sandtable_render::RenderBackend;
+use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
+use sandtable_scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
 pub struct RenderedScene {
@@ -77,14 +78,15 @@ pub struct RenderFailure {
 /// that cannot be drawn is left out where there are others, but not of a sheet.
 pub fn render(
     arguments: &RenderArguments,
+    backend: RenderBackend,
     file: &Path,
     path: &Path,
     steps: &StepTimer,
 ) -> Result<RenderedFile, CliError> {
-    let check = if arguments.sheet { files::check_picture_output } else { files::check_sheet_output };
+    let check = if arguments.sheet { disk::check_picture_output } else { disk::check_sheet_output };
     check(path, &[file]).map_err(|error| named_by_option(error, "this is the scene file itself"))?;
     let mut series =
-        RenderSeries { arguments, file, steps, outputs: OutputFiles::default(), failures: Vec::new() };
+        RenderSeries { arguments, backend, file, steps, outputs: OutputFiles::default(), failures: Vec::new() };
     let scenes = series.scenes(path)?;
     if arguments.sheet {
         steps.begin("writing the sheet");
@@ -97,6 +99,7 @@ pub fn render(
 /// The pictures of a scene file while they are made.
 struct RenderSeries<'a> {
     arguments: &'a RenderArguments,
+    backend: RenderBackend,
     /// The scene file.
     file: &'a Path,
     steps: &'a StepTimer,
@@ -169,7 +172,7 @@ impl RenderSeries<'_> {
         for path in &paths {
             let sidecar = arguments.sidecar.then(|| sidecar_path(path));
             for output in std::iter::once(path).chain(&sidecar) {
-                files::check_output(output, &scene.files)
+                disk::check_output(output, &scene.files)
                     .map_err(|error| named_by_option(error, "the scene is made of this file"))?;
             }
         }
@@ -182,7 +185,7 @@ impl RenderSeries<'_> {
             let own_size = || arguments.size.unwrap_or_else(|| PictureSize::of(&scene, view));
             let size = small.map_or_else(own_size, |[width, height]| PictureSize { width, height });
             let steps = self.steps;
-            match draw_view(&scene, view, size, arguments.backend, &|step| steps.begin(step)) {
+            match draw_view(&scene, view, size, self.backend, &|step| steps.begin(step)) {
                 Ok(drawn) => {
                     let target = PictureTarget { path, small, fingerprint: fingerprint.as_deref() };
                     pictures.push(self.picture(&scene, view, drawn, target)?);
@@ -209,8 +212,8 @@ impl RenderSeries<'_> {
             progress("writing buffers");
             // The buffers of several pictures lie in folders named as the pictures are.
             let is_one = !arguments.all_cameras && !arguments.all_phases && arguments.scenes.len() == 1;
-            let folder = if is_one { folder.clone() } else { folder.join(files::file_stem(&path)) };
-            files::make_folder(&folder)?;
+            let folder = if is_one { folder.clone() } else { folder.join(disk::file_stem(&path)) };
+            disk::make_folder(&folder)?;
             let buffers = PictureBuffers { scene, camera: &drawn.camera, rendering: &drawn.picture };
             buffers.write(outputs, &folder)?;
         }
@@ -245,8 +248,8 @@ fn planned_pictures(arguments: &RenderArguments) -> PlannedPictures {
         None => PlannedCameras::First,
     };
     let near = match arguments.backend {
-        RenderBackend::Cpu => NearGround::Nested,
-        RenderBackend::Gpu => NearGround::Whole,
+        BackendName::Cpu => NearGround::Nested,
+        BackendName::Gpu => NearGround::Whole,
     };
     PlannedPictures { cameras, size: arguments.size.map(|size| (size.width, size.height)), near }
 }
@@ -304,7 +307,7 @@ fn named_paths(path: &Path, names: &[String]) -> Vec<PathBuf> {
             name = format!("{name}-{number}");
             taken.insert(name.clone());
         }
-        let stem = files::file_stem(path);
+        let stem = disk::file_stem(path);
         let extension = path.extension().unwrap_or("png".as_ref()).to_string_lossy();
         path.with_file_name(format!("{stem}-{name}.{extension}"))
     };

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::cli::error::CliError;
-use crate::cli::options::SceneArguments;
-use crate::cli::output::{aligned, print, print_lines};
-use crate::cli::progress::StepTimer;
-use crate::pipeline::files::{self, WriteFileError};
-use crate::pipeline::output_files::OutputFiles;
-use crate::pipeline::scene_file::open_scene_true_to_scale;
-use crate::scene::SceneModel;
-use crate::scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
+use crate::error::CliError;
+use crate::options::SceneArguments;
+use crate::output::{aligned, print, print_lines};
+use crate::progress::StepTimer;
+use sandtable_files::disk::{self, WriteFileError};
+use sandtable_files::output_files::OutputFiles;
+use sandtable_scene::scene_file::open_scene_true_to_scale;
+use sandtable_scene::SceneModel;
+use sandtable_scene::report::{ReportCell, ReportColumn, ReportTable, SceneReport};
 
 /// The most rows of a table that are printed; a file or JSON holds all.
 const SHOWN_ROWS: usize = 20;
@@ -94,7 +94,7 @@ fn write_csv_files(scene: &SceneModel, folder: &Path) -> Result<Vec<String>, Wri
     let mut written = Vec::new();
     for (name, csv) in tables.chain(profiles) {
         let path = folder.join(format!("{name}.csv"));
-        files::check_output(&path, &scene.files)?;
+        disk::check_output(&path, &scene.files)?;
         outputs.write(&path, csv.as_bytes())?;
         written.push(path.display().to_string());
     }
@@ -154,7 +154,7 @@ fn printed_cell(cell: &ReportCell) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::report::TrenchRow;
+    use sandtable_scene::report::TrenchRow;
 
     fn report(rows: usize) -> SceneReport {
         let name = |row| if row == 0 { "the \"long\", winding one".into() } else { String::new() };

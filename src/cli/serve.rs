@@ -4,13 +4,13 @@ use std::net::SocketAddr;
 
 use clap::Args;
 
-use crate::cli::ServeProgram;
-use crate::cli::error::CliError;
-use crate::cli::options::{AccessArguments, HeightArguments};
-use crate::cli::output::warn;
-use crate::limits::RASTER_SAMPLES;
-use crate::pipeline::dataset::DatasetOptions;
-use crate::pipeline::service::{NamedFile, PathPrefix, RequestLog, ServiceLimits, ServiceOptions};
+use crate::ServeProgram;
+use crate::error::CliError;
+use crate::options::{AccessArguments, HeightArguments};
+use crate::output::warn;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_query::dataset::DatasetOptions;
+use sandtable_query::service::{NamedFile, PathPrefix, RequestLog, ServiceLimits, ServiceOptions};
 
 #[derive(Debug, Args)]
 #[command(

@@ -1,6 +1,6 @@
 //! Signals that end the program: it leaves no half-written file behind.
 //!
-//! A thread waits for them. It removes the [parts](crate::pipeline::part_file) of files that are being written and then
+//! A thread waits for them. It removes the [parts](sandtable_files::part_file) of files that are being written and then
 //! lets the signal do what it does to any program, so that a shell sees why it ended. A second signal ends the program
 //! at once, should a file system not answer. What the parent told this program to ignore, as `nohup` does, it ignores.
 
@@ -14,7 +14,7 @@ use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
-use crate::pipeline::part_file::abandon_all;
+use sandtable_files::part_file::abandon_all;
 
 /// The signals by which users and systems end programs.
 const ENDING: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];

@@ -17,9 +17,9 @@ use signal_hook::consts::SIGABRT;
 use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
-use crate::cli::address_space::AddressSpace;
-use crate::cli::error::CliError;
-use crate::cli::signals;
+use crate::address_space::AddressSpace;
+use crate::error::CliError;
+use crate::signals;
 
 /// The number of the process that supervises this one, in its environment.
 const SUPERVISOR: &str = "SANDTABLE_SUPERVISOR";

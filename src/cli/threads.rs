@@ -11,7 +11,7 @@ use std::thread::{self, Builder};
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 
-use crate::cli::error::CliError;
+use crate::error::CliError;
 
 /// How many threads are wanted: so many as stated, else as `RAYON_NUM_THREADS` says, else one for each processor.
 pub fn wanted(stated: Option<usize>) -> usize {

@@ -6,8 +6,8 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec2;
 
-use crate::message::choice::Choice;
-use crate::pipeline::picture::PictureSize;
+use sandtable_base::message::choice::Choice;
+use sandtable_sheet::picture::PictureSize;
 
 /// Parses one of the words of a [`Choice`].
 pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {

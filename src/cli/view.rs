@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::ViewProgram;
-use crate::cli::error::CliError;
-use crate::cli::options::AccessArguments;
-use crate::pipeline::viewing::ViewerOptions;
+use crate::ViewProgram;
+use crate::error::CliError;
+use crate::options::AccessArguments;
+use sandtable_editing::viewing::ViewerOptions;
 
 #[derive(Debug, Args)]
 #[command(

@@ -8,23 +8,23 @@ use std::slice;
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::error::CliError;
-use crate::cli::los::curvature;
-use crate::cli::options::DatasetArguments;
-use crate::cli::output::{print, print_lines, row};
-use crate::cli::output_format::raster_format;
-use crate::cli::progress::StepTimer;
-use crate::cli::values::{number, number_pair};
-use crate::dem::formats::DemFormat;
-use crate::geom::crs::Crs;
-use crate::pipeline::dataset::{QueryError, transform};
-use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::viewshed::{ViewshedSummary, raster, windows};
-use crate::pipeline::viewshed_map::{SheetText, viewshed_map};
-use crate::pipeline::windowed_elevation::GroundReach;
-use crate::pipeline::{files, raster_file};
-use crate::terrain::sight::line::SightEnd;
-use crate::terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, ViewshedOptions, viewshed};
+use crate::error::CliError;
+use crate::los::curvature;
+use crate::options::DatasetArguments;
+use crate::output::{print, print_lines, row};
+use crate::output_format::raster_format;
+use crate::progress::StepTimer;
+use crate::values::{number, number_pair};
+use sandtable_dem::formats::DemFormat;
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::{QueryError, transform};
+use sandtable_query::ground::QueriedGround;
+use sandtable_query::viewshed::{ViewshedSummary, raster, windows};
+use sandtable_sheet::viewshed_map::{SheetText, viewshed_map};
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_files::{disk, raster_file};
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, ViewshedOptions, viewshed};
 
 const HEIGHT_ADVICE: &str = "write meters as a number from 0 to 100000";
 
@@ -106,7 +106,7 @@ pub fn run(arguments: &ViewshedArguments) -> Result<(), CliError> {
 
 fn output<'a>(path: &'a Path, input: &PathBuf) -> Result<ViewshedOutput<'a>, CliError> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        files::check_output(path, &[input])?;
+        disk::check_output(path, &[input])?;
         return Ok(ViewshedOutput::Map(path));
     }
     Ok(ViewshedOutput::Raster(path, raster_format(path, slice::from_ref(input))?))
@@ -143,11 +143,11 @@ fn write(
         }
         ViewshedOutput::Map(path) => {
             let text = SheetText {
-                title: format!("Viewshed · {}", files::file_stem(&arguments.dataset.file)),
+                title: format!("Viewshed · {}", disk::file_stem(&arguments.dataset.file)),
                 subtitle: subtitle(arguments, &ViewshedSummary::new(&ground.lattice, viewshed)),
                 vertical_datum: ground.vertical_datum.clone(),
             };
-            files::write_picture(path, &viewshed_map(lattice, viewshed, options, text))?;
+            disk::write_picture(path, &viewshed_map(lattice, viewshed, options, text))?;
         }
     }
     Ok(())

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use crate::cli::error::CliError;
-use crate::cli::output::{print, warn};
-use crate::message::chain::error_text;
-use crate::pipeline::shards::plan::ShardPlan;
-use crate::pipeline::shards::work::{ShardWorker, is_done};
+use crate::error::CliError;
+use crate::output::{print, warn};
+use sandtable_base::message::chain::error_text;
+use sandtable_shards::plan::ShardPlan;
+use sandtable_shards::work::{ShardWorker, is_done};
 
 #[derive(Debug, Args)]
 #[command(

@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::raster::north_up;
-use crate::geom::rect::Rect;
-use crate::limits::RASTER_SAMPLES;
+use crate::raster::north_up;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::RASTER_SAMPLES;
 
 /// How many cells a side of a stated extent may be off a whole number: decimal fractions are not exact in binary.
 const SLACK_CELLS: f64 = 1e-6;
@@ -92,7 +92,7 @@ impl CellGrid {
         self.corner + DVec2::new(f64::from(column) + 0.5, -(f64::from(row) + 0.5)) * self.cell
     }
 
-    /// Grid position to map coordinates, as [`crate::dem::raster::Raster::map_from_grid`].
+    /// Grid position to map coordinates, as [`crate::raster::Raster::map_from_grid`].
     pub fn map_from_grid(&self) -> DAffine2 {
         north_up(self.corner, DVec2::splat(self.cell))
     }

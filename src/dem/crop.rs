@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::rect::Rect;
+use crate::raster::{Raster, Samples};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::rect::Rect;
 
 /// The part of `raster` in [`crop_window`]; `None` where that is.
 pub fn crop(raster: &Raster, rect: &Rect, margin: u32) -> Option<Raster> {
@@ -59,7 +59,7 @@ pub fn window_samples(raster: &Raster, held: RasterWindow, window: RasterWindow)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     /// Five by four samples 10 m apart, the south-west one at (105, 205).
     fn raster() -> Raster {

@@ -2,12 +2,12 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, north_up};
-use crate::dem::read::DemFile;
-use crate::dem::write::Companion;
-use crate::geom::crs::Crs;
-use crate::geom::wkt_writer;
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, north_up};
+use crate::read::DemFile;
+use crate::write::Companion;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::wkt_writer;
 
 /// `raster` at the place that its file states; else at that of a world file with one of `extensions` beside it, or with
 /// the hinted cell and its south-west sample at (0, 0), or else with samples 1 apart and without a georeference.
@@ -64,13 +64,13 @@ pub(crate) fn crs_on_earth(raster: &Raster) -> Option<&Crs> {
 }
 
 /// GDAL's six numbers as a transform.
-pub(crate) fn affine([x, x_column, x_row, y, y_column, y_row]: [f64; 6]) -> DAffine2 {
+pub fn affine([x, x_column, x_row, y, y_column, y_row]: [f64; 6]) -> DAffine2 {
     let axes = DMat2::from_cols(DVec2::new(x_column, y_column), DVec2::new(x_row, y_row));
     DAffine2 { matrix2: axes, translation: DVec2::new(x, y) }
 }
 
 /// The transform, if it is finite and can be inverted.
-pub(crate) fn checked(map_from_grid: DAffine2) -> Result<DAffine2, DemErrorKind> {
+pub fn checked(map_from_grid: DAffine2) -> Result<DAffine2, DemErrorKind> {
     let determinant = map_from_grid.matrix2.determinant();
     if map_from_grid.is_finite() && determinant.is_normal() && map_from_grid.matrix2.inverse().is_finite() {
         return Ok(map_from_grid);

@@ -1,6 +1,6 @@
 //! What heights can be brought to: the ellipsoid and the geoid between which they differ by the geoid's undulation.
 
-use crate::message::choice::{Choice, ChoiceWord, word};
+use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 
 /// A datum of heights whose distance from the ellipsoid is known everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@
 //! upward. The largest rectangle under a histogram comes from one pass with a stack of rising columns, so that all takes
 //! time in proportion to the samples (Vandevoorde 1998, "The maximal rectangle problem").
 
-use crate::dem::raster::Raster;
+use crate::raster::Raster;
 
 /// A rectangle of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,7 +91,7 @@ fn largest_under(heights: &[u32], rising: &mut Vec<(u32, u32)>) -> SampleRect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     fn raster(rows: &[&str]) -> Raster {
         let values = rows.concat().chars().map(|mark| if mark == '#' { 1.0 } else { f32::NAN }).collect();

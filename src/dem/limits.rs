@@ -2,10 +2,10 @@
 
 use glam::{U64Vec2, UVec2};
 
-use crate::dem::error::DemErrorKind;
-use crate::limits::memory::check_memory;
-use crate::limits::work_limit::WorkLimit;
-use crate::limits::{RASTER_SAMPLES, SPARSE_BYTES};
+use crate::error::DemErrorKind;
+use sandtable_base::limits::memory::check_memory;
+use sandtable_base::limits::work_limit::WorkLimit;
+use sandtable_base::limits::{RASTER_SAMPLES, SPARSE_BYTES};
 
 /// A sample while a raster is read: a 32-bit float, and what it is decoded from.
 const BYTES_PER_SAMPLE: u64 = 8;

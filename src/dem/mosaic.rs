@@ -10,11 +10,11 @@
 
 use glam::{DVec2, I64Vec2, U64Vec2};
 
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::units::FOOT_M;
-use crate::geom::crs::Crs;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::TILE_SAMPLES;
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::units::FOOT_M;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::TILE_SAMPLES;
 
 /// How far, in cells, a tile's samples may lie from the nodes of the first tile's grid.
 pub const ALIGNMENT: f64 = 1e-3;
@@ -351,7 +351,7 @@ fn is_foot_to_meter(one: f64, other: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     fn mosaic(rasters: impl IntoIterator<Item = Raster>) -> Result<Mosaic, MosaicError> {
         let mut tiles = Tiles::default();

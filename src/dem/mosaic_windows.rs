@@ -1,14 +1,14 @@
 //! The tiles of one raster that stay on disk: opened by their headers, and read where a window meets them.
 //!
-//! A window is filled from the tiles that it meets, in their order: as in a [mosaic](crate::dem::mosaic) in memory, the first
+//! A window is filled from the tiles that it meets, in their order: as in a [mosaic](crate::mosaic) in memory, the first
 //! tile with a value wins. Some tiles stay open, the others are opened again when they are met.
 
-use crate::dem::cache::LruCache;
-use crate::dem::error::DemErrorKind;
-use crate::dem::mosaic::{MosaicError, Tiles};
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::limits::WINDOWED_SAMPLES;
+use crate::cache::LruCache;
+use crate::error::DemErrorKind;
+use crate::mosaic::{MosaicError, Tiles};
+use crate::raster::{Raster, Samples};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_base::limits::WINDOWED_SAMPLES;
 
 /// Tiles that stay open: few enough for any system's limit on open files.
 const OPEN_TILES: usize = 32;
@@ -100,7 +100,7 @@ impl Windows for MosaicWindows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
     use glam::DVec2;
 
     /// Three overlapping tiles of one grid, with holes.

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::dem::raster::{Raster, Samples, north_up};
-use crate::geom::rect::Rect;
+use crate::raster::{Raster, Samples, north_up};
+use sandtable_geom::rect::Rect;
 
 impl Raster {
     /// An axis-aligned raster with columns and rows in the order that puts north up.

@@ -4,8 +4,8 @@
 //! slip of the pen, a sample without data that the file does not declare. A hole is a region of one value inside the raster
 //! that ends in a step all around, as radar data have them where a slope was in the shade.
 
-use crate::dem::raster::Raster;
-use crate::dem::undeclared::{median, usual_steps};
+use crate::raster::Raster;
+use crate::undeclared::{median, usual_steps};
 
 /// A spike stands this many times as far from its neighbors' median as they lie apart: a summit has slopes, which spread its
 /// neighbors. Smaller values take sharp summits for spikes.
@@ -163,7 +163,7 @@ fn usual_step_m(raster: &Raster) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     /// Hills on 60 by 60 samples.
     fn hills() -> Raster {

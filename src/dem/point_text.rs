@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::dem::formats::text::{number, quote};
+use crate::formats::text::{number, quote};
 
 /// Column names of x, y and z, in lower case.
 const NAMES: [&[&str]; 3] = [

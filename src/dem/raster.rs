@@ -8,8 +8,8 @@ use glam::{DAffine2, DMat2, DVec2};
 use rayon::iter::repeat_n;
 use rayon::prelude::*;
 
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 
 /// Elevations row by row from the raster's first sample, with their georeference.
 ///
@@ -136,7 +136,7 @@ impl Samples {
     }
 
     /// Whether they take 64 bits.
-    pub(crate) fn is_wide(&self) -> bool {
+    pub fn is_wide(&self) -> bool {
         matches!(self, Self::F64(_))
     }
 
@@ -194,7 +194,7 @@ pub(crate) fn scaled(value: f64, factor: f64, offset: f64) -> f64 {
 
 impl Raster {
     /// The samples west, east, north and south of a sample, by index; `None` beyond the border.
-    pub(in crate::dem) fn beside(&self, at: usize) -> [Option<usize>; 4] {
+    pub(crate) fn beside(&self, at: usize) -> [Option<usize>; 4] {
         let (width, height) = (self.width as usize, self.height as usize);
         let (column, row) = (at % width, at / width);
         [
@@ -206,7 +206,7 @@ impl Raster {
     }
 
     /// The samples along the border, by index: rows first, then columns with the corners again.
-    pub(in crate::dem) fn border(&self) -> impl Iterator<Item = usize> + use<> {
+    pub(crate) fn border(&self) -> impl Iterator<Item = usize> + use<> {
         let (width, height) = (self.width as usize, self.height as usize);
         let columns = (0..height).flat_map(move |row| [row * width, row * width + width - 1]);
         (0..width).chain((height - 1) * width..height * width).chain(columns)
@@ -218,7 +218,7 @@ impl Raster {
     /// `samples` are not a whole number of rows, or none.
     ///
     /// ```
-    /// use sandtable::dem::raster::{Raster, Samples};
+    /// use sandtable_dem::raster::{Raster, Samples};
     /// let raster = Raster::new(2, Samples::F32(vec![1.0, 2.0, 3.0, 4.0]));
     /// assert_eq!((raster.height, raster.at(1, 0)), (2, 2.0));
     /// ```
@@ -234,7 +234,7 @@ impl Raster {
     }
 
     /// A raster in memory without its samples and without a georeference.
-    pub(crate) fn without_place(width: u32, height: u32) -> Self {
+    pub fn without_place(width: u32, height: u32) -> Self {
         Self {
             driver: "MEM",
             data_type: "Float32",
@@ -251,7 +251,7 @@ impl Raster {
     }
 
     /// This raster with a stated georeference.
-    pub(crate) fn placed(self, map_from_grid: DAffine2) -> Self {
+    pub fn placed(self, map_from_grid: DAffine2) -> Self {
         Self { map_from_grid, georeferenced: true, ..self }
     }
 
@@ -274,7 +274,7 @@ impl Raster {
     }
 
     /// All but the samples; their precision stays known.
-    pub(crate) fn without_samples(&self) -> Self {
+    pub fn without_samples(&self) -> Self {
         let (crs, vertical_datum) = (self.crs.clone(), self.vertical_datum.clone());
         Self { samples: Samples::absent(0, self.samples.is_wide()), crs, vertical_datum, ..*self }
     }
@@ -337,7 +337,7 @@ pub(crate) fn north_up(corner: DVec2, cell: DVec2) -> DAffine2 {
 }
 
 /// The map position of a grid whose rows run east and columns south: `node` is the center of the north-west sample.
-pub(crate) fn north_up_nodes(node: DVec2, cell: DVec2) -> DAffine2 {
+pub fn north_up_nodes(node: DVec2, cell: DVec2) -> DAffine2 {
     north_up(node + DVec2::new(-0.5, 0.5) * cell, cell)
 }
 

@@ -2,16 +2,16 @@
 
 use std::cell::OnceCell;
 
-use crate::archive::{self, ArchiveError, ZipReader};
-use crate::dem::error::{DemError, DemErrorKind};
-use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::dem::formats::raw::RawLayout;
-use crate::dem::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::crs::Crs;
-use crate::limits::COMPANION_BYTES;
-use crate::limits::UNPACKED_RASTER_BYTES;
+use sandtable_base::archive::{self, ArchiveError, ZipReader};
+use crate::error::{DemError, DemErrorKind};
+use crate::formats::height_encoding::HeightEncoding;
+use crate::formats::raw::RawLayout;
+use crate::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
+use crate::raster::{Raster, Samples};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::COMPANION_BYTES;
+use sandtable_base::limits::UNPACKED_RASTER_BYTES;
 
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
@@ -401,7 +401,7 @@ fn split_extension(name: &str) -> (&str, &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::archive::tests::zipped;
+    use sandtable_base::archive::tests::zipped;
 
     #[test]
     fn tiles_are_named_by_extensions_that_nothing_else_has() {

@@ -1,7 +1,7 @@
 //! Windows of a raster one after the other: the next is read while one is worked on.
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::error::DemErrorKind;
+use crate::windows::{RasterWindow, Windows};
 
 /// Calls `each` with what `read` gives for each of `windows`, in their order; meanwhile the next one is read, on another
 /// thread where there is one. Memory: two windows.
@@ -28,7 +28,7 @@ pub(crate) fn read_ahead<W: Windows + Send + ?Sized, T: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn windows_come_in_order_and_the_first_error_ends_them() {

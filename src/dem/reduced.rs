@@ -6,10 +6,10 @@ use std::ops::Range;
 use glam::{DAffine2, DMat2, DVec2};
 use rayon::prelude::*;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::read_ahead::read_ahead;
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples};
+use crate::read_ahead::read_ahead;
+use crate::windows::{RasterWindow, Windows};
 
 /// Samples that are read at a time: rows of tiles of a file.
 const BAND_SAMPLES: u32 = 1 << 22;
@@ -205,7 +205,7 @@ fn fill_means(lines: &[f32], columns: usize, spans: &[Range<usize>], means: &mut
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::north_up_nodes;
+    use crate::raster::north_up_nodes;
 
     #[test]
     fn means_lie_where_their_samples_do_and_holes_count_for_nothing() {

@@ -1,11 +1,11 @@
 //! A raster of means over squares of another's samples, read in windows of its own.
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::reduced::{reduced_header, reduced_part};
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples};
+use crate::reduced::{reduced_header, reduced_part};
+use crate::windows::{RasterWindow, Windows};
 
-/// What [`reduced_by_overview`](crate::dem::reduced::reduced_by_overview) makes of a raster, of which only windows are read and averaged.
+/// What [`reduced_by_overview`](crate::reduced::reduced_by_overview) makes of a raster, of which only windows are read and averaged.
 pub struct ReducedWindows {
     source: Box<dyn Windows + Send>,
     step: u32,
@@ -38,7 +38,7 @@ impl Windows for ReducedWindows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::reduced::reduced;
+    use crate::reduced::reduced;
 
     #[test]
     fn a_window_holds_the_samples_of_the_whole_smaller_raster() {

@@ -6,15 +6,15 @@
 
 use glam::DVec2;
 
-use crate::dem::answer::Answer;
-use crate::dem::raster::Raster;
+use crate::answer::Answer;
+use crate::raster::Raster;
 
 /// How far outside the border, in samples, a point still counts as on it: decimal map coordinates lose this much.
 const BORDER: f64 = 1e-6;
 
 /// A position nearer than this, in samples, to a row or column of centers lies on it: rounding in map coordinates must
 /// not mix a neighbor, or a hole, into an exact value.
-pub(crate) const ON_CENTER: f64 = 1e-7;
+pub const ON_CENTER: f64 = 1e-7;
 
 /// The samples of a raster, or those of them that are held: code that asks for samples near a position works on either,
 /// and gives the same bits.
@@ -102,7 +102,7 @@ fn neighbors(at: f64, count: u32) -> (u32, u32, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn a_plane_is_kept_between_centers_and_held_beyond_them() {

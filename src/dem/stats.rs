@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::read_ahead::read_ahead;
-use crate::dem::void_counts::{VoidCounts, VoidSearch};
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::read_ahead::read_ahead;
+use crate::void_counts::{VoidCounts, VoidSearch};
+use crate::windows::{RasterWindow, Windows};
 
 /// Statistics of the valid samples of a raster, in its vertical unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,7 +164,7 @@ impl StatsSums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn holes_do_not_count() {

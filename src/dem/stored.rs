@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::sample_type::SampleType;
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::sample_type::SampleType;
 
 /// Samples that a thread looks at together: some tens of microseconds.
 const SURVEYED_TOGETHER: usize = 1 << 16;
@@ -159,7 +159,7 @@ impl SampleSurvey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     fn stored(samples: Samples) -> (SampleType, Option<f64>) {
         let StoredSamples { sample, nodata } = StoredSamples::new(&Raster::new(2, samples));

@@ -1,7 +1,7 @@
 //! Signs that a file has a no-data value that it does not declare: a usual one on many samples, and a side whose samples
 //! are all the same and end in a step.
 
-use crate::dem::raster::Raster;
+use crate::raster::Raster;
 
 /// Values that mean no data in many files and are no height of any ground.
 const USUAL: [f64; 8] =
@@ -147,7 +147,7 @@ impl Margin {
 }
 
 /// Differences between neighbors in a row, neither of them `value`.
-pub(in crate::dem) fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
+pub(crate) fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
     let width = raster.width as usize;
     let every = raster.samples.len() / MOST_STEPS + 1;
     let inner = (0..raster.samples.len()).step_by(every).filter(|at| at % width + 1 < width);
@@ -157,7 +157,7 @@ pub(in crate::dem) fn usual_steps(raster: &Raster, value: f64) -> Vec<f64> {
 }
 
 /// The middle of the values; 0 where there is none.
-pub(in crate::dem) fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
@@ -178,7 +178,7 @@ mod tests {
         let zero = UndeclaredNodata { value: 0.0, evidence: String::new(), sign: NodataSign::UsualValue };
         assert_eq!(zero.written(), "0");
     }
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     /// Hills around `base` on 60 by 60 samples, but `value` in the first `columns` columns.
     fn hills(base: f32, columns: u32, value: f32) -> Raster {

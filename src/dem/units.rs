@@ -1,7 +1,7 @@
 //! Units of length, and the names and EPSG numbers that files state them by.
 
 /// Meters in an international foot.
-pub(crate) const FOOT_M: f64 = 0.3048;
+pub const FOOT_M: f64 = 0.3048;
 
 /// Meters in a US survey foot.
 pub(crate) const US_SURVEY_FOOT_M: f64 = 1200.0 / 3937.0;

@@ -1,7 +1,7 @@
 //! Vertical datums by EPSG's numbers, and the vertical parts of compound systems in WKT.
 //!
 //! The names are carried along and printed; that two of them differ is for the user to see. Heights are brought only between
-//! those of [`HeightDatum`](crate::dem::height_datum::HeightDatum).
+//! those of [`HeightDatum`](crate::height_datum::HeightDatum).
 
 /// EPSG's numbers of vertical systems, and those of GeoTIFF 1.0 (5101 to 5106). A name's first number is written.
 const NAMES: [(&str, &[u16]); 30] = [

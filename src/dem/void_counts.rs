@@ -8,7 +8,7 @@
 //! row          ────aaaaaaaa────────
 //! ```
 
-use crate::dem::raster::{Raster, Samples};
+use crate::raster::{Raster, Samples};
 
 /// The number of voids, and of the samples in all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -169,8 +169,8 @@ fn join(parts: &mut [VoidPart], links: &mut [usize], one: usize, other: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
-    use crate::dem::voids;
+    use crate::raster::tests::small;
+    use crate::voids;
     use proptest::prelude::*;
 
     fn counts(width: u32, rows: &[&str]) -> VoidCounts {

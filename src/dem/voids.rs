@@ -11,8 +11,8 @@
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
-use crate::geom::crs::Crs;
+use crate::raster::Raster;
+use sandtable_geom::crs::Crs;
 
 /// Voids of more samples than this are not filled: across three hundred posts a membrane is unrelated to the ground.
 /// Also bounds the time, which grows with the power of one and a half.
@@ -200,8 +200,8 @@ impl Membrane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
-    use crate::dem::void_counts::VoidCounts;
+    use crate::raster::tests::small;
+    use crate::void_counts::VoidCounts;
 
     /// A plane with the samples cleared that `hole` names by column and row.
     fn plane(side: u32, hole: impl Fn(u32, u32) -> bool) -> Raster {

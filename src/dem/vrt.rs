@@ -19,13 +19,13 @@ use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::georef::affine;
-use crate::dem::raster::Raster;
-use crate::dem::vrt_frame::VrtFrame;
-use crate::dem::vrt_source::{VrtRect, VrtSource};
-use crate::dem::windows::Windows;
-use crate::limits::VRT_BYTES;
+use crate::error::DemErrorKind;
+use crate::georef::affine;
+use crate::raster::Raster;
+use crate::vrt_frame::VrtFrame;
+use crate::vrt_source::{VrtRect, VrtSource};
+use crate::windows::Windows;
+use sandtable_base::limits::VRT_BYTES;
 
 /// How far, in cells, a virtual raster may lie from the tiles that it names.
 pub(super) const PLACE: f64 = 1e-3;
@@ -344,7 +344,7 @@ pub(super) fn unsupported(what: String) -> DemErrorKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     fn vrt(band: &str) -> Result<VrtTiles, DemErrorKind> {
         let text = format!(

@@ -2,11 +2,11 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::vrt::{PLACE, unsupported};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::limits::{RASTER_SAMPLES, WINDOWED_SAMPLES};
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples};
+use crate::vrt::{PLACE, unsupported};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_base::limits::{RASTER_SAMPLES, WINDOWED_SAMPLES};
 
 /// Where a virtual raster lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,7 @@ impl Windows for FramedWindows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn what_tiles_leave_of_the_frame_is_no_data() {

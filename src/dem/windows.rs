@@ -16,10 +16,10 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::dem::crop::window_samples;
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples, scaled};
-use crate::dem::sample::SampleGrid;
+use crate::crop::window_samples;
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples, scaled};
+use crate::sample::SampleGrid;
 
 /// Rasters of at most so many samples are read whole even where a part would do: that takes milliseconds.
 pub const MOST_KEPT_SAMPLES: u64 = 1 << 20;
@@ -79,7 +79,7 @@ impl RasterWindow {
 
     /// The samples around the grid positions from `low` to `high`, and `halo` more on each side as far as there are any;
     /// in a raster of this size. Positions beyond it count as on its border.
-    pub(crate) fn around((width, height): (u32, u32), low: DVec2, high: DVec2, halo: u32) -> Self {
+    pub fn around((width, height): (u32, u32), low: DVec2, high: DVec2, halo: u32) -> Self {
         let halo = f64::from(halo);
         let last = DVec2::new(f64::from(width - 1), f64::from(height - 1));
         let first = (low.floor() - halo).clamp(DVec2::ZERO, last).as_uvec2();
@@ -116,7 +116,7 @@ impl RasterWindow {
 
     /// # Panics
     /// Where the window reaches beyond a raster of this size.
-    pub(crate) fn assert_within(&self, (width, height): (u32, u32)) {
+    pub fn assert_within(&self, (width, height): (u32, u32)) {
         let end = |start: u32, count: u32| u64::from(start) + u64::from(count);
         assert!(
             end(self.column, self.width) <= width.into() && end(self.row, self.height) <= height.into(),
@@ -227,7 +227,7 @@ impl<W: Windows + ?Sized> Windows for Box<W> {
 }
 
 /// A raster of which the samples of one window are held.
-pub(crate) struct RasterPart<'a> {
+pub struct RasterPart<'a> {
     /// The whole raster; its `samples` are not used.
     pub whole: &'a Raster,
     /// What is held of it.
@@ -252,7 +252,7 @@ impl SampleGrid for RasterPart<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn a_window_of_a_raster_in_memory_holds_its_heights_in_meters() {

@@ -1,14 +1,14 @@
 //! Writes rasters to the bytes of files.
 //!
 //! A raster that a format cannot hold is refused with a remedy, except where the format always rounds (an SRTM tile has
-//! whole meters): then it is done and noted. [`crate::dem::read::read`] returns the raster again, bit for bit where
+//! whole meters): then it is done and noted. [`crate::read::read`] returns the raster again, bit for bit where
 //! nothing was rounded.
 
 use std::io;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::DemFormat;
-use crate::dem::raster::Raster;
+use crate::error::DemErrorKind;
+use crate::formats::DemFormat;
+use crate::raster::Raster;
 
 /// The bytes of a file and of those that belong beside it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,9 +100,9 @@ pub enum WriteError {
 /// [`WriteError`].
 ///
 /// ```
-/// use sandtable::dem::formats::DemFormat;
-/// use sandtable::dem::read::{DemHints, read};
-/// use sandtable::dem::write::write;
+/// use sandtable_dem::formats::DemFormat;
+/// use sandtable_dem::read::{DemHints, read};
+/// use sandtable_dem::write::write;
 /// let grid = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n1 2 3 4.5";
 /// let raster = read("a.asc", grid, &DemHints::default())?;
 /// let written = write(&raster, DemFormat::to_write("tif").expect("a GeoTIFF"), "a")?;

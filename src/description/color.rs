@@ -1,6 +1,6 @@
 //! Colors and color ramps as a scene file writes them.
 
-use crate::description::words::RampName;
+use crate::words::RampName;
 
 /// A color as written: sRGB red, green, blue and straight alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -5,8 +5,8 @@
 
 use std::iter;
 
-use crate::description::bounds::Bounds;
-use crate::description::words::WordDeclaration;
+use crate::bounds::Bounds;
+use crate::words::WordDeclaration;
 
 /// One key of a table.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +73,7 @@ pub enum KeyKind {
     NumberRange(Bounds),
     /// A list of numbers.
     Numbers(Bounds),
-    /// The name of a color ramp ([`RampName`](crate::description::words::RampName)), or a list of its stops.
+    /// The name of a color ramp ([`RampName`](crate::words::RampName)), or a list of its stops.
     Ramp,
     /// A table of properties with the values wanted of each, or an expression.
     Selection,

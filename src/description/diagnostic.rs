@@ -5,10 +5,10 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::finding_code::FindingCode;
-use crate::description::source_place::SourcePlace;
-use crate::description::source_text::{LineColumn, SourceText};
-use crate::message::chain::error_text;
+use crate::finding_code::FindingCode;
+use crate::source_place::SourcePlace;
+use crate::source_text::{LineColumn, SourceText};
+use sandtable_base::message::chain::error_text;
 
 /// One error in a scene file: its cause, its place, and a remedy.
 #[derive(Clone, Debug)]
@@ -188,7 +188,7 @@ impl DiagnosticSink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::source_place::WIDTH;
+    use crate::source_place::WIDTH;
 
     fn shown(text: &str, span: Range<usize>) -> String {
         Diagnostic::new(&SourceText::new("a", text), span, "m").to_string()

@@ -1,4 +1,4 @@
-//! The scene file's tables, except those of features ([`crate::description::features`]).
+//! The scene file's tables, except those of features ([`crate::features`]).
 //!
 //! A scene file is TOML in UTF-8. Lengths and heights are meters, angles degrees, compass directions clockwise from
 //! north, coordinates `[easting, northing]` or `[longitude, latitude]`, and file names relative to the file that states
@@ -35,30 +35,25 @@ use std::error::Error;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::bounds::Bounds::{self, Above, Within};
-use crate::description::color::{Color, RampChoice};
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::diagnostic::Diagnostic;
-use crate::description::earthworks::EarthworkTable;
-use crate::description::feature_value::DefaultedValue;
-use crate::description::features::{
-    AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
-    RoadTable, ScatterTable,
-};
-use crate::description::finding_code::FindingCode;
-use crate::description::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
-use crate::description::key;
-use crate::description::reader::TableReader;
-use crate::description::selection::Selection;
-use crate::description::source_text::SourceText;
-use crate::description::stated::Stated;
-use crate::description::symbols::SymbolTable;
-use crate::description::table::Table;
-use crate::description::unused::UnusedDefinitions;
-use crate::description::words::{
-    CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
-};
-use crate::geom::crs::Crs;
+use crate::bounds::Bounds::{self, Above, Within};
+use crate::color::{Color, RampChoice};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::diagnostic::Diagnostic;
+use crate::earthworks::EarthworkTable;
+use crate::feature_value::DefaultedValue;
+use crate::features::{AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable, ScatterTable};
+use crate::finding_code::FindingCode;
+use crate::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
+use crate::key;
+use crate::reader::TableReader;
+use crate::selection::Selection;
+use crate::source_text::SourceText;
+use crate::stated::Stated;
+use crate::symbols::SymbolTable;
+use crate::table::Table;
+use crate::unused::UnusedDefinitions;
+use crate::words::{CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop};
+use sandtable_geom::crs::Crs;
 
 /// Compass directions in degrees.
 pub(super) const DIRECTION: Bounds = Within(-360.0, 360.0);

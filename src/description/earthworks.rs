@@ -11,16 +11,16 @@
 //! points = [[500300, 4649100], [500360, 4649100], [500360, 4649150]]
 //! ```
 
-use crate::description::bounds::Bounds::{self, Above, Within};
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::feature_value::FeatureValue;
-use crate::description::features::FeatureSource;
-use crate::description::key;
-use crate::description::reader::TableReader;
-use crate::description::stated::Stated;
-use crate::description::table::Table;
-use crate::description::words::EarthworkKind;
-use crate::message::choice::Choice;
+use crate::bounds::Bounds::{self, Above, Within};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::feature_value::FeatureValue;
+use crate::features::FeatureSource;
+use crate::key;
+use crate::reader::TableReader;
+use crate::stated::Stated;
+use crate::table::Table;
+use crate::words::EarthworkKind;
+use sandtable_base::message::choice::Choice;
 
 /// Radii, widths, depths and heights of earthworks.
 const SIZE: Bounds = Above(0.0, 10_000.0);
@@ -121,8 +121,8 @@ fn check_points(reader: &mut TableReader<'_, '_>, kind: EarthworkKind, source: O
 
 #[cfg(test)]
 mod tests {
-    use crate::description::document::Document;
-    use crate::description::parse::parse;
+    use crate::document::Document;
+    use crate::parse::parse;
 
     fn read(table: &str) -> Result<Document, String> {
         let text = format!("[terrain]\ndem = \"a.tif\"\n[[earthwork]]\n{table}\n");

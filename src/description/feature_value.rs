@@ -3,11 +3,11 @@
 use std::fmt::Debug;
 use std::ops::Range;
 
-use crate::description::bounds::Bounds;
-use crate::description::expression::{Expression, PropertyLookup};
-use crate::description::scalar::Scalar;
-use crate::description::stated::Stated;
-use crate::message::choice::Choice;
+use crate::bounds::Bounds;
+use crate::expression::{Expression, PropertyLookup};
+use crate::scalar::Scalar;
+use crate::stated::Stated;
+use sandtable_base::message::choice::Choice;
 
 /// A type that the result of an expression converts to.
 pub trait FromScalar: Clone + Debug + PartialEq {
@@ -27,14 +27,16 @@ impl FromScalar for f64 {
     }
 }
 
-impl<W: Choice> FromScalar for W {
-    type Limits = ();
+/// A choice whose word an expression may compute.
+pub trait FeatureWord: Choice + FromScalar<Limits = ()> {}
 
-    fn from_scalar(scalar: &Scalar, (): ()) -> Option<Self> {
-        match scalar {
-            Scalar::Text(text) => W::from_word(text),
-            Scalar::Bool(_) | Scalar::Number(_) => None,
-        }
+impl<W: Choice + FromScalar<Limits = ()>> FeatureWord for W {}
+
+/// The value whose word `scalar` is; `None` where it is none of them.
+pub fn word_of_scalar<W: Choice>(scalar: &Scalar) -> Option<W> {
+    match scalar {
+        Scalar::Text(text) => W::from_word(text),
+        Scalar::Bool(_) | Scalar::Number(_) => None,
     }
 }
 

@@ -1,30 +1,27 @@
 //! The scene file's tables of features: roads, bridges, water, land cover, buildings, fences and models.
 //!
 //! A number or word that may differ from feature to feature is stated as such or as an expression over the feature's
-//! properties ([`crate::description::expression`]). Where the properties give no value within its range the default is
+//! properties ([`crate::expression`]). Where the properties give no value within its range the default is
 //! taken, and the scene's notes say how often.
 //!
-//! Every table of features may have the key `style` ([`crate::description::styles`]).
+//! Every table of features may have the key `style` ([`crate::styles`]).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::description::bounds::Bounds::{self, Above, Within};
-use crate::description::color::Color;
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::document::DIRECTION;
-use crate::description::expression::Expression;
-use crate::description::feature_value::{DefaultedValue, FeatureValue};
-use crate::description::key;
-use crate::description::reader::TableReader;
-use crate::description::selection::Selection;
-use crate::description::stated::Stated;
-use crate::description::table::Table;
-use crate::description::words::{
-    Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
-    RoadSurface, RoofShape, Water,
-};
-use crate::geom::crs::Crs;
+use crate::bounds::Bounds::{self, Above, Within};
+use crate::color::Color;
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::document::DIRECTION;
+use crate::expression::Expression;
+use crate::feature_value::{DefaultedValue, FeatureValue};
+use crate::key;
+use crate::reader::TableReader;
+use crate::selection::Selection;
+use crate::stated::Stated;
+use crate::table::Table;
+use crate::words::{Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode, RoadSurface, RoofShape, Water};
+use sandtable_geom::crs::Crs;
 
 /// Widths of roads and rivers, and distances between things.
 const WIDTH: Bounds = Within(0.01, 10_000.0);

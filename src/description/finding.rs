@@ -14,10 +14,10 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::finding_code::FindingCode;
-use crate::description::source_place::{SourcePlace, harmless};
-use crate::description::source_text::SourceText;
+use crate::diagnostic::Diagnostic;
+use crate::finding_code::FindingCode;
+use crate::source_place::{SourcePlace, harmless};
+use crate::source_text::SourceText;
 
 /// How much a finding matters. The gravest comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

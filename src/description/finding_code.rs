@@ -4,7 +4,7 @@
 //! and is never used again for something else: scripts compare it. `sandtable explain CODE` prints the text, and
 //! `scenes/FINDINGS.md` lists all.
 
-use crate::description::finding::Severity;
+use crate::finding::Severity;
 
 /// Declares the codes.
 macro_rules! finding_codes {

@@ -1,15 +1,15 @@
 //! The scene file's tables of tactical graphics and of sight.
 
-use crate::description::bounds::Bounds::{self, Above, Within};
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::document::DIRECTION;
-use crate::description::features::FeatureSource;
-use crate::description::key;
-use crate::description::reader::TableReader;
-use crate::description::stated::Stated;
-use crate::description::table::Table;
-use crate::description::words::{GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
-use crate::geom::crs::Crs;
+use crate::bounds::Bounds::{self, Above, Within};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::document::DIRECTION;
+use crate::features::FeatureSource;
+use crate::key;
+use crate::reader::TableReader;
+use crate::stated::Stated;
+use crate::table::Table;
+use crate::words::{GraphicSide, GraphicStatus, RangeExtent, ViewshedTint};
+use sandtable_geom::crs::Crs;
 
 /// Distances from a place.
 const REACH: Bounds = Above(0.0, 1e7);

@@ -21,12 +21,12 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::description::finding_code::FindingCode;
-use crate::description::source_text::SourceText;
-use crate::limits::INCLUDE_DEPTH;
-use crate::limits::INCLUDED_FILES;
-use crate::limits::SCENE_BYTES;
-use crate::message::suggest::quoted;
+use crate::finding_code::FindingCode;
+use crate::source_text::SourceText;
+use sandtable_base::limits::INCLUDE_DEPTH;
+use sandtable_base::limits::INCLUDED_FILES;
+use sandtable_base::limits::SCENE_BYTES;
+use sandtable_base::message::suggest::quoted;
 
 /// Reads a file that is named relative to the scene file.
 pub type LoadFile<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>>;
@@ -171,7 +171,7 @@ fn folder_of(path: &str) -> &str {
     path.rfind('/').map_or("", |slash| &path[..=slash])
 }
 
-/// The file names under `include`; [`parse`](crate::description::parse) reports syntax errors later.
+/// The file names under `include`; [`parse`](crate::parse) reports syntax errors later.
 fn includes_of(text: &str) -> Vec<Spanned<String>> {
     if !text.contains("include") {
         return Vec::new();

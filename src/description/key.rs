@@ -1,23 +1,23 @@
 //! The types of values that a key may be declared to have.
 //!
 //! To add a type: a variant of [`KeyKind`], a line here, the method of [`KeyValue`] that reads it, and its shape in the
-//! schema ([`crate::description::schema`]).
+//! schema ([`crate::schema`]).
 
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
-use crate::description::bounds::Bounds;
-use crate::description::color::{Color, RampChoice};
-use crate::description::declaration::KeyKind;
-use crate::description::expression::Expression;
-use crate::description::feature_value::FeatureValue;
-use crate::description::features::FeatureSource;
-use crate::description::selection::Selection;
-use crate::description::table::Table;
-use crate::description::value::KeyValue;
-use crate::description::words::declarations;
-use crate::geom::crs::Crs;
-use crate::message::choice::Choice;
+use crate::bounds::Bounds;
+use crate::color::{Color, RampChoice};
+use crate::declaration::KeyKind;
+use crate::expression::Expression;
+use crate::feature_value::{FeatureValue, FeatureWord};
+use crate::features::FeatureSource;
+use crate::selection::Selection;
+use crate::table::Table;
+use crate::value::KeyValue;
+use crate::words::declarations;
+use sandtable_geom::crs::Crs;
+use sandtable_base::message::choice::Choice;
 
 /// The type of a key: its declaration, and the function that reads a value of type `V`.
 pub(super) struct Key<V, A = ()> {
@@ -86,7 +86,7 @@ keys! {
     /// One of the words of `W`.
     word<W: Choice>() -> W = KeyKind::Word(declarations::<W>);
     /// One of the words of `W`, or an expression that gives one for each feature.
-    feature_word<W: Choice>() -> FeatureValue<W> = KeyKind::FeatureWord(declarations::<W>);
+    feature_word<W: FeatureWord>() -> FeatureValue<W> = KeyKind::FeatureWord(declarations::<W>);
     /// `#rgb`, `#rrggbb` or `#rrggbbaa`.
     color() -> Color = KeyKind::Color;
     /// A coordinate pair.

@@ -6,18 +6,18 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeTable;
 
-use crate::description::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::include::{LoadFile, files_with_values, gather, merged, moved};
-use crate::description::phases::Phases;
-use crate::description::reader::{DecodeContext, TableReader};
-use crate::description::source_text::SourceText;
-use crate::description::stated::Stated;
-use crate::description::styles::Styles;
-use crate::description::unused::UnusedInclude;
-use crate::limits::SCENE_BYTES;
-use crate::message::suggest::quoted;
+use crate::diagnostic::{Diagnostic, DiagnosticSink, Diagnostics};
+use crate::document::Document;
+use crate::finding_code::FindingCode;
+use crate::include::{LoadFile, files_with_values, gather, merged, moved};
+use crate::phases::Phases;
+use crate::reader::{DecodeContext, TableReader};
+use crate::source_text::SourceText;
+use crate::stated::Stated;
+use crate::styles::Styles;
+use crate::unused::UnusedInclude;
+use sandtable_base::limits::SCENE_BYTES;
+use sandtable_base::message::suggest::quoted;
 
 /// The scene that `text` describes; `file_name` is the file's name in messages.
 ///

@@ -22,12 +22,12 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::diagnostic::DiagnosticSink;
-use crate::description::finding_code::FindingCode;
-use crate::description::key::{Key, text_list};
-use crate::description::stated::Stated;
-use crate::message::suggest::{quoted, remedy};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::diagnostic::DiagnosticSink;
+use crate::finding_code::FindingCode;
+use crate::key::{Key, text_list};
+use crate::stated::Stated;
+use sandtable_base::message::suggest::{quoted, remedy};
 
 pub(super) const PHASES_TYPE: Key<Vec<String>> = text_list();
 
@@ -98,8 +98,8 @@ impl<'t> Phases<'t> {
 
 #[cfg(test)]
 mod tests {
-    use crate::description::document::Document;
-    use crate::description::parse::{parse, parse_in_phase};
+    use crate::document::Document;
+    use crate::parse::{parse, parse_in_phase};
 
     const SCENE: &str = "[terrain]\ndem = \"a.tif\"\n[[phase]]\nname = \"one\"\n[[phase]]\nname = \"two\"\ntitle = \"Two\"\n\
         [[area]]\npoints = [[0, 0], [1, 0], [1, 1]]\ncover = \"forest\"\nphases = [\"one\"]\n[[area]]\npoints = [[0, 0], [2, 0], [1, 1]]\ncover = \"forest\"\n";

@@ -9,20 +9,20 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::diagnostic::DiagnosticSink;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::key::{Group, Key, Styling};
-use crate::description::phases::{PHASES_KEY, PHASES_TYPE, Phases};
-use crate::description::source_text::SourceText;
-use crate::description::stated::Stated;
-use crate::description::styles::{STYLE_KEY, STYLE_TYPE, Styles};
-use crate::description::table::{DefaultedField, Field, Table};
-use crate::description::unused::{UnusedDefinitions, UnusedInclude};
-use crate::description::value::{KeyValue, type_name};
-use crate::limits::SCENE_TABLES;
-use crate::message::suggest::{listed, nearest, quoted};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::diagnostic::DiagnosticSink;
+use crate::document::Document;
+use crate::finding_code::FindingCode;
+use crate::key::{Group, Key, Styling};
+use crate::phases::{PHASES_KEY, PHASES_TYPE, Phases};
+use crate::source_text::SourceText;
+use crate::stated::Stated;
+use crate::styles::{STYLE_KEY, STYLE_TYPE, Styles};
+use crate::table::{DefaultedField, Field, Table};
+use crate::unused::{UnusedDefinitions, UnusedInclude};
+use crate::value::{KeyValue, type_name};
+use sandtable_base::limits::SCENE_TABLES;
+use sandtable_base::message::suggest::{listed, nearest, quoted};
 
 /// The state that the readers of all tables share.
 pub(super) struct DecodeContext<'t> {

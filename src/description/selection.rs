@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use toml::de::DeValue;
 
-use crate::description::bounds::Bounds;
-use crate::description::expression::Expression;
-use crate::description::scalar::Scalar;
-use crate::description::value::{KeyValue, type_name};
-use crate::message::suggest::quoted;
+use crate::bounds::Bounds;
+use crate::expression::Expression;
+use crate::scalar::Scalar;
+use crate::value::{KeyValue, type_name};
+use sandtable_base::message::suggest::quoted;
 
 /// Which features of a file are meant.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use crate::description::source_text::{LineColumn, SourceText};
+use crate::source_text::{LineColumn, SourceText};
 
 /// Bytes of a scene file, or of a file that it includes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,15 +20,15 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::diagnostic::DiagnosticSink;
-use crate::description::finding_code::FindingCode;
-use crate::description::key::{Key, filled_text};
-use crate::description::reader::DecodeContext;
-use crate::description::stated::Stated;
-use crate::description::value::KeyValue;
-use crate::limits::STYLE_BYTES;
-use crate::message::suggest::{quoted, remedy};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::diagnostic::DiagnosticSink;
+use crate::finding_code::FindingCode;
+use crate::key::{Key, filled_text};
+use crate::reader::DecodeContext;
+use crate::stated::Stated;
+use crate::value::KeyValue;
+use sandtable_base::limits::STYLE_BYTES;
+use sandtable_base::message::suggest::{quoted, remedy};
 
 pub(super) const STYLE_TYPE: Key<String> = filled_text();
 

@@ -1,16 +1,16 @@
 //! The scene file's table of military symbols.
 
-use crate::description::bounds::Bounds::{Above, Within};
-use crate::description::declaration::{KeyDeclaration, Presence};
-use crate::description::document::DIRECTION;
-use crate::description::feature_value::{DefaultedValue, FeatureValue};
-use crate::description::features::FeatureSource;
-use crate::description::key;
-use crate::description::reader::TableReader;
-use crate::description::selection::Selection;
-use crate::description::stated::Stated;
-use crate::description::table::Table;
-use crate::geom::crs::Crs;
+use crate::bounds::Bounds::{Above, Within};
+use crate::declaration::{KeyDeclaration, Presence};
+use crate::document::DIRECTION;
+use crate::feature_value::{DefaultedValue, FeatureValue};
+use crate::features::FeatureSource;
+use crate::key;
+use crate::reader::TableReader;
+use crate::selection::Selection;
+use crate::stated::Stated;
+use crate::table::Table;
+use sandtable_geom::crs::Crs;
 
 table! {
     /// `[[symbol]]`.

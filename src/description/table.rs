@@ -16,10 +16,10 @@
 //! in `check(reader) { … }`, where every key is an `Option` named as its field: `None` where the key is required and
 //! missing.
 
-use crate::description::declaration::KeyDeclaration;
-use crate::description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
-use crate::description::reader::TableReader;
-use crate::description::stated::Stated;
+use crate::declaration::KeyDeclaration;
+use crate::feature_value::{DefaultedValue, FeatureValue, FromScalar};
+use crate::reader::TableReader;
+use crate::stated::Stated;
 
 /// A table, or a group of keys in one. `N` is the least number of points, where it holds points.
 pub(super) trait Table<const N: usize = 0>: Sized {

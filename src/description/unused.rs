@@ -1,6 +1,6 @@
 //! What a scene file defines and no table uses.
 
-use crate::description::stated::Stated;
+use crate::stated::Stated;
 
 /// Names of definitions that have no effect, each with its place.
 #[derive(Clone, Debug, Default)]

@@ -7,20 +7,20 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
-use crate::description::bounds::{Bounds, ShortNumber};
-use crate::description::color::{Color, RampChoice};
-use crate::description::expression::{Expression, ExpressionError};
-use crate::description::feature_value::FeatureValue;
-use crate::description::finding_code::FindingCode;
-use crate::description::include::joined;
-use crate::description::reader::{DecodeContext, TableName};
-use crate::description::scalar::Scalar;
-use crate::geom::crs::Crs;
-use crate::limits::INLINE_POINTS;
-use crate::limits::SCENE_LIST;
-use crate::limits::SCENE_TEXT;
-use crate::message::choice::Choice;
-use crate::message::suggest::{quoted, remedy};
+use crate::bounds::{Bounds, ShortNumber};
+use crate::color::{Color, RampChoice};
+use crate::expression::{Expression, ExpressionError};
+use crate::feature_value::{FeatureValue, FeatureWord};
+use crate::finding_code::FindingCode;
+use crate::include::joined;
+use crate::reader::{DecodeContext, TableName};
+use crate::scalar::Scalar;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::INLINE_POINTS;
+use sandtable_base::limits::SCENE_LIST;
+use sandtable_base::limits::SCENE_TEXT;
+use sandtable_base::message::choice::Choice;
+use sandtable_base::message::suggest::{quoted, remedy};
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
 pub(super) const COORDINATES: Bounds = Bounds::Within(-1e9, 1e9);
@@ -82,7 +82,7 @@ fn words<W: Choice>() -> Vec<&'static str> {
     W::CHOICES.iter().map(|choice| choice.word).collect()
 }
 
-/// The methods that read the types of [`key`](crate::description::key) have the names of these types.
+/// The methods that read the types of [`key`](crate::key) have the names of these types.
 impl<'t> KeyValue<'_, 't> {
     /// Reports an error about the value; always `None`.
     pub fn wrong<T>(
@@ -220,7 +220,7 @@ impl<'t> KeyValue<'_, 't> {
         }
     }
 
-    pub fn feature_word<W: Choice>(mut self) -> Option<FeatureValue<W>> {
+    pub fn feature_word<W: FeatureWord>(mut self) -> Option<FeatureValue<W>> {
         match self.value.get_ref() {
             DeValue::String(text) if W::from_word(text).is_none() && Expression::computes(text) => {
                 let expression = self.expression_among(&words::<W>())?;

@@ -3,7 +3,9 @@
 //! To add a word, add a variant with its documentation and its spelling: the decoder, the schema, the reference page
 //! and the messages read it from here.
 
-use crate::message::choice::{Choice, ChoiceWord, word};
+use crate::feature_value::{FromScalar, word_of_scalar};
+use crate::scalar::Scalar;
+use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 
 /// A word and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,14 @@ macro_rules! words {
 
         impl Choice for $name {
             const CHOICES: &'static [ChoiceWord<Self>] = &[$(word(Self::$variant, $word, $doc)),+];
+        }
+
+        impl FromScalar for $name {
+            type Limits = ();
+
+            fn from_scalar(scalar: &Scalar, (): ()) -> Option<Self> {
+                word_of_scalar(scalar)
+            }
         }
     )+};
 }

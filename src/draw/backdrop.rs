@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::draw::lighting::Lighting;
+use crate::color::Srgba;
+use crate::lighting::Lighting;
 
 /// What shows where nothing is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,9 +8,9 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::draw::ground::ColorRamp;
-use crate::draw::water::WaterColor;
+use crate::color::Srgba;
+use crate::ground::ColorRamp;
+use crate::water::WaterColor;
 
 /// The number of stops.
 pub const STOP_COUNT: usize = 9;
@@ -51,7 +51,7 @@ pub fn with_bathymetry(land: &ColorRamp) -> ColorRamp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::lightness;
+    use crate::color::lightness;
 
     #[test]
     fn deeper_water_is_darker_at_every_depth() {

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::ground_cover::GroundCover;
-use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
-use crate::draw::lighting::ReliefShading;
-use crate::draw::undergrowth::Undergrowth;
-use crate::draw::water::{ShorePixel, WaterColor};
+use crate::color::Srgba;
+use crate::ground_cover::GroundCover;
+use crate::ground_imagery::{DrapedColor, GroundImagery};
+use crate::lighting::ReliefShading;
+use crate::undergrowth::Undergrowth;
+use crate::water::{ShorePixel, WaterColor};
 
 /// The look of the ground at the posts of a regular grid; row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub struct GroundMap {
     pub z_factor: f32,
     /// The change of brightness with shade; see [`ReliefShading::shade_gain`].
     pub shade_gain: f32,
-    /// Whether it is natural ground, with the grain of [`ground_grain`](crate::draw::ground_grain::ground_grain).
+    /// Whether it is natural ground, with the grain of [`ground_grain`](crate::ground_grain::ground_grain).
     pub has_grain: bool,
 }
 
@@ -165,9 +165,9 @@ impl Contours {
 /// What a pixel of the ground shows besides the map's own values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundDetail {
-    /// The factor of [`ground_grain`](crate::draw::ground_grain::ground_grain).
+    /// The factor of [`ground_grain`](crate::ground_grain::ground_grain).
     pub grain: f32,
-    /// [`cover_noise`](crate::draw::ground_cover::cover_noise); read where the map has a cover.
+    /// [`cover_noise`](crate::ground_cover::cover_noise); read where the map has a cover.
     pub uneven: f32,
     /// The picture over the map.
     pub draped: DrapedColor,

@@ -8,9 +8,9 @@
 
 use glam::{FloatExt, Vec2, Vec3};
 
-use crate::draw::color::luminance;
-use crate::draw::ground::GroundPost;
-use crate::draw::ground_grain::noise_of;
+use crate::color::luminance;
+use crate::ground::GroundPost;
+use crate::ground_grain::noise_of;
 
 /// Wavelengths in meters with their shares of the noise: from a gully to a mountainside.
 const WAVES: [(f32, f32); 3] = [(60.0, 0.25), (170.0, 0.35), (480.0, 0.4)];
@@ -84,7 +84,7 @@ fn step(value: f32, [from, to]: [f32; 2]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::lightness;
+    use crate::color::lightness;
 
     const ALPS: GroundCover =
         GroundCover { tree_m: 2100.0, snow_m: 2900.0, true_rise: 1.0, shady_north: 1.0 };

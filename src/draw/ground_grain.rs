@@ -27,7 +27,7 @@ pub fn ground_grain(at: Vec2, pixel_m: f32, rise: f32) -> f32 {
 }
 
 /// A sum of noise of wavelengths in meters with their shares, each as far as a pixel `pixel_m` meters wide shows it.
-pub(in crate::draw) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) -> f32 {
+pub(crate) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) -> f32 {
     let mut sum = 0.0;
     for &(wave_m, share) in waves {
         let shown = (2.0 * wave_m / (WIDE_PX * pixel_m) - 1.0).clamp(0.0, 1.0);
@@ -39,7 +39,7 @@ pub(in crate::draw) fn noise_of(waves: &[(f32, f32)], at: Vec2, pixel_m: f32) ->
 }
 
 /// Value noise, -1..=1.
-pub(in crate::draw) fn noise(at: Vec2) -> f32 {
+pub(crate) fn noise(at: Vec2) -> f32 {
     let cell = at.floor();
     let part = at - cell;
     let smooth = part * part * (Vec2::splat(3.0) - 2.0 * part);

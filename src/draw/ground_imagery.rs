@@ -3,7 +3,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::pixels::Pixels;
+use crate::pixels::Pixels;
 
 /// Pixels with their place in the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +83,7 @@ impl GroundImagery {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
+    use crate::color::Srgba;
 
     #[test]
     fn a_place_has_the_color_of_the_pixel_there_and_none_beyond_the_picture() {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use crate::draw::ground::GroundMap;
+use crate::ground::GroundMap;
 
 /// A ground map in a world space of its own, which is shown in place of coarser ones where it has posts.
 #[derive(Clone, Debug, PartialEq)]

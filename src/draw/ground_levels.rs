@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::draw::ground::{GroundMap, GroundPost};
+use crate::ground::{GroundMap, GroundPost};
 
 /// The number of posts of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,9 +145,9 @@ fn smoothed([before, own, after]: [&GroundPost; 3]) -> GroundPost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::ground::ColorRamp;
-    use crate::draw::lighting::ReliefShading;
+    use crate::color::Srgba;
+    use crate::ground::ColorRamp;
+    use crate::lighting::ReliefShading;
     use glam::Vec2;
 
     fn posts(size: PostCount, height: impl Fn(u32, u32) -> f32) -> Vec<GroundPost> {

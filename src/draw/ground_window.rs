@@ -1,6 +1,6 @@
 //! Posts of a part of the ground that lie closer to each other than those of the ground map.
 
-use crate::draw::ground::GroundPost;
+use crate::ground::GroundPost;
 
 /// A rectangle of posts. Of several for one map, the first has half the distance between the map's posts, and each other
 /// half that of the one before; the finest that holds a place is the one that is shown there.

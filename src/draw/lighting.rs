@@ -10,7 +10,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::backdrop::Backdrop;
+use crate::backdrop::Backdrop;
 
 /// The light of a scene; colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
-use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundMap, GroundMapError};
-use crate::draw::ground_inset::GroundInset;
-use crate::draw::lighting::Lighting;
-use crate::draw::material::{Material, TextureId};
-use crate::draw::pixels::Pixels;
-use crate::mesh::sink::{MeshSink, VertexId};
+use crate::color::Srgba;
+use crate::ground::{GroundMap, GroundMapError};
+use crate::ground_inset::GroundInset;
+use crate::lighting::Lighting;
+use crate::material::{Material, TextureId};
+use crate::pixels::Pixels;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 
 /// The index of a mesh in a [`DrawList`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,8 +1,8 @@
 //! Materials of surfaces.
 
-use crate::draw::color::Srgba;
+use crate::color::Srgba;
 
-/// The index of a texture in a [`crate::draw::list::DrawList`] or a model.
+/// The index of a texture in a [`crate::list::DrawList`] or a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TextureId(pub u32);
 
@@ -33,7 +33,7 @@ pub enum Albedo {
     Surface,
     /// The ground map's ramp and contours; base color and texture are not used.
     GroundMap,
-    /// Base color without light, in lines of [`hatching_cover`](crate::draw::hatching::hatching_cover); texture and vertex
+    /// Base color without light, in lines of [`hatching_cover`](crate::hatching::hatching_cover); texture and vertex
     /// colors are not used.
     Hatching,
 }
@@ -61,7 +61,7 @@ pub struct Material {
     pub receives_shadows: bool,
     /// Whether it is natural cover of the ground, whose grain goes through it.
     pub is_natural: bool,
-    /// Whether the edges of its triangles are drawn over it, as [`wireframe`](crate::draw::wireframe) says.
+    /// Whether the edges of its triangles are drawn over it, as [`wireframe`](crate::wireframe) says.
     pub shows_edges: bool,
 }
 

@@ -6,8 +6,8 @@
 
 use std::sync::Arc;
 
-use crate::draw::ground::GroundPost;
-use crate::draw::list::{DepthLayer, DrawMesh, FeatureId, MaterialId};
+use crate::ground::GroundPost;
+use crate::list::{DepthLayer, DrawMesh, FeatureId, MaterialId};
 
 /// The number of a patch, row by row from the south-west.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

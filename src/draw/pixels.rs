@@ -1,6 +1,6 @@
 //! A rectangle of sRGB pixels: a texture, a symbol, a picture.
 
-use crate::draw::color::Srgba;
+use crate::color::Srgba;
 
 /// Pixels row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
+use crate::color::Srgba;
 
 /// The color of ground under trees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ impl Undergrowth {
 
     /// The share of it at a place, from the mean of [`GroundPost::water`] around it, which is negative under trees.
     ///
-    /// [`GroundPost::water`]: crate::draw::ground::GroundPost::water
+    /// [`GroundPost::water`]: crate::ground::GroundPost::water
     pub fn cover(water: f32) -> f32 {
         (-water).clamp(0.0, 1.0) * Self::MOST
     }

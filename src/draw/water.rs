@@ -7,10 +7,10 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::bathymetry::bathymetry;
-use crate::draw::color::Srgba;
-use crate::draw::ground_grain::noise;
-use crate::draw::lighting::Lighting;
+use crate::bathymetry::bathymetry;
+use crate::color::Srgba;
+use crate::ground_grain::noise;
+use crate::lighting::Lighting;
 
 /// The colors of water.
 ///
@@ -19,7 +19,7 @@ use crate::draw::lighting::Lighting;
 /// `c = clamp(a + 0.5, 0, 1)` of the pixel and the line along the shore `l = clamp(1.25 − |a|, 0, 1)`; the color is
 /// `mix(land, water, c) · (1 − SHORE · l)`.
 ///
-/// [`GroundPost::water`]: crate::draw::ground::GroundPost::water
+/// [`GroundPost::water`]: crate::ground::GroundPost::water
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaterColor;
 
@@ -74,7 +74,7 @@ impl ShorePixel {
 
     /// The pixel where [`GroundPost::water`] is `water` and changes by `change` across it.
     ///
-    /// [`GroundPost::water`]: crate::draw::ground::GroundPost::water
+    /// [`GroundPost::water`]: crate::ground::GroundPost::water
     pub fn new(water: f32, change: f32) -> Self {
         let away_px = (water - 0.5) / change.max(Self::LEAST_CHANGE);
         Self {

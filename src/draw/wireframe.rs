@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
+use crate::color::Srgba;
 
 /// The color of lines; its alpha is how much of the ground a line hides.
 pub const LINE: Srgba = Srgba([24, 24, 30, 200]);

@@ -9,11 +9,11 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::earthworks::held_posts::HeldPosts;
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{HIGHEST_M, Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::volumes::Volumes;
+use crate::held_posts::HeldPosts;
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{HIGHEST_M, Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::volumes::Volumes;
 
 /// Posts along a tile's side. Smaller tiles follow a stroke more closely; each costs a walk up the vertex graph.
 const TILE: u32 = 64;

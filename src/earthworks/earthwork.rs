@@ -5,14 +5,14 @@
 
 use glam::DVec2;
 
-use crate::earthworks::brush::{BrushChanges, Crater, Embankment, TireTrack, Trench};
-use crate::earthworks::held_posts::HeldPosts;
-use crate::earthworks::level_ground::LevelGround;
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::volumes::Volumes;
+use crate::brush::{BrushChanges, Crater, Embankment, TireTrack, Trench};
+use crate::held_posts::HeldPosts;
+use crate::level_ground::LevelGround;
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_terrain::volumes::Volumes;
 
 /// How far the batter of raised ground reaches, as a multiple of its reach on level ground: down a slope half as steep as
 /// the batter it reaches twice as far. Steeper slopes end it in a step.
@@ -211,7 +211,7 @@ impl RaisedGround {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::pad::Batters;
+    use crate::pad::Batters;
 
     const SIDE: u32 = 121;
 

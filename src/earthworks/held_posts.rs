@@ -1,6 +1,6 @@
 //! Posts that earthworks leave as they are: those under water, which stays level.
 
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// Posts of a lattice, kept as runs along its rows, so that a few lakes in a large model take little memory.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl HeldPosts {
     }
 
     /// Whether a post of the lattice is held. Where posts were put in between those of the runs
-    /// ([`crate::terrain::densify`]), those between held ones are held. `lattice` may be a part of the one of the runs.
+    /// ([`sandtable_terrain::densify`]), those between held ones are held. `lattice` may be a part of the one of the runs.
     pub fn holds(&self, lattice: &Lattice, post: Post) -> bool {
         if self.is_empty() {
             return false;
@@ -65,7 +65,7 @@ impl HeldPosts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::densify::densify;
+    use sandtable_terrain::densify::densify;
     use glam::DVec2;
 
     fn lattice(pins: &[(u32, u32)]) -> Lattice {

@@ -1,6 +1,6 @@
 //! Level ground within an outline of any shape, with batters down and up to the ground around it: a brush.
 //!
-//! Unlike a pad ([`crate::earthworks::pad`]) it pins no post, so that it can be made while the terrain is in use, and its
+//! Unlike a pad ([`crate::pad`]) it pins no post, so that it can be made while the terrain is in use, and its
 //! outline may be concave. From the outline the batters are followed outward from post to post, and end where they come
 //! to daylight: a hill that rises behind it stays.
 
@@ -8,15 +8,15 @@ use std::collections::VecDeque;
 
 use glam::DVec2;
 
-use crate::earthworks::brush::BrushChanges;
-use crate::earthworks::leveling::posts_touched;
-use crate::earthworks::pad::Batters;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::geom::segment;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use crate::brush::BrushChanges;
+use crate::leveling::posts_touched;
+use crate::pad::Batters;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::rect_tree::RectTree;
+use sandtable_geom::segment;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// The most cells that a batter reaches, to bound the cost: a longer one ends in a step.
 const MAX_REACH: u32 = 64;
@@ -140,7 +140,7 @@ fn neighbors(post: Post) -> impl Iterator<Item = Post> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::pad::tests::slope;
+    use crate::pad::tests::slope;
 
     /// An L with its inner corner at (50, 50).
     fn corner() -> Vec<DVec2> {

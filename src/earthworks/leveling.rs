@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::volumes::Volumes;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::volumes::Volumes;
 
 /// Levels the ground within a polygon to `level_m`, so that it is perfectly flat.
 ///
@@ -26,7 +26,7 @@ pub fn level(lattice: &mut Lattice, rings: &[Vec<DVec2>], level_m: f32) -> Volum
 /// The corners of all cells that the polygon touches, in row order.
 ///
 /// Costs one step for each row an edge crosses and each cell the polygon touches, whatever the lattice's size.
-pub(in crate::earthworks) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
+pub(crate) fn posts_touched(lattice: &Lattice, rings: &[Vec<DVec2>]) -> Vec<Post> {
     let to_grid = |point: DVec2| lattice.grid_at(point);
     let edges = || rings.iter().flat_map(|ring| polygon::edges(ring)).map(|(a, b)| (to_grid(a), to_grid(b)));
     let mut touched = Touched::new(lattice, Rect::around(rings.iter().flatten().copied().map(to_grid)));

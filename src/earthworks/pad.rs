@@ -9,12 +9,12 @@
 
 use glam::DVec2;
 
-use crate::earthworks::leveling;
-use crate::geom::polygon;
-use crate::geom::segment;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::volumes::Volumes;
+use crate::leveling;
+use sandtable_geom::polygon;
+use sandtable_geom::segment;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::volumes::Volumes;
 
 /// The slopes beside a pad.
 #[derive(Clone, Copy, Debug, PartialEq)]

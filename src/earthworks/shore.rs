@@ -14,14 +14,14 @@
 
 use glam::DVec2;
 
-use crate::earthworks::leveling::posts_touched;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::geom::segment;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::volumes::Volumes;
+use crate::leveling::posts_touched;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::rect_tree::RectTree;
+use sandtable_geom::segment;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::volumes::Volumes;
 
 /// The move of the first posts ashore as a share of that under water: a step of one cell becomes two of half the
 /// height.

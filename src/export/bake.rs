@@ -3,10 +3,10 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
-use crate::draw::color::Srgba;
-use crate::draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
-use crate::draw::ground_cover::cover_noise;
-use crate::draw::pixels::Pixels;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::ground_cover::cover_noise;
+use sandtable_draw::pixels::Pixels;
 
 /// The longest side in pixels: the most that every graphics adapter supports.
 const LONGEST_PX: u32 = 4096;
@@ -66,8 +66,8 @@ fn color(map: &GroundMap, at: Vec2, step: Vec2) -> Srgba {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::ground::{ColorRamp, Contours, GroundPost};
-    use crate::draw::lighting::ReliefShading;
+    use sandtable_draw::ground::{ColorRamp, Contours, GroundPost};
+    use sandtable_draw::lighting::ReliefShading;
 
     /// Ground that rises eastward, 10 m a post of 20 m, colored dark below and light above.
     fn map(contours: Option<Contours>) -> GroundMap {

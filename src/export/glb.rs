@@ -7,12 +7,13 @@ use std::io::{self, Write};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
-use crate::draw::color::{Srgba, linear_from_srgb};
-use crate::draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
-use crate::draw::material::{AlphaMode, Material, TextureId};
-use crate::export::{SceneExport, encode_png};
-use crate::mesh::numbering::Numbering;
-use crate::mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
+use sandtable_draw::color::{Srgba, linear_from_srgb};
+use sandtable_draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
+use sandtable_draw::material::{AlphaMode, Material, TextureId};
+use crate::SceneExport;
+use sandtable_files::png::encode_png;
+use sandtable_mesh::numbering::Numbering;
+use sandtable_mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
 
 /// Writes the file.
 ///

@@ -7,13 +7,13 @@
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::geom::convex;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
+use sandtable_draw::list::{DrawMesh, DrawVertex};
+use sandtable_geom::convex;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::rect_tree::RectTree;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, facet_contains, plane_z};
 
 /// The smallest piece that is kept, in square meters: rounding to f32 makes smaller ones out of nothing.
 const SLIVER_M2: f64 = 1e-4;
@@ -111,7 +111,7 @@ fn add_piece(mesh: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, temp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
+    use sandtable_draw::color::Srgba;
     use glam::Vec2;
 
     fn mesh(triangles: &[[Vec3; 3]]) -> DrawMesh {

@@ -8,12 +8,13 @@ use std::io::{self, Write};
 
 use glam::{Mat3, Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawItem, DrawList, DrawVertex, MaterialId};
-use crate::draw::material::{AlphaMode, TextureId};
-use crate::export::{SceneExport, encode_png};
-use crate::mesh::sink::VertexId;
-use crate::mesh::write::obj::{ObjObject, ObjWriter, word};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawItem, DrawList, DrawVertex, MaterialId};
+use sandtable_draw::material::{AlphaMode, TextureId};
+use crate::SceneExport;
+use sandtable_files::png::encode_png;
+use sandtable_mesh::sink::VertexId;
+use sandtable_mesh::write::obj::{ObjObject, ObjWriter, word};
 
 /// A file that an OBJ file needs beside it.
 #[derive(Clone, Debug)]

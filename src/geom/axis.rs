@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geom::polygon::edges;
+use crate::polygon::edges;
 
 /// Sections across the polygon from which the axis is made.
 const SECTIONS: usize = 48;

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use crate::geom::rect::Rect;
+use crate::rect::Rect;
 
 /// Points a side that are tried, one after the other. The last is enough for a rectangle as wide as a country.
 const POINTS: [usize; 5] = [4, 7, 11, 17, 27];
@@ -96,7 +96,7 @@ fn shares(place: f64, points: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::crs::Crs;
+    use crate::crs::Crs;
 
     #[test]
     fn longitude_and_latitude_of_a_county_and_of_a_country_are_met() {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geom::polygon;
+use crate::polygon;
 
 /// Polygons that reach less deep into one another than this touch, in meters. Polygons with a common edge do not overlap;
 /// over a kilometer of it this depth makes no more than a thousandth of a square meter.

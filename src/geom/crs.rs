@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::geom::crs_fault::CrsFault;
-use crate::geom::datum_shift::DatumShift;
-use crate::geom::proj_string::ProjString;
-use crate::geom::projection::{Datum, Definition, Ellipsoid};
-use crate::geom::wkt::{self, WktSystem};
+use crate::crs_fault::CrsFault;
+use crate::datum_shift::DatumShift;
+use crate::proj_string::ProjString;
+use crate::projection::{Datum, Definition, Ellipsoid};
+use crate::wkt::{self, WktSystem};
 
 /// The longest text that is parsed, in bytes; real WKT has a tenth of it.
 const LONGEST_TEXT: usize = 65_536;
@@ -276,7 +276,7 @@ impl Crs {
     /// [`CrsError::Datum`] where the shift is not known.
     ///
     /// ```
-    /// use sandtable::geom::crs::Crs;
+    /// use sandtable_geom::crs::Crs;
     /// let british = Crs::from_epsg(27700).unwrap();
     /// let shift = british.datum_shift_to(&Crs::wgs84()).unwrap();
     /// assert!(shift.to_string().starts_with("towgs84 446.448,-125.157,542.06"));

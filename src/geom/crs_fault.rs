@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::geom::projection::DefinitionError;
-use crate::geom::wkt::WktError;
+use crate::projection::DefinitionError;
+use crate::wkt::WktError;
 
 /// What is wrong with a system or a coordinate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

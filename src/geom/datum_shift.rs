@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use crate::geom::proj_string::ProjString;
+use crate::proj_string::ProjString;
 
 /// The parameters of PROJ's named datums other than WGS 84; `proj4rs` keeps its own table private.
 const NAMED: [(&str, &str); 15] = [
@@ -118,7 +118,7 @@ fn is_zero(numbers: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::geom::crs::Crs;
+    use crate::crs::Crs;
 
     fn shift(from: &str, to: &str) -> String {
         let [from, to] = [from, to].map(|text| Crs::parse(text).expect("known"));

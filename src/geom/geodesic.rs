@@ -4,7 +4,7 @@
 use geo::{Bearing, Destination, Distance, Geodesic, Point};
 use glam::DVec2;
 
-use crate::geom::crs::Crs;
+use crate::crs::Crs;
 
 /// The shortest line from one position to another; degrees of longitude (x) and latitude (y).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::geom::polyline::{VertexKey, vertex_key};
+use crate::polyline::{VertexKey, vertex_key};
 
 /// `lines` joined wherever exactly two of them end at one vertex, in either direction; rings stay as they are. The first
 /// of joined lines decides the direction. Lines of fewer than two vertices are dropped.

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::geom::polyline::Polyline;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
+use crate::polyline::Polyline;
+use crate::rect::Rect;
+use crate::rect_tree::RectTree;
 
 /// A leg of one of several lines.
 #[derive(Clone, Copy, Debug, PartialEq)]

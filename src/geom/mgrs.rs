@@ -7,7 +7,7 @@
 use glam::DVec2;
 use mgrs_convert::{LatLon, Precision};
 
-use crate::geom::crs::Crs;
+use crate::crs::Crs;
 
 /// A zone of UTM, or a polar cap of UPS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

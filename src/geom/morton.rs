@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::geom::rect::Rect;
+use crate::rect::Rect;
 
 /// Returns the place of each rectangle's center along the curve, counted from 0.
 pub fn ranks(rects: &[Rect]) -> Vec<u32> {

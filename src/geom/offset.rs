@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geom::polyline::Polyline;
+use crate::polyline::Polyline;
 
 /// The vertices beyond the ends of a line, of the lines that go on where it ends. Two lines of one width that know of each
 /// other end on one edge, as if they were one line.

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::geom::segment;
+use crate::rect::Rect;
+use crate::rect_tree::RectTree;
+use crate::segment;
 
 /// A place where two legs of one line cross.
 #[derive(Clone, Copy, Debug, PartialEq)]

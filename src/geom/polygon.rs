@@ -3,7 +3,7 @@
 use geo::TriangulateEarcut;
 use glam::DVec2;
 
-use crate::geom::rect::Rect;
+use crate::rect::Rect;
 
 /// Twice the signed area of the ring; positive where it runs counter-clockwise.
 pub fn doubled_area(ring: &[DVec2]) -> f64 {

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::geom::profile::leg_end;
-use crate::geom::rect::Rect;
+use crate::profile::leg_end;
+use crate::rect::Rect;
 
 /// Vertices nearer to each other than this are one, in meters: files that mean one point write the same numbers, up to
 /// the rounding of a change of system.

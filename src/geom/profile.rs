@@ -1,6 +1,6 @@
 //! Profiles: values along a line, straight between stations.
 
-use crate::geom::simplify::simplified;
+use crate::simplify::simplified;
 
 /// A piecewise-linear value over stations: at least two, finite, never falling. NaN is no value.
 #[derive(Clone, Debug, PartialEq)]

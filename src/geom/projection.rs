@@ -3,8 +3,8 @@
 //!
 //! Only methods whose parameters map one to one are listed; readers refuse any other by name.
 
-use crate::geom::crs::epsg_text;
-use crate::geom::proj_string::ProjString;
+use crate::crs::epsg_text;
+use crate::proj_string::ProjString;
 
 /// A coordinate reference system by its parameters. Angles in degrees, lengths in meters.
 #[derive(Clone, Debug, PartialEq)]
@@ -315,7 +315,7 @@ fn finite(parameter: &'static str, value: f64) -> Result<f64, DefinitionError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::crs::Crs;
+    use crate::crs::Crs;
     use glam::DVec2;
 
     fn utm(base: u32) -> Definition {

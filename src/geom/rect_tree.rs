@@ -4,8 +4,8 @@ use glam::DVec2;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree, RTreeObject, SelectionFunction};
 
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
+use crate::polygon;
+use crate::rect::Rect;
 
 /// A rectangle with its position in the list that a tree was made of.
 type NumberedRect = GeomWithData<Rectangle<[f64; 2]>, usize>;
@@ -83,7 +83,7 @@ impl SelectionFunction<NumberedRect> for NearConvex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::convex;
+    use crate::convex;
     use proptest::prelude::*;
 
     #[test]

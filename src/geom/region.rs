@@ -36,7 +36,7 @@ fn resolve<'a>(rings: impl IntoIterator<Item = &'a [DVec2]>, rule: FillRule) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::polygon::doubled_area;
+    use crate::polygon::doubled_area;
 
     fn rect(x: f64, y: f64, width: f64, height: f64) -> [DVec2; 4] {
         let corner = DVec2::new(x, y);

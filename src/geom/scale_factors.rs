@@ -7,7 +7,7 @@
 
 use glam::{DMat2, DVec2};
 
-use crate::geom::crs::Crs;
+use crate::crs::Crs;
 
 /// Meters from the place to the points at which the projection is measured: the inverse projections end their iterations
 /// within about a millimeter, which is a hundred-thousandth of this, and the curvature of the map over it is less still.
@@ -31,7 +31,7 @@ impl ScaleFactors {
     ///
     /// ```
     /// use glam::DVec2;
-    /// use sandtable::geom::{crs::Crs, scale_factors::ScaleFactors};
+    /// use sandtable_geom::{crs::Crs, scale_factors::ScaleFactors};
     /// let utm = Crs::from_epsg(32616).unwrap();
     /// let scale = ScaleFactors::at(&utm, DVec2::new(500_000.0, 4_000_000.0)).unwrap();
     /// assert!((scale.most - 0.9996).abs() < 1e-5);

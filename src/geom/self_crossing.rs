@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use crate::geom::polygon::edges;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::geom::segment;
+use crate::polygon::edges;
+use crate::rect::Rect;
+use crate::rect_tree::RectTree;
+use crate::segment;
 
 /// Rings of fewer edges are compared edge by edge: a tree costs more.
 const FEW_EDGES: usize = 32;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geom::polyline::Polyline;
+use crate::polyline::Polyline;
 
 /// Passes of the moving mean: two together weigh the surroundings by a triangle, whose result has no corner.
 const PASSES: usize = 2;

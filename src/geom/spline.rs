@@ -71,7 +71,7 @@ mod tests {
         let points = [(0.0, 0.0), (10.0, 0.0), (18.0, 6.0), (20.0, 16.0), (20.5, 17.0), (40.0, 30.0)];
         for (index, at) in curve(&points).into_iter().enumerate() {
             let [from, to] = [index / 8, index / 8 + 1].map(|vertex| DVec2::from(points[vertex]));
-            let off = crate::geom::segment::distance_squared((from, to), at).sqrt();
+            let off = crate::segment::distance_squared((from, to), at).sqrt();
             assert!(off < 0.15 * from.distance(to), "{off} at {at}");
         }
     }

@@ -10,7 +10,7 @@
 //!        ╱ ╲_ leg _╱
 //! ```
 
-use crate::geom::polyline::Polyline;
+use crate::polyline::Polyline;
 
 /// A bend in which an edge of the strip folds.
 #[derive(Clone, Copy, Debug, PartialEq)]

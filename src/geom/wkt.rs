@@ -6,8 +6,8 @@
 //! The crate `proj4wkt` does not serve: its result has no datum name, so NAD27 passes for a bare ellipsoid and no system
 //! is traced to its code; it drops the code of a WKT 2 root, and its parser has no limit of nesting.
 
-use crate::geom::crs::epsg_text;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
+use crate::crs::epsg_text;
+use crate::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// The deepest nesting that is read; real text stays below 6.
 const MAX_DEPTH: usize = 16;
@@ -319,7 +319,7 @@ impl<'a> WktParser<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::crs::Crs;
+    use crate::crs::Crs;
 
     const UTM_12: &str = r#"PROJCS["WGS_1984_UTM_Zone_12N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",
         SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],

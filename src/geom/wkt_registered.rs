@@ -1,8 +1,8 @@
 //! The map projections that only systems of the EPSG registry have, as well-known text spells them: from the words of
-//! the registry's proj string, since [`Definition`](crate::geom::projection::Definition) has no room for an azimuth.
+//! the registry's proj string, since [`Definition`](crate::projection::Definition) has no room for an azimuth.
 
-use crate::geom::proj_string::ProjString;
-use crate::geom::wkt_writer::WktProjection;
+use crate::proj_string::ProjString;
+use crate::wkt_writer::WktProjection;
 
 /// The projection and its parameters other than the false origin; `None` where well-known text, version 1, has no name
 /// for it.

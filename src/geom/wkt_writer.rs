@@ -1,10 +1,10 @@
 //! Writes systems as well-known text, version 1 (OGC 01-009), for `.prj` files: in OGC's spelling, which GDAL, QGIS and
 //! Esri's programs read alike.
 
-use crate::geom::crs::Crs;
-use crate::geom::proj_string::ProjString;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
-use crate::geom::wkt_registered::{registered_axes, registered_projection};
+use crate::crs::Crs;
+use crate::proj_string::ProjString;
+use crate::projection::{Datum, Definition, Ellipsoid, MapProjection};
+use crate::wkt_registered::{registered_axes, registered_projection};
 
 /// The WKT of a system; `None` for [`Crs::local`], for a projection that [`Definition`] cannot express in a system without
 /// an EPSG code, and for one that has no name in WKT 1.

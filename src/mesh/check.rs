@@ -8,8 +8,8 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::mesh::sink::VertexId;
-use crate::mesh::trimesh::TriMesh;
+use crate::sink::VertexId;
+use crate::trimesh::TriMesh;
 
 /// The measures of a sound mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,7 +165,7 @@ fn plan(mesh: &TriMesh, id: VertexId) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::sink::MeshSink;
+    use crate::sink::MeshSink;
 
     fn mesh(points: &[(f32, f32)], triangles: &[[u32; 3]]) -> TriMesh {
         let mut mesh = TriMesh::default();

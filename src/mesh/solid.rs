@@ -14,8 +14,8 @@ use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
 
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::mesh::trimesh::TriMesh;
+use crate::sink::{MeshSink, VertexId};
+use crate::trimesh::TriMesh;
 
 /// The thickness of the block under the lowest relief, in millimeters: stiff enough for a plate of a hand's width, and high
 /// enough for joints.
@@ -216,7 +216,7 @@ impl BlockBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check::check_solid;
+    use crate::check::check_solid;
 
     /// A relief of `columns` by `rows` cells of 10 mm with a hill in its middle.
     fn relief(columns: u32, rows: u32) -> TriMesh {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::mesh::sink::{MeshSink, VertexId};
+use crate::sink::{MeshSink, VertexId};
 
 /// Positions in meters (X east, Y north, Z up) and triangles, counter-clockwise seen from above.
 #[derive(Clone, Debug, Default, PartialEq)]

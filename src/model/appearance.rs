@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::draw::list::DrawVertex;
+use sandtable_draw::list::DrawVertex;
 
 /// The weight of a change from black to white, relative to the length over which it moves: as much as moving its middle
 /// by half that length.

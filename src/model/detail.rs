@@ -11,9 +11,9 @@ use std::sync::OnceLock;
 
 use glam::Vec3;
 
-use crate::model::Model;
-use crate::model::impostor::{Impostor, ImpostorDirection};
-use crate::model::simplify::{DetailLevel, levels};
+use crate::Model;
+use crate::impostor::{Impostor, ImpostorDirection};
+use crate::simplify::{DetailLevel, levels};
 
 /// The greatest error of a level's surface in the picture, in pixels.
 const TOLERANCE_PX: f32 = 0.5;

@@ -3,12 +3,12 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use crate::limits::work_limit::WorkLimit;
+use sandtable_base::limits::work_limit::WorkLimit;
 
-/// Why a companion file cannot be loaded; its type depends on the [`Companions`](crate::model::Companions).
+/// Why a companion file cannot be loaded; its type depends on the [`Companions`](crate::Companions).
 pub type CompanionError = Box<dyn Error + Send + Sync>;
 
-/// Why the bytes of a model file do not become a [`crate::model::Model`].
+/// Why the bytes of a model file do not become a [`crate::Model`].
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages explain the variants")]
 pub enum ModelError {

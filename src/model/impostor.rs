@@ -24,13 +24,13 @@
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::draw::material::{AlphaMode, Material};
-use crate::draw::pixels::Pixels;
-use crate::mesh::sink::MeshSink;
-use crate::model::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
-use crate::model::{Model, ModelPart};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex};
+use sandtable_draw::material::{AlphaMode, Material};
+use sandtable_draw::pixels::Pixels;
+use sandtable_mesh::sink::MeshSink;
+use crate::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
+use crate::{Model, ModelPart};
 
 /// Pixels along the side of a tile: twice the size at which an impostor is drawn, so that masks stay crisp.
 pub(super) const TILE: u32 = 64;
@@ -264,7 +264,7 @@ impl QuadNormals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::list::MaterialId;
+    use sandtable_draw::list::MaterialId;
 
     /// A ball of radius 2 around (5, 0, 2), its upper half red.
     fn ball() -> Model {
@@ -283,7 +283,7 @@ mod tests {
                 });
             }
         }
-        let id = |column: u32, row: u32| crate::mesh::sink::VertexId(row * (columns + 1) + column);
+        let id = |column: u32, row: u32| sandtable_mesh::sink::VertexId(row * (columns + 1) + column);
         for row in 0..rows {
             for column in 0..columns {
                 mesh.triangle([id(column, row), id(column, row + 1), id(column + 1, row + 1)]);

@@ -7,8 +7,8 @@
 
 use glam::Vec3;
 
-use crate::geom::triangle;
-use crate::mesh::numbering::{Numbering, weld_key};
+use sandtable_geom::triangle;
+use sandtable_mesh::numbering::{Numbering, weld_key};
 
 /// The most triangles around a vertex that are compared pair by pair. Around a wider fan, such as the tip of a finely cut
 /// cone, all are smooth. Bounds the time that a hostile file can take.

@@ -5,13 +5,13 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
-use crate::limits::MODEL_TRIANGLES;
-use crate::mesh::numbering::Numbering;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::model::ModelPart;
-use crate::model::error::ModelError;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
+use sandtable_base::limits::MODEL_TRIANGLES;
+use sandtable_mesh::numbering::Numbering;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::ModelPart;
+use crate::error::ModelError;
 
 /// Counts the triangles of a model against [`MODEL_TRIANGLES`].
 #[derive(Debug, Default)]

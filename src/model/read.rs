@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::model::error::ModelError;
-use crate::model::{Companions, Model};
-use crate::model::{gltf, obj, three_ds};
+use crate::error::ModelError;
+use crate::{Companions, Model};
+use crate::{gltf, obj, three_ds};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ModelFormat {
@@ -75,7 +75,7 @@ fn start_of(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::error::CompanionError;
+    use crate::error::CompanionError;
 
     struct NoCompanions;
 

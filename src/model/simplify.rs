@@ -26,12 +26,12 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec3, Vec3};
 
-use crate::draw::list::DrawVertex;
-use crate::geom::triangle;
-use crate::model::appearance::difference;
-use crate::model::quadric::{Quadric, edges, quadrics};
-use crate::model::soup::{PointId, Soup, SoupWedge, WedgeId};
-use crate::model::{Model, ModelPart};
+use sandtable_draw::list::DrawVertex;
+use sandtable_geom::triangle;
+use crate::appearance::difference;
+use crate::quadric::{Quadric, edges, quadrics};
+use crate::soup::{PointId, Soup, SoupWedge, WedgeId};
+use crate::{Model, ModelPart};
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
 pub const MIN_TRIANGLES: usize = 64;
@@ -354,10 +354,10 @@ mod tests {
     use glam::{Quat, Vec2};
 
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::list::{DrawMesh, MaterialId};
-    use crate::draw::material::{Material, TextureId};
-    use crate::mesh::sink::{MeshSink, VertexId};
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::list::{DrawMesh, MaterialId};
+    use sandtable_draw::material::{Material, TextureId};
+    use sandtable_mesh::sink::{MeshSink, VertexId};
 
     /// A grid of `side` × `side` cells on the unit square, bent by `height` and turned by `turn`.
     fn sheet(side: u32, turn: Quat, height: &dyn Fn(Vec2) -> f32, color: &dyn Fn(Vec2) -> Srgba) -> Model {

@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::geom::polygon::triangulate_ring;
+use sandtable_geom::polygon::triangulate_ring;
 
 /// The most corners of a polygon that is cut by ear clipping, whose time grows with their square at worst. A larger one
 /// becomes a fan.

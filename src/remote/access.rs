@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::{PoisonError, RwLock};
 
-use crate::remote::address::AllowedHost;
+use crate::address::AllowedHost;
 
 /// The hosts that may be read from, and the folder of the blocks that are kept on disk.
 #[derive(Clone, Debug, Default)]

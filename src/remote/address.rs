@@ -3,8 +3,8 @@
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 
-use crate::message::suggest::quoted;
-use crate::remote::error::RemoteError;
+use sandtable_base::message::suggest::quoted;
+use crate::error::RemoteError;
 
 /// The longest address: keys of S3 have up to 1024 bytes.
 const MOST_BYTES: usize = 4096;

@@ -18,7 +18,7 @@ use std::time::SystemTime;
 
 use sha2::{Digest, Sha256};
 
-use crate::limits::REMOTE_DISK_BYTES;
+use sandtable_base::limits::REMOTE_DISK_BYTES;
 
 /// Bytes of a hash before a part.
 const HASH_BYTES: usize = 32;

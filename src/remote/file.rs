@@ -10,13 +10,13 @@ use std::path::Path;
 use std::slice;
 use std::time::{Duration, Instant};
 
-use crate::dem::cache::LruCache;
-use crate::dem::formats::FileContent;
-use crate::remote::blocks_on_disk::BlocksOnDisk;
-use crate::remote::error::RemoteError;
-use crate::remote::object::{MOST_REQUEST_BYTES, RemoteObject};
-use crate::remote::open::AddressVersion;
-use crate::remote::store::StoredFile;
+use sandtable_dem::cache::LruCache;
+use sandtable_dem::formats::FileContent;
+use crate::blocks_on_disk::BlocksOnDisk;
+use crate::error::RemoteError;
+use crate::object::{MOST_REQUEST_BYTES, RemoteObject};
+use crate::open::AddressVersion;
+use crate::store::StoredFile;
 
 /// Bytes of a block. A tile of a GeoTIFF has some ten of them, so that the parts of blocks around it that are not read are a
 /// tenth of it; of larger blocks more would be fetched beside it, of smaller ones the lists would grow.
@@ -268,8 +268,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::remote::runtime::wait_for;
-    use crate::remote::times::RemoteTimes;
+    use crate::runtime::wait_for;
+    use crate::times::RemoteTimes;
 
     fn content(count: usize, seed: u8) -> Vec<u8> {
         (0..count).map(|at| (at / 7 % 251) as u8 ^ (at >> 11) as u8 ^ seed).collect()

@@ -15,12 +15,12 @@ use reqwest::header::{CONTENT_LENGTH, CONTENT_RANGE, HeaderMap, HeaderValue, RAN
 use reqwest::redirect::Policy;
 use reqwest::{Client, Response, StatusCode, Url};
 
-use crate::message::chain::error_text;
-use crate::remote::access::RemoteAccess;
-use crate::remote::error::RemoteError;
-use crate::remote::request_error::{fault, host_of, plain, request_error};
-use crate::remote::times::RemoteTimes;
-use crate::remote::traffic::Traffic;
+use sandtable_base::message::chain::error_text;
+use crate::access::RemoteAccess;
+use crate::error::RemoteError;
+use crate::request_error::{fault, host_of, plain, request_error};
+use crate::times::RemoteTimes;
+use crate::traffic::Traffic;
 
 /// The most redirections of a request: one to the bucket's own region, one to a host of its own.
 const MOST_REDIRECTIONS: usize = 4;
@@ -179,9 +179,9 @@ mod tests {
     use std::thread;
 
     use super::*;
-    use crate::remote::address::{AllowedHost, RemoteAddress};
-    use crate::remote::file::RemoteFile;
-    use crate::remote::store::StoredFile;
+    use crate::address::{AllowedHost, RemoteAddress};
+    use crate::file::RemoteFile;
+    use crate::store::StoredFile;
 
     const FILE_BYTES: usize = 50_000;
 

@@ -6,9 +6,9 @@ use object_store::{GetOptions, GetRange, ObjectMeta};
 use tokio::task::JoinSet;
 use tokio::time::timeout;
 
-use crate::remote::error::RemoteError;
-use crate::remote::runtime::wait_for;
-use crate::remote::store::{StoredFile, store_error};
+use crate::error::RemoteError;
+use crate::runtime::wait_for;
+use crate::store::{StoredFile, store_error};
 
 /// The most bytes that one request asks for.
 pub(crate) const MOST_REQUEST_BYTES: u64 = 1 << 20;

@@ -1,12 +1,18 @@
 //! Opening files by their addresses.
 
-use crate::dem::formats::FileContent;
-use crate::remote::error::RemoteError;
+use sandtable_dem::formats::FileContent;
+use crate::error::RemoteError;
 
 #[cfg(feature = "cloud")]
-use crate::remote::{
-    access::RemoteAccess, address::RemoteAddress, file::RemoteFile, store::StoredFile, times::RemoteTimes,
-};
+use crate::access::RemoteAccess;
+#[cfg(feature = "cloud")]
+use crate::address::RemoteAddress;
+#[cfg(feature = "cloud")]
+use crate::file::RemoteFile;
+#[cfg(feature = "cloud")]
+use crate::store::StoredFile;
+#[cfg(feature = "cloud")]
+use crate::times::RemoteTimes;
 
 /// A file that is read in parts, and its first bytes.
 pub struct OpenedAddress {

@@ -9,7 +9,7 @@ use std::sync::mpsc::sync_channel;
 
 use tokio::runtime::{Builder, Runtime};
 
-use crate::remote::error::RemoteError;
+use crate::error::RemoteError;
 
 static RUNTIME: OnceLock<Option<Runtime>> = OnceLock::new();
 

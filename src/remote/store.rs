@@ -11,12 +11,12 @@ use object_store::http::HttpBuilder;
 use object_store::path::Path;
 use object_store::{BackoffConfig, ClientConfigKey, ObjectStore, RetryConfig};
 
-use crate::remote::access::RemoteAccess;
-use crate::remote::address::{AddressScheme, AllowedHost, RemoteAddress};
-use crate::remote::error::RemoteError;
-use crate::remote::http_client::GuardedConnector;
-use crate::remote::request_error::{cause, plain};
-use crate::remote::times::RemoteTimes;
+use crate::access::RemoteAccess;
+use crate::address::{AddressScheme, AllowedHost, RemoteAddress};
+use crate::error::RemoteError;
+use crate::http_client::GuardedConnector;
+use crate::request_error::{cause, plain};
+use crate::times::RemoteTimes;
 
 /// Tries after the first of a request: half a second to some seconds apart.
 const RETRIES: usize = 4;

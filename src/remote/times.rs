@@ -36,11 +36,11 @@ mod tests {
     use std::thread;
 
     use super::*;
-    use crate::remote::access::RemoteAccess;
-    use crate::remote::address::{AllowedHost, RemoteAddress};
-    use crate::remote::error::RemoteError;
-    use crate::remote::file::RemoteFile;
-    use crate::remote::store::StoredFile;
+    use crate::access::RemoteAccess;
+    use crate::address::{AllowedHost, RemoteAddress};
+    use crate::error::RemoteError;
+    use crate::file::RemoteFile;
+    use crate::store::StoredFile;
 
     const HEAD: &str = "HTTP/1.1 206 Partial\r\ncontent-range: bytes 0-8191/50000\r\ncontent-length: 8192\r\netag: \"a\"\r\n\r\n";
 

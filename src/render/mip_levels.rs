@@ -9,8 +9,8 @@ use std::iter::successors;
 
 use glam::{Vec3, Vec4};
 
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// Every smaller level of `texture`, the largest first, down to a single texel; none where a side is zero.
 pub fn smaller_levels(texture: &Pixels) -> Vec<Pixels> {

@@ -1,11 +1,11 @@
 //! The result of a renderer.
 
-use crate::draw::list::FeatureId;
-use crate::draw::pixels::Pixels;
+use sandtable_draw::list::FeatureId;
+use sandtable_draw::pixels::Pixels;
 
 /// The least alpha of a transparent surface that the depth and feature buffers show; under a more transparent one
 /// they show the surface behind it.
-pub(in crate::render) const LEAST_VISIBLE_ALPHA: f32 = 0.5;
+pub const LEAST_VISIBLE_ALPHA: f32 = 0.5;
 
 /// A rendered picture with its buffers, all of the same size, rows from the top.
 ///

@@ -8,12 +8,12 @@
 
 use glam::DVec2;
 
-use crate::earthworks::alignment::Alignment;
-use crate::geom::offset::Continuations;
-use crate::geom::polyline::Polyline;
-use crate::ribbon::partition;
-use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::polyline::Polyline;
+use crate::partition;
+use crate::plan::PlanMesh;
+use crate::stroke::{StrokeOptions, StrokePath, stroke};
 
 /// A dash and the gap after it, in widths of the line.
 const DASH: f64 = 5.0;
@@ -92,7 +92,7 @@ fn dashed(line: &Polyline, width_m: f64) -> impl Iterator<Item = Polyline> + '_ 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ribbon::area;
+    use crate::area;
 
     fn turned(points: &[(f64, f64)], quarter: u32) -> Vec<DVec2> {
         let turn = |(x, y): (f64, f64)| (0..quarter).fold((x, y), |(x, y), _| (-y, x));

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::earthworks::alignment::chain::{ChainLink, LineEnd};
+use sandtable_earthworks::alignment::chain::{ChainLink, LineEnd};
 
 /// Every line in its chain, given the lines' lengths and which ends continue one another.
 pub fn chained(lengths_m: &[f64], links: &[[LineEnd; 2]]) -> Vec<ChainLink> {

@@ -1,11 +1,11 @@
 //! One ribbon's part in a patch, cut to the ground triangle by triangle, so that what still lies is kept.
 
-use crate::draw::list::DrawMesh;
-use crate::geom::rect::Rect;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::drape::Draper;
-use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_draw::list::DrawMesh;
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::drape::Draper;
+use crate::plan::{PlanMesh, PlanVertex};
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// A part cut to the ground.
 #[derive(Clone, Debug, Default, PartialEq)]

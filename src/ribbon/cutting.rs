@@ -15,12 +15,12 @@
 
 use glam::DVec2;
 
-use crate::geom::convex::{self, ConvexClip};
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
+use sandtable_geom::convex::{self, ConvexClip};
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
 
 /// Overlaps and leftovers smaller than this are rounding, in square meters: a sliver of 10 m by 0.1 mm.
-pub(in crate::ribbon) const SLIVER_M2: f64 = 1e-3;
+pub(crate) const SLIVER_M2: f64 = 1e-3;
 
 /// Pieces smaller than this are dropped while a polygon is being cut: many of them may still lie side by side.
 const NOTHING_M2: f64 = 1e-9;
@@ -33,7 +33,7 @@ const MOST_STRETCHES: usize = 1 << 15;
 
 /// What `windows`, counter-clockwise and taken away in their order, leave of a convex counter-clockwise polygon: convex
 /// pieces, counter-clockwise, without slivers. `None` where they leave all of it.
-pub(in crate::ribbon) fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
+pub(crate) fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Option<Vec<Vec<DVec2>>> {
     let mut clip = ConvexClip::default();
     let cuts: Vec<CutWindow<'_>> =
         windows.iter().filter_map(|window| CutWindow::new(polygon, window, &mut clip)).collect();
@@ -53,7 +53,7 @@ pub(in crate::ribbon) fn rest(polygon: &[DVec2], windows: &[[DVec2; 3]]) -> Opti
 }
 
 /// Whether `window`, counter-clockwise, leaves nothing of a convex counter-clockwise polygon.
-pub(in crate::ribbon) fn covers(window: &[DVec2; 3], polygon: &[DVec2]) -> bool {
+pub(crate) fn covers(window: &[DVec2; 3], polygon: &[DVec2]) -> bool {
     polygon.iter().all(|&at| convex::contains(window, at))
         && convex::intersection(polygon, window, SLIVER_M2).is_some()
 }

@@ -9,13 +9,13 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::plan::{PlanMesh, PlanVertex, TextureMap};
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex};
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::plan::{PlanMesh, PlanVertex, TextureMap};
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.
 const SLIVER_M2: f64 = 1e-7;

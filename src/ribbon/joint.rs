@@ -14,15 +14,15 @@
 
 use glam::DVec2;
 
-use crate::description::words::Join;
-use crate::geom::offset::LineBend;
+use sandtable_description::words::Join;
+use sandtable_geom::offset::LineBend;
 
 /// The largest angle between two corners of an arc: chords lie within 1 % of a half width of it.
 const ARC_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 /// What two segments end on, as ways from the vertex between them.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::ribbon) enum RibbonJoint {
+pub(crate) enum RibbonJoint {
     /// One edge, whose left end lies there and whose right end opposite.
     Shared(DVec2),
     /// An edge each, and a fan between.
@@ -38,7 +38,7 @@ pub(in crate::ribbon) enum RibbonJoint {
 
 /// Triangles from one corner to a rim, as ways from the vertex.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::ribbon) struct JointFan {
+pub(crate) struct JointFan {
     /// The inner corner of the bend, or its vertex.
     pub center: DVec2,
     /// The outer side, counter-clockwise.

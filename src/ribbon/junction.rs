@@ -14,19 +14,19 @@
 //! ```
 //!
 //! A better road that goes through is not broken by lesser ones: their junction lies below it. Ribbons lose what a
-//! junction covers by [`crate::ribbon::partition`], and their markings stop there. Lines that cross without a shared
-//! vertex are found by [`crate::ribbon::crossing`].
+//! junction covers by [`crate::partition`], and their markings stop there. Lines that cross without a shared
+//! vertex are found by [`crate::crossing`].
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::earthworks::alignment::Alignment;
-use crate::earthworks::alignment::chain::LineEnd;
-use crate::geom::convex;
-use crate::geom::offset::{Continuations, LineBend};
-use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::RibbonSurface;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_earthworks::alignment::chain::LineEnd;
+use sandtable_geom::convex;
+use sandtable_geom::offset::{Continuations, LineBend};
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use crate::stroke::StrokeOptions;
+use crate::texture::RibbonSurface;
 
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
@@ -308,11 +308,11 @@ impl HullArm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Support;
-    use crate::geom::polygon;
-    use crate::geom::polyline::Polyline;
-    use crate::ribbon::plan::PlanMesh;
-    use crate::ribbon::stroke::{StrokePath, stroke};
+    use sandtable_earthworks::alignment::Support;
+    use sandtable_geom::polygon;
+    use sandtable_geom::polyline::Polyline;
+    use crate::plan::PlanMesh;
+    use crate::stroke::{StrokePath, stroke};
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")

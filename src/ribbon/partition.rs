@@ -15,14 +15,14 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::geom::convex;
-use crate::geom::morton;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::cutting::{self, SLIVER_M2};
-use crate::ribbon::plan::{PlanMesh, TextureMap};
+use sandtable_geom::convex;
+use sandtable_geom::morton;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::rect_tree::RectTree;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::cutting::{self, SLIVER_M2};
+use crate::plan::{PlanMesh, TextureMap};
 
 /// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
 const CHUNK: usize = 256;
@@ -144,9 +144,9 @@ fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Alignment;
-    use crate::geom::polyline::Polyline;
-    use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+    use sandtable_earthworks::alignment::Alignment;
+    use sandtable_geom::polyline::Polyline;
+    use crate::stroke::{StrokeOptions, StrokePath, stroke};
     use proptest::prelude::*;
 
     fn ribbon(points: &[(f64, f64)], width_m: f64) -> PlanMesh {
@@ -209,7 +209,7 @@ mod tests {
             prop_assert!(overlap_m2(&parts) < 0.2, "{}", overlap_m2(&parts));
             let rings: Vec<[DVec2; 3]> =
                 plans.iter().flat_map(PlanMesh::corners).map(|corners| corners.map(|corner| corner.at)).collect();
-            let whole = crate::geom::region::union(rings.iter().map(|ring| &ring[..]));
+            let whole = sandtable_geom::region::union(rings.iter().map(|ring| &ring[..]));
             let whole: f64 = whole.iter().flatten().map(|ring| polygon::doubled_area(ring) / 2.0).sum::<f64>().abs();
             let area: f64 = parts.iter().map(PlanMesh::area_m2).sum();
             prop_assert!((whole - area).abs() < 0.2, "{whole} {area}");

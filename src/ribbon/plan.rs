@@ -2,8 +2,8 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::geom::convex;
-use crate::mesh::sink::{MeshSink, VertexId};
+use sandtable_geom::convex;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 
 /// A corner in plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl PlanMesh {
     }
 
     /// Adds convex polygons' triangles, counter-clockwise, that lie on a textured one.
-    pub(in crate::ribbon) fn write(
+    pub(crate) fn write(
         &mut self,
         triangles: impl Iterator<Item = [DVec2; 3]>,
         texture: &TextureMap,
@@ -84,7 +84,7 @@ impl MeshSink<PlanVertex> for PlanMesh {
 }
 
 /// The affine map from world to texture coordinates over one plan triangle.
-pub(in crate::ribbon) struct TextureMap {
+pub(crate) struct TextureMap {
     origin: PlanVertex,
     per_x: DVec2,
     per_y: DVec2,

@@ -6,14 +6,14 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::description::words::Join;
-use crate::earthworks::alignment::Alignment;
-use crate::earthworks::alignment::chain::{ChainLink, LineEnd};
-use crate::geom::offset::{Continuations, LineBend, square};
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::joint::{JointFan, RibbonJoint};
-use crate::ribbon::plan::PlanVertex;
-use crate::ribbon::texture::{RibbonSurface, texture_length_m};
+use sandtable_description::words::Join;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_earthworks::alignment::chain::{ChainLink, LineEnd};
+use sandtable_geom::offset::{Continuations, LineBend, square};
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::joint::{JointFan, RibbonJoint};
+use crate::plan::PlanVertex;
+use crate::texture::{RibbonSurface, texture_length_m};
 
 /// The widest taper between cross-sections, as a ratio: a texture's lines have a kink between a quad's two triangles.
 const TAPER_STEP: f64 = 1.1;
@@ -70,7 +70,7 @@ impl<'a> StrokePath<'a> {
 
 /// Writes the ribbon along `path` to `sink`, triangles counter-clockwise.
 ///
-/// Where a sharp turn's inner sides overlap, both quads are there; [`crate::ribbon::partition`] takes them apart.
+/// Where a sharp turn's inner sides overlap, both quads are there; [`crate::partition`] takes them apart.
 pub fn stroke(path: &StrokePath<'_>, options: &StrokeOptions, sink: &mut impl MeshSink<PlanVertex>) {
     let last = path.alignment.line.points().len() - 1;
     let mut stroker = Stroker { path, options, sink };
@@ -206,10 +206,10 @@ fn write_triangle(corners: [(VertexId, PlanVertex); 3], sink: &mut impl MeshSink
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Width;
-    use crate::geom::polyline::Polyline;
-    use crate::geom::profile::Profile;
-    use crate::ribbon::plan::PlanMesh;
+    use sandtable_earthworks::alignment::Width;
+    use sandtable_geom::polyline::Polyline;
+    use sandtable_geom::profile::Profile;
+    use crate::plan::PlanMesh;
 
     fn stroked(points: &[(f64, f64)], width_m: f64, options: &StrokeOptions) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");

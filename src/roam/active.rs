@@ -1,7 +1,7 @@
 //! The state of a mesh: one bit per vertex.
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// The active vertices. Patch corners are always active and have no bit.
 ///

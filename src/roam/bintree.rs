@@ -1,6 +1,6 @@
 //! The triangle bintree as pure arithmetic: a triangle is its three corners.
 
-use crate::roam::graph::Vertex;
+use crate::graph::Vertex;
 
 /// A right isosceles triangle, counter-clockwise seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,8 +100,8 @@ mod tests {
 
     #[test]
     fn the_finest_diagonals_are_those_of_the_ground_lattice() {
-        use crate::terrain::cell_triangle::Diagonal;
-        use crate::terrain::lattice::Post;
+        use sandtable_terrain::cell_triangle::Diagonal;
+        use sandtable_terrain::lattice::Post;
         let mut seen = Vec::new();
         for root in Triangle::roots(Vertex::new(0, 0), 8) {
             visit(root, &mut seen);

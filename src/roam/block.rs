@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::dem::error::DemErrorKind;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::SphereMap;
-use crate::terrain::lattice::LatticeError;
+use sandtable_dem::error::DemErrorKind;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::spheres::SphereMap;
+use sandtable_terrain::lattice::LatticeError;
 
 /// The (patch + 1)² vertices of one patch, row by row from the south-west; those on a border are the same in both patches
 /// that share it.

@@ -8,9 +8,9 @@ use std::cmp::Reverse;
 
 use glam::{DVec2, DVec3};
 
-use crate::mesh::trimesh::TriMesh;
-use crate::roam::errors::rows::RowSpans;
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_mesh::trimesh::TriMesh;
+use crate::errors::rows::RowSpans;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// Vertical distances between a mesh and the ground, meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +103,7 @@ pub fn measure(lattice: &Lattice, mesh: &TriMesh) -> Result<Deviation, BoundErro
 }
 
 /// Posts whose distances are held at a time: 32 MiB.
-pub(in crate::roam) const BAND_POSTS: u32 = 1 << 22;
+pub(crate) const BAND_POSTS: u32 = 1 << 22;
 
 /// Some rows of posts.
 struct RowBand {
@@ -140,7 +140,7 @@ fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
 }
 
 /// The distance of a post from the plane of a triangle; from the corner itself where it is one.
-pub(in crate::roam) fn distance(
+pub(crate) fn distance(
     lattice: &Lattice,
     corners: &[DVec3; 3],
     posts: &[Post; 3],
@@ -159,7 +159,7 @@ pub(in crate::roam) fn distance(
 
 /// What a deviation is made of.
 #[derive(Default)]
-pub(in crate::roam) struct DeviationSums {
+pub(crate) struct DeviationSums {
     worst: Option<Post>,
     max_m: f64,
     sum: f64,
@@ -170,7 +170,7 @@ pub(in crate::roam) struct DeviationSums {
 
 impl DeviationSums {
     /// Adds the distance of a post with data, NaN where no triangle covers it. The order of the posts is free.
-    pub(in crate::roam) fn add(&mut self, post: Post, distance: f64) {
+    pub(crate) fn add(&mut self, post: Post, distance: f64) {
         self.with_data += 1;
         if distance.is_nan() {
             return;
@@ -186,7 +186,7 @@ impl DeviationSums {
     }
 
     /// What they come to.
-    pub(in crate::roam) fn deviation(self) -> Deviation {
+    pub(crate) fn deviation(self) -> Deviation {
         let Self { worst, max_m, sum, squares, measured, with_data } = self;
         let count = measured.max(1) as f64;
         let rms_m = (squares / count).sqrt();
@@ -197,7 +197,7 @@ impl DeviationSums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::sink::{MeshSink, VertexId};
+    use sandtable_mesh::sink::{MeshSink, VertexId};
     use glam::{DVec2, Vec3};
 
     fn square() -> (Lattice, TriMesh) {

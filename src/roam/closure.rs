@@ -11,15 +11,15 @@
 
 use std::sync::Arc;
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::errors::exact::{triangle_error, triangles_split_at};
-use crate::roam::errors::scan::PostTriangle;
-use crate::roam::errors::survey::TileSurvey;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::parts::{HeldGround, PartPlan, PartedGround};
-use crate::terrain::lattice::Lattice;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::errors::exact::{triangle_error, triangles_split_at};
+use crate::errors::scan::PostTriangle;
+use crate::errors::survey::TileSurvey;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::parts::{HeldGround, PartPlan, PartedGround};
+use sandtable_terrain::lattice::Lattice;
 
 /// The fewest active vertices that leave no triangle off by more than `tolerance_m` at any post it covers, no triangle
 /// over both data and no data but the finest, and pinned posts exact.
@@ -105,8 +105,8 @@ impl Growth {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::errors::ErrorMap;
-    use crate::roam::parts::tests::CutGround;
+    use crate::errors::ErrorMap;
+    use crate::parts::tests::CutGround;
     use glam::DVec2;
     use proptest::prelude::*;
 
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn pinned_posts_are_kept_exact() {
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 33, vec![1.0; 33 * 33]).expect("sound");
-        lattice.pin(crate::terrain::lattice::Post { column: 11, row: 7 }, 1.5);
+        lattice.pin(sandtable_terrain::lattice::Post { column: 11, row: 7 }, 1.5);
         let least = least_closure(&Arc::new(lattice), &PatchLayout::new(33, 33, 32).expect("sound"), 5.0);
         assert!(least.is_active(Vertex::new(11, 7)));
     }

@@ -10,14 +10,14 @@
 
 use glam::Vec3;
 
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::terrain::lattice::Post;
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::pyramid::Pyramid;
-use crate::view::camera::Camera;
-use crate::view::frustum::Frustum;
-use crate::view::wedge::GroundWedge;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::Post;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::pyramid::Pyramid;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
+use sandtable_view::wedge::GroundWedge;
 
 /// What patches are culled against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub struct PatchHeights {
 }
 
 /// The range without posts.
-pub(in crate::roam) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
+pub(crate) const NO_DATA: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
 
 impl PatchHeights {
     /// The ranges of a ground; patches without data have an empty range.
@@ -86,7 +86,7 @@ impl PatchHeights {
     }
 
     /// Widens the range of a patch by new heights, where none of the range's ends was removed.
-    pub(in crate::roam) fn widen(&mut self, corner: Vertex, heights: (f32, f32)) {
+    pub(crate) fn widen(&mut self, corner: Vertex, heights: (f32, f32)) {
         self.pyramid.widen(self.block(corner), heights);
     }
 
@@ -118,12 +118,12 @@ impl PatchHeights {
 }
 
 /// The smallest range around both.
-pub(in crate::roam) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
+pub(crate) fn joined(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// The lowest and highest of some heights, those without data left out. In lanes, which do not wait for each other.
-pub(in crate::roam) fn drawn_range(heights: &[f32]) -> (f32, f32) {
+pub(crate) fn drawn_range(heights: &[f32]) -> (f32, f32) {
     const LANES: usize = 8;
     let (mut low, mut high) = ([NO_DATA.0; LANES], [NO_DATA.1; LANES]);
     let (groups, rest) = heights.as_chunks::<LANES>();
@@ -219,8 +219,8 @@ impl PatchCull<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::layout::PatchLayout;
-    use crate::terrain::lattice::Lattice;
+    use crate::layout::PatchLayout;
+    use sandtable_terrain::lattice::Lattice;
     use glam::{DVec2, Vec2};
     use proptest::prelude::*;
 

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::geom::rect::Rect;
-use crate::mesh::sink::MeshSink;
-use crate::roam::active::ActiveSet;
-use crate::roam::emit::{bintree, world};
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::MeshSink;
+use crate::active::ActiveSet;
+use crate::emit::{bintree, world};
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// A displayed terrain: a lattice and the active vertices.
 #[derive(Clone, Debug)]
@@ -83,9 +83,9 @@ impl TriangleSurface for DisplayedTerrain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::layout::PatchLayout;
+    use sandtable_mesh::check;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::layout::PatchLayout;
     use glam::DVec2;
     use proptest::prelude::*;
 
@@ -132,7 +132,7 @@ mod tests {
             let terrain = DisplayedTerrain::new(lattice, active, layout.patches().collect());
             let mut strictly_inside = 0;
             terrain.visit_facets(&Rect { min: at, max: at }, &mut |facet| {
-                strictly_inside += usize::from(crate::terrain::triangle_surface::facet_contains(facet, at));
+                strictly_inside += usize::from(sandtable_terrain::triangle_surface::facet_contains(facet, at));
             });
             prop_assert!((1..=6).contains(&strictly_inside), "{} facets", strictly_inside);
             prop_assert!(terrain.displayed_z(at).is_some());
@@ -143,9 +143,9 @@ mod tests {
     fn fully_refined_ground_leaves_out_just_the_triangles_at_a_hole() {
         let layout = PatchLayout::new(17, 17, 16).expect("sound");
         let lattice = lattice(17, 17, &[8 * 17 + 8]);
-        let errors = crate::roam::errors::ErrorMap::exact(&lattice, &layout);
-        let criterion = crate::roam::criterion::flat::Flat::new(&layout, &errors, 0.0);
-        let active = crate::roam::refine::rebuild::rebuild(&layout, &criterion, layout.patches());
+        let errors = crate::errors::ErrorMap::exact(&lattice, &layout);
+        let criterion = crate::criterion::flat::Flat::new(&layout, &errors, 0.0);
+        let active = crate::refine::rebuild::rebuild(&layout, &criterion, layout.patches());
         let terrain = DisplayedTerrain::new(Arc::clone(&lattice), active, layout.patches().collect());
         let mesh = emitted(&terrain);
         assert_eq!(mesh.triangles.len(), 2 * 16 * 16 - 8);

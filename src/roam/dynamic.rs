@@ -3,7 +3,7 @@
 //! All that is computed from the heights is updated by each edit and equals, bit for bit, a computation from the new
 //! heights. An edit reports its dirty patches; features on the ground and copies of it need an update there alone.
 //!
-//! A terrain is a source of patches that a [`Deferred`](crate::roam::refine::deferred::Deferred) mesh can own: edit the
+//! A terrain is a source of patches that a [`Deferred`](crate::refine::deferred::Deferred) mesh can own: edit the
 //! mesh's source, and pass the edit to the mesh.
 //!
 //! The heights are shared: an edit changes a copy where a snapshot of them is held elsewhere, and copies nothing otherwise.
@@ -12,24 +12,24 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::earthworks::brush::{BrushChanges, Change};
-use crate::roam::active::ActiveSet;
-use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
-use crate::roam::criterion::Criterion;
-use crate::roam::criterion::spheres::Spheres;
-use crate::roam::culling::{NO_DATA, PatchHeights, drawn_range, joined};
-use crate::roam::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
-use crate::roam::errors::ErrorMap;
-use crate::roam::errors::exact::own_errors;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::levels::VertexRect;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::roughness::Roughness;
-use crate::roam::sphere_task::{SphereTask, TaskGround};
-use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::volumes::Volumes;
+use sandtable_earthworks::brush::{BrushChanges, Change};
+use crate::active::ActiveSet;
+use crate::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
+use crate::criterion::Criterion;
+use crate::criterion::spheres::Spheres;
+use crate::culling::{NO_DATA, PatchHeights, drawn_range, joined};
+use crate::edit::{Mended, mend_exact, mend_midpoint, mend_spheres};
+use crate::errors::ErrorMap;
+use crate::errors::exact::own_errors;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::levels::VertexRect;
+use crate::patched_ground::PatchedGround;
+use crate::roughness::Roughness;
+use crate::sphere_task::{SphereTask, TaskGround};
+use crate::spheres::{OwnRadius, SphereMap};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::volumes::Volumes;
 
 /// The measure of a vertex's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

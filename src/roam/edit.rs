@@ -8,19 +8,19 @@
 //! The result equals, bit for bit, one computed from the new heights. Where an edit has several rectangles, all heights are
 //! changed first and the updates follow one by one.
 
-use crate::earthworks::brush::Change;
-use crate::roam::errors::ErrorMap;
-use crate::roam::errors::exact::{own_error, triangles_split_at};
-use crate::roam::errors::midpoint::torn_off;
-use crate::roam::errors::plane::PostPlane;
-use crate::roam::field::HeightField;
-use crate::roam::graph::{Vertex, VertexKind};
-use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{LevelPass, PassRow, VertexRect, passes};
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::{OwnRadius, SphereMap};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use sandtable_earthworks::brush::Change;
+use crate::errors::ErrorMap;
+use crate::errors::exact::{own_error, triangles_split_at};
+use crate::errors::midpoint::torn_off;
+use crate::errors::plane::PostPlane;
+use crate::field::HeightField;
+use crate::graph::{Vertex, VertexKind};
+use crate::layout::PatchLayout;
+use crate::levels::{LevelPass, PassRow, VertexRect, passes};
+use crate::patched_ground::PatchedGround;
+use crate::spheres::{OwnRadius, SphereMap};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// The vertices whose value changed.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,9 +3,9 @@
 
 use glam::DVec2;
 
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::terrain::lattice::Post;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::Post;
 
 /// The rows of a ground.
 #[derive(Clone, Copy, Debug)]
@@ -83,8 +83,8 @@ fn coordinate(post: u32, cell: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::layout::PatchLayout;
-    use crate::terrain::lattice::Lattice;
+    use crate::layout::PatchLayout;
+    use sandtable_terrain::lattice::Lattice;
     use glam::DVec3;
 
     #[test]

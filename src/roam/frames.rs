@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::roam::graph::Vertex;
-use crate::roam::shown::{LocalTriangle, PatchList};
+use crate::graph::Vertex;
+use crate::shown::{LocalTriangle, PatchList};
 
 /// The last frame, for comparison with the next.
 #[derive(Clone, Debug, Default)]

@@ -5,8 +5,8 @@
 //! monotonically, so triangles across the border shrink to its near side, those beyond it have no area and are not drawn,
 //! and the mesh stays conforming without additional vertices.
 
-use crate::roam::graph::Vertex;
-use crate::terrain::lattice::Post;
+use crate::graph::Vertex;
+use sandtable_terrain::lattice::Post;
 
 /// How patches cover a lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

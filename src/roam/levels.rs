@@ -7,9 +7,9 @@
 
 use rayon::prelude::*;
 
-use crate::roam::graph::{Vertex, VertexKind};
-use crate::roam::layout::PatchLayout;
-use crate::terrain::post_rect::PostRect;
+use crate::graph::{Vertex, VertexKind};
+use crate::layout::PatchLayout;
+use sandtable_terrain::post_rect::PostRect;
 
 /// All vertices of one kind and one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl LevelPass {
     }
 
     /// The vertices whose hypotenuses have an end or their middle in `posts`, and a few more.
-    pub(in crate::roam) fn reading(self, posts: VertexRect) -> VertexRect {
+    pub(crate) fn reading(self, posts: VertexRect) -> VertexRect {
         let (dx, dy) = self.offsets();
         posts.grown(dx, dy)
     }
@@ -176,7 +176,7 @@ impl PassRow {
     /// Sets the value of each of its vertices again, by its place among them and its column, and adds the vertices whose
     /// value changed to `changed`.
     #[inline]
-    pub(in crate::roam) fn renew(
+    pub(crate) fn renew(
         self,
         rows: &mut ChildRows<'_>,
         mut value: impl FnMut(&ChildRows<'_>, usize, usize) -> f32,

@@ -9,11 +9,11 @@
 
 use rayon::prelude::*;
 
-use crate::roam::errors::plane::PostPlane;
-use crate::roam::errors::rows::{RowSpan, RowSpans};
-use crate::roam::layout::PatchLayout;
-use crate::roam::shown::{LocalTriangle, PatchList};
-use crate::terrain::lattice::{Lattice, Post};
+use crate::errors::plane::PostPlane;
+use crate::errors::rows::{RowSpan, RowSpans};
+use crate::layout::PatchLayout;
+use crate::shown::{LocalTriangle, PatchList};
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// `|shown − elevation model|` over posts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -189,11 +189,11 @@ impl<'a, S: Fn(Post, f64) -> Option<f64>> PatchScan<'a, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::active::ActiveSet;
-    use crate::roam::displayed::DisplayedTerrain;
-    use crate::roam::graph::Vertex;
-    use crate::roam::patched_ground::PatchedGround;
-    use crate::terrain::triangle_surface::TriangleSurface;
+    use crate::active::ActiveSet;
+    use crate::displayed::DisplayedTerrain;
+    use crate::graph::Vertex;
+    use crate::patched_ground::PatchedGround;
+    use sandtable_terrain::triangle_surface::TriangleSurface;
     use glam::DVec2;
     use proptest::prelude::*;
     use std::sync::Arc;

@@ -2,21 +2,21 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::roam::criterion::Criterion;
-use crate::roam::criterion::flat::Flat;
-use crate::roam::criterion::screen::ScreenError;
-use crate::roam::culling::{PatchHeights, patches_in_view};
-use crate::roam::displayed::DisplayedTerrain;
-use crate::roam::emit::world::drawn_posts;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::refine::rebuild::rebuild;
-use crate::roam::shown::{LocalTriangle, local};
-use crate::terrain::lattice::Lattice;
-use crate::view::camera::Camera;
-use crate::view::frustum::Frustum;
+use crate::criterion::Criterion;
+use crate::criterion::flat::Flat;
+use crate::criterion::screen::ScreenError;
+use crate::culling::{PatchHeights, patches_in_view};
+use crate::displayed::DisplayedTerrain;
+use crate::emit::world::drawn_posts;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::refine::rebuild::rebuild;
+use crate::shown::{LocalTriangle, local};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 /// A displayed lattice, the patches over it, and measures of both.
 #[derive(Debug)]

@@ -7,13 +7,13 @@
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bound::{BAND_POSTS, Deviation, DeviationSums, distance};
-use crate::roam::emit::part::drawn;
-use crate::roam::errors::rows::RowSpans;
-use crate::roam::parts::{BorderCarry, PartPlan, is_own};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use crate::active::ActiveSet;
+use crate::bound::{BAND_POSTS, Deviation, DeviationSums, distance};
+use crate::emit::part::drawn;
+use crate::errors::rows::RowSpans;
+use crate::parts::{BorderCarry, PartPlan, is_own};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// The distances of the parts of a mesh, which must follow each other from the first.
 pub struct PartDistances<'a> {
@@ -96,13 +96,13 @@ impl<'a> PartDistances<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::bound::measure;
-    use crate::roam::closure::least_closure;
-    use crate::roam::displayed::DisplayedTerrain;
-    use crate::roam::layout::PatchLayout;
-    use crate::roam::parts::PartedGround;
-    use crate::roam::parts::tests::CutGround;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::bound::measure;
+    use crate::closure::least_closure;
+    use crate::displayed::DisplayedTerrain;
+    use crate::layout::PatchLayout;
+    use crate::parts::PartedGround;
+    use crate::parts::tests::CutGround;
     use glam::DVec2;
     use proptest::prelude::*;
     use std::sync::Arc;

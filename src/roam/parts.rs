@@ -15,10 +15,10 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// Ground that is read part by part.
 pub trait PartedGround {
@@ -187,7 +187,7 @@ pub fn is_own(layout: &PatchLayout, part: PostRect, post: Post) -> bool {
 }
 
 #[cfg(test)]
-pub(in crate::roam) mod tests {
+pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
 

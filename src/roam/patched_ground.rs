@@ -2,9 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// A displayed lattice and the patches over it.
 #[derive(Clone, Copy, Debug)]

@@ -19,7 +19,7 @@
 
 use std::fmt;
 
-use crate::roam::graph::Vertex;
+use crate::graph::Vertex;
 
 /// The most digits of an address: a patch of 4096 cells has nodes of two cells after 11.
 pub const MOST_DIGITS: u32 = 15;
@@ -202,7 +202,7 @@ impl QuadNode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::graph::VertexKind;
+    use crate::graph::VertexKind;
 
     const PATCH: i32 = 16;
 

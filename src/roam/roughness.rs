@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// The paper's ξ: keeps k above 0 on level ground, so that an infinite error stays infinite.
 const XI: f64 = 1e-6;

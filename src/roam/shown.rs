@@ -5,12 +5,12 @@
 
 use std::sync::Arc;
 
-use crate::roam::active::ActiveSet;
-use crate::roam::emit::bintree::VertexBlock;
-use crate::roam::emit::world::drawn_posts;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
+use crate::active::ActiveSet;
+use crate::emit::bintree::VertexBlock;
+use crate::emit::world::drawn_posts;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
 
 /// Three vertices of a patch, counter-clockwise seen from above; vertices count row by row from the south-west.
 pub type LocalTriangle = [u16; 3];
@@ -86,9 +86,9 @@ fn block(layout: &PatchLayout) -> VertexBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roam::displayed::DisplayedTerrain;
-    use crate::terrain::lattice::Lattice;
-    use crate::terrain::triangle_surface::TriangleSurface;
+    use crate::displayed::DisplayedTerrain;
+    use sandtable_terrain::lattice::Lattice;
+    use sandtable_terrain::triangle_surface::TriangleSurface;
     use glam::{DVec2, Vec2, Vec3};
     use std::collections::BTreeSet;
 

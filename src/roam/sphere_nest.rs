@@ -1,9 +1,9 @@
 //! The radii that hold the spheres of children, for the vertices of a row: four at a time where there are as many.
 
-use crate::roam::errors::scan::larger;
-use crate::roam::field::{FieldRow, HeightField};
-use crate::roam::levels::{ChildPlaces, StridedColumns, both_sides};
-use crate::terrain::vectorized::vectorized;
+use crate::errors::scan::larger;
+use crate::field::{FieldRow, HeightField};
+use crate::levels::{ChildPlaces, StridedColumns, both_sides};
+use sandtable_terrain::vectorized::vectorized;
 
 /// Spheres grow by this share from child to parent, so that rounding of f32 radii and f64 distances can never let a child's
 /// sphere reach out of its parent's. Smaller than any error that shows, a thousand times the rounding.
@@ -136,9 +136,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::roam::layout::PatchLayout;
-    use crate::roam::patched_ground::PatchedGround;
-    use crate::terrain::lattice::Lattice;
+    use crate::layout::PatchLayout;
+    use crate::patched_ground::PatchedGround;
+    use sandtable_terrain::lattice::Lattice;
 
     proptest! {
         #[test]

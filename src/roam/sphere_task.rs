@@ -7,15 +7,15 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
-use crate::roam::dynamic::{DynamicOptions, own_radius};
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::roughness::Roughness;
-use crate::roam::spheres::SphereMap;
-use crate::terrain::lattice::Lattice;
+use crate::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
+use crate::dynamic::{DynamicOptions, own_radius};
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::roughness::Roughness;
+use crate::spheres::SphereMap;
+use sandtable_terrain::lattice::Lattice;
 
 /// Spheres that are to be made. While it is kept, the next edit copies heights and errors.
 #[derive(Clone, Debug)]

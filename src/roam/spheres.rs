@@ -9,17 +9,17 @@
 
 use rayon::prelude::*;
 
-use crate::roam::errors::ErrorMap;
-use crate::roam::errors::midpoint::midpoint_error_at;
-use crate::roam::errors::scan::larger;
-use crate::roam::field::HeightField;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{ChildPlaces, PassRow, StridedColumns, SweepRows, both_sides, for_rows};
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::roughness::Roughness;
-use crate::roam::sphere_nest::{MARGIN, SphereNest};
-use crate::view::camera::Camera;
+use crate::errors::ErrorMap;
+use crate::errors::midpoint::midpoint_error_at;
+use crate::errors::scan::larger;
+use crate::field::HeightField;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::levels::{ChildPlaces, PassRow, StridedColumns, SweepRows, both_sides, for_rows};
+use crate::patched_ground::PatchedGround;
+use crate::roughness::Roughness;
+use crate::sphere_nest::{MARGIN, SphereNest};
+use sandtable_view::camera::Camera;
 
 /// The radius of every vertex's sphere, meters in world space about the displayed vertex.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +94,7 @@ impl OwnRadius<'_> {
     }
 
     /// How many posts around a vertex its own radius reads beyond those of the triangles it splits.
-    pub(in crate::roam) fn half_window(&self) -> (u32, u32) {
+    pub(crate) fn half_window(&self) -> (u32, u32) {
         match self {
             Self::Constrained { roughness, .. } => roughness.half_window(),
             _ => (0, 0),
@@ -197,7 +197,7 @@ impl SphereMap {
 
     /// The radii of the row of vertices `y`.
     #[inline]
-    pub(in crate::roam) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
+    pub(crate) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
         &self.radii[y * layout.columns()..][..layout.columns()]
     }
 
@@ -224,7 +224,7 @@ impl SphereMap {
 
     /// Sets the radii of a row of a pass again from the vertices' own radii and their children's spheres; adds the vertices
     /// whose radius changed to `changed`. `held` is scratch.
-    pub(in crate::roam) fn renew_row(
+    pub(crate) fn renew_row(
         &mut self,
         ground: PatchedGround<'_>,
         field: &HeightField<'_>,

@@ -2,24 +2,22 @@
 
 use glam::DVec2;
 
-use crate::dem::answer::Answer;
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::voids;
-use crate::dem::warp::metric_windows::{MetricPlan, MetricWindows};
-use crate::dem::windows::Windows;
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::memory::check_memory;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::query::Interpolation;
-use crate::terrain::query::windowed::{
-    LatticePartError, lattice_part, post_heights, windowed_ground_heights,
-};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
+use sandtable_dem::voids;
+use sandtable_dem::warp::metric_windows::{MetricPlan, MetricWindows};
+use sandtable_dem::windows::Windows;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::memory::check_memory;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::query::Interpolation;
+use sandtable_terrain::query::windowed::{LatticePartError, lattice_part, post_heights, windowed_ground_heights};
 
 /// Posts beside those that are asked for: those of the cells around them, and a few for rounding.
 const HALO: f64 = 4.0;

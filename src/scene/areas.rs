@@ -6,27 +6,27 @@
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::AreaTable;
-use crate::description::words::{Border, Cover};
-use crate::draw::color::Srgba;
-use crate::draw::list::FeatureId;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::region::{self, PolygonRings};
-use crate::ribbon::area;
-use crate::ribbon::border::{Dashes, border, edge};
-use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::texture::RibbonSurface;
-use crate::ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
-use crate::scene::FeatureKind;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::crossed_shapes::CrossedShapes;
-use crate::scene::near::Clipped;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::{Sourced, Sources};
-use crate::vector::feature::Polygon;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::AreaTable;
+use sandtable_description::words::{Border, Cover};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::region::{self, PolygonRings};
+use sandtable_ribbon::area;
+use sandtable_ribbon::border::{Dashes, border, edge};
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
+use crate::FeatureKind;
+use crate::builder::SceneBuilder;
+use crate::crossed_shapes::CrossedShapes;
+use crate::near::Clipped;
+use crate::scene_findings::FeatureTable;
+use crate::sources::{Sourced, Sources};
+use sandtable_vector::feature::Polygon;
 
 /// Adds the document's areas to `collected`. Those off the ground and those without an area are left out, and those for
 /// which an expression gives no cover; notes say how many.

@@ -16,18 +16,16 @@ use std::io::{self, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::dem::formats::FileContent;
-#[cfg(unix)]
-use crate::dem::formats::ReadByPlace;
-use crate::dem::raster::Raster;
-use crate::limits::ASSET_BYTES;
-use crate::message::suggest::{nearest, quoted};
-use crate::model::Companions;
-use crate::model::error::CompanionError;
-use crate::remote::address::is_address;
-use crate::remote::companions::{CompanionFiles, FoundCompanion};
-use crate::remote::error::RemoteError;
-use crate::remote::open;
+use sandtable_dem::formats::FileContent;
+use sandtable_dem::raster::Raster;
+use sandtable_base::limits::ASSET_BYTES;
+use sandtable_base::message::suggest::{nearest, quoted};
+use sandtable_model::Companions;
+use sandtable_model::error::CompanionError;
+use sandtable_remote::address::is_address;
+use sandtable_remote::companions::{CompanionFiles, FoundCompanion};
+use sandtable_remote::error::RemoteError;
+use sandtable_remote::open;
 
 /// The most names of a folder that are looked at for the one that was meant.
 const MAX_NAMES: usize = 10_000;
@@ -111,24 +109,6 @@ pub enum AssetError {
 impl AssetError {
     fn remote(address: &str) -> impl Fn(RemoteError) -> Self + '_ {
         |source| Self::Remote { address: address.to_owned(), source }
-    }
-}
-
-impl FileContent for File {
-    #[cfg(unix)]
-    fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
-        Some(Arc::new(FileByPlace(self.try_clone().ok()?)))
-    }
-}
-
-/// A file of a system that reads by place.
-#[cfg(unix)]
-struct FileByPlace(File);
-
-#[cfg(unix)]
-impl ReadByPlace for FileByPlace {
-    fn read_by_place(&self, out: &mut [u8], start: u64) -> io::Result<usize> {
-        std::os::unix::fs::FileExt::read_at(&self.0, out, start)
     }
 }
 

@@ -12,32 +12,32 @@
 
 use std::collections::BTreeSet;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::earthworks::alignment::chain::{ChainLink, Direction};
-use crate::earthworks::alignment::{Alignment, Support};
-use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
-use crate::limits::BRIDGE_PIERS;
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::builder::{SceneBuilder, described};
-use crate::scene::report::SpanRow;
-use crate::scene::roads::centerline::Centerline;
-use crate::scene::roads::chains::{ChainEnd, SpanChain};
-use crate::scene::roads::levels::{self, ChainRun, Site};
-use crate::scene::roads::profiles::BridgeProfile;
-use crate::scene::roads::spans::{self, RoadSpan};
-use crate::scene::sources::Sources;
-use crate::scene::{Coat, FeatureKind, Solid};
-use crate::structure::bridge::{self, Across, BridgeOptions, magnified};
-use crate::structure::deck::DeckSection;
-use crate::structure::deck_profile::ClearancePoint;
-use crate::structure::tunnel::Portal;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::deck::{Deck, DeckError};
-use crate::terrain::triangle_surface::SurfaceTriangle;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_earthworks::alignment::chain::{ChainLink, Direction};
+use sandtable_earthworks::alignment::{Alignment, Support};
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::BRIDGE_PIERS;
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::builder::{SceneBuilder, described};
+use crate::report::SpanRow;
+use crate::roads::centerline::Centerline;
+use crate::roads::chains::{ChainEnd, SpanChain};
+use crate::roads::levels::{self, ChainRun, Site};
+use crate::roads::profiles::BridgeProfile;
+use crate::roads::spans::{self, RoadSpan};
+use crate::sources::Sources;
+use crate::{Coat, FeatureKind, Solid};
+use sandtable_structure::bridge::{self, Across, BridgeOptions, magnified};
+use sandtable_structure::deck::DeckSection;
+use sandtable_structure::deck_profile::ClearancePoint;
+use sandtable_structure::tunnel::Portal;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::deck::{Deck, DeckError};
+use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
 /// The longest underpass, in meters: under a broad road or a railway yard.
 const LONGEST_UNDERPASS_M: f64 = 60.0;

@@ -1,20 +1,20 @@
 //! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
-use crate::draw::color::Srgba;
-use crate::draw::list::FeatureId;
-use crate::ribbon::partition;
-use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::attributes::DefaultCounts;
-use crate::scene::feature_origin::FeatureOrigin;
-use crate::scene::graphics::SceneGraphic;
-use crate::scene::report::SceneReport;
-use crate::scene::roads::profiles::{BridgeProfile, RoadProfile};
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::spot_heights::LakeSurface;
-use crate::scene::symbols::LineSymbol;
-use crate::scene::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
-use crate::terrain::triangle_surface::SurfaceTriangle;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
+use sandtable_ribbon::partition;
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::attributes::DefaultCounts;
+use crate::feature_origin::FeatureOrigin;
+use crate::graphics::SceneGraphic;
+use crate::report::SceneReport;
+use crate::roads::profiles::{BridgeProfile, RoadProfile};
+use crate::scene_findings::SceneFindings;
+use crate::spot_heights::LakeSurface;
+use crate::symbols::LineSymbol;
+use crate::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
+use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
 /// The features of a scene so far, with their meshes, findings and reports.
 pub struct SceneBuilder {

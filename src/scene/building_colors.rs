@@ -1,8 +1,8 @@
 //! Colors as OpenStreetMap's properties write them: `#rgb`, `#rrggbb`, or one of the names that CSS began with.
 
-use crate::description::color::Color;
-use crate::description::scalar::Scalar;
-use crate::draw::color::Srgba;
+use sandtable_description::color::Color;
+use sandtable_description::scalar::Scalar;
+use sandtable_draw::color::Srgba;
 
 /// The names in use on buildings (CSS Color Module Level 4, its basic colors and a few more), muted to what paint and
 /// stone look like in daylight: a wall tagged `red` is brick, not a signal.

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::description::finding::Finding;
-use crate::description::finding_code::FindingCode;
-use crate::geom::own_crossing::own_crossing;
-use crate::scene::builder::{SceneBuilder, described};
-use crate::scene::world_frame::WorldFrame;
-use crate::vector::feature::Polygon;
+use sandtable_description::finding::Finding;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::own_crossing::own_crossing;
+use crate::builder::{SceneBuilder, described};
+use crate::world_frame::WorldFrame;
+use sandtable_vector::feature::Polygon;
 
 /// Those of one table.
 #[derive(Debug, Default)]

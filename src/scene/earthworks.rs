@@ -6,26 +6,26 @@
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::earthworks::EarthworkTable;
-use crate::description::finding_code::FindingCode;
-use crate::description::words::EarthworkKind;
-use crate::earthworks::brush::{Change, Crater, TireTrack, Trench, set_heights};
-use crate::earthworks::earthwork::{CrownHeight, Earthwork, RaisedGround};
-use crate::earthworks::held_posts::HeldPosts;
-use crate::earthworks::level_ground::LevelGround;
-use crate::earthworks::pad::Batters;
-use crate::geom::polyline::Polyline;
-use crate::limits::EARTHWORK_STEPS;
-use crate::message::choice::Choice;
-use crate::scene::attributes::{Attributes, DefaultCounts};
-use crate::scene::builder::SceneBuilder;
-use crate::scene::near::MERGE_M;
-use crate::scene::report::EarthworkRow;
-use crate::scene::sources::{Sourced, Sources};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::water_cover::{WaterCover, water_cover};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::earthworks::EarthworkTable;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::EarthworkKind;
+use sandtable_earthworks::brush::{Change, Crater, TireTrack, Trench, set_heights};
+use sandtable_earthworks::earthwork::{CrownHeight, Earthwork, RaisedGround};
+use sandtable_earthworks::held_posts::HeldPosts;
+use sandtable_earthworks::level_ground::LevelGround;
+use sandtable_earthworks::pad::Batters;
+use sandtable_geom::polyline::Polyline;
+use sandtable_base::limits::EARTHWORK_STEPS;
+use sandtable_base::message::choice::Choice;
+use crate::attributes::{Attributes, DefaultCounts};
+use crate::builder::SceneBuilder;
+use crate::near::MERGE_M;
+use crate::report::EarthworkRow;
+use crate::sources::{Sourced, Sources};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::water_cover::{WaterCover, water_cover};
 
 /// Sizes in meters where none are stated: a heavy bomb's crater, a trench to stand in, a truck's track, a bank.
 const RADIUS_M: f64 = 10.0;

@@ -14,23 +14,23 @@ use std::cell::RefCell;
 
 use glam::{DVec2, Vec2};
 
-use crate::dem::windows::Windows;
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::feature_value::FeatureValue;
-use crate::description::features::FenceTable;
-use crate::description::finding_code::FindingCode;
-use crate::description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
-use crate::geom::rect::Rect;
-use crate::scene::all_samples::{AllSamples, PartTooLarge};
-use crate::scene::assets::Assets;
-use crate::scene::build::part_ground;
-use crate::scene::nested_ground::part_document;
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::world_frame::WorldFrame;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::windowed::LatticePartError;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_dem::windows::Windows;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::feature_value::FeatureValue;
+use sandtable_description::features::FenceTable;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
+use sandtable_geom::rect::Rect;
+use crate::all_samples::{AllSamples, PartTooLarge};
+use crate::assets::Assets;
+use crate::build::part_ground;
+use crate::finer_elevation::part_document;
+use crate::scene_findings::SceneFindings;
+use crate::world_frame::WorldFrame;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::windowed::LatticePartError;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// Parts that are built with their features for heights in numbers: about as many as a picture near the ground has nested
 /// grounds, whose sources are read as often.

@@ -13,8 +13,8 @@
 //!
 //! Plaster is white, and so are the corners of the tile: the colors of a wall's vertices paint it.
 
-use crate::draw::color::Srgba;
-use crate::draw::pixels::Pixels;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
 
 /// Texels along a side.
 const SIZE: u32 = 64;

@@ -7,25 +7,25 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::LabelTable;
-use crate::description::expression::Expression;
-use crate::description::finding_code::FindingCode;
-use crate::description::scalar::Scalar;
-use crate::geom::crs::Crs;
-use crate::geom::polygon::{doubled_area, inner_point};
-use crate::geom::polyline::Polyline;
-use crate::scene::SceneLabel;
-use crate::scene::attributes::Attributes;
-use crate::scene::exact_ground::ExactGround;
-use crate::scene::label_course::{LabelCourse, across, along};
-use crate::scene::near::MERGE_M;
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::sources::Sources;
-use crate::scene::views::whole_meters;
-use crate::scene::world_frame::WorldFrame;
-use crate::terrain::lattice::Lattice;
-use crate::vector::feature::{Geometry, Polygon};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::LabelTable;
+use sandtable_description::expression::Expression;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::scalar::Scalar;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::polygon::{doubled_area, inner_point};
+use sandtable_geom::polyline::Polyline;
+use crate::SceneLabel;
+use crate::attributes::Attributes;
+use crate::exact_ground::ExactGround;
+use crate::label_course::{LabelCourse, across, along};
+use crate::near::MERGE_M;
+use crate::scene_findings::SceneFindings;
+use crate::sources::Sources;
+use crate::views::whole_meters;
+use crate::world_frame::WorldFrame;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_vector::feature::{Geometry, Polygon};
 
 /// Longer texts name nothing; they are cut here.
 const MOST_LETTERS: usize = 1000;

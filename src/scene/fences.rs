@@ -1,41 +1,41 @@
 //! What stands or runs along lines: fences, walls, hedges, power lines, trenches, obstacle belts and boundaries.
 //!
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
-//! What stands is only planned here; [`crate::structure::draped_solid`] sets it on the displayed ground for every picture.
+//! What stands is only planned here; [`sandtable_structure::draped_solid`] sets it on the displayed ground for every picture.
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::FenceTable;
-use crate::description::finding_code::FindingCode;
-use crate::description::scalar::Scalar;
-use crate::description::stated::Stated;
-use crate::description::words::FenceKind;
-use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::Alignment;
-use crate::earthworks::brush::Trench;
-use crate::geom::polyline::Polyline;
-use crate::geom::rect::Rect;
-use crate::limits::LINE_PIECES;
-use crate::ribbon::plan::PlanMesh;
-use crate::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::crossed_shapes::CrossedShapes;
-use crate::scene::near::{self, Clipped};
-use crate::scene::report::TrenchRow;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sources;
-use crate::scene::vertical_scale::DrawnGround;
-use crate::scene::{FeatureKind, FeatureSolid};
-use crate::structure::bands::{BandSize, bare_m, hedge, parapets, rails, wall};
-use crate::structure::draped_solid::DrapedSolid;
-use crate::structure::fence::{Posts, spans, stands};
-use crate::structure::obstacle::{self, Obstacles};
-use crate::structure::power::{PowerLine, clear};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::triangle_surface::TriangleSurface;
-use crate::terrain::volumes::Volumes;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::FenceTable;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::scalar::Scalar;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::FenceKind;
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_earthworks::brush::Trench;
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::LINE_PIECES;
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::crossed_shapes::CrossedShapes;
+use crate::near::{self, Clipped};
+use crate::report::TrenchRow;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use crate::vertical_scale::DrawnGround;
+use crate::{FeatureKind, FeatureSolid};
+use sandtable_structure::bands::{BandSize, bare_m, hedge, parapets, rails, wall};
+use sandtable_structure::draped_solid::DrapedSolid;
+use sandtable_structure::fence::{Posts, spans, stands};
+use sandtable_structure::obstacle::{self, Obstacles};
+use sandtable_structure::power::{PowerLine, clear};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_terrain::volumes::Volumes;
 
 /// A line is dug where its trench is at least as many cells wide; on coarser ground it would be a row of pits.
 const LEAST_CELLS: f64 = 3.0;

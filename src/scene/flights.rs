@@ -5,17 +5,17 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{Document, FlightTable};
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::geom::smooth::smoothed;
-use crate::scene::assets::Assets;
-use crate::scene::near::MERGE_M;
-use crate::scene::sources::Sources;
-use crate::scene::world_frame::WorldFrame;
-use crate::scene::{SceneModel, SceneView, ViewAim};
-use crate::view::camera::Camera;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::{Document, FlightTable};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::smooth::smoothed;
+use crate::assets::Assets;
+use crate::near::MERGE_M;
+use crate::sources::Sources;
+use crate::world_frame::WorldFrame;
+use crate::{SceneModel, SceneView, ViewAim};
+use sandtable_view::camera::Camera;
 
 /// Vertices of a path: as many as frames of a minute.
 const VERTICES: usize = 1500;

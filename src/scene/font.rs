@@ -1,10 +1,10 @@
 //! The font that a scene names.
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::draw::font::{FontFile, LARGEST_FONT_BYTES};
-use crate::message::suggest::quoted;
-use crate::scene::assets::Assets;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_draw::font::{FontFile, LARGEST_FONT_BYTES};
+use sandtable_base::message::suggest::quoted;
+use crate::assets::Assets;
 
 /// The font of `document`; `None` where it names none.
 ///

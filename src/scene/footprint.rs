@@ -8,10 +8,10 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::geom::aabb::Aabb;
-use crate::geom::polygon;
-use crate::model::Model;
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+use sandtable_geom::aabb::Aabb;
+use sandtable_geom::polygon;
+use sandtable_model::Model;
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// The part of a model's height that is its foot.
 const FOOT_PART: f32 = 0.1;
@@ -135,12 +135,12 @@ impl Under {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
-    use crate::mesh::sink::MeshSink;
-    use crate::model::ModelPart;
-    use crate::terrain::full_resolution::FullResolution;
-    use crate::terrain::lattice::Lattice;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
+    use sandtable_mesh::sink::MeshSink;
+    use sandtable_model::ModelPart;
+    use sandtable_terrain::full_resolution::FullResolution;
+    use sandtable_terrain::lattice::Lattice;
 
     fn model(points: &[[f32; 3]]) -> Model {
         let mut mesh = DrawMesh::default();

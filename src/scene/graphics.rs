@@ -2,27 +2,27 @@
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::graphics::GraphicTable;
-use crate::description::scalar::Scalar;
-use crate::description::stated::Stated;
-use crate::description::words::{GraphicSide, GraphicStatus};
-use crate::draw::list::FeatureId;
-use crate::geom::rect::Rect;
-use crate::limits::SCENE_GRAPHICS;
-use crate::message::suggest::{nearest, quoted};
-use crate::scene::FeatureKind;
-use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sources;
-use crate::symbology::code::SymbolCode;
-use crate::symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
-use crate::symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};
-use crate::symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
-use crate::symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
-use crate::vector::feature::Geometry;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::graphics::GraphicTable;
+use sandtable_description::scalar::Scalar;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::{GraphicSide, GraphicStatus};
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::SCENE_GRAPHICS;
+use sandtable_base::message::suggest::{nearest, quoted};
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
+use sandtable_symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};
+use sandtable_symbology::graphic::fields::{ECHELONS, GraphicFields, echelon_mark};
+use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind};
+use sandtable_vector::feature::Geometry;
 
 /// A tactical graphic in its place.
 #[derive(Clone, Debug)]

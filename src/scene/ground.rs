@@ -5,24 +5,24 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::dem::crop::crop;
-use crate::dem::largest_rectangle::{largest_rectangle, outside};
-use crate::dem::raster::Raster;
-use crate::dem::undeclared::{NodataSign, undeclared_nodata};
-use crate::dem::void_counts::VoidCounts;
-use crate::dem::voids;
-use crate::dem::warp;
-use crate::dem::windows::Windows;
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
-use crate::scene::assets::Assets;
-use crate::scene::elevation::{BESIDE, ReadElevation, nothing_within};
-use crate::scene::planned_pictures::ElevationNeed;
-use crate::scene::scene_findings::SceneFindings;
-use crate::terrain::lattice::Lattice;
+use sandtable_dem::crop::crop;
+use sandtable_dem::largest_rectangle::{largest_rectangle, outside};
+use sandtable_dem::raster::Raster;
+use sandtable_dem::undeclared::{NodataSign, undeclared_nodata};
+use sandtable_dem::void_counts::VoidCounts;
+use sandtable_dem::voids;
+use sandtable_dem::warp;
+use sandtable_dem::windows::Windows;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use crate::assets::Assets;
+use crate::elevation::{BESIDE, ReadElevation, nothing_within};
+use crate::planned_pictures::ElevationNeed;
+use crate::scene_findings::SceneFindings;
+use sandtable_terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.
 pub struct LoadedGround {

@@ -4,18 +4,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Vec2, Vec3};
 
-use crate::dem::raster::Samples;
-use crate::draw::ground::{GroundMap, GroundPost};
-use crate::draw::ground_levels::{GroundLevel, PostCount, level};
-use crate::draw::lighting::ReliefShading;
-use crate::scene::SceneModel;
-use crate::scene::relief_strength::ReliefStrength;
-use crate::scene::texture_shading::TextureShading;
-use crate::scene::undergrowth::undergrowth;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::light::TerrainLight;
-use crate::terrain::terraces::without_terraces;
-use crate::terrain::water_shore::WaterShore;
+use sandtable_dem::raster::Samples;
+use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
+use sandtable_draw::lighting::ReliefShading;
+use crate::SceneModel;
+use crate::relief_strength::ReliefStrength;
+use crate::texture_shading::TextureShading;
+use crate::undergrowth::undergrowth;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::light::TerrainLight;
+use sandtable_terrain::terraces::without_terraces;
+use sandtable_terrain::water_shore::WaterShore;
 
 /// What a scene's ground map depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,7 @@ impl GroundMapCache {
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
 /// before, smoothed.
-pub(super) fn ground_map(
+pub fn ground_map(
     scene: &SceneModel,
     GroundMapKey { level: number, to_sun }: GroundMapKey,
 ) -> GroundMap {
@@ -128,7 +128,7 @@ pub(super) fn ground_map(
 const FORM_SHARE: f64 = 1.0 / 100.0;
 
 /// How often the cells of the lattice are doubled until they are as wide as the forms of the generalized ground.
-pub(super) fn form_level(lattice: &Lattice) -> u32 {
+pub fn form_level(lattice: &Lattice) -> u32 {
     libm::log2((form_m(lattice) / lattice.cell().max_element()).max(1.0)).round() as u32
 }
 

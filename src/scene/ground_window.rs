@@ -6,15 +6,15 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::draw::ground::{GroundMap, GroundPost};
-use crate::draw::ground_window::GroundWindow;
-use crate::scene::SceneModel;
-use crate::scene::ground_map::is_whole_meters;
-use crate::scene::texture_shading::sky_in_part;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::light::TerrainLight;
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::terraces::without_terraces;
+use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_window::GroundWindow;
+use crate::SceneModel;
+use crate::ground_map::is_whole_meters;
+use crate::texture_shading::sky_in_part;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::light::TerrainLight;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::terraces::without_terraces;
 
 /// A part of the ground with a border around it.
 pub struct WindowGround {

@@ -8,20 +8,20 @@
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
-use crate::dem::imagery::Imagery;
-use crate::dem::read::{DemHints, DemOptions};
-use crate::dem::warp::row_positions::positions;
-use crate::dem::windows::RasterWindow;
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{Document, ImageryTable};
-use crate::draw::color::Srgba;
-use crate::draw::ground_imagery::GroundImagery;
-use crate::draw::pixels::Pixels;
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
-use crate::limits::COMPANION_BYTES;
-use crate::scene::assets::Assets;
-use crate::terrain::lattice::Lattice;
+use sandtable_dem::imagery::Imagery;
+use sandtable_dem::read::{DemHints, DemOptions};
+use sandtable_dem::warp::row_positions::positions;
+use sandtable_dem::windows::RasterWindow;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::{Document, ImageryTable};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground_imagery::GroundImagery;
+use sandtable_draw::pixels::Pixels;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::COMPANION_BYTES;
+use crate::assets::Assets;
+use sandtable_terrain::lattice::Lattice;
 
 /// The longest side in pixels: more than a screen of 4K shows of the ground, and 64 MiB at the most. Finer pictures lose
 /// detail in close views.

@@ -2,12 +2,12 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::geom::join::joined;
-use crate::geom::polyline::Polyline;
-use crate::scene::near::MERGE_M;
-use crate::scene::world_frame::WorldFrame;
-use crate::terrain::lattice::Lattice;
-use crate::vector::feature::Polygon;
+use sandtable_geom::join::joined;
+use sandtable_geom::polyline::Polyline;
+use crate::near::MERGE_M;
+use crate::world_frame::WorldFrame;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_vector::feature::Polygon;
 
 /// Vertices of one line or outline on the ground: more than the pixels across a picture help no name.
 const MOST_VERTICES: f64 = 600.0;

@@ -4,7 +4,7 @@
 //! and 20° S, then a fall of about 110 m for each degree of latitude. Mountains far from the sea differ by some hundred
 //! meters, so colors change over [`TRANSITION_M`] and not at a line.
 
-use crate::geom::profile::value_at;
+use sandtable_geom::profile::value_at;
 
 /// Degrees of latitude on either side of the equator.
 const LATITUDES_DEG: [f64; 7] = [0.0, 20.0, 32.0, 45.0, 55.0, 70.0, 90.0];

@@ -2,22 +2,22 @@
 
 use glam::Vec3;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::expression::Expression;
-use crate::description::finding_code::FindingCode;
-use crate::description::stated::Stated;
-use crate::description::symbols::SymbolTable;
-use crate::geom::crs::Crs;
-use crate::limits::SCENE_SYMBOLS;
-use crate::scene::attributes::Attributes;
-use crate::scene::feature_labels::{place, written};
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::sources::Sources;
-use crate::scene::world_frame::WorldFrame;
-use crate::symbology::code::SymbolCode;
-use crate::symbology::symbol::MilitarySymbol;
-use crate::symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
-use crate::terrain::lattice::Lattice;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::expression::Expression;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_description::symbols::SymbolTable;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::SCENE_SYMBOLS;
+use crate::attributes::Attributes;
+use crate::feature_labels::{place, written};
+use crate::scene_findings::SceneFindings;
+use crate::sources::Sources;
+use crate::world_frame::WorldFrame;
+use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::symbol::MilitarySymbol;
+use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};
+use sandtable_terrain::lattice::Lattice;
 
 /// A symbol at its place.
 #[derive(Clone, Debug, PartialEq)]

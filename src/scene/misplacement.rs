@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 
 /// What would put points onto the ground that lie off it.
 #[derive(Clone, Debug, PartialEq)]

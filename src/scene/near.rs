@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-use crate::geom::polyline::{Polyline, kept};
-use crate::geom::rect::Rect;
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sourced;
+use sandtable_geom::polyline::{Polyline, kept};
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sourced;
 
 /// Vertices nearer to each other than this have no direction worth a joint, in meters.
 pub const MERGE_M: f64 = 0.01;

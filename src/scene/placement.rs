@@ -13,13 +13,13 @@
 
 use glam::{DVec2, Mat4, Quat, Vec2, Vec3};
 
-use crate::description::words::{Anchor, Clamp, Footing};
-use crate::draw::list::DrawMesh;
-use crate::geom::polygon;
-use crate::scene::Placement;
-use crate::scene::footprint::{ModelFootprint, Under};
-use crate::structure::plinth;
-use crate::terrain::support_surface::SupportSurface;
+use sandtable_description::words::{Anchor, Clamp, Footing};
+use sandtable_draw::list::DrawMesh;
+use sandtable_geom::polygon;
+use crate::Placement;
+use crate::footprint::{ModelFootprint, Under};
+use sandtable_structure::plinth;
+use sandtable_terrain::support_surface::SupportSurface;
 
 /// The margin of a plinth around the footprint, as a part of the longer side: visible as a step.
 pub const PLINTH_REACH: f32 = 0.05;
@@ -165,12 +165,12 @@ fn tilted(lean: Vec2) -> Quat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::list::FeatureId;
-    use crate::scene::GroundFit;
-    use crate::scene::vertical_scale::VerticalScale;
-    use crate::terrain::full_resolution::FullResolution;
-    use crate::terrain::lattice::Lattice;
-    use crate::terrain::triangle_surface::TriangleSurface;
+    use sandtable_draw::list::FeatureId;
+    use crate::GroundFit;
+    use crate::vertical_scale::VerticalScale;
+    use sandtable_terrain::full_resolution::FullResolution;
+    use sandtable_terrain::lattice::Lattice;
+    use sandtable_terrain::triangle_surface::TriangleSurface;
     use glam::DVec2;
 
     const FOOTPRINT: ModelFootprint =
@@ -290,8 +290,8 @@ mod tests {
         impl TriangleSurface for Nothing {
             fn visit_facets(
                 &self,
-                _: &crate::geom::rect::Rect,
-                _: &mut dyn FnMut(&crate::terrain::triangle_surface::SurfaceTriangle),
+                _: &sandtable_geom::rect::Rect,
+                _: &mut dyn FnMut(&sandtable_terrain::triangle_surface::SurfaceTriangle),
             ) {
             }
         }

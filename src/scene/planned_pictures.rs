@@ -30,7 +30,7 @@ pub struct PlannedPictures {
 /// What pictures show of ground near the eye where its samples are too many to be read everywhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NearGround {
-    /// A [nested ground](crate::scene::nested_ground) in the part of the scene's that needs more samples.
+    /// A nested ground, of more samples, in the part of the scene's that needs more samples.
     #[default]
     Nested,
     /// The scene's, which has all samples that fit.

@@ -13,12 +13,12 @@
 use glam::{DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::dem::answer::Answer;
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::mesh::sink::MeshSink;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_dem::answer::Answer;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex};
+use sandtable_mesh::sink::MeshSink;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// The depth of the base below the lowest ground, as a part of the ground's longer side.
 const DEPTH: f64 = 0.03;
@@ -173,7 +173,7 @@ fn add_wall(walls: &mut DrawMesh, (from, to): (Vec3, Vec3), section: &SoilSectio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::sink::VertexId;
+    use sandtable_mesh::sink::VertexId;
 
     /// Two by one cells; the eastern one is left out of the mesh, as if it were out of view.
     fn western_cell(lattice: &Lattice) -> DrawMesh {
@@ -182,7 +182,7 @@ mod tests {
         let ids: Vec<VertexId> = plan
             .iter()
             .map(|&(column, row)| {
-                let position = lattice.position(crate::terrain::lattice::Post { column, row }).extend(5.0);
+                let position = lattice.position(sandtable_terrain::lattice::Post { column, row }).extend(5.0);
                 mesh.vertex(DrawVertex {
                     position: position.to_array(),
                     normal: [0.0, 0.0, 1.0],

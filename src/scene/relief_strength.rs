@@ -5,11 +5,11 @@
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
-use crate::draw::color::luminance;
-use crate::draw::ground::ColorRamp;
-use crate::draw::lighting::{ReliefPoint, ReliefShading};
-use crate::scene::vertical_scale::VerticalScale;
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_draw::color::luminance;
+use sandtable_draw::ground::ColorRamp;
+use sandtable_draw::lighting::{ReliefPoint, ReliefShading};
+use crate::vertical_scale::VerticalScale;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// The mean slope, meters per meter, to which the slopes of gentle ground are raised for their shading: that of hills. More
 /// of it shows more relief and darker pictures.
@@ -109,8 +109,8 @@ fn shade_gain(slopes: &[LandSlope], z_factor: f32, ramp: &ColorRamp, shading: &R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::lighting::Lighting;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::lighting::Lighting;
 
     const SIDE: u32 = 129;
 

@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::description::document::Document;
-use crate::description::features::FeatureSource;
-use crate::description::finding::Finding;
-use crate::description::finding_code::FindingCode;
-use crate::description::source_text::SourceText;
-use crate::message::suggest::quoted;
-use crate::scene::FeatureKind;
+use sandtable_description::document::Document;
+use sandtable_description::features::FeatureSource;
+use sandtable_description::finding::Finding;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::source_text::SourceText;
+use sandtable_base::message::suggest::quoted;
+use crate::FeatureKind;
 
 /// Findings so far, about one scene file.
 #[derive(Clone, Debug)]

@@ -6,17 +6,17 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
-use crate::description::words::ViewshedTint;
-use crate::draw::list::FeatureId;
-use crate::geom::rect::Rect;
-use crate::scene::exact_ground::{ExactGround, ExactPartError};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::profile::profile;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use crate::terrain::sight::outlook::{VisibleStretch, visible_stretches};
-use crate::terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed};
+use sandtable_description::words::ViewshedTint;
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::rect::Rect;
+use crate::exact_ground::{ExactGround, ExactPartError};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::profile::profile;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::outlook::{VisibleStretch, visible_stretches};
+use sandtable_terrain::sight::viewshed::{PostVisibility, Viewshed, ViewshedOptions, viewshed};
 
 /// What observers see.
 pub struct SceneViewshed {

@@ -1,29 +1,29 @@
 //! Sight as a layer of the scene: viewsheds, lines of sight, and ranges, placed. What they show is found by the same functions as
-//! the commands' answers; see [`crate::scene::seen_ground`].
+//! the commands' answers; see [`crate::seen_ground`].
 
 use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::stated::Stated;
-use crate::description::words::{GraphicSide, RangeExtent, ViewshedTint};
-use crate::draw::list::FeatureId;
-use crate::geom::crs::Crs;
-use crate::limits::RASTER_SAMPLES;
-use crate::scene::FeatureKind;
-use crate::scene::all_samples::PartTooLarge;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::exact_ground::{ExactGround, ExactPartError};
-use crate::scene::feature_origin::FeatureOrigin;
-use crate::scene::seen_ground::{SceneSight, SceneViewshed};
-use crate::scene::world_frame::WorldFrame;
-use crate::symbology::graphic::check::MOST_RANGES;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use crate::terrain::sight::viewshed::{Sector, ViewshedOptions};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::{GraphicSide, RangeExtent, ViewshedTint};
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::RASTER_SAMPLES;
+use crate::FeatureKind;
+use crate::all_samples::PartTooLarge;
+use crate::builder::SceneBuilder;
+use crate::exact_ground::{ExactGround, ExactPartError};
+use crate::feature_origin::FeatureOrigin;
+use crate::seen_ground::{SceneSight, SceneViewshed};
+use crate::world_frame::WorldFrame;
+use sandtable_symbology::graphic::check::MOST_RANGES;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::viewshed::{Sector, ViewshedOptions};
 
 /// More observers of a viewshed take longer than anybody waits for a picture.
 const MOST_OBSERVERS: usize = 64;
@@ -105,7 +105,7 @@ impl SceneRange {
 }
 
 /// The direction of an azimuth.
-pub(super) fn heading(azimuth_deg: f64) -> DVec2 {
+pub fn heading(azimuth_deg: f64) -> DVec2 {
     let angle = azimuth_deg.to_radians();
     DVec2::new(libm::sin(angle), libm::cos(angle))
 }

@@ -6,25 +6,25 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::expression::Expression;
-use crate::description::features::FeatureSource;
-use crate::description::scalar::Scalar;
-use crate::description::selection::Selection;
-use crate::description::stated::Stated;
-use crate::geom::crs::{Crs, CrsError};
-use crate::geom::self_crossing::count_crossings;
-use crate::limits::{ASSET_BYTES, RING_CROSSINGS};
-use crate::message::suggest::quoted;
-use crate::scene::assets::Assets;
-use crate::scene::attributes::Attributes;
-use crate::scene::source_reach::SourceReach;
-use crate::scene::world_frame::WorldFrame;
-use crate::vector::error::{VectorError, did_you_mean, list};
-use crate::vector::feature::{Geometry, Polygon, VectorLayer};
-use crate::vector::filter::{Condition, Filter};
-use crate::vector::hints::VectorHints;
-use crate::vector::read;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::expression::Expression;
+use sandtable_description::features::FeatureSource;
+use sandtable_description::scalar::Scalar;
+use sandtable_description::selection::Selection;
+use sandtable_description::stated::Stated;
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_geom::self_crossing::count_crossings;
+use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
+use sandtable_base::message::suggest::quoted;
+use crate::assets::Assets;
+use crate::attributes::Attributes;
+use crate::source_reach::SourceReach;
+use crate::world_frame::WorldFrame;
+use sandtable_vector::error::{VectorError, did_you_mean, list};
+use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
+use sandtable_vector::filter::{Condition, Filter};
+use sandtable_vector::hints::VectorHints;
+use sandtable_vector::read;
 
 /// A file's name, and the layer and the system stated for it.
 type LayerKey = (String, Option<String>, Option<String>);

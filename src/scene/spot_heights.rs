@@ -2,14 +2,14 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::words::LabelKind;
-use crate::geom::polygon::inner_point;
-use crate::scene::SceneLabel;
-use crate::scene::exact_ground::{ExactGround, ExactSpot};
-use crate::scene::label_course::LabelCourse;
-use crate::scene::views::whole_meters;
-use crate::terrain::prominence::summits;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::words::LabelKind;
+use sandtable_geom::polygon::inner_point;
+use crate::SceneLabel;
+use crate::exact_ground::{ExactGround, ExactSpot};
+use crate::label_course::LabelCourse;
+use crate::views::whole_meters;
+use sandtable_terrain::prominence::summits;
 
 /// Named labels come before all spot heights.
 const FIRST_RANK: f64 = 1e9;

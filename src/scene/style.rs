@@ -2,17 +2,17 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::description::color::{Color, RampChoice};
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::words::{GridName, RampName, SheetLayout, StylePreset, TableTop};
-use crate::draw::color::Srgba;
-use crate::draw::ground::{ColorRamp, Contours};
-use crate::geom::crs::Crs;
-use crate::geom::declination::CalendarDay;
-use crate::message::choice::Choice;
-use crate::message::suggest::quoted;
-use crate::scene::ramps::{TintedGround, named};
+use sandtable_description::color::{Color, RampChoice};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::words::{GridName, RampName, SheetLayout, StylePreset, TableTop};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::{ColorRamp, Contours};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::declination::CalendarDay;
+use sandtable_base::message::choice::Choice;
+use sandtable_base::message::suggest::quoted;
+use crate::ramps::{TintedGround, named};
 
 /// A translucent brown.
 const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);

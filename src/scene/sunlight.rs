@@ -3,11 +3,11 @@
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::geom::crs::Crs;
-use crate::geom::sun_position::{SunPosition, sun_position, unix_seconds};
-use crate::view::camera::Camera;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::sun_position::{SunPosition, sun_position, unix_seconds};
+use sandtable_view::camera::Camera;
 
 /// Where the light of a scene comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,14 +20,14 @@ pub struct Sunlight {
 }
 
 /// The sun's height in degrees where it is not stated: low enough that gentle forms show.
-pub(crate) const ALTITUDE_DEG: f64 = 40.0;
+pub const ALTITUDE_DEG: f64 = 40.0;
 
 /// The light follows the camera in steps of this many degrees, so that a small turn does not move the shadows.
 const STEP_DEG: f32 = 15.0;
 
 /// How far to the left of the viewing direction the light comes from, degrees: in a view from above, where light from
 /// below right would turn hills into holes; and in a view from the side, where fronts of buildings would be dark.
-pub(crate) const LEFT_DEG: [f32; 2] = [45.0, 100.0];
+pub const LEFT_DEG: [f32; 2] = [45.0, 100.0];
 /// From and up to how steep a view, degrees below the horizon, the light turns from one to the other.
 const PITCH_DEG: [f32; 2] = [40.0, 22.0];
 
@@ -93,7 +93,7 @@ impl Sunlight {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::parse::parse_bytes;
+    use sandtable_description::parse::parse_bytes;
 
     /// East of a zone's meridian the map's north points to the east of north.
     #[test]

@@ -8,12 +8,12 @@
 
 use glam::DVec2;
 
-use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::ribbon::junction::Street;
-use crate::ribbon::texture::RibbonSurface;
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::alignment::{Alignment, Support, Width};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_ribbon::junction::Street;
+use sandtable_ribbon::texture::RibbonSurface;
 
 /// Least widths of paved roads: those at least so many meters wide, pixels.
 const PAVED: [(f64, f64); 4] = [(9.0, 5.0), (6.5, 3.5), (4.0, 2.5), (0.0, 1.5)];
@@ -62,7 +62,7 @@ pub struct LineSymbol {
     pub surface: RibbonSurface,
     /// The least width it is drawn with, in pixels of a picture 1080 lines high; a higher class has a greater one.
     pub least_px: f64,
-    /// Its order along its centerline, where it is a river; see [`orders`](crate::scene::water::order::orders).
+    /// Its order along its centerline, where it is a river; see [`orders`](crate::water::order::orders).
     pub order: Option<Profile>,
     /// The width of the bank on either side in meters, where it is a river.
     pub bank_m: f64,

@@ -8,8 +8,8 @@
 use glam::{DVec2, UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// How the block keeps light from a table.
 #[derive(Clone, Copy, Debug)]

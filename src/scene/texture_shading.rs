@@ -8,10 +8,10 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
-use crate::draw::ground::GroundPost;
-use crate::draw::ground_levels::PostCount;
-use crate::draw::lighting::ReliefShading;
-use crate::terrain::light::texture::{ORDER, texture};
+use sandtable_draw::ground::GroundPost;
+use sandtable_draw::ground_levels::PostCount;
+use sandtable_draw::lighting::ReliefShading;
+use sandtable_terrain::light::texture::{ORDER, texture};
 
 /// How much lighter the sharpest crests are at full strength: more burns pale tints.
 const LIGHTER: f32 = 0.15;
@@ -64,7 +64,7 @@ impl TextureShading {
 /// The share of the sky at a post of a finer map of a part of the ground that has `own` without the ground around it, which
 /// lets `around` pass. Where the ground around is textured, its texture goes on: that of a part lacks forms longer than the part,
 /// and would end at its border.
-pub(super) fn sky_in_part(strength: f32, own: f32, around: f32) -> f32 {
+pub fn sky_in_part(strength: f32, own: f32, around: f32) -> f32 {
     if strength > 0.0 { around } else { own.min(around) }
 }
 
@@ -76,7 +76,7 @@ fn bent(texture: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::lighting::ReliefPoint;
+    use sandtable_draw::lighting::ReliefPoint;
     use glam::Vec3;
 
     const SIDE: u32 = 129;

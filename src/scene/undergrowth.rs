@@ -5,8 +5,8 @@
 
 use glam::Vec2;
 
-use crate::model::Model;
-use crate::scene::SceneModel;
+use sandtable_model::Model;
+use crate::SceneModel;
 
 /// The radius of a cone in radii of its crown: litter lies beyond the boughs.
 const REACH: f32 = 1.4;
@@ -39,13 +39,13 @@ pub fn undergrowth(scene: &SceneModel) -> Vec<f32> {
 }
 
 /// The radius of a model's crown, in its own units.
-pub(in crate::scene) fn crown_reach(model: &Model) -> f32 {
+pub fn crown_reach(model: &Model) -> f32 {
     let bounds = model.bounds().unwrap_or_default();
     bounds.min.abs().max(bounds.max.abs()).truncate().max_element() * CROWN_PART
 }
 
 /// The share of the ground that crowns cover at the posts of a grid.
-pub(in crate::scene) struct CrownGround {
+pub struct CrownGround {
     cell: Vec2,
     /// Posts per row.
     pub columns: u32,

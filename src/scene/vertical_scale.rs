@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
-use crate::geom::rect::Rect;
-use crate::terrain::full_resolution::FullResolution;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// World Z per meter of elevation, above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

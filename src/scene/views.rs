@@ -4,24 +4,24 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, Vec3};
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
-use crate::description::finding_code::FindingCode;
-use crate::description::stated::Stated;
-use crate::description::words::CameraProjection;
-use crate::geom::rect::Rect;
-use crate::scene::attributes::Attributes;
-use crate::scene::exact_ground::ExactGround;
-use crate::scene::feature_labels;
-use crate::scene::label_course::LabelCourse;
-use crate::scene::paper_sheet::PaperSheet;
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::sources::Sources;
-use crate::scene::vertical_scale::DrawnGround;
-use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::CameraProjection;
+use sandtable_geom::rect::Rect;
+use crate::attributes::Attributes;
+use crate::exact_ground::ExactGround;
+use crate::feature_labels;
+use crate::label_course::LabelCourse;
+use crate::paper_sheet::PaperSheet;
+use crate::scene_findings::SceneFindings;
+use crate::sources::Sources;
+use crate::vertical_scale::DrawnGround;
+use crate::world_frame::WorldFrame;
+use crate::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// The document's labels, `{height}` filled in; those of files with findings on the features without a label.
 ///

@@ -2,15 +2,15 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::dem::answer::Answer;
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::stated::Stated;
-use crate::geom::crs::{Crs, CrsError};
-use crate::scene::vertical_scale::VerticalScale;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_dem::answer::Answer;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_geom::crs::{Crs, CrsError};
+use crate::vertical_scale::VerticalScale;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// The transform of a document's points to world space.
 pub struct WorldFrame<'a> {

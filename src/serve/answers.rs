@@ -14,7 +14,7 @@ use axum::body::{Body, Bytes, to_bytes};
 use axum::response::Response;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use crate::serve::clients::{Clients, Connection, HeldResource};
+use crate::clients::{Clients, Connection, HeldResource};
 
 /// The unit of the amount, in bytes.
 const UNIT: usize = 64 << 10;

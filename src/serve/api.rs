@@ -2,13 +2,13 @@
 //!
 //! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it.
 
-use crate::dem::height_datum::HeightDatum;
-use crate::message::choice::Choice;
-use crate::pipeline::service::{PathPrefix, ServiceLimits};
-use crate::serve::api::ApiNeed::{Optional, Required};
-use crate::serve::api::ApiValue::{Count, Number, Text, Words};
-use crate::serve::{health, ready};
-use crate::terrain::query::Interpolation;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_base::message::choice::Choice;
+use sandtable_query::service::{PathPrefix, ServiceLimits};
+use crate::api::ApiNeed::{Optional, Required};
+use crate::api::ApiValue::{Count, Number, Text, Words};
+use crate::{health, ready};
+use sandtable_terrain::query::Interpolation;
 
 /// An address of the service.
 #[derive(Debug)]
@@ -257,7 +257,7 @@ pub fn paths(prefix: &PathPrefix) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::query::Surface;
+    use sandtable_terrain::query::Surface;
 
     #[test]
     fn the_surfaces_are_those_of_queries() {

@@ -7,11 +7,11 @@
 use glam::DVec2;
 use serde::Serialize;
 
-use crate::geom::crs::Crs;
-use crate::pipeline::dataset::check_datums;
-use crate::serve::parameters::Parameters;
-use crate::serve::polyline;
-use crate::serve::reply::{HttpError, quoted};
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::check_datums;
+use crate::parameters::Parameters;
+use crate::polyline;
+use crate::reply::{HttpError, quoted};
 
 /// The coordinates of a request.
 #[derive(Clone, Debug)]
@@ -144,7 +144,7 @@ fn epsg(text: &str) -> Result<u32, HttpError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::serve::parameters::tests::form;
+    use crate::parameters::tests::form;
     use proptest::prelude::*;
 
     fn lat_lng() -> Coordinates {

@@ -8,13 +8,13 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::message::chain::error_text;
-use crate::pipeline::dataset::{Dataset, OpenError, QueryError};
-use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::service::{NamedFile, ServiceOptions};
-use crate::pipeline::windowed_elevation::GroundReach;
-use crate::serve::query::Service;
-use crate::serve::reply::{HttpError, OK, quoted};
+use sandtable_base::message::chain::error_text;
+use sandtable_query::dataset::{Dataset, OpenError, QueryError};
+use sandtable_query::ground::QueriedGround;
+use sandtable_query::service::{NamedFile, ServiceOptions};
+use sandtable_query::windowed_elevation::GroundReach;
+use crate::query::Service;
+use crate::reply::{HttpError, OK, quoted};
 
 pub struct ServedDataset {
     pub name: String,

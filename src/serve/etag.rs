@@ -13,9 +13,9 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::Response;
 
-use crate::pipeline::fingerprint::content_hash;
-use crate::serve::query::Service;
-use crate::serve::{health, ready};
+use sandtable_files::fingerprint::content_hash;
+use crate::query::Service;
+use crate::{health, ready};
 
 /// Answers longer than this are hashed on another thread: a millisecond.
 const LIGHT_BYTES: usize = 256 * 1024;

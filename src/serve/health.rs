@@ -4,10 +4,10 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::message::chain::error_text;
-use crate::serve::datasets::{DatasetFacts, ServedDataset};
-use crate::serve::query::Service;
-use crate::serve::reply::OK;
+use sandtable_base::message::chain::error_text;
+use crate::datasets::{DatasetFacts, ServedDataset};
+use crate::query::Service;
+use crate::reply::OK;
 
 /// Its path.
 pub const PATH: &str = "/health";

@@ -9,10 +9,10 @@
 //! |---|---|
 //! | `status` per result | `Ok`, `NoData` (a hole in the model) or `Outside` (beyond its edge) |
 //! | `surface` | `source` (as read), `ground` (after earthworks), `scene` (decks on top); the default is the source of a file and the ground of a scene |
-//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is Keys' of 1981 with a = −1/2, as in [`crate::terrain::query`] |
+//! | `interpolation` | also `planar` and `distance-weighted`; `cubic` is Keys' of 1981 with a = −1/2, as in [`sandtable_terrain::query`] |
 //! | `above` | heights above the WGS 84 `ellipsoid` or the `egm96` geoid, where the dataset says what it counts from |
 //! | `vertical_datum` per result | what the height is counted from, where that is known |
-//! | `crs` | coordinates in another system; see [`coordinates`](crate::serve::coordinates) |
+//! | `crs` | coordinates in another system; see [`coordinates`](crate::coordinates) |
 
 use std::io;
 
@@ -23,18 +23,18 @@ use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::Formatter;
 
-use crate::dem::answer::Answer;
-use crate::dem::height_datum::HeightDatum;
-use crate::message::chain::error_text;
-use crate::pipeline::heights_above::bring_heights;
-use crate::serve::coordinates::{Coordinates, Location};
-use crate::serve::datasets::ServedDataset;
-use crate::serve::parameters::Parameters;
-use crate::serve::query::{Query, QueryWeight, Service};
-use crate::serve::reply::{HttpError, JsonArray, OK, quoted};
-use crate::serve::samples::along_path;
-use crate::terrain::query::{Interpolation, Surface};
-use crate::terrain::stop_flag::StopFlag;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_base::message::chain::error_text;
+use sandtable_query::heights_above::bring_heights;
+use crate::coordinates::{Coordinates, Location};
+use crate::datasets::ServedDataset;
+use crate::parameters::Parameters;
+use crate::query::{Query, QueryWeight, Service};
+use crate::reply::{HttpError, JsonArray, OK, quoted};
+use crate::samples::along_path;
+use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The most points that the request's own thread queries, in some tens of microseconds. Moving a query to another
 /// thread takes two context switches, about as long.

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use axum::response::{IntoResponse, Response};
 
-use crate::serve::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed};
-use crate::serve::query::Service;
+use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed};
+use crate::query::Service;
 
 /// The columns before the second one of an address and of a parameter.
 const WIDTH: usize = 34;

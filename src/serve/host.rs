@@ -14,8 +14,8 @@ use axum::http::{StatusCode, Version};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-use crate::serve::query::Service;
-use crate::serve::reply::{HttpError, quoted};
+use crate::query::Service;
+use crate::reply::{HttpError, quoted};
 
 /// The name that every machine has for itself.
 const LOCALHOST: &str = "localhost";

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! A quiet connection waits for its next request, or its client is still reading the last answer; the time of both
-//! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::serve::parameters) limits
-//! its body and [`router`](crate::serve::router) its answer.
+//! counts from the first byte of the answer. While a request is busy, [`parameters`](crate::parameters) limits
+//! its body and [`router`](crate::router) its answer.
 
 use std::io;
 use std::net::SocketAddr;
@@ -27,7 +27,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{Instant, Sleep};
 
-use crate::serve::clients::{Clients, Connection, OpenConnection};
+use crate::clients::{Clients, Connection, OpenConnection};
 
 /// The time limit of a quiet connection: a megabyte over a slow line, and a pause between requests.
 const QUIET: Duration = Duration::from_secs(60);

@@ -12,14 +12,14 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::serve::api;
-use crate::serve::coordinates::Location;
-use crate::serve::parameters::Parameters;
-use crate::serve::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curvature};
-use crate::serve::reply::{HttpError, OK};
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use crate::terrain::stop_flag::StopFlag;
+use crate::api;
+use crate::coordinates::Location;
+use crate::parameters::Parameters;
+use crate::query::{GroundQuery, OBSERVER_M, Query, Service, above_m, curvature};
+use crate::reply::{HttpError, OK};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::stop_flag::StopFlag;
 
 pub struct LosQuery {
     ground: GroundQuery,

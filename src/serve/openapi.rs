@@ -4,10 +4,10 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde_json::{Map, Value, json};
 
-use crate::serve::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
-use crate::serve::parameters::BODY_TYPES;
-use crate::serve::query::Service;
-use crate::serve::ready;
+use crate::api::{ADDRESSES, ApiAddress, ApiMethods, ApiNeed, ApiParameter, ApiValue, HEIGHTS};
+use crate::parameters::BODY_TYPES;
+use crate::query::Service;
+use crate::ready;
 
 /// The part of a path that is a parameter, in the table and in the document.
 const DATASET: (&str, &str) = ("DATASET", "{dataset}");

@@ -18,11 +18,11 @@ use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use tokio::sync::SemaphorePermit;
 
-use crate::message::choice::Choice;
-use crate::serve::answers::taking_from_slow;
-use crate::serve::clients::{Connection, HeldResource};
-use crate::serve::query::Service;
-use crate::serve::reply::{HttpError, quoted};
+use sandtable_base::message::choice::Choice;
+use crate::answers::taking_from_slow;
+use crate::clients::{Connection, HeldResource};
+use crate::query::Service;
+use crate::reply::{HttpError, quoted};
 
 /// The most parameters: no query has as many.
 const MOST: usize = 32;
@@ -338,7 +338,7 @@ async fn read_body(request: Request, service: &Service, connection: &Connection)
 }
 
 #[cfg(test)]
-pub(in crate::serve) mod tests {
+pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
 

@@ -11,7 +11,7 @@
 
 use glam::DVec2;
 
-use crate::serve::reply::{HttpError, quoted};
+use crate::reply::{HttpError, quoted};
 
 const PER_DEGREE: f64 = 1e5;
 

@@ -13,14 +13,14 @@ use axum::response::{IntoResponse, Response};
 use glam::DVec2;
 use serde::Serialize;
 
-use crate::serve::api;
-use crate::serve::coordinates::Location;
-use crate::serve::parameters::Parameters;
-use crate::serve::query::{GroundQuery, Query, QueryWeight, Service};
-use crate::serve::reply::{HttpError, JsonArray, OK};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::profile::profile;
-use crate::terrain::stop_flag::StopFlag;
+use crate::api;
+use crate::coordinates::Location;
+use crate::parameters::Parameters;
+use crate::query::{GroundQuery, Query, QueryWeight, Service};
+use crate::reply::{HttpError, JsonArray, OK};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::profile::profile;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The limit of a profile's stations, as a multiple of the limit of a request's points, since every edge of a triangle
 /// adds a station.

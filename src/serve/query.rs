@@ -6,21 +6,21 @@ use axum::response::Response;
 use glam::DVec2;
 use tokio::sync::Semaphore;
 
-use crate::geom::crs::Crs;
-use crate::geom::geoid::Geoid;
-use crate::pipeline::ground::QueriedGround;
-use crate::pipeline::service::{PathPrefix, RequestLog, ServiceLimits};
-use crate::pipeline::windowed_elevation::GroundReach;
-use crate::serve::answers::AnswerMemory;
-use crate::serve::api::ApiAddress;
-use crate::serve::clients::Clients;
-use crate::serve::coordinates::{Coordinates, Location};
-use crate::serve::datasets::{Datasets, ServedDataset};
-use crate::serve::parameters::Parameters;
-use crate::serve::ready::Readiness;
-use crate::serve::reply::HttpError;
-use crate::terrain::sight::Curvature;
-use crate::terrain::stop_flag::StopFlag;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geoid::Geoid;
+use sandtable_query::ground::QueriedGround;
+use sandtable_query::service::{PathPrefix, RequestLog, ServiceLimits};
+use sandtable_query::windowed_elevation::GroundReach;
+use crate::answers::AnswerMemory;
+use crate::api::ApiAddress;
+use crate::clients::Clients;
+use crate::coordinates::{Coordinates, Location};
+use crate::datasets::{Datasets, ServedDataset};
+use crate::parameters::Parameters;
+use crate::ready::Readiness;
+use crate::reply::HttpError;
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The greatest height above the ground, in meters: above all aircraft.
 const HIGHEST_M: f64 = 100_000.0;

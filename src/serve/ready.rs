@@ -12,12 +12,12 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use crate::message::chain::error_text;
-use crate::pipeline::dataset::QueryError;
-use crate::serve::datasets::ServedDataset;
-use crate::serve::query::Service;
-use crate::serve::reply::{HttpError, OK};
-use crate::terrain::query::{Interpolation, Surface};
+use sandtable_base::message::chain::error_text;
+use sandtable_query::dataset::QueryError;
+use crate::datasets::ServedDataset;
+use crate::query::Service;
+use crate::reply::{HttpError, OK};
+use sandtable_terrain::query::{Interpolation, Surface};
 
 /// Its path.
 pub const PATH: &str = "/ready";

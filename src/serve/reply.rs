@@ -9,8 +9,8 @@ use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::{Serialize, Serializer};
 
-use crate::message::chain::error_text;
-use crate::pipeline::dataset::QueryError;
+use sandtable_base::message::chain::error_text;
+use sandtable_query::dataset::QueryError;
 
 pub const OK: &str = "OK";
 

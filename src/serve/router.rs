@@ -6,13 +6,13 @@
 //! ```
 //!
 //! A request takes its permit when all of it is there: clients that send slowly keep nobody from being answered. Heavy and
-//! expensive queries take turns, of which each client has its share (see [`clients`](crate::serve::clients)), so that who
+//! expensive queries take turns, of which each client has its share (see [`clients`](crate::clients)), so that who
 //! asks for much waits for himself and not others for him. Work whose client has left stops.
 //!
 //! A query of a few points takes less time than moving it to another thread, so the thread that parsed it executes it.
 //! Longer work must not block the threads that listen.
 //!
-//! The limits are here and in [`parameters`](crate::serve::parameters), not in layers of `tower-http`: its body limit
+//! The limits are here and in [`parameters`](crate::parameters), not in layers of `tower-http`: its body limit
 //! refuses in plain text where this API promises JSON; its body timeout counts from byte to byte, so that a client that
 //! sends a byte in time occupies a request forever; its timeout cannot tell a late body (408) from a late answer (503),
 //! and ends the wait but not the work.
@@ -30,18 +30,18 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use crate::pipeline::service::RequestLog;
-use crate::serve::clients::Connection;
-use crate::serve::heights::HeightsQuery;
-use crate::serve::listener::RequestConnection;
-use crate::serve::los::LosQuery;
-use crate::serve::parameters::Parameters;
-use crate::serve::profile::ProfileQuery;
-use crate::serve::query::{Query, QueryWeight, Service};
-use crate::serve::reply::{HttpError, quoted};
-use crate::serve::viewshed::ViewshedQuery;
-use crate::serve::{answers, api, datasets, etag, health, help, host, openapi, ready};
-use crate::terrain::stop_flag::StopFlag;
+use sandtable_query::service::RequestLog;
+use crate::clients::Connection;
+use crate::heights::HeightsQuery;
+use crate::listener::RequestConnection;
+use crate::los::LosQuery;
+use crate::parameters::Parameters;
+use crate::profile::ProfileQuery;
+use crate::query::{Query, QueryWeight, Service};
+use crate::reply::{HttpError, quoted};
+use crate::viewshed::ViewshedQuery;
+use crate::{answers, api, datasets, etag, health, help, host, openapi, ready};
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// Values longer than this are parsed on another thread, because parsing takes longer than the move.
 const LIGHT_BYTES: usize = 32 * 1024;

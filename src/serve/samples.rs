@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::geom::geodesic::Geodesic;
-use crate::serve::coordinates::AxisOrder;
+use sandtable_geom::geodesic::Geodesic;
+use crate::coordinates::AxisOrder;
 
 /// `count` positions at equal distances along the path through `vertices`, both ends included.
 ///

@@ -19,18 +19,16 @@ use axum::response::{IntoResponse, Response};
 use glam::DVec2;
 use serde::Serialize;
 
-use crate::serve::api;
-use crate::serve::coordinates::Location;
-use crate::serve::parameters::Parameters;
-use crate::serve::query::{GroundQuery, OBSERVER_M, Query, QueryWeight, Service, above_m, curvature};
-use crate::serve::reply::{HttpError, OK, quoted};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::sight::line::SightEnd;
-use crate::terrain::sight::viewshed::{
-    self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions,
-};
-use crate::terrain::stop_flag::StopFlag;
+use crate::api;
+use crate::coordinates::Location;
+use crate::parameters::Parameters;
+use crate::query::{GroundQuery, OBSERVER_M, Query, QueryWeight, Service, above_m, curvature};
+use crate::reply::{HttpError, OK, quoted};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions};
+use sandtable_terrain::stop_flag::StopFlag;
 
 /// The size of a post in `runs`, at most: where no two neighbors are alike.
 const POST_BYTES: usize = 2;

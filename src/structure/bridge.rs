@@ -17,17 +17,17 @@
 
 use glam::{DVec2, FloatExt, Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::DrawMesh;
-use crate::earthworks::alignment::Alignment;
-use crate::geom::offset::Continuations;
-use crate::geom::profile::Profile;
-use crate::structure::deck::{self, DeckSection};
-use crate::structure::deck_check::{self, OpenSurfaceError};
-use crate::structure::faces::Faces;
-use crate::structure::pier;
-use crate::terrain::query::deck::Deck;
-use crate::terrain::triangle_surface::SurfaceTriangle;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawMesh;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::profile::Profile;
+use crate::deck::{self, DeckSection};
+use crate::deck_check::{self, OpenSurfaceError};
+use crate::faces::Faces;
+use crate::pier;
+use sandtable_terrain::query::deck::Deck;
+use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
 /// The elevation of the ground at a world position in meters; `None` where there is none.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + 'a;
@@ -208,7 +208,7 @@ fn tilt(section: &DeckSection, width_m: f64, ground: &GroundHeight<'_>) -> [f64;
 }
 
 /// How a quad of plan positions, counter-clockwise, is cut into two triangles that both face up wherever that can be.
-pub(in crate::structure) fn quad_corners(quad: [DVec2; 4]) -> [[usize; 3]; 2] {
+pub(crate) fn quad_corners(quad: [DVec2; 4]) -> [[usize; 3]; 2] {
     let area = |[a, b, c]: [usize; 3]| (quad[b] - quad[a]).perp_dot(quad[c] - quad[a]);
     let cuts = [[[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]];
     let worst = |cut: [[usize; 3]; 2]| cut.map(area).into_iter().fold(f64::INFINITY, f64::min);
@@ -280,9 +280,9 @@ fn ring(points: &[RingPoint; 12], section: &DeckSection) -> [Vec3; 12] {
 /// How high parapets stand over the carriageway, in meters.
 const PARAPET_M: f64 = 1.1;
 /// How thick they are, in meters.
-pub(in crate::structure) const PARAPET_THICK_M: f64 = 0.4;
+pub(crate) const PARAPET_THICK_M: f64 = 0.4;
 /// How wide the soffit is, as a part of the carriageway.
-pub(in crate::structure) const GIRDER: f64 = 0.62;
+pub(crate) const GIRDER: f64 = 0.62;
 
 /// Draws the cross-section out along the sections and closes its ends.
 fn draw_out(sections: &[DeckSection], points: &[RingPoint; 12], faces: &mut Faces) {
@@ -346,9 +346,9 @@ impl BridgeSolids {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::polyline::Polyline;
-    use crate::structure::deck_profile::ClearancePoint;
-    use crate::structure::deck_profile::clearing;
+    use sandtable_geom::polyline::Polyline;
+    use crate::deck_profile::ClearancePoint;
+    use crate::deck_profile::clearing;
     use proptest::prelude::*;
 
     fn options(length_m: f64) -> BridgeOptions {

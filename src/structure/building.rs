@@ -14,15 +14,15 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::DrawMesh;
-use crate::geom::polygon;
-use crate::mesh::sink::VertexId;
-use crate::structure::building_footprint::BuildingFootprint;
-use crate::structure::deck_check::{OpenSurfaceError, open_edges};
-use crate::structure::faces::Faces;
-use crate::structure::fence_band::{noise, shaded};
-use crate::structure::roof::{UnitRoof, centroid};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawMesh;
+use sandtable_geom::polygon;
+use sandtable_mesh::sink::VertexId;
+use crate::building_footprint::BuildingFootprint;
+use crate::deck_check::{OpenSurfaceError, open_edges};
+use crate::faces::Faces;
+use crate::fence_band::{noise, shaded};
+use crate::roof::{UnitRoof, centroid};
 
 /// The heights of a building in world Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,8 +242,8 @@ pub fn check(mesh: &DrawMesh) -> Result<Measures, BuildingSolidError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::words;
-    use crate::structure::roof::roof;
+    use sandtable_description::words;
+    use crate::roof::roof;
     use proptest::prelude::*;
 
     const SHAPES: [words::RoofShape; 4] = [

@@ -5,12 +5,12 @@
 
 use glam::DVec2;
 
-use crate::draw::color::Srgba;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::structure::faces::Faces;
-use crate::terrain::support_surface::ground_runs;
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use crate::faces::Faces;
+use sandtable_terrain::support_surface::ground_runs;
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// The foot of a building's walls.
 #[derive(Clone, Debug, PartialEq)]

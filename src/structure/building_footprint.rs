@@ -6,10 +6,10 @@
 
 use glam::DVec2;
 
-use crate::geom::convex;
-use crate::geom::polygon;
-use crate::geom::polyline::kept;
-use crate::geom::region;
+use sandtable_geom::convex;
+use sandtable_geom::polygon;
+use sandtable_geom::polyline::kept;
+use sandtable_geom::region;
 
 /// Vertices nearer to each other or to their neighbors' line are dropped: less than plaster, more than f32 rounding.
 const MERGE_M: f64 = 0.01;

@@ -16,9 +16,9 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::earthworks::alignment::Alignment;
-use crate::geom::offset::{self, Continuations, LineBend};
-use crate::structure::bridge::{PARAPET_THICK_M, magnified};
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::offset::{self, Continuations, LineBend};
+use crate::bridge::{PARAPET_THICK_M, magnified};
 
 /// How far along a leg the inner corner of a miter may reach, as a part of it: two of them do not meet.
 const LONGEST_INNER: f64 = 0.45;
@@ -130,7 +130,7 @@ impl DeckSection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::polyline::Polyline;
+    use sandtable_geom::polyline::Polyline;
     use proptest::prelude::*;
 
     fn turned(points: &[(f64, f64)], quarter: u32) -> Polyline {
@@ -144,7 +144,7 @@ mod tests {
             let [a, b] = [pair[0], pair[1]].map(|section| section.aside.map(|aside| section.at + aside));
             let quad = [a[0], a[1], b[1], b[0]];
             let triangles =
-                crate::structure::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
+                crate::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
             triangles.map(|[p, q, r]| (q - p).perp_dot(r - p))
         });
         quads.collect()

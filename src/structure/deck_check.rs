@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::draw::list::DrawMesh;
+use sandtable_draw::list::DrawMesh;
 
 /// A position, bit by bit.
 type CornerBits = [u32; 3];
@@ -33,7 +33,7 @@ pub fn closed(meshes: &[&DrawMesh]) -> Result<(), OpenSurfaceError> {
 }
 
 /// The edges that triangles run along more often in this direction than in the other, compared bit by bit.
-pub(in crate::structure) fn open_edges(meshes: &[&DrawMesh]) -> impl Iterator<Item = (Vec3, Vec3)> {
+pub(crate) fn open_edges(meshes: &[&DrawMesh]) -> impl Iterator<Item = (Vec3, Vec3)> {
     let mut edges: BTreeMap<(CornerBits, CornerBits), i32> = BTreeMap::new();
     for mesh in meshes {
         for triangle in &mesh.triangles {
@@ -68,8 +68,8 @@ fn unmatched(open: impl Iterator<Item = (Vec3, Vec3)>) -> Option<(Vec3, Vec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::structure::faces::Faces;
+    use sandtable_draw::color::Srgba;
+    use crate::faces::Faces;
     use glam::DVec2;
 
     #[test]

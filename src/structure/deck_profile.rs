@@ -14,8 +14,8 @@
 
 use glam::DVec2;
 
-use crate::geom::convex;
-use crate::geom::profile::Profile;
+use sandtable_geom::convex;
+use sandtable_geom::profile::Profile;
 
 /// How far rounding may lower a deck below the corner it rounds, in meters.
 const ROUNDED_OFF_M: f64 = 0.2;

@@ -1,13 +1,13 @@
 //! What stands on the ground and must be set anew wherever the ground is displayed otherwise.
 
-use crate::draw::list::DrawMesh;
-use crate::structure::building_footing::WallFooting;
-use crate::structure::faces::Faces;
-use crate::structure::fence::Posts;
-use crate::structure::fence_band::FenceBand;
-use crate::structure::obstacle::Obstacles;
-use crate::structure::power::PowerLine;
-use crate::terrain::support_surface::SupportSurface;
+use sandtable_draw::list::DrawMesh;
+use crate::building_footing::WallFooting;
+use crate::faces::Faces;
+use crate::fence::Posts;
+use crate::fence_band::FenceBand;
+use crate::obstacle::Obstacles;
+use crate::power::PowerLine;
+use sandtable_terrain::support_surface::SupportSurface;
 
 /// Something upright.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex};
-use crate::geom::polygon;
-use crate::mesh::sink::{MeshSink, VertexId};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex};
+use sandtable_geom::polygon;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 
 /// Collects faces; each has vertices of its own, so that its edges are sharp.
 #[derive(Clone, Debug, Default)]

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::geom::polyline::Polyline;
-use crate::structure::faces::Faces;
-use crate::structure::power_beam::square;
-use crate::terrain::support_surface::SupportSurface;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::polyline::Polyline;
+use crate::faces::Faces;
+use crate::power_beam::square;
+use sandtable_terrain::support_surface::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);
 

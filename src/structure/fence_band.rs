@@ -14,13 +14,13 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::earthworks::alignment::Alignment;
-use crate::geom::profile::Profile;
-use crate::structure::faces::Faces;
-use crate::structure::fence_track::{self, Ends, TrackJoint, TrackStretch};
-use crate::terrain::support_surface;
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_draw::color::Srgba;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::profile::Profile;
+use crate::faces::Faces;
+use crate::fence_track::{self, Ends, TrackJoint, TrackStretch};
+use sandtable_terrain::support_surface;
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// A corner of a cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,8 +12,8 @@
 
 use glam::DVec2;
 
-use crate::earthworks::alignment::Alignment;
-use crate::geom::offset::{self, Continuations, LineBend};
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::offset::{self, Continuations, LineBend};
 
 /// How long a miter may be in half widths: turns of up to 120 degrees keep theirs.
 const MITER_LIMIT: f64 = 2.0;
@@ -83,7 +83,7 @@ pub fn stretches(alignment: &Alignment) -> Vec<TrackStretch> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::polyline::Polyline;
+    use sandtable_geom::polyline::Polyline;
 
     fn track(points: &[DVec2]) -> Vec<TrackStretch> {
         let line = Polyline::new(points.iter().copied(), 0.0).expect("a line");

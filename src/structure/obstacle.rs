@@ -9,12 +9,12 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::earthworks::alignment::Alignment;
-use crate::structure::faces::Faces;
-use crate::structure::fence::{PostPosition, spans};
-use crate::structure::power_beam::{beam, square};
-use crate::terrain::support_surface::SupportSurface;
+use sandtable_draw::color::Srgba;
+use sandtable_earthworks::alignment::Alignment;
+use crate::faces::Faces;
+use crate::fence::{PostPosition, spans};
+use crate::power_beam::{beam, square};
+use sandtable_terrain::support_surface::SupportSurface;
 
 const CONCRETE: Srgba = Srgba::opaque(184, 180, 170);
 const STEEL: Srgba = Srgba::opaque(112, 84, 68);
@@ -105,7 +105,7 @@ pub fn belt(alignment: &Alignment, spacing_m: f64) -> Vec<(PostPosition, Obstacl
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::polyline::Polyline;
+    use sandtable_geom::polyline::Polyline;
     use glam::DVec2;
 
     #[test]

@@ -11,10 +11,10 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::draw::color::Srgba;
-use crate::structure::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, PARAPET_THICK_M, magnified};
-use crate::structure::deck::DeckSection;
-use crate::structure::faces::Faces;
+use sandtable_draw::color::Srgba;
+use crate::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, PARAPET_THICK_M, magnified};
+use crate::deck::DeckSection;
+use crate::faces::Faces;
 
 const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
 const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
@@ -32,7 +32,7 @@ const INTO_DECK_M: f64 = 0.1;
 const SHAFT: f64 = 0.5;
 
 /// Adds a pier under a section; `false` where it would be lower than is worth building, or where there is no ground.
-pub(in crate::structure) fn pier(
+pub(crate) fn pier(
     section: &DeckSection,
     width_m: f64,
     options: &BridgeOptions,
@@ -71,7 +71,7 @@ pub(in crate::structure) fn pier(
 }
 
 /// Adds the abutment under the sections: a block from within the deck to below the ground, whose sides are its wing walls.
-pub(in crate::structure) fn abutment(
+pub(crate) fn abutment(
     under: &[DeckSection],
     width_m: f64,
     options: &BridgeOptions,
@@ -95,7 +95,7 @@ pub(in crate::structure) fn abutment(
 }
 
 /// Adds the posts in which both parapets end.
-pub(in crate::structure) fn end_posts(
+pub(crate) fn end_posts(
     section: &DeckSection,
     width_m: f64,
     options: &BridgeOptions,
@@ -143,7 +143,7 @@ impl PierFrame {
 }
 
 /// The lowest ground at the places; `None` where there is none at any.
-pub(in crate::structure) fn lowest(
+pub(crate) fn lowest(
     ground: &GroundHeight<'_>,
     places: impl IntoIterator<Item = DVec2>,
 ) -> Option<f64> {

@@ -11,13 +11,13 @@
 
 use glam::DVec3;
 
-use crate::draw::color::Srgba;
-use crate::geom::profile::Profile;
-use crate::structure::faces::Faces;
-use crate::structure::fence::PostPosition;
-use crate::structure::power_beam::beam;
-use crate::terrain::support_surface::{SupportSurface, ground_runs};
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::profile::Profile;
+use crate::faces::Faces;
+use crate::fence::PostPosition;
+use crate::power_beam::beam;
+use sandtable_terrain::support_surface::{SupportSurface, ground_runs};
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 const STEEL: Srgba = Srgba::opaque(138, 144, 150);
 const WOOD: Srgba = Srgba::opaque(122, 98, 74);
@@ -264,8 +264,8 @@ pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::full_resolution::FullResolution;
-    use crate::terrain::lattice::Lattice;
+    use sandtable_terrain::full_resolution::FullResolution;
+    use sandtable_terrain::lattice::Lattice;
     use glam::DVec2;
 
     /// A ridge of `height_m` across the middle of a kilometer of level ground.

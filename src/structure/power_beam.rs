@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::structure::faces::Faces;
+use sandtable_draw::color::Srgba;
+use crate::faces::Faces;
 
 /// Adds a bar with a square section from `from` to `to`, `half_m` from its axis to its sides at either end, closed at
 /// both; nothing where it has no length.
@@ -31,7 +31,7 @@ pub fn square(faces: &mut Faces, (from, to): (Vec3, Vec3), half_m: (f32, f32), a
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::sink::VertexId;
+    use sandtable_mesh::sink::VertexId;
 
     #[test]
     fn every_side_faces_outward_whichever_way_it_points() {

@@ -1,5 +1,5 @@
-//! Roofs over footprints: flat, gabled, pyramidal; hipped ones are made in [`crate::structure::roof_hipped`], those over
-//! inward corners by [`crate::structure::straight_skeleton`].
+//! Roofs over footprints: flat, gabled, pyramidal; hipped ones are made in [`crate::roof_hipped`], those over
+//! inward corners by [`crate::straight_skeleton`].
 //!
 //! A roof is made with a rise of one from eaves to ridge; the building stretches it. Its faces cover the footprint in
 //! plan, no more and no less, and its edge is the footprint's, with a vertex more where a ridge meets a gable, so that
@@ -15,11 +15,11 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::description::words;
-use crate::geom::polygon;
-use crate::structure::building_footprint::BuildingFootprint;
-use crate::structure::roof_hipped::hipped;
-use crate::structure::straight_skeleton;
+use sandtable_description::words;
+use sandtable_geom::polygon;
+use crate::building_footprint::BuildingFootprint;
+use crate::roof_hipped::hipped;
+use crate::straight_skeleton;
 
 /// How much of its best-fitting rectangle a footprint must fill to be roofed like one.
 const RECTANGULAR: f64 = 0.82;
@@ -56,7 +56,7 @@ pub fn roof(footprint: &BuildingFootprint, wanted: words::RoofShape) -> UnitRoof
 }
 
 /// The footprint's rings at the eaves.
-pub(in crate::structure) fn level_edge(footprint: &BuildingFootprint) -> Vec<Vec<DVec3>> {
+pub(crate) fn level_edge(footprint: &BuildingFootprint) -> Vec<Vec<DVec3>> {
     footprint.rings().iter().map(|ring| ring.iter().map(|at| at.extend(0.0)).collect()).collect()
 }
 

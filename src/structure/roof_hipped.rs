@@ -12,14 +12,14 @@
 //! ```
 //!
 //! Over a footprint with inward corners that is no longer so: its roof is made by
-//! [`crate::structure::straight_skeleton`].
+//! [`crate::straight_skeleton`].
 
 use glam::{DVec2, DVec3};
 
-use crate::description::words;
-use crate::geom::polygon;
-use crate::structure::building_footprint::BuildingFootprint;
-use crate::structure::roof::{UnitRoof, level_edge};
+use sandtable_description::words;
+use sandtable_geom::polygon;
+use crate::building_footprint::BuildingFootprint;
+use crate::roof::{UnitRoof, level_edge};
 
 /// The most walls under a hipped roof: rounder plans cost the cube of their vertices.
 const MOST_WALLS: usize = 64;
@@ -42,7 +42,7 @@ impl Wall {
 }
 
 /// The hipped roof of a convex footprint without courtyards; `None` for any other.
-pub(in crate::structure) fn hipped(footprint: &BuildingFootprint) -> Option<UnitRoof> {
+pub(crate) fn hipped(footprint: &BuildingFootprint) -> Option<UnitRoof> {
     let ring = footprint.exterior();
     if footprint.has_courtyards() || !footprint.is_convex() || ring.len() > MOST_WALLS {
         return None;
@@ -104,7 +104,7 @@ fn welded(face: &[DVec2], wall: Wall, corners: &mut Vec<DVec3>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::structure::roof;
+    use crate::roof;
 
     fn turned(points: &[(f64, f64)], turn_deg: f64) -> BuildingFootprint {
         let turn = DVec2::from_angle(turn_deg.to_radians());

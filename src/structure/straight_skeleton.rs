@@ -18,7 +18,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::geom::polygon;
+use sandtable_geom::polygon;
 
 /// The most sides: see above.
 const MOST_SIDES: usize = 64;

@@ -4,9 +4,9 @@
 
 use glam::Vec2;
 
-use crate::symbology::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, circle, path};
-use crate::symbology::fields::{SymbolAmplifier, SymbolRole, SymbolStatus};
-use crate::symbology::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox};
+use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, circle, path};
+use crate::fields::{SymbolAmplifier, SymbolRole, SymbolStatus};
+use crate::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox};
 
 /// The height of the strip over a frame in which echelons of bars and crosses stand; dots take less.
 const ECHELON_STRIP: f32 = 40.0;

@@ -15,12 +15,9 @@ use std::fmt;
 
 use thiserror::Error;
 
-use crate::message::suggest::quoted;
-use crate::symbology::fields::{
-    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
-    SymbolVersion,
-};
-use crate::symbology::letter_code;
+use sandtable_base::message::suggest::quoted;
+use crate::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
+use crate::letter_code;
 
 /// A symbol identification code, read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -17,8 +17,8 @@ use std::f32::consts::FRAC_PI_4;
 
 use glam::Vec2;
 
-use crate::symbology::frame::FrameShape;
-use crate::symbology::pieces::piece;
+use crate::frame::FrameShape;
+use crate::pieces::piece;
 
 /// Width of the lines of an icon. The figures of the standard have about this share of the frame's height.
 const LINE: f32 = 3.0;

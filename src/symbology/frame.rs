@@ -4,9 +4,9 @@
 
 use glam::Vec2;
 
-use crate::symbology::code::SymbolCode;
-use crate::symbology::drawing::{PathStep, circle, path};
-use crate::symbology::fields::{SymbolIdentity, SymbolSet, SymbolVersion};
+use crate::code::SymbolCode;
+use crate::drawing::{PathStep, circle, path};
+use crate::fields::{SymbolIdentity, SymbolSet, SymbolVersion};
 
 /// Width of a frame's line.
 pub(super) const FRAME_LINE: f32 = 4.0;

@@ -8,11 +8,8 @@
 //!  └─┴─┴─┴ 1: coding scheme; 2: standard identity; 3: battle dimension; 4: status
 //! ```
 
-use crate::symbology::code::{CodePlaces, SymbolCode, SymbolCodeError};
-use crate::symbology::fields::{
-    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
-    SymbolVersion,
-};
+use crate::code::{CodePlaces, SymbolCode, SymbolCodeError};
+use crate::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
 
 /// Identities with their contexts.
 const IDENTITIES: [(u8, SymbolContext, SymbolIdentity, &str); 14] = [

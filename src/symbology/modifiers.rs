@@ -1,7 +1,7 @@
 //! Sector 1 and sector 2 modifiers of land units: MIL-STD-2525D, tables D-V and D-VI.
 
-use crate::symbology::entities::SymbolEntity;
-use crate::symbology::fields::SymbolSet;
+use crate::entities::SymbolEntity;
+use crate::fields::SymbolSet;
 
 /// Above the icon.
 const SECTOR_1: [SymbolEntity; 5] = [

@@ -1,7 +1,7 @@
 //! Drawings that several entities share, by name, and those whose shape the frame decides: an icon that fills its frame
 //! touches the frame's edge, wherever that is.
 
-use crate::symbology::frame::FrameShape;
+use crate::frame::FrameShape;
 
 /// The drawing of a piece in a frame of a shape; empty for a name that is none.
 pub(super) fn piece(name: &str, shape: FrameShape) -> &'static str {

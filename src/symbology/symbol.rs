@@ -11,13 +11,13 @@
 
 use glam::Vec2;
 
-use crate::symbology::amplifiers::{Amplification, staff_foot};
-use crate::symbology::code::SymbolCode;
-use crate::symbology::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
-use crate::symbology::entities;
-use crate::symbology::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
-use crate::symbology::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox, fill};
-use crate::symbology::modifiers::modifiers;
+use crate::amplifiers::{Amplification, staff_foot};
+use crate::code::SymbolCode;
+use crate::drawing::{BLACK, PathStep, SymbolMark, SymbolPen, parse, path};
+use crate::entities;
+use crate::fields::{SymbolContext, SymbolIdentity, SymbolSet, SymbolStatus};
+use crate::frame::{FRAME_LINE, FrameOpening, FrameShape, SymbolBox, fill};
+use crate::modifiers::modifiers;
 
 /// The light dashes over the frame of what is only assumed, and of what is planned: lengths of dash and gap.
 const ASSUMED_DASH: [f32; 2] = [4.0, 4.0];
@@ -239,7 +239,7 @@ fn exercise_letter(code: &SymbolCode, frame: SymbolBox) -> Option<SymbolMark> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symbology::fields::CodedField;
+    use crate::fields::CodedField;
 
     fn symbol(code: &str) -> MilitarySymbol {
         MilitarySymbol::new(&SymbolCode::parse(code).expect(code)).expect(code)
@@ -277,7 +277,7 @@ mod tests {
         let base = SymbolCode::parse("10031000000000000000").expect("a frame");
         for set in SymbolSet::VALUES {
             for identity in SymbolIdentity::VALUES {
-                for amplifier in crate::symbology::fields::SymbolAmplifier::VALUES {
+                for amplifier in crate::fields::SymbolAmplifier::VALUES {
                     let code = SymbolCode {
                         set: set.value,
                         identity: identity.value,

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use crate::terrain::lattice::Post;
+use crate::lattice::Post;
 
 /// The corners of a cell that its diagonal joins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -20,12 +20,12 @@
 
 use glam::DVec2;
 
-use crate::limits::GROUND_POSTS;
-use crate::limits::GROUND_ROW_POSTS;
-use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::{Lattice, LatticeError, Post};
-use crate::terrain::query::Interpolation;
-use crate::terrain::query::cell::interpolate;
+use sandtable_base::limits::GROUND_POSTS;
+use sandtable_base::limits::GROUND_ROW_POSTS;
+use crate::cell_triangle::Diagonal;
+use crate::lattice::{Lattice, LatticeError, Post};
+use crate::query::Interpolation;
+use crate::query::cell::interpolate;
 
 /// The most halvings: a thirty-second of the measured spacing says nothing new about the ground.
 const MOST_DOUBLINGS: u32 = 5;
@@ -111,7 +111,7 @@ fn is_pinned(lattice: &Lattice, post: Post, times: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::query::ground_height;
+    use crate::query::ground_height;
     use proptest::prelude::*;
 
     fn hills(columns: u32, rows: u32) -> Lattice {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::terrain::vectorized::vectorized;
+use crate::vectorized::vectorized;
 
 /// Heights that a thread scans together: some tens of microseconds.
 const SCANNED_TOGETHER: usize = 1 << 16;
@@ -14,12 +14,12 @@ const LOOKED_AT_TOGETHER: usize = 1024;
 const LANES: usize = 32;
 
 /// The least and the greatest height; (∞, −∞) where all are NaN.
-pub(in crate::terrain) fn range(heights: &[f32]) -> (f32, f32) {
+pub(crate) fn range(heights: &[f32]) -> (f32, f32) {
     scanned(heights, range_of, wider)
 }
 
 /// The first height above `limit` or below `-limit`.
-pub(in crate::terrain) fn first_beyond(heights: &[f32], limit: f32) -> Option<f32> {
+pub(crate) fn first_beyond(heights: &[f32], limit: f32) -> Option<f32> {
     let is_beyond = |height: &&f32| height.abs() > limit;
     // A loop that may end early is not vectorized: it looks where one is known to be.
     let any = |heights: &&[f32]| heights.iter().fold(false, |any, height| any | is_beyond(&height));

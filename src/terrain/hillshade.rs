@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use crate::terrain::lattice::{Lattice, Post};
+use crate::lattice::{Lattice, Post};
 
 /// The direction of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]

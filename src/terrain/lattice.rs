@@ -18,11 +18,11 @@
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::dem::raster::{Raster, Samples};
-use crate::geom::rect::Rect;
-use crate::limits::memory::{MemoryRefused, check_memory};
-use crate::terrain::height_scan;
-use crate::terrain::post_rect::PostRect;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use crate::height_scan;
+use crate::post_rect::PostRect;
 
 /// Posts of a regular grid with their heights.
 ///
@@ -126,7 +126,7 @@ impl Lattice {
     }
 
     /// Checks that there is memory for so many posts, with what is computed for each.
-    pub(in crate::terrain) fn check_memory(columns: u32, rows: u32) -> Result<(), LatticeError> {
+    pub(crate) fn check_memory(columns: u32, rows: u32) -> Result<(), LatticeError> {
         let posts = u64::from(columns) * u64::from(rows);
         Ok(check_memory(posts * BYTES_PER_POST, "the ground", "name a smaller `extent`")?)
     }
@@ -254,7 +254,7 @@ impl Lattice {
     }
 
     /// The lattice with other heights, row by row from the south-west, one for each post.
-    pub(in crate::terrain) fn with_heights(&self, heights: Vec<f32>) -> Self {
+    pub(crate) fn with_heights(&self, heights: Vec<f32>) -> Self {
         assert_eq!(heights.len(), self.heights.len(), "a height for each post");
         Self { heights, pinned: self.pinned.clone(), ..*self }
     }
@@ -287,7 +287,7 @@ impl Lattice {
     }
 
     /// Meters between measured posts, eastward and northward: between them lie those put in by
-    /// [`crate::terrain::densify`].
+    /// [`crate::densify`].
     pub fn measured_cell(&self) -> DVec2 {
         self.cell * f64::from(1u32 << self.doublings)
     }
@@ -307,7 +307,7 @@ impl Lattice {
         self.rows
     }
 
-    /// How often the spacing of the measured posts was halved; see [`crate::terrain::densify`].
+    /// How often the spacing of the measured posts was halved; see [`crate::densify`].
     pub fn doublings(&self) -> u32 {
         self.doublings
     }
@@ -317,7 +317,7 @@ impl Lattice {
         Self { doublings: whole.doublings, ..self }
     }
 
-    pub(in crate::terrain) fn set_doublings(&mut self, doublings: u32) {
+    pub(crate) fn set_doublings(&mut self, doublings: u32) {
         self.doublings = doublings;
     }
 
@@ -412,7 +412,7 @@ impl Lattice {
     }
 
     /// The heights of the posts from `first` to column `last` of its row, to be set. Pins stay.
-    pub(crate) fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
+    pub fn heights_mut(&mut self, first: Post, last: u32) -> &mut [f32] {
         let from = self.index(first);
         &mut self.heights[from..=from + (last - first.column) as usize]
     }
@@ -512,11 +512,11 @@ fn spread<'a>(row: impl Iterator<Item = &'a mut f32>) {
 }
 
 #[cfg(test)]
-pub(in crate::terrain) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A plane of 4 × 3 posts 10 m and 5 m apart.
-    pub(in crate::terrain) fn plane() -> Lattice {
+    pub(crate) fn plane() -> Lattice {
         let heights = (0..12).map(|index| (index % 4) as f32 * 2.0 - (index / 4) as f32).collect();
         Lattice::new(DVec2::new(500.0, 900.0), DVec2::new(10.0, 5.0), 4, heights).expect("sound")
     }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_geom::rect::Rect;
+use crate::lattice::{Lattice, Post};
 
 /// A rectangle of posts, ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

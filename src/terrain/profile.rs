@@ -7,10 +7,10 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::dem::answer::Answer;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::crossings::crossings;
+use sandtable_dem::answer::Answer;
+use crate::lattice::Lattice;
+use crate::query::{Interpolation, ground_height};
+use crate::sight::crossings::crossings;
 
 /// A position along a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]

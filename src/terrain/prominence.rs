@@ -5,7 +5,7 @@
 
 use glam::Vec2;
 
-use crate::terrain::lattice::Lattice;
+use crate::lattice::Lattice;
 
 /// Lattices with more posts on a side are read as blocks, each by its highest post: prominence of hills is that of the
 /// blocks, and hills inside of one block are one.

@@ -21,12 +21,12 @@
 
 use rayon::prelude::*;
 
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use crate::lattice::{Lattice, Post};
+use crate::post_rect::PostRect;
 
 /// Cells along a side of a block of level 0 for lines of sight, as a power of two. Smaller blocks cost memory (with 1: two thirds of the
 /// heights), larger ones more walking where a line passes close over the ground.
-pub(in crate::terrain) const FINEST_BITS: u32 = 2;
+pub(crate) const FINEST_BITS: u32 = 2;
 
 /// The highest and lowest posts of blocks of cells, level by level.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,14 +127,14 @@ impl Pyramid {
 
     /// The highest post of a block with sides of 2^`bits` cells, −∞ where it has no data.
     #[inline]
-    pub(in crate::terrain) fn highest(&self, bits: u32, block: Post) -> f32 {
+    pub(crate) fn highest(&self, bits: u32, block: Post) -> f32 {
         let level = self.level(bits);
         level.highest[level.index(block.column, block.row)]
     }
 
     /// The lowest post of a block with sides of 2^`bits` cells, +∞ where it has no data.
     #[inline]
-    pub(in crate::terrain) fn lowest(&self, bits: u32, block: Post) -> f32 {
+    pub(crate) fn lowest(&self, bits: u32, block: Post) -> f32 {
         let level = self.level(bits);
         level.lowest[level.index(block.column, block.row)]
     }

@@ -4,7 +4,7 @@ use std::iter::once;
 
 use glam::{DVec2, Vec2};
 
-use crate::terrain::lattice::{Lattice, Post};
+use crate::lattice::{Lattice, Post};
 
 /// How many posts away the neighbors are from which slopes of earthworks on a densified lattice come. One shows a narrow
 /// batter's edges as teeth; more would round the edge of a road that is four posts wide.
@@ -109,7 +109,7 @@ impl Lattice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::lattice::tests::plane;
+    use crate::lattice::tests::plane;
 
     #[test]
     fn slopes_of_a_plane_are_exact_inside_and_at_the_border() {

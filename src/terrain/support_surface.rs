@@ -10,10 +10,10 @@
 
 use glam::DVec2;
 
-use crate::geom::convex;
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
-use crate::terrain::triangle_surface::{TriangleSurface, plan, plane_z};
+use sandtable_geom::convex;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use crate::triangle_surface::{TriangleSurface, plan, plane_z};
 
 /// A position this far beside a triangle, in meters, still lies in it: more than rounding, so that no line falls between
 /// two triangles, and less than is ever visible.
@@ -88,8 +88,8 @@ impl SupportSurface<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::full_resolution::FullResolution;
-    use crate::terrain::lattice::Lattice;
+    use crate::full_resolution::FullResolution;
+    use crate::lattice::Lattice;
     use proptest::prelude::*;
 
     fn rough(holes: &[usize]) -> Lattice {

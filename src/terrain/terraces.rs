@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use crate::terrain::lattice::Lattice;
+use crate::lattice::Lattice;
 
 /// Half the widths of the neighborhoods, in posts: a much wider terrace keeps a level middle. Wider neighborhoods first
 /// leave more of it behind than they level.

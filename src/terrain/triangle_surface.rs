@@ -2,8 +2,8 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::geom::convex;
-use crate::geom::rect::Rect;
+use sandtable_geom::convex;
+use sandtable_geom::rect::Rect;
 
 /// One displayed triangle in world space, counter-clockwise seen from above.
 pub type SurfaceTriangle = [Vec3; 3];

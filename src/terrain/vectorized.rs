@@ -10,7 +10,7 @@ use fearless_simd::{Level, dispatch};
 ///
 /// Choosing costs some nanoseconds.
 #[inline(always)]
-pub(crate) fn vectorized<T>(work: impl FnOnce() -> T) -> T {
+pub fn vectorized<T>(work: impl FnOnce() -> T) -> T {
     dispatch!(Level::new(), _simd => work())
 }
 

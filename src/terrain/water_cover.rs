@@ -12,7 +12,7 @@
 
 use glam::DVec2;
 
-use crate::terrain::lattice::Lattice;
+use crate::lattice::Lattice;
 
 /// The fewest posts of a lake or a sea: fewer happen to be level.
 pub const LEAST_POSTS: usize = 200;
@@ -191,7 +191,7 @@ impl WaterSearch<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::lattice::Post;
+    use crate::lattice::Post;
 
     fn lattice(height: impl Fn(f32, f32) -> f32) -> Lattice {
         let heights = (0..60 * 50).map(|index| height((index % 60) as f32, (index / 60) as f32)).collect();

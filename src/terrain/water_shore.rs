@@ -14,9 +14,9 @@
 
 use glam::DVec2;
 
-use crate::geom::distance_field::{RegionGrid, distances_m};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::water_cover::WaterCover;
+use sandtable_geom::distance_field::{RegionGrid, distances_m};
+use crate::lattice::Lattice;
+use crate::water_cover::WaterCover;
 
 /// The weights of posts to either side in the smoothed cover, of 64: a standard deviation of 1.2 posts, which is what a
 /// step of one post needs. Wider ones would move headlands.
@@ -137,7 +137,7 @@ fn open(is_water: &[bool], columns: usize, cell: DVec2) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::water_cover::water_cover;
+    use crate::water_cover::water_cover;
 
     /// A coast that runs from the south-west to the north-east in steps of a post.
     fn coast() -> Lattice {

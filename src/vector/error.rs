@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Display;
 
-use crate::archive::ArchiveError;
-use crate::geom::crs::CrsError;
-use crate::limits::{GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
-use crate::message::suggest::nearest;
+use sandtable_base::archive::ArchiveError;
+use sandtable_geom::crs::CrsError;
+use sandtable_base::limits::{GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
+use sandtable_base::message::suggest::nearest;
 
 /// Most names that a message lists.
 const MAX_LISTED: usize = 20;

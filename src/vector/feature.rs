@@ -5,7 +5,7 @@ use std::iter;
 
 use glam::DVec2;
 
-use crate::geom::crs::{Crs, CrsError};
+use sandtable_geom::crs::{Crs, CrsError};
 
 /// The properties of a feature, by name.
 pub type Properties = BTreeMap<String, serde_json::Value>;

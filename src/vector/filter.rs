@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::vector::feature::{Feature, VectorLayer};
+use crate::feature::{Feature, VectorLayer};
 
 /// Conditions on a feature's properties. All must hold; an empty filter matches every feature.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -83,8 +83,8 @@ impl Condition {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::crs::Crs;
-    use crate::vector::feature::Geometry;
+    use sandtable_geom::crs::Crs;
+    use crate::feature::Geometry;
     use serde_json::json;
 
     fn layer(properties: &[Value]) -> VectorLayer {

@@ -9,12 +9,12 @@ use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::geom::crs::Crs;
-use crate::limits::GEOJSON_BYTES;
-use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::error::{VectorError, shorten};
-use crate::vector::feature::VectorLayer;
-use crate::vector::hints::VectorHints;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::GEOJSON_BYTES;
+use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
+use crate::error::{VectorError, shorten};
+use crate::feature::VectorLayer;
+use crate::hints::VectorHints;
 
 const FORMAT: &str = "GeoJSON";
 /// Precedes each text of a sequence (RFC 7464).
@@ -227,7 +227,7 @@ fn is_crs84(authority: &str, code: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::feature::{Geometry, Polygon};
+    use crate::feature::{Geometry, Polygon};
     use glam::DVec2;
 
     fn read_plain(bytes: &[u8]) -> Result<VectorLayer, VectorError> {

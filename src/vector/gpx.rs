@@ -15,11 +15,11 @@
 use glam::DVec3;
 use serde_json::Number;
 
-use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::error::VectorError;
-use crate::vector::feature::{Properties, VectorLayer};
-use crate::vector::hints::VectorHints;
-use crate::vector::xml::{self, XmlElement, XmlReader};
+use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
+use crate::error::VectorError;
+use crate::feature::{Properties, VectorLayer};
+use crate::hints::VectorHints;
+use crate::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "GPX file";
 /// The first three are the choice where none is requested; the others are only read by name.

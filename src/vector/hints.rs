@@ -1,7 +1,7 @@
 //! Options for reading vector files.
 
-use crate::geom::crs::{Crs, CrsError};
-use crate::vector::error::VectorError;
+use sandtable_geom::crs::{Crs, CrsError};
+use crate::error::VectorError;
 
 /// Options for reading a vector file.
 #[derive(Clone, Copy)]

@@ -12,11 +12,11 @@
 
 use glam::DVec3;
 
-use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::error::{VectorError, shorten};
-use crate::vector::feature::{Properties, VectorLayer};
-use crate::vector::hints::VectorHints;
-use crate::vector::xml::{self, XmlElement, XmlReader};
+use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
+use crate::error::{VectorError, shorten};
+use crate::feature::{Properties, VectorLayer};
+use crate::hints::VectorHints;
+use crate::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "KML file";
 

@@ -14,14 +14,14 @@
 
 use std::borrow::Cow;
 
-use crate::archive::{self, ArchiveError, ZipReader};
-use crate::limits::UNPACKED_VECTOR_BYTES;
-use crate::vector::error::VectorError;
-use crate::vector::feature::VectorLayer;
+use sandtable_base::archive::{self, ArchiveError, ZipReader};
+use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
+use crate::error::VectorError;
+use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
-use crate::vector::geopackage;
-use crate::vector::hints::VectorHints;
-use crate::vector::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use crate::geopackage;
+use crate::hints::VectorHints;
+use crate::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
 
 /// Bytes at the start of a document in which its outermost element is searched.
 const XML_HEAD_BYTES: usize = 4096;
@@ -242,7 +242,7 @@ fn conversion(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::archive::tests::zipped;
+    use sandtable_base::archive::tests::zipped;
 
     const POINT: &[u8] = b"{\"type\":\"Point\",\"coordinates\":[1,2]}";
     const KML: &[u8] = b"<kml><Placemark><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";

@@ -8,8 +8,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::geom::aabb::Aabb;
-use crate::view::axes::DirectionAxes;
+use sandtable_geom::aabb::Aabb;
+use crate::axes::DirectionAxes;
 
 /// How rays reach the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

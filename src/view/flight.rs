@@ -6,7 +6,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::view::camera::{Camera, CameraError};
+use crate::camera::{Camera, CameraError};
 
 /// Width and height of a flight's picture in pixels, as in the papers on levels of detail.
 pub const PICTURE_SIZE: (u32, u32) = (1024, 768);

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::view::camera::{Camera, ViewProjection};
-use crate::view::planes;
+use crate::camera::{Camera, ViewProjection};
+use crate::planes;
 
 /// The left, right, bottom, top and far planes of a camera, normals inward.
 ///
@@ -55,8 +55,8 @@ impl Frustum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::axes::DirectionAxes;
-    use crate::view::camera::ParallelFrame;
+    use crate::axes::DirectionAxes;
+    use crate::camera::ParallelFrame;
 
     #[test]
     fn a_box_is_culled_beside_and_behind_but_not_before_the_eye() {

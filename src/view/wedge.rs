@@ -1,7 +1,7 @@
 //! A camera's view reduced to lines on the ground plane: far, left and right.
 //!
 //! A wedge needs no height ranges and never culls what the camera's
-//! [frustum](crate::view::frustum::Frustum) sees. For a level camera its sides are the frustum's. Pitched up or
+//! [frustum](crate::frustum::Frustum) sees. For a level camera its sides are the frustum's. Pitched up or
 //! down, the far corners of the picture reach further round, and the sides open:
 //!
 //! ```text
@@ -19,8 +19,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::view::camera::Camera;
-use crate::view::planes;
+use crate::camera::Camera;
+use crate::planes;
 
 /// The share by which the sides open and the far line recedes, so that rounding never culls a box that the frustum
 /// just touches: a hundred times the rounding of f32.

@@ -8,10 +8,10 @@ use egui::{Key, Modifiers, PointerButton, Pos2, Ui, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::pipeline::viewing::ViewerOptions;
-use crate::viewer::app::{ViewerApp, ViewerStage, WindowRequest};
-use crate::viewer::ghost::DragTarget;
-use crate::viewer::recent::RecentFiles;
+use sandtable_editing::viewing::ViewerOptions;
+use crate::app::{ViewerApp, ViewerStage, WindowRequest};
+use crate::ghost::DragTarget;
+use crate::recent::RecentFiles;
 
 /// A place in the view, right of the panels.
 pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);
@@ -214,7 +214,7 @@ fn the_sun_and_what_is_hidden_wait_for_a_thread_and_the_picture_stays() {
     until(&mut harness, |app| !app.is_busy());
     assert_eq!(sun(app(&harness)), low);
     let items = |app: &ViewerApp| app.opened.as_ref().expect("open").list.items.len();
-    let (all, plinth) = (items(app(&harness)), crate::draw::list::FeatureId::PLINTH);
+    let (all, plinth) = (items(app(&harness)), sandtable_draw::list::FeatureId::PLINTH);
     app_mut(&mut harness, &|app| app.opened.as_mut().expect("open").hide(&[plinth].into()));
     assert_eq!(items(app(&harness)), all, "as it was");
     until(&mut harness, |app| !app.is_busy());
@@ -272,21 +272,21 @@ fn a_model_is_dragged_and_turned_and_a_road_is_widened_and_removed() {
     let mut harness = window(Some(&scene.file));
     let feature = |app: &ViewerApp, name: &str| {
         let scene = &app.opened.as_ref().expect("open").scene;
-        let is_named = |feature: &crate::scene::SceneFeature| {
+        let is_named = |feature: &sandtable_scene::SceneFeature| {
             if name.is_empty() {
-                feature.kind == crate::scene::FeatureKind::Model
+                feature.kind == sandtable_scene::FeatureKind::Model
             } else {
                 feature.name == name
             }
         };
         let index = scene.features.iter().position(is_named).expect("there");
-        crate::draw::list::FeatureId(crate::draw::list::FeatureId::GROUND.0 + 1 + index as u32)
+        sandtable_draw::list::FeatureId(sandtable_draw::list::FeatureId::GROUND.0 + 1 + index as u32)
     };
     let take = |harness: &mut AppHarness, name: &str| {
         let app = harness.state_mut().as_mut().expect("shown");
         let part = app.part_of_feature(feature(app, name));
         assert!(part.is_some(), "'{name}' has a table");
-        app.picked = Some(crate::viewer::app::PickedText { feature: name.to_owned(), place: None, part });
+        app.picked = Some(crate::app::PickedText { feature: name.to_owned(), place: None, part });
     };
     let text = |harness: &AppHarness| app(harness).session.as_ref().expect("open").editor.text().to_owned();
     take(&mut harness, "");

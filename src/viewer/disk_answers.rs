@@ -5,20 +5,20 @@ use std::sync::Arc;
 use egui::Context;
 use glam::Vec2;
 
-use crate::geom::rect::Rect;
-use crate::pipeline::walk::disk_ground::DiskGroundError;
-use crate::pipeline::walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
-use crate::terrain::sight::ground::SightGround;
-use crate::view::camera::Camera;
-use crate::viewer::app::ViewerApp;
-use crate::viewer::finer_ground::FinerGround;
-use crate::viewer::loading::opening_error;
-use crate::viewer::measuring::{MeasureKind, Measuring};
-use crate::viewer::opened::OpenedScene;
-use crate::viewer::paging::{DiskQuestions, PagedTerrain, PagingStage};
-use crate::viewer::place::PlaceText;
-use crate::viewer::tool_use::ActiveTool;
-use crate::viewer::worker::WorkerJob;
+use sandtable_geom::rect::Rect;
+use sandtable_walk::disk_ground::DiskGroundError;
+use sandtable_walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_view::camera::Camera;
+use crate::app::ViewerApp;
+use crate::finer_ground::FinerGround;
+use crate::loading::opening_error;
+use crate::measuring::{MeasureKind, Measuring};
+use crate::opened::OpenedScene;
+use crate::paging::{DiskQuestions, PagedTerrain, PagingStage};
+use crate::place::PlaceText;
+use crate::tool_use::ActiveTool;
+use crate::worker::WorkerJob;
 
 /// What a click comes to; `None` where there is no ground after all.
 type PickJob = WorkerJob<Result<Option<WalkPick>, DiskGroundError>>;

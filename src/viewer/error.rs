@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::pipeline::files::ReadFileError;
-use crate::viewer::script::ScriptError;
+use sandtable_files::disk::ReadFileError;
+use crate::script::ScriptError;
 
 /// Why no window can be shown. Each message names the command that needs none.
 #[derive(Debug, thiserror::Error)]

@@ -5,19 +5,19 @@ use std::time::{Duration, Instant};
 
 use egui::Ui;
 
-use crate::draw::list::FeatureId;
-use crate::pipeline::files;
-use crate::pipeline::fingerprint::fingerprint;
-use crate::viewer::app::{OpeningFailure, ViewerApp};
-use crate::viewer::lettering;
-use crate::viewer::loading::{LoadedFile, opening_error};
-use crate::viewer::paging::PagingStage;
-use crate::viewer::panels::light::LightPanel;
-use crate::viewer::panels::tree::TreePanel;
-use crate::viewer::saving::Leaving;
-use crate::viewer::session::EditingSession;
-use crate::viewer::watch::{FileWatch, WatchState};
-use crate::viewer::worker::{WorkerJob, drop_apart};
+use sandtable_draw::list::FeatureId;
+use sandtable_files::disk;
+use sandtable_files::fingerprint::fingerprint;
+use crate::app::{OpeningFailure, ViewerApp};
+use crate::lettering;
+use crate::loading::{LoadedFile, opening_error};
+use crate::paging::PagingStage;
+use crate::panels::light::LightPanel;
+use crate::panels::tree::TreePanel;
+use crate::saving::Leaving;
+use crate::session::EditingSession;
+use crate::watch::{FileWatch, WatchState};
+use crate::worker::{WorkerJob, drop_apart};
 
 /// How often the share of a terrain that is measured is shown anew.
 const PROGRESS_EVERY: Duration = Duration::from_millis(500);
@@ -90,7 +90,7 @@ impl ViewerApp {
             Ok(loaded) => self.take_over(path, loaded, ui),
             // The last good scene stays, and the error with it.
             Err(message) if self.opened.is_some() => {
-                self.notices.warn(format!("{} cannot be opened:\n{message}", files::file_name(&path)));
+                self.notices.warn(format!("{} cannot be opened:\n{message}", disk::file_name(&path)));
             }
             Err(message) => {
                 self.watch_files(std::slice::from_ref(&path));

@@ -10,7 +10,7 @@ use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-use crate::viewer::error::ViewerError;
+use crate::error::ViewerError;
 
 /// How often in turn a surface may fail to fit its window before that is an error: more than a second of frames.
 const MOST_FAILED_CONFIGURATIONS: u32 = 1000;

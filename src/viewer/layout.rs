@@ -4,20 +4,20 @@ use egui::{
     Align2, CollapsingHeader, ComboBox, Context, Grid, Panel, RichText, ScrollArea, TextureId, Ui, Window,
 };
 
-use crate::pipeline::files;
-use crate::view::navigation::NavigationMode;
-use crate::viewer::app::{ViewerApp, ViewerStage};
-use crate::viewer::commands::{ViewCommand, key_text};
-use crate::viewer::panels::detail::detail_panel;
-use crate::viewer::panels::help::help_panel;
-use crate::viewer::panels::light::{LightEvent, light_panel};
-use crate::viewer::panels::open::open_panel;
-use crate::viewer::panels::paging::paging_panel;
-use crate::viewer::panels::timing::timing_panel;
-use crate::viewer::panels::tree::{TreeEvent, tree_panel};
-use crate::viewer::place::PlaceText;
-use crate::viewer::saving::Leaving;
-use crate::viewer::viewsheds::ViewshedOverlay;
+use sandtable_files::disk;
+use sandtable_view::navigation::NavigationMode;
+use crate::app::{ViewerApp, ViewerStage};
+use crate::commands::{ViewCommand, key_text};
+use crate::panels::detail::detail_panel;
+use crate::panels::help::help_panel;
+use crate::panels::light::{LightEvent, light_panel};
+use crate::panels::open::open_panel;
+use crate::panels::paging::paging_panel;
+use crate::panels::timing::timing_panel;
+use crate::panels::tree::{TreeEvent, tree_panel};
+use crate::place::PlaceText;
+use crate::saving::Leaving;
+use crate::viewsheds::ViewshedOverlay;
 
 /// The width of the sections at the side, in points.
 const SIDE_WIDTH: f32 = 290.0;
@@ -91,7 +91,7 @@ impl ViewerApp {
                 }
                 if let Some(loading) = &self.loading {
                     ui.spinner();
-                    ui.label(format!("{}: {}", files::file_name(&loading.path), loading.step));
+                    ui.label(format!("{}: {}", disk::file_name(&loading.path), loading.step));
                 }
                 if self.drawing.is_some() {
                     ui.spinner();

@@ -5,10 +5,10 @@
 use egui::epaint::TextShape;
 use egui::{Color32, Painter, Pos2, Rect, Shape, vec2};
 
-use crate::annotate::fonts::is_joined;
-use crate::annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, LetterLimits, SetLetter};
-use crate::viewer::line_piece::{LinePicture, NamePoint, along_at, pieces, point_at};
-use crate::viewer::name_lines::{LineName, NameSide};
+use sandtable_annotate::fonts::is_joined;
+use sandtable_annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, LetterLimits, SetLetter};
+use crate::line_piece::{LinePicture, NamePoint, along_at, pieces, point_at};
+use crate::name_lines::{LineName, NameSide};
 
 /// The limits of a name that is shown: what is shown stays until it is bad for good.
 const HELD_LIMITS: LetterLimits = LetterLimits { most_turn: 0.65, most_bend: 2.4, most_lean: -0.4 };
@@ -200,7 +200,7 @@ pub fn paint(painter: &Painter, name: &LineName, letters: &[LineLetter], opacity
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewer::line_piece::tests::piece;
+    use crate::line_piece::tests::piece;
 
     fn run<'a>(letters: &'a [String], widths: &'a [f32]) -> LetterRun<'a> {
         LetterRun { letters, widths, lift: 6.0, limits: LIMITS, was_reversed: false }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use egui::{Context, FontData, FontDefinitions, FontFamily, FontId};
 
-use crate::annotate::fonts::FontCut;
-use crate::description::words::LabelKind;
-use crate::draw::font::FontFile;
+use sandtable_annotate::fonts::FontCut;
+use sandtable_description::words::LabelKind;
+use sandtable_draw::font::FontFile;
 
 /// The cuts, with the names of their families.
 const CUTS: [(FontCut, &str); 4] = [

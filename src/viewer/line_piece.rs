@@ -3,7 +3,7 @@
 use egui::{FontId, Pos2, Rect};
 use glam::{Vec2, Vec3};
 
-use crate::view::camera::Camera;
+use sandtable_view::camera::Camera;
 
 /// Measures letters in points: the width of each, and the height of all.
 pub type LetterWidths<'a> = &'a dyn Fn(&[String], &FontId) -> (Vec<f32>, f32);

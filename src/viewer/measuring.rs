@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use crate::pipeline::viewshed::ViewshedSummary;
-use crate::pipeline::walk::measure::MeasurableGround;
-use crate::terrain::profile::ProfileStation;
-use crate::terrain::sight::line::{Sight, SightEnd};
-use crate::terrain::sight::viewshed::ViewshedOptions;
+use sandtable_query::viewshed::ViewshedSummary;
+use sandtable_walk::measure::MeasurableGround;
+use sandtable_terrain::profile::ProfileStation;
+use sandtable_terrain::sight::line::{Sight, SightEnd};
+use sandtable_terrain::sight::viewshed::ViewshedOptions;
 
 /// The height of observers and targets over ground, in meters.
 const EYE_M: f64 = 1.7;
@@ -199,9 +199,9 @@ pub fn volume_text(volume_m3: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::viewing::open_to_view;
-    use crate::pipeline::walk::Walk;
-    use crate::pipeline::walk::frame::WalkOptions;
+    use sandtable_editing::viewing::open_to_view;
+    use sandtable_walk::Walk;
+    use sandtable_walk::frame::WalkOptions;
     use std::path::Path;
     use std::sync::Arc;
 

@@ -6,10 +6,10 @@
 use egui::{DragValue, Ui};
 use glam::DVec2;
 
-use crate::draw::list::FeatureId;
-use crate::pipeline::editing::edit::{EditPlace, EditValue, SceneEdit};
-use crate::viewer::app::ViewerApp;
-use crate::viewer::view_area::GrabTarget;
+use sandtable_draw::list::FeatureId;
+use sandtable_editing::edit::{EditPlace, EditValue, SceneEdit};
+use crate::app::ViewerApp;
+use crate::view_area::GrabTarget;
 
 /// The table that states what was picked.
 #[derive(Clone, Debug, PartialEq)]

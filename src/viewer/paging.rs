@@ -15,22 +15,22 @@ use std::thread;
 
 use glam::{DVec2, DVec3};
 
-use crate::dem::answer::Answer;
-use crate::dem::windows::Windows;
-use crate::draw::patches::{GroundChanges, PatchId};
-use crate::message::chain::error_text;
-use crate::pipeline::paged_elevation::{ElevationWindows, ReadingWatch};
-use crate::pipeline::walk::disk_ground::DiskGround;
-use crate::pipeline::walk::frame::WalkStatistics;
-use crate::pipeline::walk::page_heights::{PageHeights, page};
-use crate::pipeline::walk::paged::{PagedWalk, PagedWalkOptions};
-use crate::roam::paging::ground::{PagingCounts, PagingOptions};
-use crate::roam::paging::region::PagedFrame;
-use crate::terrain::lattice::LatticeError;
-use crate::terrain::sight::ground::SightGround;
-use crate::terrain::sight::ray::Ray;
-use crate::view::camera::Camera;
-use crate::viewer::worker::run_apart;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::windows::Windows;
+use sandtable_draw::patches::{GroundChanges, PatchId};
+use sandtable_base::message::chain::error_text;
+use sandtable_walk::paged_elevation::{ElevationWindows, ReadingWatch};
+use sandtable_walk::disk_ground::DiskGround;
+use sandtable_walk::frame::WalkStatistics;
+use sandtable_walk::page_heights::{PageHeights, page};
+use sandtable_walk::paged::{PagedWalk, PagedWalkOptions};
+use sandtable_roam::paging::ground::{PagingCounts, PagingOptions};
+use sandtable_roam::paging::region::PagedFrame;
+use sandtable_terrain::lattice::LatticeError;
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_terrain::sight::ray::Ray;
+use sandtable_view::camera::Camera;
+use crate::worker::run_apart;
 
 /// Meters of distance per meter of error: one pixel of a picture 1080 pixels high that is opened 53°.
 const REACH: f32 = 1080.0;

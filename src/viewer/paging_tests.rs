@@ -8,22 +8,22 @@ use std::{env, fs, thread};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DVec2, DVec3, Vec2};
 
-use crate::dem::formats::DemFormat;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::write;
-use crate::draw::patches::PatchId;
-use crate::geom::crs::Crs;
-use crate::pipeline::paged_elevation::PagedElevation;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::view::navigation::pose::ViewPose;
-use crate::viewer::app_tests::{AppHarness, IN_VIEW, app, click, until, window};
-use crate::viewer::loading::load_paged;
-use crate::viewer::measuring::{MeasureKind, Measuring};
-use crate::viewer::opened::{OpenedScene, OpeningView};
-use crate::viewer::paging::{MOST_PAGES, PagingStage};
-use crate::viewer::scene_load::LoaderSlot;
-use crate::viewer::tool_use::ActiveTool;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
+use sandtable_dem::write;
+use sandtable_draw::patches::PatchId;
+use sandtable_geom::crs::Crs;
+use sandtable_walk::paged_elevation::PagedElevation;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_view::navigation::pose::ViewPose;
+use crate::app_tests::{AppHarness, IN_VIEW, app, click, until, window};
+use crate::loading::load_paged;
+use crate::measuring::{MeasureKind, Measuring};
+use crate::opened::{OpenedScene, OpeningView};
+use crate::paging::{MOST_PAGES, PagingStage};
+use crate::scene_load::LoaderSlot;
+use crate::tool_use::ActiveTool;
 
 /// A file of 1100 × 700 posts, ten meters apart, in a folder of its own.
 struct LargeFile {
@@ -178,7 +178,7 @@ fn a_click_and_a_line_on_terrain_on_disk_say_what_the_file_holds() {
     line.click(from);
     line.click(to);
     let mut wanted = line.clone();
-    wanted.measure(&crate::terrain::sight::ground::SightGround::new(Arc::new(file.lattice.clone())));
+    wanted.measure(&sandtable_terrain::sight::ground::SightGround::new(Arc::new(file.lattice.clone())));
     state.take_tool(Some(ActiveTool::Measure(line)));
     state.measure_again();
     until(&mut harness, |app| !app.is_busy());

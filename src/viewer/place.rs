@@ -1,9 +1,9 @@
 //! A place in words: coordinates of the scene, longitude and latitude, grid reference, height, slope.
 
-use crate::draw::list::FeatureId;
-use crate::pipeline::positions::format_position;
-use crate::pipeline::walk::pick::WalkPick;
-use crate::scene::SceneModel;
+use sandtable_draw::list::FeatureId;
+use sandtable_query::positions::format_position;
+use sandtable_walk::pick::WalkPick;
+use sandtable_scene::SceneModel;
 
 /// What is known about a place; a text is empty where there is nothing to say.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,11 +72,11 @@ pub fn compass(degrees: f64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::viewing::open_to_view;
-    use crate::pipeline::walk::Walk;
-    use crate::pipeline::walk::frame::WalkOptions;
-    use crate::terrain::query::{Interpolation, Surface};
-    use crate::terrain::sight::ray::Ray;
+    use sandtable_editing::viewing::open_to_view;
+    use sandtable_walk::Walk;
+    use sandtable_walk::frame::WalkOptions;
+    use sandtable_terrain::query::{Interpolation, Surface};
+    use sandtable_terrain::sight::ray::Ray;
     use glam::{DVec2, DVec3};
     use std::path::Path;
     use std::sync::Arc;

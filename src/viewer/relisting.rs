@@ -6,18 +6,18 @@ use std::sync::Arc;
 use egui::Context;
 use glam::Vec3;
 
-use crate::draw::list::DrawList;
-use crate::draw::patches::GroundChanges;
-use crate::pipeline::walk::pick::StandingIndex;
-use crate::pipeline::walk::standing_task::StandingTask;
-use crate::render::gpu::error::GpuError;
-use crate::render::gpu::live::KeptPatches;
-use crate::render::gpu::live::prepared::PreparedScene;
-use crate::view::camera::Camera;
-use crate::viewer::opened::{FIRST_SIZE, OpenedScene};
-use crate::viewer::scene_load::{LoaderSlot, SceneLoad};
-use crate::viewer::shadowing::ShadowedView;
-use crate::viewer::worker::{WorkerFailure, WorkerJob, drop_apart};
+use sandtable_draw::list::DrawList;
+use sandtable_draw::patches::GroundChanges;
+use sandtable_walk::pick::StandingIndex;
+use sandtable_walk::standing_task::StandingTask;
+use sandtable_gpu::error::GpuError;
+use sandtable_gpu::live::KeptPatches;
+use sandtable_gpu::live::prepared::PreparedScene;
+use sandtable_view::camera::Camera;
+use crate::opened::{FIRST_SIZE, OpenedScene};
+use crate::scene_load::{LoaderSlot, SceneLoad};
+use crate::shadowing::ShadowedView;
+use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
 
 /// A list that is being made.
 pub struct Relisting {

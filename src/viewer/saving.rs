@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Context, Id, Modal};
 
-use crate::pipeline::editing::editor::{OnConflict, SaveError};
-use crate::pipeline::files;
-use crate::viewer::app::{ViewerApp, WindowRequest};
-use crate::viewer::loading::opening_error;
+use sandtable_editing::editor::{OnConflict, SaveError};
+use sandtable_files::disk;
+use crate::app::{ViewerApp, WindowRequest};
+use crate::loading::opening_error;
 
 /// What leaves the scene as it is edited.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl ViewerApp {
         }
         let Some(session) = &mut self.session else { return };
         let path = session.editor.source().path.clone();
-        let name = files::file_name(&path);
+        let name = disk::file_name(&path);
         if !session.editor.is_changed() && path.exists() {
             return self.tell(format!("{name} has nothing to save"));
         }

@@ -20,7 +20,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::viewer::commands::{KEYS, KeyAction, ViewCommand, shortcut_text};
+use crate::commands::{KEYS, KeyAction, ViewCommand, shortcut_text};
 
 /// The most lines of a script.
 const MOST_LINES: usize = 10_000;

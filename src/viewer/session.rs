@@ -3,16 +3,16 @@
 //! An edit that moves earth is seen in the next frame: it is done in the walk's own ground, and the scene is not built anew.
 //! What else changes the scene builds it anew, on a thread.
 
-use crate::earthworks::earthwork::dig;
-use crate::pipeline::editing::edit::SceneEdit;
-use crate::pipeline::editing::editor::SceneEditor;
-use crate::pipeline::editing::effect::{EditEffect, MovedModel};
-use crate::pipeline::editing::tool::ToolSettings;
-use crate::pipeline::walk::edit::WalkEdit;
-use crate::scene::picture::models::PlacementMove;
-use crate::terrain::volumes::Volumes;
-use crate::viewer::loading::opening_error;
-use crate::viewer::opened::OpenedScene;
+use sandtable_earthworks::earthwork::dig;
+use sandtable_editing::edit::SceneEdit;
+use sandtable_editing::editor::SceneEditor;
+use sandtable_editing::effect::{EditEffect, MovedModel};
+use sandtable_editing::tool::ToolSettings;
+use sandtable_walk::edit::WalkEdit;
+use sandtable_picture::models::PlacementMove;
+use sandtable_terrain::volumes::Volumes;
+use crate::loading::opening_error;
+use crate::opened::OpenedScene;
 
 /// What an edit leaves to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,16 +8,16 @@ use std::time::{Duration, Instant};
 use egui::Context;
 use glam::Vec3;
 
-use crate::draw::list::DrawList;
-use crate::pipeline::walk::shown_ground::ShownGround;
-use crate::render::gpu::error::GpuError;
-use crate::render::gpu::live::LiveShadows;
-use crate::render::gpu::live::prepared::PreparedShadows;
-use crate::view::camera::Camera;
-use crate::viewer::opened::OpenedScene;
-use crate::viewer::relisting::RelistingError;
-use crate::viewer::scene_load::LoaderSlot;
-use crate::viewer::worker::WorkerJob;
+use sandtable_draw::list::DrawList;
+use sandtable_walk::shown_ground::ShownGround;
+use sandtable_gpu::error::GpuError;
+use sandtable_gpu::live::LiveShadows;
+use sandtable_gpu::live::prepared::PreparedShadows;
+use sandtable_view::camera::Camera;
+use crate::opened::OpenedScene;
+use crate::relisting::RelistingError;
+use crate::scene_load::LoaderSlot;
+use crate::worker::WorkerJob;
 
 /// How long the camera rests before shadows are made for it: shorter makes them during a flight with pauses.
 const REST: Duration = Duration::from_millis(200);

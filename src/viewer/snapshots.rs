@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
-use crate::pipeline::editing::edit::SceneEdit;
-use crate::pipeline::picture::PictureSize;
-use crate::pipeline::view_snapshot::{self, ViewSnapshot, ViewedCamera};
-use crate::viewer::app::ViewerApp;
-use crate::viewer::drawing_job::DrawingJob;
-use crate::viewer::loading::opening_error;
+use sandtable_editing::edit::SceneEdit;
+use sandtable_sheet::picture::PictureSize;
+use sandtable_editing::view_snapshot::{self, ViewSnapshot, ViewedCamera};
+use crate::app::ViewerApp;
+use crate::drawing_job::DrawingJob;
+use crate::loading::opening_error;
 
 impl ViewerApp {
     /// Says where a picture is that was drawn meanwhile.

@@ -5,15 +5,15 @@
 use egui::{Color32, ColorImage, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
 use glam::{UVec2, Vec2};
 
-use crate::annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
-use crate::annotate::paint::annotate;
-use crate::draw::color::Srgba;
-use crate::draw::font::FontFile;
-use crate::draw::pixels::Pixels;
-use crate::scene::SceneModel;
-use crate::scene::military::SceneSymbol;
-use crate::view::camera::Camera;
-use crate::viewer::opened::OpenedScene;
+use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
+use sandtable_annotate::paint::annotate;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::font::FontFile;
+use sandtable_draw::pixels::Pixels;
+use sandtable_scene::SceneModel;
+use sandtable_scene::military::SceneSymbol;
+use sandtable_view::camera::Camera;
+use crate::opened::OpenedScene;
 
 /// The height of the frame of a friendly unit, in points.
 const FRAME_HEIGHT: f32 = 30.0;
@@ -165,7 +165,7 @@ fn on_screen(symbol: &SceneSymbol, rect: Rect, camera: &Camera) -> Option<Pos2> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::viewing::open_to_view;
+    use sandtable_editing::viewing::open_to_view;
     use std::path::Path;
 
     #[test]

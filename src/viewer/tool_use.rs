@@ -5,18 +5,18 @@ use std::time::{Duration, Instant};
 use egui::{CollapsingHeader, Color32, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
 use glam::{DVec2, Vec2};
 
-use crate::pipeline::editing::edit::SceneEdit;
-use crate::pipeline::editing::effect::EditPreview;
-use crate::pipeline::editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
-use crate::view::camera::Camera;
-use crate::viewer::app::ViewerApp;
-use crate::viewer::ghost::show_ghost;
-use crate::viewer::measuring::{MeasureKind, Measuring, volume_text};
-use crate::viewer::opened::OpenedScene;
-use crate::viewer::paging::PagedTerrain;
-use crate::viewer::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
-use crate::viewer::session::EditOutcome;
-use crate::viewer::view_area::ViewEvent;
+use sandtable_editing::edit::SceneEdit;
+use sandtable_editing::effect::EditPreview;
+use sandtable_editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
+use sandtable_view::camera::Camera;
+use crate::app::ViewerApp;
+use crate::ghost::show_ghost;
+use crate::measuring::{MeasureKind, Measuring, volume_text};
+use crate::opened::OpenedScene;
+use crate::paging::PagedTerrain;
+use crate::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
+use crate::session::EditOutcome;
+use crate::view_area::ViewEvent;
 
 /// How often the earth of an edit that is being drawn is computed anew while the pointer moves.
 const PREVIEW_EVERY: Duration = Duration::from_millis(150);

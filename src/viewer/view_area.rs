@@ -6,19 +6,19 @@ use egui::{
 };
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use crate::draw::list::FeatureId;
-use crate::pipeline::walk::pick::WalkPick;
-use crate::scene::SceneLabel;
-use crate::view::camera::Camera;
-use crate::view::navigation::{NavigationMode, NavigationSteps};
-use crate::viewer::commands::{HeldMotion, held};
-use crate::viewer::ghost::DragTarget;
-use crate::viewer::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
-use crate::viewer::lettering::font;
-use crate::viewer::line_names::LineNames;
-use crate::viewer::line_piece::LinePicture;
-use crate::viewer::opened::OpenedScene;
-use crate::viewer::symbol_layer::SymbolLayer;
+use sandtable_draw::list::FeatureId;
+use sandtable_walk::pick::WalkPick;
+use sandtable_scene::SceneLabel;
+use sandtable_view::camera::Camera;
+use sandtable_view::navigation::{NavigationMode, NavigationSteps};
+use crate::commands::{HeldMotion, held};
+use crate::ghost::DragTarget;
+use crate::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
+use crate::lettering::font;
+use crate::line_names::LineNames;
+use crate::line_piece::LinePicture;
+use crate::opened::OpenedScene;
+use crate::symbol_layer::SymbolLayer;
 
 /// Degrees that dragging over the height of the picture turns.
 const DEG_PER_PICTURE: f64 = 110.0;

@@ -3,12 +3,12 @@
 
 use glam::DVec2;
 
-use crate::pipeline::viewshed::ViewshedSummary;
-use crate::scene::picture::recut::SeenTint;
-use crate::viewer::app::ViewerApp;
-use crate::viewer::measuring::{MeasureKind, seen_facts, viewshed_from};
-use crate::viewer::tool_use::ActiveTool;
-use crate::viewer::worker::WorkerJob;
+use sandtable_query::viewshed::ViewshedSummary;
+use sandtable_picture::recut::SeenTint;
+use crate::app::ViewerApp;
+use crate::measuring::{MeasureKind, seen_facts, viewshed_from};
+use crate::tool_use::ActiveTool;
+use crate::worker::WorkerJob;
 
 /// The viewshed that is shown, or will be.
 pub struct ViewshedOverlay {

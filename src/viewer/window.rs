@@ -16,18 +16,18 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
-use crate::message::chain::error_text;
-use crate::pipeline::files;
-use crate::pipeline::viewing::ViewerOptions;
-use crate::render::gpu::live::LiveOptions;
-use crate::viewer::app::{ViewerApp, WindowRequest};
-use crate::viewer::error::ViewerError;
-use crate::viewer::frame_times::{FrameLoad, FrameTime};
-use crate::viewer::graphics::{FramePresented, PaintedPanels, WindowGraphics};
-use crate::viewer::opened::SceneFrame;
-use crate::viewer::scene_graphics::{SceneGraphics, milliseconds};
-use crate::viewer::script::parse_script;
-use crate::viewer::script_run::{FRAME_S, ScriptRun};
+use sandtable_base::message::chain::error_text;
+use sandtable_files::disk;
+use sandtable_editing::viewing::ViewerOptions;
+use sandtable_gpu::live::LiveOptions;
+use crate::app::{ViewerApp, WindowRequest};
+use crate::error::ViewerError;
+use crate::frame_times::{FrameLoad, FrameTime};
+use crate::graphics::{FramePresented, PaintedPanels, WindowGraphics};
+use crate::opened::SceneFrame;
+use crate::scene_graphics::{SceneGraphics, milliseconds};
+use crate::script::parse_script;
+use crate::script_run::{FRAME_S, ScriptRun};
 
 /// The window's first size, in points; what fits on small screens.
 const FIRST_SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);
@@ -88,7 +88,7 @@ pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
 }
 
 fn read_script(path: &Path, options: &ViewerOptions, started: Instant) -> Result<ScriptRun, ViewerError> {
-    let commands = parse_script(&files::read_text(path)?)
+    let commands = parse_script(&disk::read_text(path)?)
         .map_err(|error| ViewerError::Script { path: path.to_owned(), error })?;
     Ok(ScriptRun::new(commands, options.frames, started))
 }

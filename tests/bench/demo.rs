@@ -11,13 +11,13 @@ mod steps;
 
 use std::path::Path;
 
-use sandtable::draw::list::{DepthLayer, DrawItem};
-use sandtable::export::encode_png;
-use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::scene::picture::ViewDraw;
-use sandtable::scene::{SceneModel, SceneView};
+use sandtable_draw::list::{DepthLayer, DrawItem};
+use sandtable_files::png::encode_png;
+use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_picture::ViewDraw;
+use sandtable_scene::{SceneModel, SceneView};
 
 use crate::steps::{Step, Steps};
 

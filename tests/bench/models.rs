@@ -17,16 +17,16 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use sandtable::draw::list::DrawList;
-use sandtable::model::detail::ModelDetail;
-use sandtable::model::error::CompanionError;
-use sandtable::model::read::read;
-use sandtable::model::simplify::levels;
-use sandtable::model::{Companions, Model};
-use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::scene::SceneModel;
-use sandtable::scene::picture::{build_draw_list, display, draw_list};
-use sandtable::view::camera::Camera;
+use sandtable_draw::list::DrawList;
+use sandtable_model::detail::ModelDetail;
+use sandtable_model::error::CompanionError;
+use sandtable_model::read::read;
+use sandtable_model::simplify::levels;
+use sandtable_model::{Companions, Model};
+use sandtable_render::cpu::{RenderQuality, render};
+use sandtable_scene::SceneModel;
+use sandtable_picture::{build_draw_list, display, draw_list};
+use sandtable_view::camera::Camera;
 
 use crate::steps::{Step, Steps};
 use crate::tests_common::forest::{forest, overlook};

@@ -39,10 +39,10 @@ fn built(
     folder: &tests_common::scratch::Scratch,
     text: &str,
     allowed: &[std::path::PathBuf],
-) -> (sandtable::scene::SceneModel, Vec<steps::Step>) {
+) -> (sandtable_scene::SceneModel, Vec<steps::Step>) {
     let path = folder.write("scene.toml", text);
     let steps = steps::Steps::default();
-    let scene = sandtable::pipeline::scene_file::open_scene(&path, allowed, &|step| steps.begin(step))
+    let scene = sandtable_scene::scene_file::open_scene(&path, allowed, &|step| steps.begin(step))
         .expect("a sound scene");
     (scene, steps.finish())
 }

@@ -17,15 +17,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::earthworks::brush::Crater;
-use sandtable::pipeline::raster_file;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::pipeline::walk::Walk;
-use sandtable::pipeline::walk::frame::{WalkOptions, WalkStatistics};
-use sandtable::scene::SceneModel;
-use sandtable::view::camera::Camera;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_earthworks::brush::Crater;
+use sandtable_files::raster_file;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_walk::Walk;
+use sandtable_walk::frame::{WalkOptions, WalkStatistics};
+use sandtable_scene::SceneModel;
+use sandtable_view::camera::Camera;
 
 use crate::rounds::{median, quantile, time_ms};
 
@@ -183,7 +183,7 @@ fn demo() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
     let scene = Arc::new(open_scene(&path, &[], &|_| {}).expect("the demonstration is sound"));
     let placed = |at: usize| {
-        sandtable::scene::picture::camera(&scene, &scene.cameras[at], (1280, 720)).expect("a sound camera")
+        sandtable_picture::camera(&scene, &scene.cameras[at], (1280, 720)).expect("a sound camera")
     };
     let (first, last) = (placed(0), placed(scene.cameras.len() - 1));
     let cameras: Vec<Camera> = (0..FRAMES)

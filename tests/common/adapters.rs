@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use sandtable::render::gpu::adapter::{Gpu, GpuApi};
+use sandtable_gpu::adapter::{Gpu, GpuApi};
 
 /// One device for each interface that offers one; opening takes a while, so all tests share them.
 ///

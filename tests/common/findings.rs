@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use sandtable::description::finding::{Finding, Severity};
-use sandtable::pipeline::scene_file::{OpenSceneError, open_linted};
+use sandtable_description::finding::{Finding, Severity};
+use sandtable_lint::opened::open_linted;
+use sandtable_scene::scene_file::OpenSceneError;
 
 /// The findings of a check of the scene file `path`, which may read files below the folders `allowed`; where it is not built,
 /// the errors that keep it from that.

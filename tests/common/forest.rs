@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
-use sandtable::description::parse::parse_bytes;
-use sandtable::description::words::Clamp;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture;
-use sandtable::scene::{GroundFit, Placement, SceneModel};
-use sandtable::view::camera::Camera;
+use sandtable_description::parse::parse_bytes;
+use sandtable_description::words::Clamp;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture as picture;
+use sandtable_scene::{GroundFit, Placement, SceneModel};
+use sandtable_view::camera::Camera;
 
 use super::scratch::Scratch;
 
@@ -66,7 +66,7 @@ fn placements(count: usize, models: usize) -> Vec<Placement> {
                 height: 0.0,
                 heading_rad: share(index, 0.618_033_988_749_895) * std::f32::consts::TAU,
                 scale: 0.7 + 0.8 * share(index, 0.414_213_562_373_095),
-                feature: sandtable::draw::list::FeatureId(2 + index as u32),
+                feature: sandtable_draw::list::FeatureId(2 + index as u32),
             }
         })
         .collect()
@@ -84,9 +84,9 @@ pub fn overlook(scene: &SceneModel, size: (u32, u32)) -> Camera {
 
 /// A picture from anywhere.
 pub fn seen_from(scene: &SceneModel, eye: Vec3, target: Vec3, size: (u32, u32)) -> Camera {
-    let view = sandtable::scene::SceneView {
+    let view = sandtable_scene::SceneView {
         name: String::new(),
-        aim: sandtable::scene::ViewAim::At { eye, target },
+        aim: sandtable_scene::ViewAim::At { eye, target },
         fov_y_rad: 0.7,
         paper: None,
     };

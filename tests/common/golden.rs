@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::Crc;
 use image::RgbImage;
-use sandtable::draw::pixels::Pixels;
+use sandtable_draw::pixels::Pixels;
 
 /// Set to make what is rendered the golden pictures.
 const BLESS: &str = "SANDTABLE_BLESS";

@@ -3,8 +3,6 @@
 // Each test binary uses its own part of this.
 #![allow(dead_code)]
 
-#[cfg(feature = "gpu")]
-pub mod adapters;
 pub mod data;
 pub mod findings;
 pub mod forest;

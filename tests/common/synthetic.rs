@@ -13,14 +13,14 @@
 use std::sync::Arc;
 
 use glam::{Mat4, Vec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use sandtable::draw::lighting::{Haze, Lighting, ReliefShading};
-use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
-use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable::draw::pixels::Pixels;
-use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
+use sandtable_draw::lighting::{Haze, Lighting, ReliefShading};
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::pixels::Pixels;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_view::camera::Camera;
 
 /// Posts a side of the ground.
 const POSTS: u32 = 65;

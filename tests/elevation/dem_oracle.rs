@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use sandtable::dem::answer::Answer;
-use sandtable::dem::error::DemError;
-use sandtable::dem::formats::height_encoding::HeightEncoding;
-use sandtable::dem::raster::Raster;
-use sandtable::dem::read::{DemHints, DemOptions, read};
-use sandtable::dem::sample::{bilinear, nearest};
-use sandtable::dem::stats::Stats;
-use sandtable::dem::warp::to_metric;
-use sandtable::geom::crs::{Crs, CrsError};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::error::DemError;
+use sandtable_dem::formats::height_encoding::HeightEncoding;
+use sandtable_dem::raster::Raster;
+use sandtable_dem::read::{DemHints, DemOptions, read};
+use sandtable_dem::sample::{bilinear, nearest};
+use sandtable_dem::stats::Stats;
+use sandtable_dem::warp::to_metric;
+use sandtable_geom::crs::{Crs, CrsError};
 use serde_json::Value;
 
 /// Files that must be refused, each with a word that the refusal must contain.

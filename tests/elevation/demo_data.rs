@@ -156,7 +156,7 @@ fn every_scene_reads_and_names_files_that_are_there() {
         assert!(written.starts_with("# "), "{path:?} opens with what it shows");
         let document: toml::Table = written.parse().unwrap_or_else(|error| panic!("{path:?}: {error}"));
         assert!(document.contains_key("camera"), "{path:?} has a camera");
-        let is_built_in = |file: &String| sandtable::model::built_in::NAMES.contains(&file.as_str());
+        let is_built_in = |file: &String| sandtable_model::built_in::NAMES.contains(&file.as_str());
         for file in files(&document).into_iter().filter(|file| !is_built_in(file)) {
             let place = path.parent().expect("a folder").join(&file);
             // The models come from a room of their own; where they are, they must all be.

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::{DemHints, read as read_dem};
-use sandtable::dem::write::write;
-use sandtable::description::diagnostic::Diagnostic;
-use sandtable::description::parse::parse_bytes;
-use sandtable::geom::crs::Crs;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::ground::{LoadedGround, load};
-use sandtable::scene::planned_pictures::ElevationNeed;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::read::{DemHints, read as read_dem};
+use sandtable_dem::write::write;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::parse::parse_bytes;
+use sandtable_geom::crs::Crs;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::ground::{LoadedGround, load};
+use sandtable_scene::planned_pictures::ElevationNeed;
 
 use crate::common::scratch::Scratch;
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
-use sandtable::dem::cell_grid::CellGrid;
-use sandtable::dem::error::DemErrorKind;
-use sandtable::dem::gridding::{BeyondHull, GridError, Gridded, GriddingMethod, grid};
-use sandtable::dem::points::{PointCloud, PointHints, PointsError, read};
-use sandtable::geom::rect::Rect;
+use sandtable_dem::cell_grid::CellGrid;
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::gridding::{BeyondHull, GridError, Gridded, GriddingMethod, grid};
+use sandtable_dem::points::{PointCloud, PointHints, PointsError, read};
+use sandtable_geom::rect::Rect;
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
 
 use crate::common::data::data;

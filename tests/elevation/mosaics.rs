@@ -5,14 +5,14 @@ use crate::common::scratch;
 use std::fs;
 
 use glam::{DAffine2, DVec2};
-use sandtable::dem::mosaic::{Mosaic, MosaicError, Tiles};
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::void_counts::VoidCounts;
-use sandtable::dem::voids;
-use sandtable::description::parse::parse_bytes;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
+use sandtable_dem::mosaic::{Mosaic, MosaicError, Tiles};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::void_counts::VoidCounts;
+use sandtable_dem::voids;
+use sandtable_description::parse::parse_bytes;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
 
 /// The real tile, with a few voids over the sea cliffs.
 fn monaco() -> Option<Raster> {

@@ -1,14 +1,14 @@
 //! The ground of a scene over elevation in degrees: straight edges, filled voids, and notes on both.
 
 use glam::DVec2;
-use sandtable::dem::answer::Answer;
-use sandtable::description::parse::parse_bytes;
-use sandtable::geom::crs::Crs;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::terrain::query::Interpolation;
-use sandtable::terrain::query::source::source_heights;
+use sandtable_dem::answer::Answer;
+use sandtable_description::parse::parse_bytes;
+use sandtable_geom::crs::Crs;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_terrain::query::Interpolation;
+use sandtable_terrain::query::source::source_heights;
 
 use crate::common::scratch::Scratch;
 
@@ -93,7 +93,7 @@ fn a_ragged_coast_keeps_its_capes_and_loses_the_wedges_alone() {
     // Along three sides there is ground all through.
     let east = (0..lattice.rows()).filter(|&row| {
         let column = lattice.columns() - 1;
-        lattice.height(sandtable::terrain::lattice::Post { column, row }).is_nan()
+        lattice.height(sandtable_terrain::lattice::Post { column, row }).is_nan()
     });
     assert_eq!(east.count(), 0);
     assert!(told(&scene, "cut off"), "{:?}", scene.notes());

@@ -1,15 +1,15 @@
 //! Virtual rasters, as `gdalbuildvrt` writes them, are their tiles joined: in memory, in windows, in scenes.
 
 use glam::{DAffine2, DMat2, DVec2};
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::read::DemOptions;
-use sandtable::dem::windows::{RasterWindow, Windows};
-use sandtable::dem::write::write;
-use sandtable::geom::crs::Crs;
-use sandtable::message::chain::error_text;
-use sandtable::pipeline::dem::{OpenedDem, open, open_either};
-use sandtable::pipeline::scene_file::build_scene_text;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::read::DemOptions;
+use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_dem::write::write;
+use sandtable_geom::crs::Crs;
+use sandtable_base::message::chain::error_text;
+use sandtable_query::dem::{OpenedDem, open, open_either};
+use sandtable_scene::scene_file::build_scene_text;
 
 use crate::common::scratch::Scratch;
 

@@ -1,17 +1,17 @@
 //! What covers the ground: nothing over itself, the later over the earlier, everything else above.
 
 use glam::DVec2;
-use sandtable::description::parse::parse_bytes;
-use sandtable::description::words::Cover;
-use sandtable::draw::list::DepthLayer;
-use sandtable::draw::material::AlphaMode;
-use sandtable::ribbon::partition::overlap_m2;
-use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::ribbon::texture::cover::cover_length_m;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::{FeatureKind, SceneModel};
+use sandtable_description::parse::parse_bytes;
+use sandtable_description::words::Cover;
+use sandtable_draw::list::DepthLayer;
+use sandtable_draw::material::AlphaMode;
+use sandtable_ribbon::partition::overlap_m2;
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_ribbon::texture::cover::cover_length_m;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, camera};
+use sandtable_scene::{FeatureKind, SceneModel};
 
 use crate::common::scratch::Scratch;
 
@@ -85,7 +85,7 @@ fn water_and_roads_lie_over_areas_and_the_ground_shows_through_them() {
     let camera = camera(&scene, &scene.cameras[0], (320, 200)).expect("sound");
     let list = build_draw_list(&scene, &camera, &|_| {}).list;
     assert_eq!(list.check(), Ok(()));
-    let kind = |feature: sandtable::draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
+    let kind = |feature: sandtable_draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
     let draped = list.items.iter().filter(|item| matches!(item.layer, DepthLayer::Draped(_)));
     let order: Vec<FeatureKind> = draped.clone().map(|item| kind(item.feature)).collect();
     let last_area = order.iter().rposition(|kind| *kind == FeatureKind::Area).expect("areas");

@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DrawMesh, FeatureId};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::cpu;
-use sandtable::scene::picture::build_draw_list;
-use sandtable::scene::{Coat, FeatureKind, SceneModel};
-use sandtable::structure::deck_check::closed;
-use sandtable::terrain::query::{Interpolation, Surface, ground_height};
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, FeatureId};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::cpu;
+use sandtable_picture::build_draw_list;
+use sandtable_scene::{Coat, FeatureKind, SceneModel};
+use sandtable_structure::deck_check::closed;
+use sandtable_terrain::query::{Interpolation, Surface, ground_height};
+use sandtable_view::camera::Camera;
 
 fn scene(path: &Path, allow: Vec<PathBuf>) -> SceneModel {
     open_scene(path, &allow, &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))

@@ -1,9 +1,9 @@
 //! Checks of what is built: every seeded mistake is found on its line, and sound scenes are silent.
 
-use sandtable::description::finding::Finding;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::pixels::Pixels;
-use sandtable::export::encode_png;
+use sandtable_description::finding::Finding;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
+use sandtable_files::png::encode_png;
 
 use crate::common::findings::{findings, grave};
 use crate::common::scratch::Scratch;

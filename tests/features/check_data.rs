@@ -1,15 +1,15 @@
 //! Checks of scene files and their data: mistakes seeded in small scenes are found, each on its line, and nothing else is.
 
 use glam::{DAffine2, DVec2};
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::write::write;
-use sandtable::description::finding::Finding;
-use sandtable::description::finding_code::FindingCode;
-use sandtable::description::source_place::SourcePlace;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::pixels::Pixels;
-use sandtable::export::encode_png;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::write::write;
+use sandtable_description::finding::Finding;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::source_place::SourcePlace;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
+use sandtable_files::png::encode_png;
 
 use crate::common::findings::{findings, grave};
 use crate::common::scratch::Scratch;

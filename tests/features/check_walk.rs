@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sandtable::description::finding::Finding;
+use sandtable_description::finding::Finding;
 
 use crate::common::findings::{findings, grave};
 use crate::common::places::{PLACES, text_of};

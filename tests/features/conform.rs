@@ -4,14 +4,14 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::description::parse::parse_bytes;
-use sandtable::earthworks::alignment::Support;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::report::ConformedRoadRow;
-use sandtable::scene::roads::profiles::RoadProfile;
-use sandtable::terrain::query::{Interpolation, ground_height};
+use sandtable_description::parse::parse_bytes;
+use sandtable_earthworks::alignment::Support;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_scene::report::ConformedRoadRow;
+use sandtable_scene::roads::profiles::RoadProfile;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

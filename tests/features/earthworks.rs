@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::message::chain::error_text;
-use sandtable::pipeline::scene_file::{open_scene, open_scene_ground};
-use sandtable::scene::SceneModel;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::water_cover::water_cover;
+use sandtable_base::message::chain::error_text;
+use sandtable_scene::scene_file::{open_scene, open_scene_ground};
+use sandtable_scene::SceneModel;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::water_cover::water_cover;
 
 use crate::common::scratch::Scratch;
 

@@ -5,20 +5,20 @@ use std::sync::LazyLock;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::earthworks::alignment::Alignment;
-use sandtable::geom::polyline::Polyline;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::scene::SceneModel;
-use sandtable::scene::picture::display;
-use sandtable::structure::bands::{BandSize, hedge, parapets, rails, wall};
-use sandtable::structure::draped_solid::DrapedSolid;
-use sandtable::structure::fence::stands;
-use sandtable::structure::fence_band::{FenceBand, check_feet};
-use sandtable::structure::power::check_wires;
-use sandtable::terrain::full_resolution::FullResolution;
-use sandtable::terrain::support_surface::SupportSurface;
-use sandtable::view::camera::Camera;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::polyline::Polyline;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_scene::SceneModel;
+use sandtable_picture::display;
+use sandtable_structure::bands::{BandSize, hedge, parapets, rails, wall};
+use sandtable_structure::draped_solid::DrapedSolid;
+use sandtable_structure::fence::stands;
+use sandtable_structure::fence_band::{FenceBand, check_feet};
+use sandtable_structure::power::check_wires;
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::support_surface::SupportSurface;
+use sandtable_view::camera::Camera;
 
 use crate::common::scratch::Scratch;
 

@@ -4,13 +4,13 @@ mod joins;
 mod places;
 mod scenes;
 
-use sandtable::description::parse::parse_bytes;
-use sandtable::ribbon::partition::overlap_m2;
-use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
+use sandtable_description::parse::parse_bytes;
+use sandtable_ribbon::partition::overlap_m2;
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
 
 use crate::common::scratch::Scratch;
 

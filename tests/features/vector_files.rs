@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::geom::crs::Crs;
-use sandtable::vector::error::VectorError;
-use sandtable::vector::feature::{Geometry, VectorLayer};
-use sandtable::vector::hints::VectorHints;
-use sandtable::vector::read::read;
+use sandtable_geom::crs::Crs;
+use sandtable_vector::error::VectorError;
+use sandtable_vector::feature::{Geometry, VectorLayer};
+use sandtable_vector::hints::VectorHints;
+use sandtable_vector::read::read;
 use serde_json::Value;
 
 use crate::common::data::{data, files_below};

@@ -2,26 +2,26 @@
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::dem::read as dem;
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::DepthLayer;
-use sandtable::earthworks::alignment::Alignment;
-use sandtable::earthworks::channel;
-use sandtable::earthworks::channel::flow;
-use sandtable::earthworks::channel::flow::Flow;
-use sandtable::earthworks::channel::{Channel, check_rise};
-use sandtable::earthworks::shore::{self, LakeBasin};
-use sandtable::geom::polyline::Polyline;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::{FeatureKind, SceneModel};
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::vector::feature::Geometry;
-use sandtable::vector::read as vector;
-use sandtable::view::camera::Camera;
+use sandtable_dem::read as dem;
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::list::DepthLayer;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_earthworks::channel;
+use sandtable_earthworks::channel::flow;
+use sandtable_earthworks::channel::flow::Flow;
+use sandtable_earthworks::channel::{Channel, check_rise};
+use sandtable_earthworks::shore::{self, LakeBasin};
+use sandtable_geom::polyline::Polyline;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, camera};
+use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_vector::feature::Geometry;
+use sandtable_vector::read as vector;
+use sandtable_view::camera::Camera;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
@@ -240,7 +240,7 @@ fn gallery(name: &str) -> SceneModel {
 #[test]
 fn a_lake_is_level_for_every_camera() {
     let scene = gallery("lake.toml");
-    let kind = |feature: sandtable::draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
+    let kind = |feature: sandtable_draw::list::FeatureId| scene.features[feature.0 as usize - 2].kind;
     for step in 0..60u16 {
         let turn = f32::from(step) * 2.399;
         let away = 600.0 + 120.0 * f32::from(step);
@@ -446,7 +446,7 @@ fn thousands_of_real_streams_fall_all_the_way() {
     let mut lattice = Lattice::from_raster(&raster).expect("sound");
     let crs = raster.crs.expect("stated");
     let bytes = read("derived/streams_west.fgb");
-    let layer = vector::read("streams_west.fgb", &bytes, &sandtable::vector::hints::VectorHints::default())
+    let layer = vector::read("streams_west.fgb", &bytes, &sandtable_vector::hints::VectorHints::default())
         .expect("sound");
     let lines = layer.features.iter().flat_map(|feature| match &feature.geometry {
         Geometry::Lines(lines) => lines.clone(),

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use sandtable::pipeline::dataset::DatasetOptions;
-use sandtable::pipeline::service::{NamedFile, RequestLog, ServiceLimits, ServiceOptions};
+use sandtable_query::dataset::DatasetOptions;
+use sandtable_query::service::{NamedFile, RequestLog, ServiceLimits, ServiceOptions};
 
 /// Longer than the service lets a request or an answer take.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -50,7 +50,7 @@ fn service(hill: &Path) -> SocketAddr {
     static STARTED: OnceLock<()> = OnceLock::new();
     STARTED.get_or_init(|| {
         let hill = format!("hill={}", hill.display());
-        std::thread::spawn(move || sandtable::serve::run(&options(&hill)).expect("a service that starts"));
+        std::thread::spawn(move || sandtable_serve::run(&options(&hill)).expect("a service that starts"));
     });
     *ADDRESS.wait()
 }

@@ -9,19 +9,19 @@ mod walks;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use sandtable::dem::points::{self, PointHints};
-use sandtable::dem::read::{self as elevation, DemHints, DemOptions};
-use sandtable::description::expression::Expression;
-use sandtable::description::parse::parse_bytes;
-use sandtable::geom::crs::Crs;
-use sandtable::model::Companions;
-use sandtable::model::error::CompanionError;
-use sandtable::model::read as models;
-use sandtable::pipeline::scene_file::{OpenSceneError, build_scene_text};
-use sandtable::scene::SceneModel;
-use sandtable::symbology::code::SymbolCode;
-use sandtable::vector::hints::VectorHints;
-use sandtable::vector::read as vectors;
+use sandtable_dem::points::{self, PointHints};
+use sandtable_dem::read::{self as elevation, DemHints, DemOptions};
+use sandtable_description::expression::Expression;
+use sandtable_description::parse::parse_bytes;
+use sandtable_geom::crs::Crs;
+use sandtable_model::Companions;
+use sandtable_model::error::CompanionError;
+use sandtable_model::read as models;
+use sandtable_scene::scene_file::{OpenSceneError, build_scene_text};
+use sandtable_scene::SceneModel;
+use sandtable_symbology::code::SymbolCode;
+use sandtable_vector::hints::VectorHints;
+use sandtable_vector::read as vectors;
 
 /// A target by its name.
 pub type Target = (&'static str, fn(&[u8]));

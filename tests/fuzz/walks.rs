@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
-use sandtable::earthworks::brush::Crater;
-use sandtable::pipeline::walk::Walk;
-use sandtable::pipeline::walk::frame::WalkOptions;
-use sandtable::view::camera::Camera;
+use sandtable_earthworks::brush::Crater;
+use sandtable_walk::Walk;
+use sandtable_walk::frame::WalkOptions;
+use sandtable_view::camera::Camera;
 
 use super::byte_source::ByteSource;
 use super::shapes::{SIDE_M, built};

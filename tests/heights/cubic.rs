@@ -1,10 +1,10 @@
 //! Cubic heights of a raster against those of GDAL, `gdalwarp -r cubic`, at positions between its samples.
 
 use glam::DVec2;
-use sandtable::dem::answer::Answer;
-use sandtable::dem::read::{DemHints, read};
-use sandtable::terrain::query::Interpolation;
-use sandtable::terrain::query::source::raster_height;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::read::{DemHints, read};
+use sandtable_terrain::query::Interpolation;
+use sandtable_terrain::query::source::raster_height;
 
 /// Meters: the numbers of both are right to some 1e-13 of a height of 600 m, and positions to 1e-14 degrees, a hundred
 /// millionth of a cell of which heights differ by a few tens of meters.

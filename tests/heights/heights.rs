@@ -7,22 +7,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::dem::answer::{Answer, Status};
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::earthworks::brush::Crater;
-use sandtable::geom::crs::Crs;
-use sandtable::mesh::trimesh::TriMesh;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
-use sandtable::roam::measured_ground::MeasuredGround;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::query::batch::HeightSlices;
-use sandtable::terrain::query::batch::bilinear_ground;
-use sandtable::terrain::query::service::{HeightService, Snapshot};
-use sandtable::terrain::query::source::{raster_height, source_heights};
-use sandtable::terrain::query::tiles::HeightTiles;
-use sandtable::terrain::query::{Interpolation, Surface, ground_height};
-use sandtable::terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
-use sandtable::view::camera::Camera;
+use sandtable_dem::answer::{Answer, Status};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_earthworks::brush::Crater;
+use sandtable_geom::crs::Crs;
+use sandtable_mesh::trimesh::TriMesh;
+use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
+use sandtable_roam::measured_ground::MeasuredGround;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::query::batch::HeightSlices;
+use sandtable_terrain::query::batch::bilinear_ground;
+use sandtable_terrain::query::service::{HeightService, Snapshot};
+use sandtable_terrain::query::source::{raster_height, source_heights};
+use sandtable_terrain::query::tiles::HeightTiles;
+use sandtable_terrain::query::{Interpolation, Surface, ground_height};
+use sandtable_terrain::triangle_surface::{TriangleSurface, facet_contains, plane_z};
+use sandtable_view::camera::Camera;
 
 pub const ALL: [Interpolation; 5] = [
     Interpolation::Planar,

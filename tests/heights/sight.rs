@@ -5,15 +5,15 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::post_rect::PostRect;
-use sandtable::terrain::profile::{ProfileSummary, profile};
-use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::crossings::crossings;
-use sandtable::terrain::sight::ground::SightGround;
-use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use sandtable::terrain::sight::ray::{Ray, RayHit};
-use sandtable::terrain::sight::rise::{Raised, required_rise};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::profile::{ProfileSummary, profile};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::crossings::crossings;
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::ray::{Ray, RayHit};
+use sandtable_terrain::sight::rise::{Raised, required_rise};
 
 /// Knuth's linear congruence (MMIX), from 0 up to 1.
 struct Random(u64);
@@ -467,7 +467,7 @@ fn a_profile_over_a_sinusoid_has_its_length_its_ascent_and_its_extremes() {
 fn on_a_real_elevation_model_lines_and_rays_are_those_of_the_plain_walk() {
     let Some(path) = crate::common::data::data("dem/bigtujunga_utm11_i16_tiled.tif") else { return };
     let bytes = std::fs::read(path).expect("readable");
-    let raster = sandtable::dem::read::read("dem.tif", &bytes, &Default::default()).expect("sound");
+    let raster = sandtable_dem::read::read("dem.tif", &bytes, &Default::default()).expect("sound");
     let ground = SightGround::new(Arc::new(Lattice::from_raster(&raster).expect("in meters")));
     ground.pyramid().check(ground.lattice());
     let mut random = Random(6);

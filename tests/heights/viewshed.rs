@@ -4,14 +4,12 @@ use std::fs;
 
 use glam::DVec2;
 use proptest::prelude::*;
-use sandtable::dem::answer::Answer;
-use sandtable::dem::read::{self, DemHints};
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use sandtable::terrain::sight::viewshed::{
-    PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines,
-};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::read::{self, DemHints};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines};
 
 use crate::common::data::data;
 

@@ -5,16 +5,16 @@
 use glam::Vec2;
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
-use sandtable::annotate::annotation::{Annotations, LineLabel, LinePlacement, PictureLabel};
-use sandtable::annotate::legend::Legend;
-use sandtable::annotate::north::NorthArrow;
-use sandtable::annotate::paint::annotate;
-use sandtable::annotate::report::{AnnotationReport, FurnitureKind};
-use sandtable::annotate::scale_bar::{ScaleBar, ScaleExtent};
-use sandtable::description::words::LabelKind;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::ColorRamp;
-use sandtable::draw::pixels::Pixels;
+use sandtable_annotate::annotation::{Annotations, LineLabel, LinePlacement, PictureLabel};
+use sandtable_annotate::legend::Legend;
+use sandtable_annotate::north::NorthArrow;
+use sandtable_annotate::paint::annotate;
+use sandtable_annotate::report::{AnnotationReport, FurnitureKind};
+use sandtable_annotate::scale_bar::{ScaleBar, ScaleExtent};
+use sandtable_description::words::LabelKind;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::ColorRamp;
+use sandtable_draw::pixels::Pixels;
 
 /// A landscape of ridges under a sky, with grain: busy enough to test halos on.
 fn landscape(width: u32, height: u32) -> Pixels {

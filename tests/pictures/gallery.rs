@@ -10,15 +10,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use sandtable::draw::list::{DepthLayer, DrawItem};
-use sandtable::mesh::check;
-use sandtable::mesh::trimesh::TriMesh;
-use sandtable::pipeline::picture::{PictureSize, RenderedView, render_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::ribbon::drape::check_clearance;
-use sandtable::scene::picture::ViewDraw;
-use sandtable::scene::{SceneModel, SceneView};
+use sandtable_draw::list::{DepthLayer, DrawItem};
+use sandtable_mesh::check;
+use sandtable_mesh::trimesh::TriMesh;
+use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_ribbon::drape::check_clearance;
+use sandtable_picture::ViewDraw;
+use sandtable_scene::{SceneModel, SceneView};
 
 /// Small enough to be quick and to be kept, large enough for annotations.
 const SIZE: PictureSize = PictureSize { width: 480, height: 270 };

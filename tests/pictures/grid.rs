@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use glam::Vec2;
-use sandtable::annotate::figure::CoordinateFigure;
-use sandtable::annotate::grid::{GridAxis, GridLine, PictureGrid};
-use sandtable::pipeline::grid::{grid_over, picture_grid};
-use sandtable::pipeline::picture::{DrawnView, PictureSize, draw_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::scene::SceneModel;
+use sandtable_annotate::figure::CoordinateFigure;
+use sandtable_annotate::grid::{GridAxis, GridLine, PictureGrid};
+use sandtable_sheet::grid::{grid_over, picture_grid};
+use sandtable_sheet::picture::{DrawnView, PictureSize, draw_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_scene::SceneModel;
 
 fn scene() -> SceneModel {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/grid.toml");

@@ -9,8 +9,4 @@ mod grid;
 mod overlaps;
 mod print;
 mod render_cpu;
-mod render_gpu;
-mod render_live;
-mod render_parity;
-mod shaders;
 mod symbols;

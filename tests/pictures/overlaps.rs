@@ -4,11 +4,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use sandtable::annotate::report::{AnnotationReport, SheetBox};
-use sandtable::pipeline::picture::{PictureSize, render_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::scene::{SceneView, ViewAim};
+use sandtable_annotate::report::{AnnotationReport, SheetBox};
+use sandtable_sheet::picture::{PictureSize, render_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_scene::{SceneView, ViewAim};
 
 /// The pairs of boxes that overlap and are not of one name, by their texts.
 pub fn overlaps(report: &AnnotationReport) -> Vec<(String, String)> {

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use sandtable::draw::list::FeatureId;
-use sandtable::pipeline::picture::{PictureSize, draw_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::scene::SceneModel;
+use sandtable_draw::list::FeatureId;
+use sandtable_sheet::picture::{PictureSize, draw_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_scene::SceneModel;
 
 const SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 

@@ -7,13 +7,13 @@ mod shadows;
 mod surfaces;
 
 use glam::Vec3;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DrawList, DrawMesh, FeatureId};
-use sandtable::draw::pixels::Pixels;
-use sandtable::mesh::sink::MeshSink;
-use sandtable::render::cpu::{RenderQuality, SampleCount, render};
-use sandtable::render::picture::Rendering;
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawList, DrawMesh, FeatureId};
+use sandtable_draw::pixels::Pixels;
+use sandtable_mesh::sink::MeshSink;
+use sandtable_render::cpu::{RenderQuality, SampleCount, render};
+use sandtable_render::picture::Rendering;
+use sandtable_view::camera::Camera;
 
 fn save(picture: &Pixels, name: &str) {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -53,7 +53,7 @@ fn quad(corners: [Vec3; 4], color: Srgba) -> DrawMesh {
         .zip([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])
         .map(|(position, uv)| {
             let (position, normal) = (position.into(), normal.into());
-            mesh.vertex(sandtable::draw::list::DrawVertex { position, normal, uv, color })
+            mesh.vertex(sandtable_draw::list::DrawVertex { position, normal, uv, color })
         })
         .collect();
     mesh.triangle([ids[0], ids[1], ids[2]]);

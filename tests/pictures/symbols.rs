@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use glam::Vec2;
-use sandtable::annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
-use sandtable::annotate::paint::annotate;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::pixels::Pixels;
-use sandtable::symbology::code::SymbolCode;
-use sandtable::symbology::entities::{SETS, entities};
-use sandtable::symbology::symbol::MilitarySymbol;
+use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
+use sandtable_annotate::paint::annotate;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::pixels::Pixels;
+use sandtable_symbology::code::SymbolCode;
+use sandtable_symbology::entities::{SETS, entities};
+use sandtable_symbology::symbol::MilitarySymbol;
 
 const TABLE: &str = include_str!("../symbology/milsymbol.txt");
 

@@ -4,8 +4,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use sandtable::description::finding::Severity;
-use sandtable::description::finding_code::FindingCode;
+use sandtable_description::finding::Severity;
+use sandtable_description::finding_code::FindingCode;
 
 const HEAD: &str = "# Findings of `sandtable check`
 

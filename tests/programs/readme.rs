@@ -11,9 +11,9 @@ mod sandbox;
 use std::fs;
 use std::path::Path;
 
-use sandtable::description::parse::parse;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
+use sandtable_description::parse::parse;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
 
 use crate::readme::command::{Command, Line};
 use crate::readme::sandbox::Sandbox;
@@ -30,8 +30,8 @@ const PAGES: [&str; 10] = [
     "scenes/README.md",
     "src/ARCHITECTURE.md",
     "src/python/README.md",
-    "src/SERVE.md",
-    "src/SHARDS.md",
+    "src/serve/SERVE.md",
+    "src/shards/SHARDS.md",
     "tests/bench/README.md",
 ];
 

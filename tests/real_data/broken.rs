@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use sandtable::model::read;
-use sandtable::scene::assets::Assets;
+use sandtable_model::read;
+use sandtable_scene::assets::Assets;
 
 use crate::common::data::{data, files_below};
 use crate::common::scratch::Scratch;

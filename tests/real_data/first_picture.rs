@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use sandtable::draw::color::{Srgba, luminance};
-use sandtable::draw::pixels::Pixels;
-use sandtable::pipeline::new_scene::{self, NewSceneOptions};
-use sandtable::pipeline::picture::{PictureSize, annotate_view, draw_view};
-use sandtable::pipeline::picture_statistics::PictureStatistics;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
+use sandtable_draw::color::{Srgba, luminance};
+use sandtable_draw::pixels::Pixels;
+use sandtable_new::{self as new_scene, NewSceneOptions};
+use sandtable_sheet::picture::{PictureSize, annotate_view, draw_view};
+use sandtable_sheet::picture_statistics::PictureStatistics;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

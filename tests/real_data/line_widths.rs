@@ -4,17 +4,17 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use glam::{DVec2, Vec2};
-use sandtable::earthworks::alignment::Support;
-use sandtable::pipeline::new_scene::{self, NewSceneOptions};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::render::picture::Rendering;
-use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::picture::{build_draw_list, camera, draw_list};
-use sandtable::scene::symbols::LineSymbol;
-use sandtable::scene::{FeatureKind, SceneModel};
-use sandtable::terrain::triangle_surface::TriangleSurface;
-use sandtable::view::camera::Camera;
+use sandtable_earthworks::alignment::Support;
+use sandtable_new::{self as new_scene, NewSceneOptions};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::cpu::{RenderQuality, render};
+use sandtable_render::picture::Rendering;
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_picture::{build_draw_list, camera, draw_list};
+use sandtable_scene::symbols::LineSymbol;
+use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_view::camera::Camera;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

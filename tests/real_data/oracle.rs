@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::dem::answer::Answer;
-use sandtable::geom::crs::Crs;
-use sandtable::terrain::query::service::HeightService;
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable_dem::answer::Answer;
+use sandtable_geom::crs::Crs;
+use sandtable_terrain::query::service::HeightService;
+use sandtable_terrain::query::{Interpolation, Surface};
 
 /// One vertex of a real layer and the ground under it.
 #[derive(Clone, Debug)]

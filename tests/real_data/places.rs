@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use sandtable::geom::crs::Crs;
-use sandtable::scene::{FeatureKind, SceneModel};
-use sandtable::terrain::query::Surface;
+use sandtable_geom::crs::Crs;
+use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_terrain::query::Surface;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

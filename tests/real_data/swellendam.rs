@@ -1,10 +1,10 @@
 //! Swellendam below the Langeberg: a geographic elevation model, roads in another zone's meters, rivers that
 //! leave the model, and reservoirs to be leveled.
 
-use sandtable::geom::crs::Crs;
-use sandtable::scene::FeatureKind;
-use sandtable::terrain::lattice::Post;
-use sandtable::terrain::query::Surface;
+use sandtable_geom::crs::Crs;
+use sandtable_scene::FeatureKind;
+use sandtable_terrain::lattice::Post;
+use sandtable_terrain::query::Surface;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use sandtable::scene::{FeatureKind, SceneModel};
+use sandtable_scene::{FeatureKind, SceneModel};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -1,8 +1,8 @@
 //! Five places whole: every road, bridge, building, stream, tree and patch of land that their files hold.
 
-use sandtable::earthworks::alignment::Support;
-use sandtable::ribbon::partition::overlap_m2;
-use sandtable::scene::{FeatureKind, SceneModel};
+use sandtable_earthworks::alignment::Support;
+use sandtable_ribbon::partition::overlap_m2;
+use sandtable_scene::{FeatureKind, SceneModel};
 
 use crate::common::places::text_of;
 use crate::common::scratch::Scratch;

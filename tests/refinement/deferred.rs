@@ -2,23 +2,23 @@
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::earthworks::brush::{Crater, set_heights};
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::changes::RefinementChanges;
-use sandtable::roam::refine::deferred::Deferred;
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::post_rect::PostRect;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_earthworks::brush::{Crater, set_heights};
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::block::{BlockSource, PatchBlock, WholeGround};
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::refine::changes::RefinementChanges;
+use sandtable_roam::refine::deferred::Deferred;
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 fn hills(columns: u32, rows: u32, holes: &[usize]) -> Lattice {
     let mut heights: Vec<f32> = (0..columns * rows)

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
-use sandtable::earthworks::brush::{BrushChanges, Crater, Embankment, TireTrack, Trench, set_heights};
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::block::BlockSource;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::dynamic::{DynamicOptions, DynamicTerrain, Edit, ErrorMeasure, Radius, mend_active};
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::post_rect::PostRect;
+use sandtable_earthworks::brush::{BrushChanges, Crater, Embankment, TireTrack, Trench, set_heights};
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::block::BlockSource;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, Edit, ErrorMeasure, Radius, mend_active};
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 const CELL_M: f64 = 10.0;
 
@@ -102,7 +102,7 @@ fn all(terrain: &DynamicTerrain, eye: Vec3) -> ActiveSet {
 }
 
 /// The dirty patches by looking at every vertex of each.
-fn dirty_plainly(before: &DynamicTerrain, after: &DynamicTerrain) -> Vec<sandtable::roam::graph::Vertex> {
+fn dirty_plainly(before: &DynamicTerrain, after: &DynamicTerrain) -> Vec<sandtable_roam::graph::Vertex> {
     let layout = after.layout();
     let same = |vertex| {
         let post = layout.post(vertex);
@@ -111,7 +111,7 @@ fn dirty_plainly(before: &DynamicTerrain, after: &DynamicTerrain) -> Vec<sandtab
             && before.spheres().at(layout, vertex) == after.spheres().at(layout, vertex)
     };
     let patch = layout.patch();
-    let is_dirty = |corner: &sandtable::roam::graph::Vertex| {
+    let is_dirty = |corner: &sandtable_roam::graph::Vertex| {
         (0..=patch).any(|y| (0..=patch).any(|x| !same(corner.moved(x, y))))
     };
     layout.patches().filter(is_dirty).collect()

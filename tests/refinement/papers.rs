@@ -9,15 +9,15 @@ mod patches;
 mod quadtree;
 
 use glam::{DVec2, Vec3};
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::culling::PatchHeights;
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::terrain::lattice::Lattice;
-use sandtable::view::camera::Camera;
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::culling::PatchHeights;
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_view::camera::Camera;
 
 /// A ground with what refinement needs of it, posts 10 m apart.
 struct World {

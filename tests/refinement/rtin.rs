@@ -5,10 +5,10 @@ mod fields;
 
 use glam::DVec2;
 
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::extract::{Extract, extract};
-use sandtable::roam::layout::PatchLayout;
-use sandtable::terrain::lattice::Lattice;
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::extract::{Extract, extract};
+use sandtable_roam::layout::PatchLayout;
+use sandtable_terrain::lattice::Lattice;
 
 const SIZE: usize = 257;
 

@@ -4,20 +4,20 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::midpoint::midpoint_error_at;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::roam::roughness::Roughness;
-use sandtable::roam::spheres::{SphereMap, reach};
-use sandtable::terrain::lattice::Lattice;
-use sandtable::terrain::triangle_surface::TriangleSurface;
-use sandtable::view::camera::Camera;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::errors::midpoint::midpoint_error_at;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_roam::roughness::Roughness;
+use sandtable_roam::spheres::{SphereMap, reach};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_view::camera::Camera;
 
 /// Rough ground with hills, the same for the same seed; one post in `hole_every` has no data, 0 for none.
 fn terrain(columns: u32, rows: u32, seed: u64, hole_every: u64) -> Lattice {

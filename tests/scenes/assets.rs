@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use sandtable::model::Companions;
-use sandtable::scene::assets::{AssetError, Assets};
+use sandtable_model::Companions;
+use sandtable_scene::assets::{AssetError, Assets};
 
 /// A folder of its own for each test, gone when it ends:
 ///

@@ -3,19 +3,19 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::dem::answer::Answer;
-use sandtable::dem::read::DemOptions;
-use sandtable::draw::list::FeatureId;
-use sandtable::pipeline::dem;
-use sandtable::pipeline::output_files::OutputFiles;
-use sandtable::pipeline::picture::{PictureSize, draw_view};
-use sandtable::pipeline::picture_buffers::{PictureBuffers, pick};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
-use sandtable::render::cpu::render_buffers;
-use sandtable::scene::picture::{build_shapes, camera};
-use sandtable::scene::{ParallelView, SceneModel, SceneView, ViewAim};
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::read::DemOptions;
+use sandtable_draw::list::FeatureId;
+use sandtable_query::dem;
+use sandtable_files::output_files::OutputFiles;
+use sandtable_sheet::picture::{PictureSize, draw_view};
+use sandtable_sheet::picture_buffers::{PictureBuffers, pick};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
+use sandtable_render::cpu::render_buffers;
+use sandtable_picture::{build_shapes, camera};
+use sandtable_scene::{ParallelView, SceneModel, SceneView, ViewAim};
+use sandtable_terrain::query::{Interpolation, Surface};
 
 use crate::common::scratch::Scratch;
 

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use crate::common::forest::{SIDE_M, forest, overlook, seen_from};
 use glam::Vec3;
-use sandtable::draw::list::{DrawItem, DrawList, FeatureId};
-use sandtable::geom::aabb::Aabb;
-use sandtable::mesh::sink::VertexId;
-use sandtable::model::error::CompanionError;
-use sandtable::model::read::read;
-use sandtable::model::simplify::levels;
-use sandtable::model::{Companions, Model, ModelPart};
-use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::render::picture::Rendering;
-use sandtable::scene::SceneModel;
-use sandtable::scene::picture::{build_draw_list, display, draw_list};
-use sandtable::terrain::triangle_surface::TriangleSurface;
-use sandtable::view::camera::Camera;
+use sandtable_draw::list::{DrawItem, DrawList, FeatureId};
+use sandtable_geom::aabb::Aabb;
+use sandtable_mesh::sink::VertexId;
+use sandtable_model::error::CompanionError;
+use sandtable_model::read::read;
+use sandtable_model::simplify::levels;
+use sandtable_model::{Companions, Model, ModelPart};
+use sandtable_render::cpu::{RenderQuality, render};
+use sandtable_render::picture::Rendering;
+use sandtable_scene::SceneModel;
+use sandtable_picture::{build_draw_list, display, draw_list};
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_view::camera::Camera;
 
 struct Assets;
 

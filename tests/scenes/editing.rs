@@ -6,16 +6,16 @@ use std::sync::{Arc, LazyLock};
 
 use glam::DVec2;
 use proptest::prelude::*;
-use sandtable::earthworks::earthwork::dig;
-use sandtable::pipeline::editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, SceneEdit};
-use sandtable::pipeline::editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
-use sandtable::pipeline::editing::effect::EditEffect;
-use sandtable::pipeline::editing::reload::{ReloadedScene, WatchedScene};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::pipeline::walk::Walk;
-use sandtable::pipeline::walk::frame::WalkOptions;
-use sandtable::scene::SceneModel;
-use sandtable::terrain::lattice::Lattice;
+use sandtable_earthworks::earthwork::dig;
+use sandtable_editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, SceneEdit};
+use sandtable_editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
+use sandtable_editing::effect::EditEffect;
+use sandtable_editing::reload::{ReloadedScene, WatchedScene};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_walk::Walk;
+use sandtable_walk::frame::WalkOptions;
+use sandtable_scene::SceneModel;
+use sandtable_terrain::lattice::Lattice;
 
 use crate::common::scratch::Scratch;
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable::pipeline::scene_file::open_scene_with_flight;
-use sandtable::scene::ViewAim;
-use sandtable::terrain::full_resolution::FullResolution;
-use sandtable::terrain::triangle_surface::TriangleSurface;
+use sandtable_walk::flown_scene::open_scene_with_flight;
+use sandtable_scene::ViewAim;
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 #[test]
 fn the_eye_stays_above_the_ground_and_neither_jumps_nor_jerks() {

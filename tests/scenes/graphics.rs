@@ -4,15 +4,15 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::{DVec2, Vec3};
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::{DepthLayer, FeatureId};
-use sandtable::ribbon::drape::check_clearance;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{ViewDraw, build_draw_list};
-use sandtable::symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
-use sandtable::terrain::sight::viewshed::{PostVisibility, viewshed};
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_ribbon::drape::check_clearance;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{ViewDraw, build_draw_list};
+use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
+use sandtable_terrain::sight::viewshed::{PostVisibility, viewshed};
 
 use crate::common::forest::seen_from;
 use crate::common::golden::is_blessing;
@@ -135,10 +135,10 @@ fn a_line_is_as_wide_on_the_picture_near_as_far() {
     let text = "[[graphic]]\nkind = \"light_line\"\npoints = [[10000, 200], [10000, 19000]]\n";
     let scene = scene(text).expect("a line");
     let camera = seen_from(&scene, Vec3::new(10e3, -9e3, 12e3), Vec3::new(10e3, 9e3, 300.0), (1280, 720));
-    let picture = sandtable::render::cpu::render(
+    let picture = sandtable_render::cpu::render(
         &build_draw_list(&scene, &camera, &|_| ()).list,
         &camera,
-        &sandtable::render::cpu::RenderQuality::default(),
+        &sandtable_render::cpu::RenderQuality::default(),
     )
     .expect("a picture");
     let line = scene.graphics[0].feature;

@@ -4,13 +4,13 @@ use std::io::Cursor;
 
 use glam::{DVec2, Vec2};
 use image::{ImageFormat, Rgba, RgbaImage};
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::color::Srgba;
-use sandtable::geom::crs::Crs;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, camera};
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::crs::Crs;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, camera};
 
 use crate::common::scratch::Scratch;
 

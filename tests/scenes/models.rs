@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use sandtable::geom::aabb::Aabb;
-use sandtable::message::chain::error_text;
-use sandtable::model::error::{CompanionError, ModelError};
-use sandtable::model::read::read;
-use sandtable::model::{Companions, Model};
+use sandtable_geom::aabb::Aabb;
+use sandtable_base::message::chain::error_text;
+use sandtable_model::error::{CompanionError, ModelError};
+use sandtable_model::read::read;
+use sandtable_model::{Companions, Model};
 use serde_json::Value;
 
 /// Files under `models/` that must be refused, with a word their error must have.

@@ -4,12 +4,12 @@ use std::fs;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use sandtable::description::parse::parse_bytes;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::scene::plinth::base_z;
+use sandtable_description::parse::parse_bytes;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, camera};
+use sandtable_scene::plinth::base_z;
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).
 fn folder(test: &str, (columns, rows): (u32, u32)) -> PathBuf {
@@ -65,7 +65,7 @@ fn a_model_whose_foot_is_out_of_view_is_drawn_all_the_same() {
     let camera = camera(&scene, &scene.cameras[0], (640, 360)).expect("sound");
     let shot = build_draw_list(&scene, &camera, &|_| ());
     assert_eq!(shot.ground_triangles, 0, "no ground is in view");
-    let feature = sandtable::draw::list::FeatureId(2);
+    let feature = sandtable_draw::list::FeatureId(2);
     let mast = shot.list.items.iter().find(|item| item.feature == feature).expect("the mast is drawn");
     let foot = mast.world_from_mesh.transform_point3(Vec3::ZERO);
     assert!((70.0..130.0).contains(&foot.z), "it stands on the ground, at {foot}");

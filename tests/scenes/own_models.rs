@@ -6,10 +6,10 @@ mod models;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use sandtable::geom::aabb::Aabb;
-use sandtable::model::error::CompanionError;
-use sandtable::model::read::read;
-use sandtable::model::{Census, Companions, Model};
+use sandtable_geom::aabb::Aabb;
+use sandtable_model::error::CompanionError;
+use sandtable_model::read::read;
+use sandtable_model::{Census, Companions, Model};
 
 fn folder() -> PathBuf {
     concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into()
@@ -107,7 +107,7 @@ fn surfaces_face_outward() {
         let mut volume = 0.0;
         for part in asset(name).parts {
             let at =
-                |id: sandtable::mesh::sink::VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
+                |id: sandtable_mesh::sink::VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
             let corners = part.mesh.triangles.iter().map(|triangle| triangle.map(at));
             volume += corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum::<f32>();
         }

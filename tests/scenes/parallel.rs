@@ -1,16 +1,16 @@
 //! Plans, orthographic and oblique pictures: what lies where on them, to a hundredth of a pixel.
 
 use glam::{DVec2, Vec2, Vec3};
-use sandtable::description::parse::parse_bytes;
-use sandtable::pipeline::picture::{PictureSize, render_view};
-use sandtable::render::RenderBackend;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, camera, display};
-use sandtable::terrain::full_resolution::FullResolution;
-use sandtable::terrain::triangle_surface::TriangleSurface;
-use sandtable::view::camera::Camera;
+use sandtable_description::parse::parse_bytes;
+use sandtable_sheet::picture::{PictureSize, render_view};
+use sandtable_render::RenderBackend;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, camera, display};
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_view::camera::Camera;
 
 /// Pixels per meter at 1:10,000 and 96 dots per inch.
 const PX_PER_M: f32 = 96.0 / 0.0254 / 10_000.0;

@@ -2,18 +2,18 @@
 
 use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2, Vec3};
-use sandtable::description::diagnostic::Diagnostic;
-use sandtable::description::document::Document;
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::DrawItem;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::{build, build_ground};
-use sandtable::scene::picture::{ViewDraw, build_draw_list, camera};
-use sandtable::scene::report::ModelRow;
-use sandtable::scene::{SceneModel, SceneView, ViewAim};
-use sandtable::terrain::lattice::Lattice;
-use sandtable::terrain::query::{Interpolation, ground_height};
-use sandtable::terrain::triangle_surface::TriangleSurface;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::list::DrawItem;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::{build, build_ground};
+use sandtable_picture::{ViewDraw, build_draw_list, camera};
+use sandtable_scene::report::ModelRow;
+use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// A house of 30 × 20 m and 12 m high, its foot at z = −2, as an OBJ file (Y up, front toward +Z).
 const HOUSE: &str = "v -15 -2 10\nv 15 -2 10\nv 15 -2 -10\nv -15 -2 -10\nv -15 10 10\nv 15 10 10\nv 15 10 -10\n\

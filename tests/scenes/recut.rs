@@ -5,16 +5,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use sandtable::draw::list::DrawMesh;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::ribbon::drape::drape;
-use sandtable::ribbon::patches::{Drapes, StalePatch};
-use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::refine::coherent::Coherent;
-use sandtable::scene::picture::{camera, recut};
-use sandtable::scene::{SceneModel, SceneView, ViewAim};
-use sandtable::view::camera::Camera;
+use sandtable_draw::list::DrawMesh;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_ribbon::drape::drape;
+use sandtable_ribbon::patches::{Drapes, StalePatch};
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::refine::coherent::Coherent;
+use sandtable_picture::{camera, recut};
+use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_view::camera::Camera;
 
 /// f32 world coordinates in a scene of ten kilometers, times the slope of a mountain side.
 const ROUNDING_M: f64 = 5e-3;
@@ -47,7 +47,7 @@ impl Walk<'_> {
 }
 
 fn plan_area(mesh: &DrawMesh) -> f64 {
-    let corner = |id: sandtable::mesh::sink::VertexId| {
+    let corner = |id: sandtable_mesh::sink::VertexId| {
         Vec3::from(mesh.vertices[id.index()].position).truncate().as_dvec2()
     };
     mesh.triangles

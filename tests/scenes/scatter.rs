@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec2};
-use sandtable::description::parse::parse_bytes;
-use sandtable::geom::polygon;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::terrain::query::gradient::{GradientSurface, ground_gradient};
-use sandtable::terrain::query::{Interpolation, ground_height};
+use sandtable_description::parse::parse_bytes;
+use sandtable_geom::polygon;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_terrain::query::gradient::{GradientSurface, ground_gradient};
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// 101 × 101 posts 10 m apart; the south-west post stands at `corner`. A valley along x = 500.
 fn valley(corner: (f64, f64), posts: u32) -> String {
@@ -198,7 +198,7 @@ fn the_number_of_threads_changes_nothing() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         let scene = pool.install(|| scene(&text)).expect("sound");
-        let looks = |placement: &sandtable::scene::Placement| {
+        let looks = |placement: &sandtable_scene::Placement| {
             [placement.at.x, placement.at.y, placement.scale, placement.heading_rad].map(f32::to_bits)
         };
         scene.placements.iter().map(looks).collect::<Vec<_>>()

@@ -6,16 +6,16 @@ mod schema;
 mod symbols_page;
 
 use proptest::prelude::{ProptestConfig, any};
-use sandtable::description::color::{Color, RampChoice};
-use sandtable::description::diagnostic::Diagnostics;
-use sandtable::description::document::Document;
-use sandtable::description::feature_value::FeatureValue;
-use sandtable::description::parse::{parse, parse_bytes};
-use sandtable::description::scalar::Scalar;
-use sandtable::description::selection::Selection;
-use sandtable::description::words::{Clamp, LabelKind, RampName, RoadSurface};
-use sandtable::geom::crs::Crs;
-use sandtable::limits::SCENE_BYTES;
+use sandtable_description::color::{Color, RampChoice};
+use sandtable_description::diagnostic::Diagnostics;
+use sandtable_description::document::Document;
+use sandtable_description::feature_value::FeatureValue;
+use sandtable_description::parse::{parse, parse_bytes};
+use sandtable_description::scalar::Scalar;
+use sandtable_description::selection::Selection;
+use sandtable_description::words::{Clamp, LabelKind, RampName, RoadSurface};
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::SCENE_BYTES;
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"

@@ -1,16 +1,16 @@
 //! Roads are drawn as wide as they are, or as wide as they need to be to be seen.
 
 use glam::{DVec2, Vec2, Vec3};
-use sandtable::description::parse::parse_bytes;
-use sandtable::draw::list::FeatureId;
-use sandtable::geom::polyline::Polyline;
-use sandtable::render::cpu::{RenderQuality, render};
-use sandtable::render::picture::Rendering;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
-use sandtable::scene::picture::{build_draw_list, draw_list};
-use sandtable::scene::{FeatureKind, SceneModel};
-use sandtable::view::camera::Camera;
+use sandtable_description::parse::parse_bytes;
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::polyline::Polyline;
+use sandtable_render::cpu::{RenderQuality, render};
+use sandtable_render::picture::Rendering;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
+use sandtable_picture::{build_draw_list, draw_list};
+use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_view::camera::Camera;
 
 use crate::common::forest::seen_from;
 use crate::common::scratch::Scratch;
@@ -110,14 +110,14 @@ fn a_road_seen_from_near_has_its_true_width() {
 #[test]
 fn what_no_camera_sees_has_its_true_width() {
     let scene = scene();
-    let ground = sandtable::scene::picture::display(
+    let ground = sandtable_picture::display(
         &scene,
         &seen_from(&scene, Vec3::new(15e3, -4e3, 12_100.0), Vec3::new(15e3, 15e3, 100.0), (1440, 1080)),
     );
     let (list, _) = draw_list(&scene, &ground, &|_| ());
     let roads = list.items.iter().filter(|item| item.feature == road(&scene));
-    let area = |mesh: &sandtable::draw::list::DrawMesh| -> f64 {
-        let corner = |id: sandtable::mesh::sink::VertexId| {
+    let area = |mesh: &sandtable_draw::list::DrawMesh| -> f64 {
+        let corner = |id: sandtable_mesh::sink::VertexId| {
             Vec3::from(mesh.vertices[id.index()].position).truncate().as_dvec2()
         };
         let doubled = |[a, b, c]: [DVec2; 3]| (b - a).perp_dot(c - a);

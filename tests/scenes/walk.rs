@@ -5,21 +5,21 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DVec2, Mat4, Vec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
-use sandtable::draw::patches::{DrapedPiece, GroundChanges, PatchId};
-use sandtable::earthworks::brush::{Crater, Trench};
-use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::pipeline::picture::PictureSize;
-use sandtable::pipeline::picture_buffers::pick;
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::pipeline::walk::Walk;
-use sandtable::pipeline::walk::frame::WalkOptions;
-use sandtable::pipeline::walk::pick::{StandingIndex, pixel_ray};
-use sandtable::render::{RenderBackend, render};
-use sandtable::scene::SceneModel;
-use sandtable::scene::picture::{build_draw_list, camera};
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable_draw::patches::{DrapedPiece, GroundChanges, PatchId};
+use sandtable_earthworks::brush::{Crater, Trench};
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_sheet::picture::PictureSize;
+use sandtable_sheet::picture_buffers::pick;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_walk::Walk;
+use sandtable_walk::frame::WalkOptions;
+use sandtable_walk::pick::{StandingIndex, pixel_ray};
+use sandtable_render::{RenderBackend, render};
+use sandtable_scene::SceneModel;
+use sandtable_picture::{build_draw_list, camera};
+use sandtable_view::camera::Camera;
 
 /// What a renderer keeps of the changes it was handed.
 #[derive(Default)]
@@ -92,7 +92,7 @@ fn difference(walked: &DrawList, camera: &Camera, scene: &SceneModel, name: &str
     let [a, b] = [walked, &drawn].map(|list| render(list, camera, RenderBackend::Cpu).expect("a sound list"));
     if let Some(folder) = std::env::var_os("SANDTABLE_LOOK") {
         for (picture, of) in [(&a, "walk"), (&b, "picture")] {
-            let png = sandtable::export::encode_png(&picture.pixels);
+            let png = sandtable_files::png::encode_png(&picture.pixels);
             std::fs::write(Path::new(&folder).join(format!("{name}-{of}.png")), png).expect("writable");
         }
     }
@@ -206,8 +206,8 @@ fn a_crater_shows_in_the_next_frame_and_is_gone_when_it_is_taken_back() {
         let last = frame.changes.map.last().expect("the map was changed back");
         for (row, line) in last.posts.chunks_exact(last.columns as usize).enumerate() {
             let start = (last.first[1] as usize + row) * columns as usize + last.first[0] as usize;
-            let apart = |(now, then): (&sandtable::draw::ground::GroundPost, _)| {
-                let then: &sandtable::draw::ground::GroundPost = then;
+            let apart = |(now, then): (&sandtable_draw::ground::GroundPost, _)| {
+                let then: &sandtable_draw::ground::GroundPost = then;
                 (now.height_m - then.height_m).abs()
             };
             let most = line.iter().zip(&posts[start..]).map(apart).fold(0.0, f32::max);

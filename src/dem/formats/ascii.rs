@@ -11,15 +11,15 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::header::HeaderFields;
-use crate::dem::formats::text::{TextWords, number, quote};
-use crate::dem::formats::{DemFormat, Recognition};
-use crate::dem::georef::projection_file_of;
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, SampleFloat, Samples, north_up};
-use crate::dem::read::DemFile;
-use crate::dem::write::{WriteError, WrittenDem};
+use crate::error::DemErrorKind;
+use crate::formats::header::HeaderFields;
+use crate::formats::text::{TextWords, number, quote};
+use crate::formats::{DemFormat, Recognition};
+use crate::georef::projection_file_of;
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, SampleFloat, Samples, north_up};
+use crate::read::DemFile;
+use crate::write::{WriteError, WrittenDem};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI ASCII grid",
@@ -188,7 +188,7 @@ fn nodata_to_write(raster: &Raster) -> Result<f64, WriteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn grid(text: &str) -> Result<Raster, String> {
         read("a.asc", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())

@@ -23,19 +23,19 @@
 
 use glam::DVec2;
 
-use crate::bytes::{ByteFields, ByteOrder};
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain_raster::{self, PlainRaster};
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
-use crate::dem::georef::{crs_on_earth, projection_file_of, utm_code};
-use crate::dem::raster::{Raster, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::SampleType;
-use crate::dem::stored::StoredSamples;
-use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
-use crate::dem::write::{WriteError, WrittenDem};
-use crate::geom::crs::Crs;
+use sandtable_base::bytes::{ByteFields, ByteOrder};
+use crate::error::DemErrorKind;
+use crate::formats::plain_raster::{self, PlainRaster};
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition};
+use crate::georef::{crs_on_earth, projection_file_of, utm_code};
+use crate::raster::{Raster, north_up_nodes};
+use crate::read::DemFile;
+use crate::sample_type::SampleType;
+use crate::stored::StoredSamples;
+use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
+use crate::write::{WriteError, WrittenDem};
+use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "BT terrain",
@@ -306,8 +306,8 @@ fn system_fields(crs: Option<&Crs>) -> (i16, i16, i16) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::Samples;
-    use crate::dem::read::{DemHints, read};
+    use crate::raster::Samples;
+    use crate::read::{DemHints, read};
 
     fn terrain(version: &[u8; 10], values: &[i16]) -> Vec<u8> {
         let mut bytes = vec![0u8; HEADER];

@@ -15,13 +15,13 @@
 
 use glam::DVec2;
 
-use crate::bytes::ByteFields;
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::geom::crs::Crs;
+use sandtable_base::bytes::ByteFields;
+use crate::error::DemErrorKind;
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, Samples, north_up_nodes};
+use crate::read::DemFile;
+use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "DTED",
@@ -203,7 +203,7 @@ fn text(bytes: &[u8], at: usize, length: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     /// A cell of two columns and three rows at 7° W, 43° N, ten minutes apart.
     fn cell(records: &[(u16, [i32; 3])]) -> Vec<u8> {

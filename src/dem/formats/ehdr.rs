@@ -7,16 +7,16 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::header::HeaderFields;
-use crate::dem::formats::plain_raster::{self, PlainRaster};
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::georef;
-use crate::dem::raster::{Raster, north_up, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::{NumberKind, SampleType};
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::formats::header::HeaderFields;
+use crate::formats::plain_raster::{self, PlainRaster};
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::georef;
+use crate::raster::{Raster, north_up, north_up_nodes};
+use crate::read::DemFile;
+use crate::sample_type::{NumberKind, SampleType};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI binary grid",
@@ -120,7 +120,7 @@ fn place(header: &HeaderFields, height: u32) -> Result<Option<DAffine2>, DemErro
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn grid(name: &str, header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = header.to_owned();

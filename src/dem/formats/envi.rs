@@ -6,17 +6,17 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::header::HeaderFields;
-use crate::dem::formats::plain_raster::{self, PlainRaster};
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::georef::{self, utm_code};
-use crate::dem::raster::{Raster, north_up};
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::SampleType;
-use crate::geom::crs::Crs;
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::formats::header::HeaderFields;
+use crate::formats::plain_raster::{self, PlainRaster};
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::georef::{self, utm_code};
+use crate::raster::{Raster, north_up};
+use crate::read::DemFile;
+use crate::sample_type::SampleType;
+use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ENVI raster",
@@ -149,7 +149,7 @@ fn system(map: &[&str]) -> Result<Option<Crs>, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn raster(header: &str, bytes: &[u8]) -> Result<Raster, String> {
         let header = format!("ENVI\n{header}");

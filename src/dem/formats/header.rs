@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::text::{number, quote};
+use crate::error::DemErrorKind;
+use crate::formats::text::{number, quote};
 
 /// The keys of a header in lower case, and their values.
 pub(crate) struct HeaderFields {

@@ -5,16 +5,16 @@
 
 use glam::DVec2;
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain_raster::{self, PlainRaster};
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition};
-use crate::dem::raster::{Raster, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::SampleType;
-use crate::dem::write::{WriteError, WrittenDem};
-use crate::geom::crs::Crs;
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::formats::plain_raster::{self, PlainRaster};
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition};
+use crate::raster::{Raster, north_up_nodes};
+use crate::read::DemFile;
+use crate::sample_type::SampleType;
+use crate::write::{WriteError, WrittenDem};
+use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "SRTM tile",
@@ -129,7 +129,7 @@ fn write(raster: &Raster, stem: &str) -> Result<WrittenDem, WriteError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     #[test]
     fn the_name_is_the_corner() {

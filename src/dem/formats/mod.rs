@@ -23,17 +23,18 @@ mod xyz;
 
 use std::borrow::Cow;
 use std::error::Error;
+use std::fs::File;
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Raster;
-use crate::dem::read::DemFile;
-use crate::dem::tiff::geotiff;
-use crate::dem::windows::Windows;
-use crate::dem::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
-use crate::limits::UNPACKED_RASTER_BYTES;
+use crate::error::DemErrorKind;
+use crate::raster::Raster;
+use crate::read::DemFile;
+use crate::tiff::geotiff;
+use crate::windows::Windows;
+use crate::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use sandtable_base::limits::UNPACKED_RASTER_BYTES;
 
 /// The formats, in the order in which their content is tried.
 pub static FORMATS: [&DemFormat; 13] = [
@@ -98,6 +99,24 @@ impl<C: FileContent + ?Sized> FileContent for Box<C> {
 
 impl<B: AsRef<[u8]> + Send> FileContent for Cursor<B> {}
 
+impl FileContent for File {
+    #[cfg(unix)]
+    fn by_place(&self) -> Option<Arc<dyn ReadByPlace>> {
+        Some(Arc::new(FileByPlace(self.try_clone().ok()?)))
+    }
+}
+
+/// A file of a system that reads by place.
+#[cfg(unix)]
+struct FileByPlace(File);
+
+#[cfg(unix)]
+impl ReadByPlace for FileByPlace {
+    fn read_by_place(&self, out: &mut [u8], start: u64) -> io::Result<usize> {
+        std::os::unix::fs::FileExt::read_at(&self.0, out, start)
+    }
+}
+
 /// The extensions of the formats that are written, for messages.
 pub const WRITTEN_EXTENSIONS: &str = ".tif, .asc, .bt, .hgt or .png";
 
@@ -119,7 +138,7 @@ pub struct DemFormat {
     /// Writes a raster; `None` where the format is only read. The text is the stem of the file's name.
     pub(crate) writer: Option<DemWriter>,
     /// Writes a raster that is read in windows: the bytes of `writer`; `None` where the format is written from memory.
-    pub(crate) windows_writer: Option<WindowsWriter>,
+    pub windows_writer: Option<WindowsWriter>,
 }
 
 /// How files of a format are recognized.

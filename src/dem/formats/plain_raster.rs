@@ -2,13 +2,13 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::FileContent;
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::DemFile;
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::limits::WINDOWED_SAMPLES;
+use crate::error::DemErrorKind;
+use crate::formats::FileContent;
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::raster::{Raster, Samples};
+use crate::read::DemFile;
+use crate::windows::{RasterWindow, Windows};
+use sandtable_base::limits::WINDOWED_SAMPLES;
 
 /// A raster and the places of its samples.
 pub(super) struct PlainRaster {

@@ -10,14 +10,14 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Transformations};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::height_encoding::HeightEncoding;
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::georef::{self, projection_file_of, world_file_of};
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::DemFile;
-use crate::dem::write::{WriteError, WrittenDem};
+use crate::error::DemErrorKind;
+use crate::formats::height_encoding::HeightEncoding;
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::georef::{self, projection_file_of, world_file_of};
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, Samples};
+use crate::read::DemFile;
+use crate::write::{WriteError, WrittenDem};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "PNG",
@@ -199,8 +199,8 @@ fn encode(width: u32, height: u32, pixels: &[u8]) -> Result<Vec<u8>, png::Encodi
 
 #[cfg(test)]
 mod tests {
-    use crate::dem::formats::height_encoding::HeightEncoding;
-    use crate::dem::read::{DemHints, DemOptions, read};
+    use crate::formats::height_encoding::HeightEncoding;
+    use crate::read::{DemHints, DemOptions, read};
     use image::ImageEncoder;
 
     fn picture(values: &[u16]) -> Vec<u8> {

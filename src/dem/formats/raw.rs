@@ -6,15 +6,15 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::plain_raster::{self, PlainRaster};
-use crate::dem::formats::sample_layout::{FileSize, NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::georef;
-use crate::dem::raster::Raster;
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::{NumberKind, SampleType};
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::formats::plain_raster::{self, PlainRaster};
+use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::georef;
+use crate::raster::Raster;
+use crate::read::DemFile;
+use crate::sample_type::{NumberKind, SampleType};
 
 pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "RAW with a stated size",
@@ -123,7 +123,7 @@ fn plain(file: &DemFile, size: FileSize) -> Result<PlainRaster, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, DemOptions, read};
+    use crate::read::{DemHints, DemOptions, read};
 
     #[test]
     fn the_statement_is_a_size_a_type_and_what_is_needed_besides() {

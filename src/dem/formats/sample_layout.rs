@@ -7,14 +7,14 @@
 
 use std::ops::Range;
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::sample_type::SampleType;
-use crate::dem::windows::RasterWindow;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::work_limit::WorkLimit;
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::sample_type::SampleType;
+use crate::windows::RasterWindow;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::work_limit::WorkLimit;
 
 /// Places of the samples of one band in a file.
 #[derive(Clone, Copy, Debug)]

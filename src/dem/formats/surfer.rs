@@ -14,15 +14,15 @@
 
 use glam::DVec2;
 
-use crate::bytes::{ByteFields, ByteOrder, bytes_at};
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::text::{TextWords, number};
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::SampleType;
+use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::error::DemErrorKind;
+use crate::formats::sample_layout::{NoData, SampleLayout};
+use crate::formats::text::{TextWords, number};
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, Samples, north_up_nodes};
+use crate::read::DemFile;
+use crate::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Surfer grid",
@@ -161,7 +161,7 @@ fn grid_7(fields: ByteFields, at: usize, data: &[u8]) -> Result<SurferGrid, DemE
 
 #[cfg(test)]
 mod tests {
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn binary_6(heights: &[f32]) -> Vec<u8> {
         let mut bytes = b"DSBB\x02\0\x03\0".to_vec();

@@ -12,13 +12,13 @@
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use crate::bytes::{ByteFields, ByteOrder, bytes_at};
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::sample_layout::{NoData, SampleLayout};
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::raster::Raster;
-use crate::dem::read::DemFile;
-use crate::dem::sample_type::SampleType;
+use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
+use crate::error::DemErrorKind;
+use crate::formats::sample_layout::{NoData, SampleLayout};
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::raster::Raster;
+use crate::read::DemFile;
+use crate::sample_type::SampleType;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Terragen terrain",
@@ -112,7 +112,7 @@ fn scale_at(fields: ByteFields, at: usize) -> Result<DVec3, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn terrain(heights: &[i16]) -> Vec<u8> {
         let mut bytes = START.to_vec();

@@ -14,14 +14,14 @@
 
 use glam::DVec2;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::georef::utm_code;
-use crate::dem::limits::SizeClaim;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M};
-use crate::geom::crs::Crs;
+use crate::error::DemErrorKind;
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::georef::utm_code;
+use crate::limits::SizeClaim;
+use crate::raster::{Raster, Samples, north_up_nodes};
+use crate::read::DemFile;
+use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
+use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "USGS elevation model",
@@ -271,7 +271,7 @@ impl FixedText<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     /// Two profiles of three and two heights, 30 m apart, in UTM zone 10; the second starts a row further north.
     fn model(unit: u32, datums: &str) -> Vec<u8> {

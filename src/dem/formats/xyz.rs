@@ -6,12 +6,12 @@
 
 use glam::{DVec2, DVec3, U64Vec2};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, Recognition, any_size};
-use crate::dem::point_text::PointText;
-use crate::dem::raster::{Raster, Samples, north_up_nodes};
-use crate::dem::read::DemFile;
-use crate::limits::RASTER_SAMPLES;
+use crate::error::DemErrorKind;
+use crate::formats::{DemFormat, Recognition, any_size};
+use crate::point_text::PointText;
+use crate::raster::{Raster, Samples, north_up_nodes};
+use crate::read::DemFile;
+use sandtable_base::limits::RASTER_SAMPLES;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "XYZ grid",
@@ -172,7 +172,7 @@ impl XyzGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
 
     fn grid(text: &str) -> Result<Raster, String> {
         read("a.xyz", text.as_bytes(), &DemHints::default()).map_err(|error| error.to_string())

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::dem::gridding::linear::{CellCenters, crossing};
-use crate::dem::gridding::sites::Sites;
-use crate::geom::convex;
+use crate::gridding::linear::{CellCenters, crossing};
+use crate::gridding::sites::Sites;
+use sandtable_geom::convex;
 
 /// The corners of the convex hull, counter-clockwise; the ends of the line where all sites lie on one.
 pub(super) struct Hull {
@@ -46,8 +46,8 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::dem::cell_grid::CellGrid;
-    use crate::geom::rect::Rect;
+    use crate::cell_grid::CellGrid;
+    use sandtable_geom::rect::Rect;
 
     fn hull(points: &[(f64, f64)]) -> (Hull, Sites) {
         let points: Vec<DVec3> = points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();

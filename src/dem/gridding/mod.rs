@@ -24,17 +24,19 @@ mod weighted;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::dem::cell_grid::{CellGrid, CellGridError};
-use crate::dem::gridding::breaklines::Crossings;
-use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::kd::KdTree;
-use crate::dem::gridding::linear::CellCenters;
-use crate::dem::gridding::natural::Naturals;
-use crate::dem::gridding::sites::Sites;
-use crate::dem::gridding::tin::Tin;
-use crate::dem::gridding::weighted::WeightedSites;
-use crate::dem::points::PointCloud;
-use crate::dem::raster::{Raster, Samples};
+use sandtable_base::message::choice::{Choice, ChoiceWord, word};
+
+use crate::cell_grid::{CellGrid, CellGridError};
+use crate::gridding::breaklines::Crossings;
+use crate::gridding::hull::Hull;
+use crate::gridding::kd::KdTree;
+use crate::gridding::linear::CellCenters;
+use crate::gridding::natural::Naturals;
+use crate::gridding::sites::Sites;
+use crate::gridding::tin::Tin;
+use crate::gridding::weighted::WeightedSites;
+use crate::points::PointCloud;
+use crate::raster::{Raster, Samples};
 
 /// How the height at a cell's center comes from the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +74,13 @@ pub enum BeyondHull {
     NoData,
     /// The height of the nearest point.
     Nearest,
+}
+
+impl Choice for BeyondHull {
+    const CHOICES: &'static [ChoiceWord<Self>] = &[
+        word(Self::NoData, "nodata", "No data"),
+        word(Self::Nearest, "nearest", "The height of the nearest point"),
+    ];
 }
 
 /// A grid of points, and its report.

@@ -21,11 +21,11 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::gridding::GridError;
-use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::linear::CellCenters;
-use crate::dem::gridding::sites::Sites;
-use crate::dem::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
+use crate::gridding::GridError;
+use crate::gridding::hull::Hull;
+use crate::gridding::linear::CellCenters;
+use crate::gridding::sites::Sites;
+use crate::gridding::tin::{OUTSIDE, Tin, delaunay, neighbors};
 
 /// Rows a task. A task starts its walk from the first triangle, whatever thread it runs on: where a center lies on an
 /// edge, the walk to it decides on which side it is taken.

@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use crate::dem::gridding::GridError;
-use crate::dem::gridding::breaklines::{self, Crossings};
-use crate::dem::gridding::sites::Sites;
+use crate::gridding::GridError;
+use crate::gridding::breaklines::{self, Crossings};
+use crate::gridding::sites::Sites;
 
 /// In place of a triangle's neighbor: outside of the hull.
 pub(super) const OUTSIDE: u32 = u32::MAX;

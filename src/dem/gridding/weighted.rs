@@ -8,11 +8,11 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::gridding::GriddingMethod;
-use crate::dem::gridding::hull::Hull;
-use crate::dem::gridding::kd::{KdTree, Near, NearestSites};
-use crate::dem::gridding::linear::CellCenters;
-use crate::dem::gridding::sites::Sites;
+use crate::gridding::GriddingMethod;
+use crate::gridding::hull::Hull;
+use crate::gridding::kd::{KdTree, Near, NearestSites};
+use crate::gridding::linear::CellCenters;
+use crate::gridding::sites::Sites;
 
 /// Cells along the side of a tile whose cells share a search.
 const TILE: usize = 8;

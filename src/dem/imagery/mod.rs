@@ -12,15 +12,15 @@ use std::io::Cursor;
 use glam::{DAffine2, DVec2};
 use image::{DynamicImage, ImageFormat, ImageReader};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::georef;
-use crate::dem::imagery::reduce::{Reducer, Rgba};
-use crate::dem::imagery::tiff_colors::TiffColors;
-use crate::dem::read::{DemFile, DemHints};
-use crate::dem::tiff::geotiff;
-use crate::dem::windows::RasterWindow;
-use crate::geom::crs::{Crs, CrsError};
-use crate::limits::IMAGERY_PIXELS;
+use crate::error::DemErrorKind;
+use crate::georef;
+use crate::imagery::reduce::{Reducer, Rgba};
+use crate::imagery::tiff_colors::TiffColors;
+use crate::read::{DemFile, DemHints};
+use crate::tiff::geotiff;
+use crate::windows::RasterWindow;
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_base::limits::IMAGERY_PIXELS;
 
 /// Why a picture of the ground was not read.
 #[derive(Debug, thiserror::Error)]
@@ -217,7 +217,7 @@ impl ColorRaster {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::DemOptions;
+    use crate::read::DemOptions;
 
     fn png(width: u32, height: u32, color: impl Fn(u32, u32) -> Rgba) -> Vec<u8> {
         let image = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(color(x, y)));

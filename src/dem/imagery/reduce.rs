@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use glam::{DAffine2, DVec2, Vec3, Vec4};
 
-use crate::dem::imagery::ColorRaster;
-use crate::dem::windows::RasterWindow;
+use crate::imagery::ColorRaster;
+use crate::windows::RasterWindow;
 
 /// Red, green, blue in sRGB and straight alpha.
 pub type Rgba = [u8; 4];

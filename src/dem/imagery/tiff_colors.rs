@@ -11,18 +11,18 @@ use rayon::prelude::*;
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::imagery::reduce::{Reducer, Rgba};
-use crate::dem::imagery::{ColorRaster, ImageryErrorKind};
-use crate::dem::raster::Raster;
-use crate::dem::read::DemFile;
-use crate::dem::tiff::geotiff::{GeoTiffHeader, limits};
-use crate::dem::tiff::image_kind;
-use crate::dem::tiff::jpeg_block::{self, JpegBlock};
-use crate::dem::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
-use crate::dem::tiff::unpack::{Unpacker, packed};
-use crate::dem::windows::RasterWindow;
-use crate::limits::{TIFF_IMAGES, WINDOWED_SAMPLES};
+use crate::error::DemErrorKind;
+use crate::imagery::reduce::{Reducer, Rgba};
+use crate::imagery::{ColorRaster, ImageryErrorKind};
+use crate::raster::Raster;
+use crate::read::DemFile;
+use crate::tiff::geotiff::{GeoTiffHeader, limits};
+use crate::tiff::image_kind;
+use crate::tiff::jpeg_block::{self, JpegBlock};
+use crate::tiff::storage::{Packing, Predictor, Storage, TiffBlock, decode_error};
+use crate::tiff::unpack::{Unpacker, packed};
+use crate::windows::RasterWindow;
+use sandtable_base::limits::{TIFF_IMAGES, WINDOWED_SAMPLES};
 
 /// NewSubfileType's bits for "reduced version of another image" and "mask".
 const IS_REDUCED: u32 = 1;
@@ -93,7 +93,7 @@ impl TiffColors {
         Ok((Self { layout, nodata: nodata.map(|value| value as u8), full, overviews }, raster))
     }
 
-    /// See [`Imagery::read`](crate::dem::imagery::Imagery::read).
+    /// See [`Imagery::read`](crate::imagery::Imagery::read).
     pub fn read(
         &self,
         bytes: &[u8],
@@ -265,7 +265,7 @@ impl ColorLayout {
 fn palette(values: &[u16]) -> Result<Vec<[u8; 3]>, DemErrorKind> {
     let count = values.len() / 3;
     if count == 0 {
-        return Err(crate::dem::tiff::geotiff::FORMAT.broken("it has no palette"));
+        return Err(crate::tiff::geotiff::FORMAT.broken("it has no palette"));
     }
     let high = |at: usize| (values[at] >> 8) as u8;
     Ok((0..count).map(|at| [high(at), high(count + at), high(2 * count + at)]).collect())
@@ -274,8 +274,8 @@ fn palette(values: &[u16]) -> Result<Vec<[u8; 3]>, DemErrorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::imagery::Imagery;
-    use crate::dem::read::DemHints;
+    use crate::imagery::Imagery;
+    use crate::read::DemHints;
     use tiff::encoder::{Predictor as Encoded, TiffEncoder, colortype};
 
     /// An image of `width` × `height` with a place, of which a pixel is (column, row, 9).

@@ -6,10 +6,10 @@
 use glam::DVec3;
 use las::raw::header::Header;
 
-use crate::bytes::ByteFields;
-use crate::dem::error::DemErrorKind;
-use crate::dem::points::PointsError;
-use crate::limits::GRID_POINTS;
+use sandtable_base::bytes::ByteFields;
+use crate::error::DemErrorKind;
+use crate::points::PointsError;
+use sandtable_base::limits::GRID_POINTS;
 
 /// Set in the format of a compressed file.
 const COMPRESSED: u8 = 0x80;

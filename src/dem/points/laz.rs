@@ -15,10 +15,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use laz::{LasZipDecompressor, LazItem, LazItemRecordBuilder, LazItemType, LazVlr};
 
-use crate::bytes::{ByteFields, bytes_at};
-use crate::dem::error::DemErrorKind;
-use crate::dem::points::PointsError;
-use crate::dem::points::las_header::{LasHeader, broken, unsupported};
+use sandtable_base::bytes::{ByteFields, bytes_at};
+use crate::error::DemErrorKind;
+use crate::points::PointsError;
+use crate::points::las_header::{LasHeader, broken, unsupported};
 
 const BATCH: u64 = 1 << 16;
 

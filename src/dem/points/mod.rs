@@ -1,7 +1,7 @@
 //! Scattered points of known height, and their readers: text ([`table`]), LAS and LAZ ([`las`]).
 //!
 //! A cloud is the result of a survey: points in no order, lines along which the ground breaks, a system for their x and
-//! y and a unit for their z. [`crate::dem::gridding`] makes a grid of it.
+//! y and a unit for their z. [`crate::gridding`] makes a grid of it.
 
 #[cfg(feature = "las")]
 pub mod las;
@@ -15,9 +15,9 @@ pub mod table;
 
 use glam::DVec3;
 
-use crate::dem::error::DemErrorKind;
-use crate::geom::crs::Crs;
-use crate::limits::GRID_POINTS;
+use crate::error::DemErrorKind;
+use sandtable_geom::crs::Crs;
+use sandtable_base::limits::GRID_POINTS;
 
 /// Points and breaklines in one coordinate system.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 //! A point without a height (an empty field or NaN) is left out and counted; any other line that is not a point is an
 //! error with its number: a line dropped silently would leave a hole.
 
-use crate::dem::point_text::PointText;
-use crate::dem::points::{PointCloud, PointHints, PointsError};
-use crate::limits::GRID_POINTS;
+use crate::point_text::PointText;
+use crate::points::{PointCloud, PointHints, PointsError};
+use sandtable_base::limits::GRID_POINTS;
 
 /// Reads a table of points.
 ///

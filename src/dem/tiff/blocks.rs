@@ -18,11 +18,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{SampleFloat, Samples};
-use crate::dem::tiff::rows::{RowDecoder, RowWords};
-use crate::dem::tiff::storage::{Storage, TiffBlock};
-use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
+use crate::error::DemErrorKind;
+use crate::raster::{SampleFloat, Samples};
+use crate::tiff::rows::{RowDecoder, RowWords};
+use crate::tiff::storage::{Storage, TiffBlock};
+use crate::tiff::unpack::{BlockBytes, Unpacker};
 
 /// Tasks for each thread: several, since blocks over flat ground are done sooner; few, since each sets up decompressors.
 const TASKS_PER_THREAD: usize = 6;

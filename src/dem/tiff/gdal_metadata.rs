@@ -1,8 +1,8 @@
 //! GDAL's metadata tag: XML with scale, offset and unit of bands.
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::geotiff::FORMAT;
-use crate::dem::units::length_of_name;
+use crate::error::DemErrorKind;
+use crate::tiff::geotiff::FORMAT;
+use crate::units::length_of_name;
 
 pub(crate) const GDAL_METADATA: u16 = 42112;
 

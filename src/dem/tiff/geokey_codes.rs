@@ -1,6 +1,6 @@
 //! The numbers of GeoTIFF keys and of projections in them (OGC 19-008r4).
 
-use crate::geom::projection::MapProjection;
+use sandtable_geom::projection::MapProjection;
 
 /// In place of a code: the parameters are in other keys.
 pub(super) const USER_DEFINED: u16 = 32767;

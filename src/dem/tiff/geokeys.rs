@@ -1,12 +1,12 @@
 //! Reading GeoTIFF keys (OGC 19-008r4): the coordinate system, the vertical unit, and whether samples are
 //! points or areas.
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::geokey_codes as key;
-use crate::dem::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
-use crate::dem::vertical;
-use crate::geom::crs::Crs;
-use crate::geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
+use crate::error::DemErrorKind;
+use crate::tiff::geokey_codes as key;
+use crate::units::{FOOT_M, US_SURVEY_FOOT_M, length_of_code};
+use crate::vertical;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::projection::{Datum, Definition, Ellipsoid, MapProjection};
 
 /// The value of a key.
 #[derive(Clone, Debug)]

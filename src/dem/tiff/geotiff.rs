@@ -12,22 +12,22 @@ use glam::DAffine2;
 use tiff::decoder::{Decoder, Limits, ifd};
 use tiff::tags::Tag;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{DemFormat, FileContent, Recognition, any_size};
-use crate::dem::georef;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::DemFile;
-use crate::dem::tiff::blocks;
-use crate::dem::tiff::gdal_metadata::{BandMetadata, GDAL_METADATA};
-use crate::dem::tiff::geokeys::GeoKeys;
-use crate::dem::tiff::mask;
-use crate::dem::tiff::place::PlaceTags;
-use crate::dem::tiff::storage::{Storage, decode_error};
-use crate::dem::tiff::windows::GeoTiffWindows;
-use crate::dem::tiff::write::{write, write_windows};
-use crate::dem::windows::Windows;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::TIFF_TAG_BYTES;
+use crate::error::DemErrorKind;
+use crate::formats::{DemFormat, FileContent, Recognition, any_size};
+use crate::georef;
+use crate::raster::{Raster, Samples};
+use crate::read::DemFile;
+use crate::tiff::blocks;
+use crate::tiff::gdal_metadata::{BandMetadata, GDAL_METADATA};
+use crate::tiff::geokeys::GeoKeys;
+use crate::tiff::mask;
+use crate::tiff::place::PlaceTags;
+use crate::tiff::storage::{Storage, decode_error};
+use crate::tiff::windows::GeoTiffWindows;
+use crate::tiff::write::{write, write_windows};
+use crate::windows::Windows;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::TIFF_TAG_BYTES;
 
 pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "GeoTIFF",
@@ -162,7 +162,7 @@ fn text<R: Read + Seek>(decoder: &mut Decoder<R>, tag: Tag) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read::{DemHints, read};
+    use crate::read::{DemHints, read};
     use tiff::encoder::{TiffEncoder, colortype};
 
     fn file(values: &[f32], nodata: &str) -> Vec<u8> {

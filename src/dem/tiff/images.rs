@@ -8,16 +8,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::UVec2;
 use tiff::decoder::Decoder;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::{FileContent, ReadByPlace};
-use crate::dem::tiff::geotiff::{self, FORMAT};
-use crate::dem::tiff::image_kind;
-use crate::dem::tiff::mask::IS_MASK;
-use crate::dem::tiff::storage::{Storage, decode_error};
-use crate::dem::tiff::unpack::BlockBytes;
-use crate::limits::BLOCK_SAMPLES;
-use crate::limits::TIFF_IMAGES;
-use crate::limits::WINDOWED_SAMPLES;
+use crate::error::DemErrorKind;
+use crate::formats::{FileContent, ReadByPlace};
+use crate::tiff::geotiff::{self, FORMAT};
+use crate::tiff::image_kind;
+use crate::tiff::mask::IS_MASK;
+use crate::tiff::storage::{Storage, decode_error};
+use crate::tiff::unpack::BlockBytes;
+use sandtable_base::limits::BLOCK_SAMPLES;
+use sandtable_base::limits::TIFF_IMAGES;
+use sandtable_base::limits::WINDOWED_SAMPLES;
 
 /// The most bytes that one block decodes to: the largest with 64-bit samples.
 const LARGEST_BLOCK: usize = 32 << 20;

@@ -14,19 +14,19 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::geotiff::FORMAT;
-use crate::dem::tiff::storage::{Storage, TO_DEFLATE, TiffBlock};
+use crate::error::DemErrorKind;
+use crate::tiff::geotiff::FORMAT;
+use crate::tiff::storage::{Storage, TO_DEFLATE, TiffBlock};
 
 /// Bytes of a marker: the start of the image, and its end.
 const MARKER: usize = 2;
 
 /// The photometric interpretation "luminance and chroma".
-pub(in crate::dem) const YCBCR: u16 = 6;
+pub(crate) const YCBCR: u16 = 6;
 
 /// The bands of a block side by side, red, green and blue in place of luminance and chroma: the rows within the image,
 /// each as long as the stream's.
-pub(in crate::dem) struct JpegBlock {
+pub(crate) struct JpegBlock {
     pub samples: Vec<u8>,
     pub row_bytes: usize,
 }
@@ -35,7 +35,7 @@ pub(in crate::dem) struct JpegBlock {
 ///
 /// # Errors
 /// The stream is broken, of another size than the block, or has other components than the image has bands.
-pub(in crate::dem) fn decode(
+pub(crate) fn decode(
     packed: &[u8],
     storage: &Storage,
     block: TiffBlock,

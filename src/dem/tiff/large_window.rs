@@ -16,13 +16,13 @@ use std::{io, mem};
 
 use rayon::prelude::*;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::formats::FileContent;
-use crate::dem::raster::{SampleFloat, Samples};
-use crate::dem::tiff::geotiff::FORMAT;
-use crate::dem::tiff::unpack::BlockBytes;
-use crate::dem::tiff::windows::GeoTiffWindows;
-use crate::dem::windows::RasterWindow;
+use crate::error::DemErrorKind;
+use crate::formats::FileContent;
+use crate::raster::{SampleFloat, Samples};
+use crate::tiff::geotiff::FORMAT;
+use crate::tiff::unpack::BlockBytes;
+use crate::tiff::windows::GeoTiffWindows;
+use crate::windows::RasterWindow;
 
 /// Samples that a thread decodes together, if rows of blocks hold no more: strips are often single rows.
 const BAND_SAMPLES: u32 = 1 << 17;

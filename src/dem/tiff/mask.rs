@@ -5,16 +5,16 @@ use std::io::{Cursor, Read, Seek};
 
 use tiff::decoder::Decoder;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Samples;
-use crate::dem::read::DemFile;
-use crate::dem::tiff::geotiff::{FORMAT, limits};
-use crate::dem::tiff::image_kind;
-use crate::dem::tiff::storage::{Predictor, Storage, decode_error};
-use crate::dem::tiff::unpack::{BlockBytes, Unpacker};
-use crate::dem::windows::RasterWindow;
-use crate::limits::RASTER_SAMPLES;
-use crate::limits::TIFF_IMAGES;
+use crate::error::DemErrorKind;
+use crate::raster::Samples;
+use crate::read::DemFile;
+use crate::tiff::geotiff::{FORMAT, limits};
+use crate::tiff::image_kind;
+use crate::tiff::storage::{Predictor, Storage, decode_error};
+use crate::tiff::unpack::{BlockBytes, Unpacker};
+use crate::windows::RasterWindow;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::TIFF_IMAGES;
 
 /// NewSubfileType's bit for "mask of another image".
 pub(crate) const IS_MASK: u32 = 4;

@@ -6,15 +6,15 @@ mod geokey_codes;
 pub mod geokeys;
 pub(crate) mod geotiff;
 pub mod images;
-pub(in crate::dem) mod jpeg_block;
+pub(crate) mod jpeg_block;
 mod large_window;
 mod mask;
 mod place;
 mod rows;
-pub(in crate::dem) mod storage;
-pub(in crate::dem) mod unpack;
+pub(crate) mod storage;
+pub(crate) mod unpack;
 pub mod windows;
-pub(crate) mod write;
+pub mod write;
 mod write_geokeys;
 
 use std::io::{Read, Seek};
@@ -23,6 +23,6 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 /// The bits of NewSubfileType of the decoder's current image; 0 where it has none.
-pub(in crate::dem) fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
+pub(crate) fn image_kind<R: Read + Seek>(decoder: &mut Decoder<R>) -> u32 {
     decoder.find_tag_unsigned(Tag::NewSubfileType).ok().flatten().unwrap_or(0)
 }

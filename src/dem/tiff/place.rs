@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DMat2, DVec2};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::georef::{affine, checked};
-use crate::dem::raster::north_up;
+use crate::error::DemErrorKind;
+use crate::georef::{affine, checked};
+use crate::raster::north_up;
 
 /// How far, in samples, a tie point may lie from the map that is fitted through all of them.
 const TIE_TOLERANCE: f64 = 1e-3;

@@ -16,14 +16,14 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
-use crate::bytes::ByteOrder;
-use crate::dem::error::DemErrorKind;
-use crate::dem::limits::SizeClaim;
-use crate::dem::sample_type::{NumberKind, SampleType};
-use crate::dem::tiff::geotiff::FORMAT;
-use crate::dem::windows::RasterWindow;
-use crate::limits::TIFF_TAG_BYTES;
-use crate::limits::work_limit::WorkLimit;
+use sandtable_base::bytes::ByteOrder;
+use crate::error::DemErrorKind;
+use crate::limits::SizeClaim;
+use crate::sample_type::{NumberKind, SampleType};
+use crate::tiff::geotiff::FORMAT;
+use crate::windows::RasterWindow;
+use sandtable_base::limits::TIFF_TAG_BYTES;
+use sandtable_base::limits::work_limit::WorkLimit;
 
 /// The remedy for an unsupported compression.
 pub(crate) const TO_DEFLATE: &str =

@@ -13,10 +13,10 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use weezl::decode::Decoder as LzwDecoder;
 use weezl::{BitOrder, LzwStatus};
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::tiff::geotiff::FORMAT;
-use crate::dem::tiff::jpeg_block::{self, JpegBlock};
-use crate::dem::tiff::storage::{Packing, Storage, TO_DEFLATE, TiffBlock};
+use crate::error::DemErrorKind;
+use crate::tiff::geotiff::FORMAT;
+use crate::tiff::jpeg_block::{self, JpegBlock};
+use crate::tiff::storage::{Packing, Storage, TO_DEFLATE, TiffBlock};
 
 /// Packed bytes beyond twice what a block unpacks to are ignored; no packing needs more.
 const MOST_GROWTH: usize = 2;

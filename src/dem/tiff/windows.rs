@@ -23,18 +23,18 @@ use std::sync::Arc;
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
-use crate::dem::cache::LruCache;
-use crate::dem::error::{DemError, DemErrorKind};
-use crate::dem::formats::FileContent;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::read::{DemFile, DemHints};
-use crate::dem::tiff::blocks::{self, BlockDecoder};
-use crate::dem::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
-use crate::dem::tiff::images::{LaterImages, Overview, SharedFile};
-use crate::dem::tiff::mask;
-use crate::dem::tiff::storage::{Storage, TiffBlock};
-use crate::dem::tiff::unpack::{BlockBytes, packed_range};
-use crate::dem::windows::{RasterWindow, Windows};
+use crate::cache::LruCache;
+use crate::error::{DemError, DemErrorKind};
+use crate::formats::FileContent;
+use crate::raster::{Raster, Samples};
+use crate::read::{DemFile, DemHints};
+use crate::tiff::blocks::{self, BlockDecoder};
+use crate::tiff::geotiff::{self, FORMAT, GeoTiffHeader};
+use crate::tiff::images::{LaterImages, Overview, SharedFile};
+use crate::tiff::mask;
+use crate::tiff::storage::{Storage, TiffBlock};
+use crate::tiff::unpack::{BlockBytes, packed_range};
+use crate::windows::{RasterWindow, Windows};
 
 /// A GeoTIFF, read in windows.
 pub struct GeoTiffWindows<R> {
@@ -56,8 +56,8 @@ const BYTES_PER_THREAD: usize = 1 << 20;
 
 impl<R: FileContent> GeoTiffWindows<R> {
     /// Opens the first image of `file`, keeping up to `cache_bytes` of decoded blocks. `name` and `hints` are those of
-    /// [`crate::dem::read::read`], but for a stated no-data value and vertical datum, which
-    /// [`open_windows`](crate::dem::read::open_windows) applies.
+    /// [`crate::read::read`], but for a stated no-data value and vertical datum, which
+    /// [`open_windows`](crate::read::open_windows) applies.
     ///
     /// # Errors
     /// Those of the whole reader, except for images that are merely too large for the memory; and single blocks that

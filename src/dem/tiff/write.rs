@@ -17,16 +17,16 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 
-use crate::dem::formats::WrittenContent;
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::read_ahead::read_ahead;
-use crate::dem::sample_type::{NumberKind, SampleType};
-use crate::dem::stored::{SampleSurvey, StoredSamples};
-use crate::dem::tiff::gdal_metadata::GDAL_METADATA;
-use crate::dem::tiff::write_geokeys::GeoKeyTags;
-use crate::dem::units::name_of_length;
-use crate::dem::windows::{ByteRows, RasterWindow, Windows};
-use crate::dem::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
+use crate::formats::WrittenContent;
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::read_ahead::read_ahead;
+use crate::sample_type::{NumberKind, SampleType};
+use crate::stored::{SampleSurvey, StoredSamples};
+use crate::tiff::gdal_metadata::GDAL_METADATA;
+use crate::tiff::write_geokeys::GeoKeyTags;
+use crate::units::name_of_length;
+use crate::windows::{ByteRows, RasterWindow, Windows};
+use crate::write::{WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
 
 /// Samples along a side of a tile, as GDAL writes them.
 const TILE: u32 = 256;
@@ -37,7 +37,7 @@ pub(crate) fn write(raster: &Raster, _stem: &str) -> Result<WrittenDem, WriteErr
 }
 
 /// [`write`] with a description of what it shows, as `gdalinfo` prints it; empty for none.
-pub(crate) fn write_described(raster: &Raster, description: &str) -> WrittenDem {
+pub fn write_described(raster: &Raster, description: &str) -> WrittenDem {
     let is_named = name_of_length(raster.meters_per_z).is_some();
     let raster = if is_named { Cow::Borrowed(raster) } else { raster.in_meters() };
     let stored = StoredSamples::new(&raster);

@@ -4,14 +4,14 @@
 //! there are keys for them, for other programs; and as a proj string in the citation, which [`super::geokeys`] prefers,
 //! so that the very same system comes back.
 
-use crate::dem::georef::crs_on_earth;
-use crate::dem::raster::Raster;
-use crate::dem::tiff::geokey_codes as key;
-use crate::dem::tiff::geokeys::GeoKeyValue;
-use crate::dem::units::code_of_length;
-use crate::dem::vertical;
-use crate::geom::crs::Crs;
-use crate::geom::projection::{Datum, Definition, MapProjection};
+use crate::georef::crs_on_earth;
+use crate::raster::Raster;
+use crate::tiff::geokey_codes as key;
+use crate::tiff::geokeys::GeoKeyValue;
+use crate::units::code_of_length;
+use crate::vertical;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::projection::{Datum, Definition, MapProjection};
 
 /// The contents of the three tags of keys; the last two may be empty.
 #[derive(Clone, Debug, Default)]

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
-use crate::dem::warp::WarpError;
-use crate::geom::crs::{Crs, CrsError};
+use crate::raster::Raster;
+use crate::warp::WarpError;
+use sandtable_geom::crs::{Crs, CrsError};
 
 /// The transform from a raster's system to another; the identity where either is unknown or both are the same.
 pub(super) struct CrsTransform<'a> {

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::rect::Rect;
+use crate::raster::{Raster, Samples};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::rect::Rect;
 
 /// Points along a side of a raster whose extent is projected: enough to miss less than a thousandth of a cell.
 const SIDE_POINTS: u32 = 400;
@@ -45,7 +45,7 @@ pub(super) fn outline(rect: Rect) -> impl Iterator<Item = DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::tests::small;
+    use crate::raster::tests::small;
 
     #[test]
     fn the_rectangle_reaches_to_the_outer_edges_of_valid_samples() {

@@ -7,12 +7,12 @@ use std::fmt;
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
-use crate::dem::warp::data_extent::{data_extent, outline};
-use crate::dem::warp::{WarpError, check_source};
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
-use crate::geom::scale_factors::ScaleFactors;
+use crate::raster::Raster;
+use crate::warp::data_extent::{data_extent, outline};
+use crate::warp::{WarpError, check_source};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::scale_factors::ScaleFactors;
 
 /// The largest error of lengths at the center of a raster that a system in meters may have. National and UTM grids stay
 /// below 0.3 %; the systems beyond are made for maps of the world or of a continent.
@@ -55,11 +55,11 @@ impl fmt::Display for OffScale {
     }
 }
 
-/// The system that [`to_metric`](crate::dem::warp::to_metric) brings a raster to; `None` where the raster names none and no
+/// The system that [`to_metric`](crate::warp::to_metric) brings a raster to; `None` where the raster names none and no
 /// `target` is given.
 ///
 /// # Errors
-/// [`WarpError`]: see [`to_metric`](crate::dem::warp::to_metric).
+/// [`WarpError`]: see [`to_metric`](crate::warp::to_metric).
 pub fn metric_crs(raster: &Raster, target: Option<&Crs>) -> Result<Option<Crs>, WarpError> {
     metric_crs_around(raster, target, &|| data_extent(raster))
 }
@@ -140,8 +140,8 @@ fn utm_zone(raster: &Raster, own: &Crs, valid: &dyn Fn() -> Option<Rect>) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::north_up;
-    use crate::dem::raster::tests::small;
+    use crate::raster::north_up;
+    use crate::raster::tests::small;
 
     fn raster(code: u32, west: f64, north: f64, cell: f64) -> Raster {
         let crs = Some(Crs::from_epsg(code).expect("known"));

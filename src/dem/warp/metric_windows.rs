@@ -1,4 +1,4 @@
-//! What [`to_metric`](crate::dem::warp::to_metric) makes of a raster that stays on disk: computed where it is read.
+//! What [`to_metric`](crate::warp::to_metric) makes of a raster that stays on disk: computed where it is read.
 //!
 //! ```text
 //! window of the result ─► its cells' positions in the source's grid ─► the window of the source around them ─► heights
@@ -9,18 +9,18 @@
 
 use glam::DVec2;
 
-use crate::dem::cell_grid::CellGrid;
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples, north_up};
-use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
-use crate::dem::warp::resample::Resampler;
-use crate::dem::warp::valid_search::{ValidSearch, WarpWindowsError, searched};
-use crate::dem::warp::windowed_resample::bilinear_window;
-use crate::dem::warp::{WarpError, with_crs};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
+use crate::cell_grid::CellGrid;
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples, north_up};
+use crate::warp::crs_transform::CrsTransform;
+use crate::warp::metric_crs::{OffScale, metric_crs_around, off_scale_around};
+use crate::warp::resample::Resampler;
+use crate::warp::valid_search::{ValidSearch, WarpWindowsError, searched};
+use crate::warp::windowed_resample::bilinear_window;
+use crate::warp::{WarpError, with_crs};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 
 /// What a raster becomes, but for its samples.
 #[derive(Clone, Debug)]
@@ -34,9 +34,9 @@ pub struct MetricPlan {
 /// The system that a raster's ground is made in, and why that is another than the stated one.
 #[derive(Clone, Debug)]
 pub struct MetricSystem {
-    /// As [`metric_crs`](crate::dem::warp::metric_crs::metric_crs).
+    /// As [`metric_crs`](crate::warp::metric_crs::metric_crs).
     pub crs: Option<Crs>,
-    /// As [`off_scale`](crate::dem::warp::metric_crs::off_scale).
+    /// As [`off_scale`](crate::warp::metric_crs::off_scale).
     pub off_scale: Option<OffScale>,
 }
 
@@ -76,7 +76,7 @@ enum MetricMaking {
 }
 
 impl MetricPlan {
-    /// What [`to_metric`](crate::dem::warp::to_metric) makes of `source`.
+    /// What [`to_metric`](crate::warp::to_metric) makes of `source`.
     ///
     /// # Errors
     /// [`WarpWindowsError`].
@@ -159,7 +159,7 @@ fn mirrored<T: Copy>(mut values: Vec<T>, width: usize, (mirrors_x, mirrors_y): (
     values
 }
 
-/// The steps of [`to_metric`](crate::dem::warp::to_metric) but for the samples.
+/// The steps of [`to_metric`](crate::warp::to_metric) but for the samples.
 fn plan<W: Windows + ?Sized>(
     raster: &Raster,
     target: Option<&Crs>,

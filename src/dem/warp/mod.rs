@@ -6,7 +6,7 @@ pub mod metric_crs;
 pub mod metric_windows;
 pub mod reproject;
 mod resample;
-pub(crate) mod row_positions;
+pub mod row_positions;
 pub mod valid_search;
 mod windowed_resample;
 
@@ -14,14 +14,14 @@ use std::borrow::Cow;
 
 use glam::{DVec2, U64Vec2};
 
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::data_extent::data_extent;
-use crate::dem::warp::metric_crs::metric_crs;
-use crate::dem::warp::resample::Resampler;
-use crate::geom::crs::{Crs, CrsError};
-use crate::geom::rect::Rect;
-use crate::limits::RASTER_SAMPLES;
+use crate::raster::{Raster, Samples};
+use crate::warp::crs_transform::CrsTransform;
+use crate::warp::data_extent::data_extent;
+use crate::warp::metric_crs::metric_crs;
+use crate::warp::resample::Resampler;
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::RASTER_SAMPLES;
 
 /// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -88,8 +88,8 @@ pub enum WarpError {
 /// not metric, a raster too large for UTM, and points that one of the systems does not cover.
 ///
 /// ```
-/// use sandtable::dem::read::{DemHints, read};
-/// use sandtable::dem::warp::to_metric;
+/// use sandtable_dem::read::{DemHints, read};
+/// use sandtable_dem::warp::to_metric;
 /// let grid = b"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n1 2 3 4";
 /// let raster = read("a.asc", grid, &DemHints::default())?;
 /// assert_eq!(to_metric(&raster, None)?.at(1, 0), 2.0);
@@ -166,8 +166,8 @@ fn with_crs<'a>(mut raster: Cow<'a, Raster>, crs: Option<&Crs>) -> Cow<'a, Raste
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::north_up;
-    use crate::dem::raster::tests::small;
+    use crate::raster::north_up;
+    use crate::raster::tests::small;
     use glam::{DAffine2, DMat2};
 
     /// A raster whose value at each center is `value` of its map position.

@@ -10,16 +10,16 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::dem::raster::Raster;
-use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::data_extent::data_extent;
-use crate::dem::warp::resample::{CellSize, Resampler};
-use crate::dem::warp::valid_search::{WarpWindowsError, searched};
-use crate::dem::warp::windowed_resample::{average, bilinear_window};
-use crate::dem::warp::{WarpError, check_source, with_crs};
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::crs::Crs;
-use crate::geom::rect::Rect;
+use crate::raster::Raster;
+use crate::warp::crs_transform::CrsTransform;
+use crate::warp::data_extent::data_extent;
+use crate::warp::resample::{CellSize, Resampler};
+use crate::warp::valid_search::{WarpWindowsError, searched};
+use crate::warp::windowed_resample::{average, bilinear_window};
+use crate::warp::{WarpError, check_source, with_crs};
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 
 /// From this many times the source's cells on, cells hold the average: only that keeps the mean height.
 const COARSER: f64 = 2.0;
@@ -133,8 +133,8 @@ fn coarser_or_finer<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::raster::Samples;
-    use crate::dem::raster::tests::small;
+    use crate::raster::Samples;
+    use crate::raster::tests::small;
 
     fn utm(code: u32) -> Option<Crs> {
         Some(Crs::from_epsg(code).expect("known"))
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn a_plane_in_degrees_comes_back_from_meters_and_the_date_line_is_no_border() {
         let value = |at: DVec2| at.y * 100.0;
-        let place = crate::dem::raster::north_up(DVec2::new(179.9, -17.0), DVec2::splat(0.001));
+        let place = crate::raster::north_up(DVec2::new(179.9, -17.0), DVec2::splat(0.001));
         let centers =
             (0..200u32 * 100).map(|i| DVec2::new(f64::from(i % 200) + 0.5, f64::from(i / 200) + 0.5));
         let samples = Samples::F64(centers.map(|at| value(place.transform_point2(at))).collect());
@@ -194,7 +194,7 @@ mod tests {
         let value = |index: u32| if index % 37 == 5 { f32::NAN } else { (index * 7919 % 1013) as f32 / 3.0 };
         let values: Vec<f32> = (0..130 * 90).map(value).collect();
         let metric = Raster { crs: utm(32612), ..small(130, 90, values.clone()) };
-        let place = crate::dem::raster::north_up(DVec2::new(-111.3, 37.2), DVec2::splat(1.0 / 1200.0));
+        let place = crate::raster::north_up(DVec2::new(-111.3, 37.2), DVec2::splat(1.0 / 1200.0));
         let degrees = Raster { crs: utm(4326), map_from_grid: place, ..small(130, 90, values) };
         for (mut source, target, cell, method) in [
             (metric.clone(), None, Some(25.0), Resampling::Average),
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn a_pole_has_no_place_in_degrees() {
         let mut polar = Raster { crs: utm(3413), ..small(3, 3, vec![1.0; 9]) };
-        polar.map_from_grid = crate::dem::raster::north_up(DVec2::new(-15.0, 15.0), DVec2::splat(10.0));
+        polar.map_from_grid = crate::raster::north_up(DVec2::new(-15.0, 15.0), DVec2::splat(10.0));
         assert!(matches!(reproject(&polar, utm(4326).as_ref(), None), Err(WarpError::Pole(_))));
     }
 }

@@ -9,16 +9,16 @@ use std::ops::Range;
 use glam::{DVec2, U64Vec2};
 use rayon::prelude::*;
 
-use crate::dem::cell_grid::{CellGrid, CellGridError};
-use crate::dem::raster::{Raster, SampleFloat, Samples};
-use crate::dem::sample::bilinear_at_grid;
-use crate::dem::warp::WarpError;
-use crate::dem::warp::crs_transform::CrsTransform;
-use crate::dem::warp::data_extent::{data_extent, outline};
-use crate::dem::warp::row_positions::{positions, positions_within};
-use crate::geom::crs::{Crs, CrsError};
-use crate::geom::rect::Rect;
-use crate::limits::RASTER_SAMPLES;
+use crate::cell_grid::{CellGrid, CellGridError};
+use crate::raster::{Raster, SampleFloat, Samples};
+use crate::sample::bilinear_at_grid;
+use crate::warp::WarpError;
+use crate::warp::crs_transform::CrsTransform;
+use crate::warp::data_extent::{data_extent, outline};
+use crate::warp::row_positions::{positions, positions_within};
+use sandtable_geom::crs::{Crs, CrsError};
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::RASTER_SAMPLES;
 
 /// Without a stated cell, the samples of the output per sample of the source: a raster turned by 45° needs 2.
 const GROWTH: u64 = 8;

@@ -20,7 +20,7 @@ const LONGEST_PIECE: usize = 256;
 const SHORTEST_PIECE: usize = 8;
 
 /// The positions of `count` indices, NaN where `exact` has none.
-pub(crate) fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
+pub fn positions(count: usize, exact: &impl Fn(usize) -> Option<DVec2>) -> Vec<DVec2> {
     positions_within(count, 0..count, exact)
 }
 

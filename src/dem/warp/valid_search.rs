@@ -4,12 +4,12 @@ use std::cell::{Cell, RefCell};
 
 use glam::DVec2;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::Raster;
-use crate::dem::warp::WarpError;
-use crate::dem::warp::data_extent::with_valid;
-use crate::dem::windows::{RasterWindow, Windows};
-use crate::geom::rect::Rect;
+use crate::error::DemErrorKind;
+use crate::raster::Raster;
+use crate::warp::WarpError;
+use crate::warp::data_extent::with_valid;
+use crate::windows::{RasterWindow, Windows};
+use sandtable_geom::rect::Rect;
 
 /// Samples along a side of the raster that are read at a time in search of one with data.
 const PROBE: u32 = 256;

@@ -1,15 +1,15 @@
-//! The two ways of [resampling](crate::dem::warp::resample) a raster that stays on disk, with the same bits.
+//! The two ways of [resampling](crate::warp::resample) a raster that stays on disk, with the same bits.
 
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::error::DemErrorKind;
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::sample::bilinear_at_grid;
-use crate::dem::warp::resample::{CellMeans, Resampler};
-use crate::dem::warp::valid_search::SAMPLES_AT_ONCE;
-use crate::dem::windows::{RasterPart, RasterWindow, Windows};
-use crate::geom::rect::Rect;
+use crate::error::DemErrorKind;
+use crate::raster::{Raster, Samples};
+use crate::sample::bilinear_at_grid;
+use crate::warp::resample::{CellMeans, Resampler};
+use crate::warp::valid_search::SAMPLES_AT_ONCE;
+use crate::windows::{RasterPart, RasterWindow, Windows};
+use sandtable_geom::rect::Rect;
 
 /// The side of the squares of cells that are computed at a time. Their positions take some megabytes; in a long row of cells,
 /// the source around them would be much larger where it is turned against them.

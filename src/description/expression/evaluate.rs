@@ -5,9 +5,9 @@
 
 use std::cmp::Ordering;
 
-use crate::description::expression::PropertyLookup;
-use crate::description::expression::syntax::{Binary, ExpressionNode, Function, arms};
-use crate::description::scalar::Scalar;
+use crate::expression::PropertyLookup;
+use crate::expression::syntax::{Binary, ExpressionNode, Function, arms};
+use crate::scalar::Scalar;
 
 /// Whether a value is usable where the expression occurs.
 type Usable<'u> = &'u dyn Fn(&Scalar) -> bool;

@@ -52,8 +52,8 @@
 //! are, and are ordered as numbers where both convert, else by letters. `true` equals a value that holds, `false` one
 //! that does not.
 //!
-//! Parsing is bounded by [`EXPRESSION_BYTES`](crate::limits::EXPRESSION_BYTES) and
-//! [`EXPRESSION_DEPTH`](crate::limits::EXPRESSION_DEPTH); evaluation takes time in proportion to the text.
+//! Parsing is bounded by [`EXPRESSION_BYTES`](sandtable_base::limits::EXPRESSION_BYTES) and
+//! [`EXPRESSION_DEPTH`](sandtable_base::limits::EXPRESSION_DEPTH); evaluation takes time in proportion to the text.
 
 mod evaluate;
 mod parser;
@@ -63,9 +63,9 @@ mod token;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::description::expression::evaluate::{Evaluation, any};
-use crate::description::expression::syntax::ExpressionNode;
-use crate::description::scalar::Scalar;
+use crate::expression::evaluate::{Evaluation, any};
+use crate::expression::syntax::ExpressionNode;
+use crate::scalar::Scalar;
 
 /// Looks up a feature's property by name; `None` where the feature does not have it.
 pub type PropertyLookup<'a> = &'a dyn Fn(&str) -> Option<Scalar>;

@@ -3,12 +3,12 @@
 use std::iter;
 use std::ops::Range;
 
-use crate::description::expression::ExpressionError;
-use crate::description::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, OPERATORS, RESERVED};
-use crate::description::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
-use crate::description::scalar::Scalar;
-use crate::limits::EXPRESSION_DEPTH;
-use crate::message::suggest::{nearest, quoted, remedy};
+use crate::expression::ExpressionError;
+use crate::expression::syntax::{Binary, ExpressionNode, FUNCTIONS, OPERATORS, RESERVED};
+use crate::expression::token::{ExpressionToken, SpannedToken, tokens, wrong};
+use crate::scalar::Scalar;
+use sandtable_base::limits::EXPRESSION_DEPTH;
+use sandtable_base::message::suggest::{nearest, quoted, remedy};
 
 /// A node and its depth.
 type Deep = (ExpressionNode, usize);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::description::scalar::Scalar;
+use crate::scalar::Scalar;
 
 /// Keywords. A property of the same name needs quotes.
 pub(super) const RESERVED: [&str; 6] = ["and", "or", "not", "in", "true", "false"];

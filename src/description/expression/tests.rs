@@ -3,11 +3,11 @@
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof};
 
 use super::*;
-use crate::description::bounds::Bounds;
-use crate::description::expression::syntax::{Binary, FUNCTIONS, Function, OPERATORS, RESERVED};
-use crate::description::expression::token::{continues_name, starts_name};
-use crate::description::feature_value::{FeatureValue, FromScalar};
-use crate::description::words::RoadSurface;
+use crate::bounds::Bounds;
+use crate::expression::syntax::{Binary, FUNCTIONS, Function, OPERATORS, RESERVED};
+use crate::expression::token::{continues_name, starts_name};
+use crate::feature_value::{FeatureValue, FromScalar};
+use crate::words::RoadSurface;
 
 fn road(name: &str) -> Option<Scalar> {
     let text = |text: &str| Some(Scalar::Text(text.into()));

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::description::expression::ExpressionError;
-use crate::limits::EXPRESSION_BYTES;
-use crate::message::suggest::quoted;
+use crate::expression::ExpressionError;
+use sandtable_base::limits::EXPRESSION_BYTES;
+use sandtable_base::message::suggest::quoted;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ExpressionToken {

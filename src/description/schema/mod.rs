@@ -6,14 +6,14 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::description::bounds::Bounds;
-use crate::description::declaration::{KeyDeclaration, KeyKind, Presence};
-use crate::description::document::Document;
-use crate::description::phases::PHASES_KEY;
-use crate::description::styles::STYLE_KEY;
-use crate::description::value::COORDINATES;
-use crate::description::words::{RampName, WordDeclaration, declarations};
-use crate::limits::{EXPRESSION_BYTES, INLINE_POINTS, SCENE_LIST, SCENE_TEXT};
+use crate::bounds::Bounds;
+use crate::declaration::{KeyDeclaration, KeyKind, Presence};
+use crate::document::Document;
+use crate::phases::PHASES_KEY;
+use crate::styles::STYLE_KEY;
+use crate::value::COORDINATES;
+use crate::words::{RampName, WordDeclaration, declarations};
+use sandtable_base::limits::{EXPRESSION_BYTES, INLINE_POINTS, SCENE_LIST, SCENE_TEXT};
 
 /// The schema as one JSON object.
 pub fn schema() -> Value {

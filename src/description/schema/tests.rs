@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value;
 
 use super::*;
-use crate::description::parse::parse;
+use crate::parse::parse;
 
 /// Every key by its path, `table.key`.
 fn declared(keys: &'static [KeyDeclaration], table: &str) -> BTreeMap<String, &'static KeyDeclaration> {

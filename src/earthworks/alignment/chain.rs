@@ -3,7 +3,7 @@
 //! Files cut roads where a name or a speed limit changes. A vertical curve, a bridge or a tunnel continues across such a
 //! cut, and ends only where other roads meet.
 
-use crate::earthworks::alignment::network::{SectionNetwork, StationLevels};
+use crate::alignment::network::{SectionNetwork, StationLevels};
 
 /// Which way a line runs in a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,7 +180,7 @@ impl SectionChain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::tests::section;
+    use crate::alignment::network::tests::section;
 
     fn network(ends: &[[u32; 2]]) -> SectionNetwork {
         let section = |&ends: &[u32; 2]| section(ends, vec![0.0, 4.0, 10.0], 0.1);

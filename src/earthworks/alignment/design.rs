@@ -4,12 +4,12 @@
 //! fitted to all ground first; ground that a bridge then passes over, or a tunnel under, no longer pulls at the road,
 //! and the network is fitted again. What was let go of once stays so, which makes the rounds end.
 
-use crate::earthworks::alignment::chain::{ChainLink, Direction, SectionChain};
-use crate::earthworks::alignment::fit;
-use crate::earthworks::alignment::network::{RoadSection, SectionNetwork, StationLevels};
-use crate::earthworks::alignment::spans::spans;
-use crate::earthworks::alignment::{Support, SupportSpan};
-use crate::geom::profile::Profile;
+use crate::alignment::chain::{ChainLink, Direction, SectionChain};
+use crate::alignment::fit;
+use crate::alignment::network::{RoadSection, SectionNetwork, StationLevels};
+use crate::alignment::spans::spans;
+use crate::alignment::{Support, SupportSpan};
+use sandtable_geom::profile::Profile;
 
 /// The most fits: the second moves roads by meters, the third by decimeters.
 const ROUNDS: usize = 4;
@@ -154,8 +154,8 @@ fn state(network: &SectionNetwork, found: &mut [Vec<SupportSpan>]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::tests::section;
-    use crate::earthworks::alignment::spans::EarthworkLimits;
+    use crate::alignment::network::tests::section;
+    use crate::alignment::spans::EarthworkLimits;
 
     const ANY: EarthworkLimits = EarthworkLimits::NONE;
 

@@ -16,7 +16,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::earthworks::alignment::network::{RoadSection, SectionNetwork, StationLevels};
+use crate::alignment::network::{RoadSection, SectionNetwork, StationLevels};
 
 /// The highest profile that nowhere lies above `levels` and keeps the grade; infinite where none of the levels reaches.
 /// `levels` may be NaN where there is none.
@@ -115,7 +115,7 @@ impl Ord for Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::tests::section;
+    use crate::alignment::network::tests::section;
     use proptest::prelude::*;
 
     /// A star of three sections of the given stations that meet in node 0.

@@ -1,10 +1,10 @@
 //! The profile of limited grade that lies nearest to given levels.
 
-use crate::earthworks::alignment::envelope::{above, below};
-use crate::earthworks::alignment::network::{SectionNetwork, StationLevels};
+use crate::alignment::envelope::{above, below};
+use crate::alignment::network::{SectionNetwork, StationLevels};
 
 /// The profile that keeps the grade and whose greatest distance from `levels` is the least there is, midway between the
-/// [envelopes](crate::earthworks::alignment::envelope); NaN where no level reaches.
+/// [envelopes](crate::alignment::envelope); NaN where no level reaches.
 pub fn nearest(network: &SectionNetwork, levels: &StationLevels) -> StationLevels {
     let mut middle = above(network, levels);
     for (lower, upper) in middle.iter_mut().flatten().zip(below(network, levels).iter().flatten()) {
@@ -44,7 +44,7 @@ pub fn through(network: &SectionNetwork, levels: &StationLevels, pins: &[f64]) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::network::tests::section;
+    use crate::alignment::network::tests::section;
 
     fn road(levels: &[f64], step_m: f64, max_grade: f64) -> (SectionNetwork, StationLevels) {
         let stations_m = (0..levels.len()).map(|index| index as f64 * step_m).collect();

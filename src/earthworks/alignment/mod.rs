@@ -20,9 +20,9 @@ pub mod fit;
 pub mod network;
 pub mod spans;
 
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
 
 /// What carries a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,8 +1,8 @@
 //! Roads as a graph: sections between the nodes where roads end or meet.
 
-use crate::earthworks::alignment::Support;
-use crate::earthworks::alignment::chain::LineEnd;
-use crate::earthworks::alignment::spans::EarthworkLimits;
+use crate::alignment::Support;
+use crate::alignment::chain::LineEnd;
+use crate::alignment::spans::EarthworkLimits;
 
 /// A place where roads end or meet, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -108,7 +108,7 @@ impl SectionNetwork {
 }
 
 #[cfg(test)]
-pub(in crate::earthworks) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A section between two nodes over ground at height 0, without limits.

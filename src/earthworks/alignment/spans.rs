@@ -13,7 +13,7 @@
 //!                      ╲____________╱                 below: fill > max_fill
 //! ```
 
-use crate::earthworks::alignment::{Support, SupportSpan};
+use crate::alignment::{Support, SupportSpan};
 
 /// The share of the highest embankment, or deepest cutting, at which a bridge's abutment or a tunnel's portal stands.
 /// Nearer to 1 spans are shorter and follow the limit's every waver; nearer to 0 they are long, and costly.

@@ -1,13 +1,13 @@
 //! The posts of channels' beds, and the heights they are to have.
 
-use crate::earthworks::channel::carve::CenterlinePiece;
-use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::earthworks::channel::{ChannelError, Cut};
-use crate::geom::segment;
-use crate::limits::RIVER_POSTS;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::volumes::Volumes;
+use crate::channel::carve::CenterlinePiece;
+use crate::channel::course::{ChannelCourse, CourseStation};
+use crate::channel::{ChannelError, Cut};
+use sandtable_geom::segment;
+use sandtable_base::limits::RIVER_POSTS;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::volumes::Volumes;
 use glam::DVec2;
 
 /// Posts by where the lattice stores them, rising, each with what it is to become.

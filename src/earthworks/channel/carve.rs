@@ -16,10 +16,10 @@
 //! No post is moved further than its channels may cut. A stretch that still rises when nothing more may be moved climbs:
 //! it is given up, and all is carved anew without it, so that nothing is dug for its sake.
 
-use crate::earthworks::channel::bed::ChannelBed;
-use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::Lattice;
+use crate::channel::bed::ChannelBed;
+use crate::channel::course::{ChannelCourse, CourseStation};
+use sandtable_terrain::cell_triangle::Diagonal;
+use sandtable_terrain::lattice::Lattice;
 use glam::DVec2;
 
 /// What a stretch may rise by rounding, in meters: a thousand of them come to a thousandth of a millimeter.

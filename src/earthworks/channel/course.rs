@@ -12,11 +12,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::earthworks::alignment::Alignment;
-use crate::earthworks::channel::Channel;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::crossings::crossings;
+use crate::alignment::Alignment;
+use crate::channel::Channel;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_terrain::sight::crossings::crossings;
 
 /// A channel with its stations, downstream.
 pub(super) struct ChannelCourse<'a> {

@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::geom::polyline::{Polyline, VertexKey, vertex_key};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_geom::polyline::{Polyline, VertexKey, vertex_key};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// The relative error of heights in meters (SRTM: Farr et al. 2007). A smaller fall is no evidence against neighbors.
 const RELATIVE_ERROR_M: f64 = 10.0;

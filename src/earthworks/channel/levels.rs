@@ -1,7 +1,7 @@
 //! The water's level at every station of a network: along each reach it never rises, no bank drowns, and no cut is deeper
 //! than allowed.
 //!
-//! Each reach of a course is fitted by itself ([`crate::earthworks::falling_levels`]) and held between two series that never rise
+//! Each reach of a course is fitted by itself ([`crate::falling_levels`]) and held between two series that never rise
 //! either: the lowest bank so far, and the highest ground yet to come less the deepest cut. Where they cross there is no
 //! water that falls, and that is where reaches end ([`super::reaches`]). So a bank that is a pit lowers the water below it
 //! by the deepest cut at most.
@@ -11,11 +11,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::earthworks::channel::course::{ChannelCourse, CourseStation};
-use crate::earthworks::channel::reaches::{Sill, reaches};
-use crate::earthworks::channel::{Climb, Cut};
-use crate::earthworks::falling_levels::{WeightedLevel, fit_falling};
-use crate::geom::polyline::{VertexKey, vertex_key};
+use crate::channel::course::{ChannelCourse, CourseStation};
+use crate::channel::reaches::{Sill, reaches};
+use crate::channel::{Climb, Cut};
+use crate::falling_levels::{WeightedLevel, fit_falling};
+use sandtable_geom::polyline::{VertexKey, vertex_key};
 
 /// The least that a station weighs in meters: two on one spot still count.
 const LEAST_WEIGHT_M: f64 = 1e-3;

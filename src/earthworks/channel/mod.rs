@@ -25,14 +25,14 @@ pub mod flow;
 mod levels;
 mod reaches;
 
-use crate::earthworks::alignment::Alignment;
-use crate::earthworks::channel::bed::ChannelBed;
-use crate::earthworks::channel::carve::CenterlinePiece;
-use crate::earthworks::channel::course::ChannelCourse;
-use crate::geom::polyline::Polyline;
-use crate::limits::RIVER_POSTS;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::volumes::Volumes;
+use crate::alignment::Alignment;
+use crate::channel::bed::ChannelBed;
+use crate::channel::carve::CenterlinePiece;
+use crate::channel::course::ChannelCourse;
+use sandtable_geom::polyline::Polyline;
+use sandtable_base::limits::RIVER_POSTS;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::volumes::Volumes;
 
 /// A river to cut.
 #[derive(Clone, Debug)]
@@ -129,7 +129,7 @@ const SAME_STATION_M: f64 = 1e-6;
 /// and comes back, and at each of `climbs`, it begins anew.
 pub fn check_rise(lattice: &Lattice, line: &Polyline, climbs: &[Climb]) -> f64 {
     let map: Vec<_> = line.points().iter().map(|&at| at + lattice.origin()).collect();
-    let stations = crate::terrain::profile::profile(lattice, &map);
+    let stations = sandtable_terrain::profile::profile(lattice, &map);
     let (mut lowest_m, mut rise_m, mut passed) = (f64::INFINITY, 0.0, 0);
     for station in stations {
         let at_m = station.station_m;

@@ -3,11 +3,11 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::earthworks::grading::GradingWorks;
-use crate::earthworks::grading::formation::{Formation, LegId, world};
-use crate::earthworks::grading::strip::GradingStrip;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
+use crate::grading::GradingWorks;
+use crate::grading::formation::{Formation, LegId, world};
+use crate::grading::strip::GradingStrip;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
 
 /// A post that the fire has come to.
 #[derive(Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ impl Ord for Front {
 }
 
 /// Sets every post between the formation and the daylight line to the batter of the carriageway that is nearest.
-pub(in crate::earthworks::grading) fn batter(
+pub(in crate::grading) fn batter(
     strips: &[GradingStrip],
     mut formation: Formation,
     works: &mut GradingWorks<'_>,

@@ -2,17 +2,17 @@
 
 use glam::DVec2;
 
-use crate::earthworks::grading::GradingWorks;
-use crate::earthworks::grading::strip::{GradingStrip, StripOffset};
-use crate::geom::rect::Rect;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::grading::GradingWorks;
+use crate::grading::strip::{GradingStrip, StripOffset};
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// A leg of a strip among all legs of all strips, counted from 1: 0 is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::earthworks::grading) struct LegId(u32);
+pub(in crate::grading) struct LegId(u32);
 
 /// Where the legs are.
-pub(in crate::earthworks::grading) struct Legs {
+pub(in crate::grading) struct Legs {
     /// Strip and leg of each.
     all: Vec<(u32, u32)>,
 }
@@ -51,7 +51,7 @@ impl Legs {
 }
 
 /// The posts of the formation.
-pub(in crate::earthworks::grading) struct Formation {
+pub(in crate::grading) struct Formation {
     /// The leg that each post belongs to, [`Lattice::index`] by index.
     owners: Vec<u32>,
     pub legs: Legs,
@@ -115,7 +115,7 @@ impl Formation {
 }
 
 /// World X and Y of a post, not rounded to f32.
-pub(in crate::earthworks::grading) fn world(lattice: &Lattice, post: Post) -> DVec2 {
+pub(in crate::grading) fn world(lattice: &Lattice, post: Post) -> DVec2 {
     post.grid() * lattice.cell() + lattice.extent().min
 }
 

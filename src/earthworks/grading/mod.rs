@@ -28,11 +28,11 @@ pub mod fire;
 pub mod formation;
 pub mod strip;
 
-use crate::earthworks::grading::fire::batter;
-use crate::earthworks::grading::formation::Formation;
-use crate::earthworks::grading::strip::GradingStrip;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::volumes::Volumes;
+use crate::grading::fire::batter;
+use crate::grading::formation::Formation;
+use crate::grading::strip::GradingStrip;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::volumes::Volumes;
 
 /// Grades the lattice for strips of road: the earth moved for each, in their order.
 ///
@@ -69,16 +69,16 @@ impl GradingWorks<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Support;
-    use crate::earthworks::alignment::design::design;
-    use crate::earthworks::alignment::network::{NodeId, RoadSection, SectionNetwork};
-    use crate::earthworks::alignment::spans::EarthworkLimits;
-    use crate::earthworks::grading::strip::StripEnd;
-    use crate::earthworks::grading::strip::tests::{FLAT, strip};
-    use crate::geom::profile::Profile;
-    use crate::terrain::densify::densify;
-    use crate::terrain::profile::profile;
-    use crate::terrain::query::{Interpolation, ground_height};
+    use crate::alignment::Support;
+    use crate::alignment::design::design;
+    use crate::alignment::network::{NodeId, RoadSection, SectionNetwork};
+    use crate::alignment::spans::EarthworkLimits;
+    use crate::grading::strip::StripEnd;
+    use crate::grading::strip::tests::{FLAT, strip};
+    use sandtable_geom::profile::Profile;
+    use sandtable_terrain::densify::densify;
+    use sandtable_terrain::profile::profile;
+    use sandtable_terrain::query::{Interpolation, ground_height};
     use glam::DVec2;
     use proptest::prelude::*;
 

@@ -14,8 +14,8 @@
 
 use glam::DVec2;
 
-use crate::earthworks::alignment::Alignment;
-use crate::geom::offset::{Continuations, LineBend};
+use crate::alignment::Alignment;
+use sandtable_geom::offset::{Continuations, LineBend};
 
 /// The steepest border between two legs, meters along for each meter aside: that of a square turn.
 const STEEPEST_LEAN: f64 = 1.0;
@@ -210,10 +210,10 @@ impl GradingStrip {
 }
 
 #[cfg(test)]
-pub(in crate::earthworks::grading) mod tests {
+pub(in crate::grading) mod tests {
     use super::*;
-    use crate::geom::polyline::Polyline;
-    use crate::geom::profile::Profile;
+    use sandtable_geom::polyline::Polyline;
+    use sandtable_geom::profile::Profile;
 
     pub const FLAT: CrossSection =
         CrossSection { shoulder_m: 1.0, crown: 0.0, fill_slope: 1.5, cut_slope: 1.0 };

@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
-use crate::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
-use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::export::page::container::PageSections;
-use crate::mesh::sink::VertexId;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use crate::page::container::PageSections;
+use sandtable_mesh::sink::VertexId;
 
 /// When something is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -223,9 +223,9 @@ pub fn material(material: &Material) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::export::page::container::tests::words;
-    use crate::mesh::sink::MeshSink;
+    use sandtable_draw::color::Srgba;
+    use crate::page::container::tests::words;
+    use sandtable_mesh::sink::MeshSink;
 
     fn triangle(x: f32) -> DrawMesh {
         let mut mesh = DrawMesh::default();

@@ -84,7 +84,7 @@ pub(super) mod tests {
     use std::io::Read;
 
     /// What the page's script makes of a section of words.
-    pub(in crate::export::page) fn words(sections: &PageSections, section: &Value) -> Vec<u32> {
+    pub(in crate::page) fn words(sections: &PageSections, section: &Value) -> Vec<u32> {
         let number = |key: &str| section[key].as_u64().expect("a number") as usize;
         let packed = &sections.bytes()[number("at")..][..number("length")];
         let mut planes = Vec::new();

@@ -3,11 +3,11 @@
 use glam::Vec3;
 use serde_json::{Value, json};
 
-use crate::draw::color::srgb_from_linear;
-use crate::draw::ground::{ColorRamp, GroundMap, GroundPost};
-use crate::draw::ground_levels::{GroundLevel, PostCount, level};
-use crate::export::page::container::PageSections;
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_draw::color::srgb_from_linear;
+use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
+use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
+use crate::page::container::PageSections;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// The most posts whose heights a page holds: 32 MB before packing. Of larger ground it holds every second post, or
 /// fourth, and says so.
@@ -23,7 +23,7 @@ const LONGEST_MAP: u32 = 4096;
 /// steeper than any shading tells apart.
 const SLOPE_STEPS: f32 = 4096.0;
 
-/// The heights of `lattice`, from which the page answers as [`crate::terrain::query`] does.
+/// The heights of `lattice`, from which the page answers as [`sandtable_terrain::query`] does.
 pub fn heights(sections: &mut PageSections, lattice: &Lattice) -> Value {
     let (columns, rows) = (lattice.columns(), lattice.rows());
     let mut step = 1;

@@ -20,19 +20,19 @@ use base64::engine::general_purpose::STANDARD;
 use glam::{DVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 
-use crate::draw::backdrop::Backdrop;
-use crate::draw::bathymetry::bathymetry;
-use crate::draw::color::Srgba;
-use crate::draw::ground::GroundMap;
-use crate::draw::lighting::{Lighting, ReliefShading};
-use crate::draw::list::DrawList;
-use crate::draw::pixels::Pixels;
-use crate::draw::undergrowth::Undergrowth;
-use crate::draw::water::WaterColor;
-use crate::export::page::batches::ShowRange;
-use crate::export::page::container::PageSections;
-use crate::geom::chebyshev::ChebyshevTable;
-use crate::terrain::lattice::Lattice;
+use sandtable_draw::backdrop::Backdrop;
+use sandtable_draw::bathymetry::bathymetry;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::lighting::{Lighting, ReliefShading};
+use sandtable_draw::list::DrawList;
+use sandtable_draw::pixels::Pixels;
+use sandtable_draw::undergrowth::Undergrowth;
+use sandtable_draw::water::WaterColor;
+use crate::page::batches::ShowRange;
+use crate::page::container::PageSections;
+use sandtable_geom::chebyshev::ChebyshevTable;
+use sandtable_terrain::lattice::Lattice;
 
 /// The largest page that is written: browsers take more, but mail and phones do not.
 pub const MOST_BYTES: usize = 64_000_000;

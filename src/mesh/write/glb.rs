@@ -17,20 +17,20 @@ use bytemuck::Pod;
 use glam::{Mat4, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-use crate::geom::aabb::Aabb;
-use crate::mesh::sink::VertexId;
-use crate::mesh::write::{Remarks, count_u32, little_endian};
+use sandtable_geom::aabb::Aabb;
+use crate::sink::VertexId;
+use crate::write::{Remarks, count_u32, little_endian};
 
 /// From X east, Y north, Z up to glTF's axes, column by column.
-pub(in crate::mesh::write) const GLTF_FROM_WORLD: [f32; 16] =
+pub(in crate::write) const GLTF_FROM_WORLD: [f32; 16] =
     [1., 0., 0., 0., 0., 0., -1., 0., 0., 1., 0., 0., 0., 0., 0., 1.];
 
 // The specification's numbers for component types and buffer targets.
 const UNSIGNED_SHORT: u32 = 5123;
-pub(in crate::mesh::write) const UNSIGNED_INT: u32 = 5125;
-pub(in crate::mesh::write) const FLOAT: u32 = 5126;
-pub(in crate::mesh::write) const ARRAY_BUFFER: u32 = 34962;
-pub(in crate::mesh::write) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+pub(in crate::write) const UNSIGNED_INT: u32 = 5125;
+pub(in crate::write) const FLOAT: u32 = 5126;
+pub(in crate::write) const ARRAY_BUFFER: u32 = 34962;
+pub(in crate::write) const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// The content of a GLB file; elements name each other by their index.
 #[derive(Clone, Debug, Default)]
@@ -75,7 +75,7 @@ pub struct GlbPrimitive<'a> {
 ///
 /// # Errors
 /// `out` cannot be written, or the file would exceed 4 GiB.
-pub(in crate::mesh::write) fn write_chunks(
+pub(in crate::write) fn write_chunks(
     document: String,
     length: usize,
     out: &mut impl Write,
@@ -272,7 +272,7 @@ impl<'s> GlbData<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::samples::remarks;
+    use crate::write::samples::remarks;
 
     #[test]
     fn the_root_node_turns_up_to_y_and_north_away() {

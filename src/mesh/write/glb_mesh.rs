@@ -4,16 +4,14 @@ use std::io::{self, Write};
 
 use serde_json::json;
 
-use crate::mesh::source::{MeshSize, MeshSource};
-use crate::mesh::write::glb::{
-    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT, write_chunks,
-};
-use crate::mesh::write::{MeshWriteError, Remarks, little_endian};
+use crate::source::{MeshSize, MeshSource};
+use crate::write::glb::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT, write_chunks};
+use crate::write::{MeshWriteError, Remarks, little_endian};
 
 /// Bytes of a vertex and of a triangle: three numbers of 32 bits.
 const BYTES: usize = 12;
 
-/// Writes `mesh` as a [`GlbScene`](crate::mesh::write::glb::GlbScene) of one node writes it; remarks go to `asset.extras`.
+/// Writes `mesh` as a [`GlbScene`](crate::write::glb::GlbScene) of one node writes it; remarks go to `asset.extras`.
 ///
 /// # Errors
 /// `out` cannot be written, the mesh cannot be made, has no triangle, or its file would exceed 4 GiB.
@@ -63,8 +61,8 @@ pub fn write(mesh: &mut impl MeshSource, remarks: &Remarks, out: &mut impl Write
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
-    use crate::mesh::write::samples::{remarks, square};
+    use crate::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};
+    use crate::write::samples::{remarks, square};
     use glam::Mat4;
     use serde_json::Value;
     use std::borrow::Cow;

@@ -13,7 +13,7 @@ pub mod three_mf;
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use crate::mesh::source::MeshSource;
+use crate::source::MeshSource;
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,10 +106,10 @@ fn little_endian<T: bytemuck::Pod>(values: &[T]) -> Cow<'_, [u8]> {
 }
 
 #[cfg(test)]
-pub(in crate::mesh::write) mod samples {
+pub(in crate::write) mod samples {
     use super::Remarks;
-    use crate::mesh::sink::{MeshSink, VertexId};
-    use crate::mesh::trimesh::TriMesh;
+    use crate::sink::{MeshSink, VertexId};
+    use crate::trimesh::TriMesh;
     use glam::Vec3;
 
     /// A square of two triangles, one corner raised.
@@ -131,7 +131,7 @@ pub(in crate::mesh::write) mod samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::trimesh::TriMesh;
+    use crate::trimesh::TriMesh;
 
     #[test]
     fn formats_are_known_by_their_extensions_in_any_case() {

@@ -6,9 +6,9 @@ use std::io::{self, Write};
 
 use glam::{Vec2, Vec3};
 
-use crate::mesh::sink::VertexId;
-use crate::mesh::source::MeshSource;
-use crate::mesh::write::Remarks;
+use crate::sink::VertexId;
+use crate::source::MeshSource;
+use crate::write::Remarks;
 
 /// Writes `mesh` as one object, each coordinate in the fewest digits that keep its value.
 ///
@@ -132,7 +132,7 @@ pub fn word(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::samples::{remarks, square};
+    use crate::write::samples::{remarks, square};
 
     #[test]
     fn a_reader_gets_back_what_was_written() {

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::mesh::source::{MeshSize, MeshSource};
-use crate::mesh::write::{Remarks, little_endian};
+use crate::source::{MeshSize, MeshSource};
+use crate::write::{Remarks, little_endian};
 
 /// Writes `mesh`.
 ///
@@ -31,7 +31,7 @@ pub fn write(mesh: &mut impl MeshSource, remarks: &Remarks, out: &mut impl Write
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::samples::{remarks, square};
+    use crate::write::samples::{remarks, square};
 
     #[test]
     fn the_header_states_what_follows_it() {

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use glam::{DVec3, Vec3};
 
-use crate::geom::triangle::normal;
-use crate::mesh::source::MeshSource;
-use crate::mesh::write::{Remarks, count_u32, little_endian};
+use sandtable_geom::triangle::normal;
+use crate::source::MeshSource;
+use crate::write::{Remarks, count_u32, little_endian};
 
 /// Bytes of the header. It must not begin with `solid`, as text STL files do.
 const HEADER: usize = 80;
@@ -38,7 +38,7 @@ fn header(text: &str) -> [u8; HEADER] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::write::samples::{remarks, square};
+    use crate::write::samples::{remarks, square};
 
     #[test]
     fn each_triangle_has_fifty_bytes_after_the_header() {

@@ -24,10 +24,10 @@ mod trunk;
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawMesh, DrawVertex, MaterialId};
-use crate::draw::material::Material;
-use crate::model::{Census, Model, ModelPart};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
+use sandtable_draw::material::Material;
+use crate::{Census, Model, ModelPart};
 
 /// The names of all built-in models.
 pub const NAMES: [&str; 8] = ["conifer", "broadleaf", "shrub", "rock", "walnut", "beech", "poplar", "pine"];
@@ -89,7 +89,7 @@ fn model(name: &str, mesh: DrawMesh) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::aabb::Aabb;
+    use sandtable_geom::aabb::Aabb;
 
     fn models() -> impl Iterator<Item = (&'static str, Model)> {
         NAMES.into_iter().map(|name| (name, by_name(name).expect("it has a model")))

@@ -6,8 +6,8 @@ use std::cell::Cell;
 use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType};
 
-use crate::limits::MODEL_ELEMENTS;
-use crate::model::error::ModelError;
+use sandtable_base::limits::MODEL_ELEMENTS;
+use crate::error::ModelError;
 
 use super::data::{BufferView, GltfBuffers};
 
@@ -186,12 +186,12 @@ impl ElementLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::error::CompanionError;
-    use crate::model::gltf::container::GltfFile;
+    use crate::error::CompanionError;
+    use crate::gltf::container::GltfFile;
 
     struct NoCompanions;
 
-    impl crate::model::Companions for NoCompanions {
+    impl crate::Companions for NoCompanions {
         fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
             Err(format!("no {name}").into())
         }

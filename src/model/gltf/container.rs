@@ -6,7 +6,7 @@ use ::gltf::json::{Path, Root};
 use ::gltf::mesh::Semantic;
 use serde_json::{Value, json};
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 /// Supported extensions that change the place or the meaning of data.
 const SUPPORTED: [&str; 3] = ["KHR_texture_transform", "KHR_materials_unlit", "KHR_mesh_quantization"];

@@ -7,8 +7,8 @@ use ::gltf::Document;
 use ::gltf::buffer::{Source, View};
 use percent_encoding::percent_decode_str;
 
-use crate::model::Companions;
-use crate::model::error::{GltfDataError, ModelError};
+use crate::Companions;
+use crate::error::{GltfDataError, ModelError};
 
 /// The buffers of a document. A buffer that nothing reads may be missing.
 pub(super) struct GltfBuffers {

@@ -21,10 +21,10 @@ mod skin;
 use ::gltf::Document;
 use glam::{Mat4, Vec4};
 
-use crate::model::error::ModelError;
-use crate::model::part::PartBuilder;
-use crate::model::texture::Textures;
-use crate::model::{Companions, Model};
+use crate::error::ModelError;
+use crate::part::PartBuilder;
+use crate::texture::Textures;
+use crate::{Companions, Model};
 
 use accessor::AccessorReader;
 use container::GltfFile;
@@ -96,7 +96,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::model::error::CompanionError;
+    use crate::error::CompanionError;
 
     struct NoCompanions;
 
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn vertices_have_colors_and_materials_their_alpha() {
-        use crate::draw::material::AlphaMode;
+        use sandtable_draw::material::AlphaMode;
         let cut = r#"{"alphaMode":"MASK","alphaCutoff":0.3,"doubleSided":true}"#;
         let model = triangle(cut, r#"{"mesh":0}"#, "").expect("sound");
         let colors: Vec<[u8; 4]> = model.parts[0].mesh.vertices.iter().map(|vertex| vertex.color.0).collect();

@@ -4,7 +4,7 @@ use ::gltf::Document;
 use ::gltf::scene::{Node, Transform};
 use glam::{Mat4, Quat, Vec3};
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 pub(super) struct SceneNodes {
     /// Nodes of the scene, parents before children.
@@ -84,7 +84,7 @@ fn parent_from_node(node: &Node<'_>) -> Mat4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::gltf::container::GltfFile;
+    use crate::gltf::container::GltfFile;
 
     fn places(nodes: &str) -> Result<Vec<f32>, ModelError> {
         let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}]}}"#);

@@ -3,7 +3,7 @@
 use ::gltf::Skin;
 use glam::{Mat4, Vec4};
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 use super::Z_UP;
 use super::accessor::AccessorReader;

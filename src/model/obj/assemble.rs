@@ -4,15 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::list::MaterialId;
-use crate::message::chain::error_text;
-use crate::model::error::{CompanionError, ModelError};
-use crate::model::material::{MappedMaterial, unnamed_material};
-use crate::model::normals::{CREASE_COS, Smoothing, corner_normals};
-use crate::model::part::{ModelCorner, PartBuilder, TriangleBudget};
-use crate::model::texture::{Textures, load_any};
-use crate::model::triangulate::triangulate;
-use crate::model::{Census, Companions, Model};
+use sandtable_draw::list::MaterialId;
+use sandtable_base::message::chain::error_text;
+use crate::error::{CompanionError, ModelError};
+use crate::material::{MappedMaterial, unnamed_material};
+use crate::normals::{CREASE_COS, Smoothing, corner_normals};
+use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
+use crate::texture::{Textures, load_any};
+use crate::triangulate::triangulate;
+use crate::{Census, Companions, Model};
 
 use super::mtl;
 use super::parse::{FaceGroup, ObjCorner, ObjFace, ObjFile};
@@ -190,9 +190,9 @@ fn downward(uv: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::material::AlphaMode;
-    use crate::model::obj::read;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::material::AlphaMode;
+    use crate::obj::read;
 
     struct Library(&'static str);
 

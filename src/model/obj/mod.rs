@@ -14,8 +14,8 @@ mod mtl;
 mod parse;
 mod text;
 
-use crate::model::error::ModelError;
-use crate::model::{Companions, Model};
+use crate::error::ModelError;
+use crate::{Companions, Model};
 
 /// The model in the bytes of an OBJ file. Y up becomes Z up: (x, y, z) to (x, −z, y).
 ///

@@ -1,7 +1,7 @@
 //! Material libraries: names, diffuse colors, opacities and the maps of both.
 
-use crate::draw::color::Srgba;
-use crate::model::material::MappedMaterial;
+use sandtable_draw::color::Srgba;
+use crate::material::MappedMaterial;
 
 use super::parse::color_from_channels;
 use super::text::{logical_lines, number, split_keyword};

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 /// Bytes of a chunk's header: id and length.
 const HEADER: usize = 6;

@@ -4,7 +4,7 @@
 
 use glam::{Mat4, Quat, Vec3};
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 use super::chunk::{Chunk, ChunkCursor};
 

@@ -2,8 +2,8 @@
 
 use glam::Vec2;
 
-use crate::draw::color::Srgba;
-use crate::model::error::ModelError;
+use sandtable_draw::color::Srgba;
+use crate::error::ModelError;
 
 use super::chunk::Chunk;
 

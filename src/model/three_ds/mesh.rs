@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec2, Vec3};
 
-use crate::model::error::ModelError;
+use crate::error::ModelError;
 
 use super::chunk::{Chunk, ChunkCursor};
 

@@ -18,8 +18,8 @@ mod keyframer;
 mod material;
 mod mesh;
 
-use crate::model::error::ModelError;
-use crate::model::{Companions, Model};
+use crate::error::ModelError;
+use crate::{Companions, Model};
 
 use chunk::Chunk;
 use keyframer::KeyframeNode;

@@ -8,7 +8,7 @@
 
 use glam::{UVec2, Vec2};
 
-use crate::draw::pixels::Pixels;
+use sandtable_draw::pixels::Pixels;
 
 #[derive(Debug)]
 pub struct AlphaMask {
@@ -169,8 +169,8 @@ pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::render::mip_levels::smaller_levels;
+    use sandtable_draw::color::Srgba;
+    use crate::mip_levels::smaller_levels;
 
     /// A square whose left half is a hole.
     fn half(side: u32) -> AlphaMask {

@@ -7,10 +7,10 @@
 
 use glam::DVec3;
 
-use crate::render::cpu::screen::Screen;
+use crate::cpu::screen::Screen;
 
 /// How far outside the picture corners may lie, in pixels. Wide, so that few triangles are cut; narrow enough that
-/// corners of a 16384-pixel picture fit an i32 at [`crate::render::cpu::raster::SUBPIXEL_BITS`] and their products an
+/// corners of a 16384-pixel picture fit an i32 at [`crate::cpu::raster::SUBPIXEL_BITS`] and their products an
 /// i64.
 const GUARD_PX: f64 = 8192.0;
 
@@ -97,7 +97,7 @@ pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::camera::Camera;
+    use sandtable_view::camera::Camera;
     use glam::Vec3;
 
     fn screen() -> Screen {

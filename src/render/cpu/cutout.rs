@@ -7,10 +7,10 @@
 
 use glam::Vec2;
 
-use crate::render::cpu::geometry::ScreenFace;
-use crate::render::cpu::hit::Barycentric;
-use crate::render::cpu::pattern::{SampleMask, SamplePattern};
-use crate::render::cpu::texture::Texture;
+use crate::cpu::geometry::ScreenFace;
+use crate::cpu::hit::Barycentric;
+use crate::cpu::pattern::{SampleMask, SamplePattern};
+use crate::cpu::texture::Texture;
 
 /// The part of a pixel's side that a sample reads the mask over: the square root of an eighth, as most pictures have
 /// eight samples per pixel.

@@ -5,15 +5,15 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
-use crate::draw::ground_cover::cover_noise;
-use crate::draw::ground_grain::ground_grain;
-use crate::draw::ground_imagery::{DrapedColor, GroundImagery};
-use crate::draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
-use crate::draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
-use crate::draw::water::ShorePixel;
-use crate::render::cpu::hit::FacePoint;
-use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
+use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
+use sandtable_draw::ground_cover::cover_noise;
+use sandtable_draw::ground_grain::ground_grain;
+use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
+use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
+use sandtable_draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
+use sandtable_draw::water::ShorePixel;
+use crate::cpu::hit::FacePoint;
+use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
 #[derive(Debug)]
 pub struct GroundShader<'a> {
@@ -205,8 +205,8 @@ fn split(coordinate: f32, count: usize) -> (usize, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::draw::color::Srgba;
-    use crate::draw::ground::ColorRamp;
+    use sandtable_draw::color::Srgba;
+    use sandtable_draw::ground::ColorRamp;
 
     fn map(columns: u32, rows: u32, height: impl Fn(f32, f32) -> f32) -> GroundMap {
         let post = |index: u32| GroundPost {

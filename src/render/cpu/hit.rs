@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::render::cpu::geometry::ScreenFace;
-use crate::render::cpu::screen::Screen;
+use crate::cpu::geometry::ScreenFace;
+use crate::cpu::screen::Screen;
 
 #[derive(Clone, Copy, Debug)]
 pub struct FacePoint {

@@ -17,7 +17,7 @@
 //! are drawn in parallel on the current `rayon` pool. Within a tile ground and drapes keep the list's order. Solids
 //! are drawn from the nearest on, and hidden ones are skipped; the picture does not depend on their order.
 //!
-//! Draped faces follow [`crate::draw::list::DepthLayer`], with a tolerance widened where f32 corners far from the
+//! Draped faces follow [`sandtable_draw::list::DepthLayer`], with a tolerance widened where f32 corners far from the
 //! origin round by more than it. Masked surfaces are tested at each sample that nothing nearer covers. Transparent
 //! surfaces are sorted per pixel, up to 32 deep, and blended over each sample in linear light.
 //!
@@ -29,7 +29,7 @@
 //! surfaces; a third of each texture and of the ground map for their coarser levels, and as much again of a texture with
 //! holes for its alpha; the shadow maps.
 
-pub(in crate::render) mod alpha;
+pub(crate) mod alpha;
 mod band;
 mod blend;
 mod clip;
@@ -38,9 +38,9 @@ mod geometry;
 mod ground_shade;
 mod hit;
 mod occlusion;
-pub(in crate::render) mod pattern;
+pub(crate) mod pattern;
 mod plane;
-pub(in crate::render) mod raster;
+pub(crate) mod raster;
 mod screen;
 mod shade;
 mod texture;
@@ -49,20 +49,20 @@ mod visibility;
 
 use rayon::prelude::*;
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DrawList, DrawListError, FeatureId};
-use crate::draw::pixels::Pixels;
-use crate::limits::memory::{MemoryRefused, check_memory};
-use crate::render::cpu::band::{BandRows, draw_band};
-use crate::render::cpu::geometry::ScreenGeometry;
-use crate::render::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
-use crate::render::cpu::screen::Screen;
-use crate::render::cpu::shade::Shader;
-use crate::render::cpu::tile::TileContext;
-use crate::render::cpu::visibility::TILE;
-use crate::render::picture::Rendering;
-use crate::render::shadow::Shadows;
-use crate::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawList, DrawListError, FeatureId};
+use sandtable_draw::pixels::Pixels;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use crate::cpu::band::{BandRows, draw_band};
+use crate::cpu::geometry::ScreenGeometry;
+use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
+use crate::cpu::screen::Screen;
+use crate::cpu::shade::Shader;
+use crate::cpu::tile::TileContext;
+use crate::cpu::visibility::TILE;
+use crate::picture::Rendering;
+use crate::shadow::Shadows;
+use sandtable_view::camera::Camera;
 
 /// Samples and filter of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,8 @@
 
 use std::ops::Range;
 
-use crate::render::cpu::raster::PixelWindow;
-use crate::render::cpu::visibility::TILE;
+use crate::cpu::raster::PixelWindow;
+use crate::cpu::visibility::TILE;
 
 const BLOCK: u32 = 8;
 

@@ -6,7 +6,7 @@
 //!
 //! Blocks of 8×8 pixels are skipped or taken in full where the extremes of the edge functions allow it.
 
-use crate::render::cpu::pattern::{SampleMask, SamplePattern};
+use crate::cpu::pattern::{SampleMask, SamplePattern};
 
 /// Corners are snapped to `2^-SUBPIXEL_BITS` pixels. Fine enough that the outline of a draped surface leaves its ground
 /// triangle's by no more than the depth tolerance covers, a few pixels from the horizon; coarse enough that edge
@@ -166,7 +166,7 @@ fn covered<const N: usize>(edges: &[EdgeFunction<N>; 3], column: u32, row: u32) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::cpu::pattern::{EIGHT, FOUR, ONE};
+    use crate::cpu::pattern::{EIGHT, FOUR, ONE};
 
     const SIDE: u32 = 40;
     const ALL: PixelWindow = PixelWindow { from: [0, 0], to: [SIDE, SIDE] };

@@ -15,7 +15,7 @@
 
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
-use crate::view::camera::{Camera, ViewProjection};
+use sandtable_view::camera::{Camera, ViewProjection};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
@@ -150,8 +150,8 @@ impl Projection<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::view::axes::DirectionAxes;
-    use crate::view::camera::ParallelFrame;
+    use sandtable_view::axes::DirectionAxes;
+    use sandtable_view::camera::ParallelFrame;
     use glam::Vec2;
 
     #[test]

@@ -5,21 +5,21 @@ use std::cell::LazyCell;
 use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::ground_inset::GroundInset;
-use crate::draw::hatching::hatching_cover;
-use crate::draw::lighting::ReceivedLight;
-use crate::draw::list::{DrawItem, DrawList, DrawVertex};
-use crate::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::draw::water::{WaterMirror, ripples};
-use crate::draw::wireframe::{self, edge_cover};
-use crate::render::cpu::cutout::Cutout;
-use crate::render::cpu::geometry::ScreenFace;
-use crate::render::cpu::ground_shade::GroundShader;
-use crate::render::cpu::hit::{Barycentric, FacePoint};
-use crate::render::cpu::screen::Screen;
-use crate::render::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
-use crate::render::shadow::Shadows;
-use crate::render::shadow::filter::ShadowReceiver;
+use sandtable_draw::ground_inset::GroundInset;
+use sandtable_draw::hatching::hatching_cover;
+use sandtable_draw::lighting::ReceivedLight;
+use sandtable_draw::list::{DrawItem, DrawList, DrawVertex};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::water::{WaterMirror, ripples};
+use sandtable_draw::wireframe::{self, edge_cover};
+use crate::cpu::cutout::Cutout;
+use crate::cpu::geometry::ScreenFace;
+use crate::cpu::ground_shade::GroundShader;
+use crate::cpu::hit::{Barycentric, FacePoint};
+use crate::cpu::screen::Screen;
+use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
+use crate::shadow::Shadows;
+use crate::shadow::filter::ShadowReceiver;
 
 #[derive(Debug)]
 pub struct Shader<'a> {

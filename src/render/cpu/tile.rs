@@ -2,16 +2,16 @@
 
 use glam::Vec3;
 
-use crate::draw::color::Srgba;
-use crate::draw::list::{DepthLayer, FeatureId};
-use crate::draw::material::AlphaMode;
-use crate::render::cpu::blend::Blend;
-use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
-use crate::render::cpu::pattern::{SampleMask, SamplePattern};
-use crate::render::cpu::raster::PixelWindow;
-use crate::render::cpu::screen::Screen;
-use crate::render::cpu::shade::Shader;
-use crate::render::cpu::visibility::{Visibility, samples_of};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_draw::material::AlphaMode;
+use crate::cpu::blend::Blend;
+use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
+use crate::cpu::pattern::{SampleMask, SamplePattern};
+use crate::cpu::raster::PixelWindow;
+use crate::cpu::screen::Screen;
+use crate::cpu::shade::Shader;
+use crate::cpu::visibility::{Visibility, samples_of};
 
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {

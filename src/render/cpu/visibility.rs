@@ -1,14 +1,14 @@
 //! The face that each sample of a tile sees, among opaque and masked surfaces.
 //!
 //! A depth is kept as its nearness, which is linear over the picture; larger is nearer. Ground and drapes must come in
-//! the list's order, layers rising, which makes the rules of [`crate::draw::list::DepthLayer`] local: what a draped
+//! the list's order, layers rising, which makes the rules of [`sandtable_draw::list::DepthLayer`] local: what a draped
 //! face meets is ground or a drape that it lies over. Solids come last, in any order: the nearest wins, and of two at
 //! the same depth the first of the list.
 
-use crate::render::cpu::geometry::{FaceId, FacePiece, ScreenFace};
-use crate::render::cpu::occlusion::Occlusion;
-use crate::render::cpu::pattern::{SampleMask, SamplePattern};
-use crate::render::cpu::raster::{PixelWindow, cover};
+use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace};
+use crate::cpu::occlusion::Occlusion;
+use crate::cpu::pattern::{SampleMask, SamplePattern};
+use crate::cpu::raster::{PixelWindow, cover};
 
 /// Pixels along the side of a tile: at 8 bytes per sample a tile of 8 samples takes 256 KiB, the second level cache of
 /// common processors.

@@ -6,13 +6,13 @@ use std::ops::Range;
 use glam::{DMat4, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::draw::list::{DepthLayer, DrawItem, DrawList};
-use crate::draw::material::AlphaMode;
-use crate::mesh::sink::VertexId;
-use crate::render::cpu::alpha::AlphaMask;
-use crate::render::mip_levels::smaller_levels;
-use crate::render::shadow::LightAxes;
-use crate::view::camera::Camera;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
+use sandtable_draw::material::AlphaMode;
+use sandtable_mesh::sink::VertexId;
+use crate::cpu::alpha::AlphaMask;
+use crate::mip_levels::smaller_levels;
+use crate::shadow::LightAxes;
+use sandtable_view::camera::Camera;
 
 /// How far outside the picture a corner still counts as seen, as a share of its half.
 const SEEN_MARGIN: f32 = 1.05;

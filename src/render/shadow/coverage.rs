@@ -2,12 +2,12 @@
 //! texels.
 //!
 //! Edge functions run along rows by addition, without the blocks and sample masks of
-//! [`cover`](crate::render::cpu::raster::cover): setting those up would cost more than most triangles here.
+//! [`cover`](crate::cpu::raster::cover): setting those up would cost more than most triangles here.
 
-use crate::render::cpu::raster::{PixelWindow, SUBPIXEL_BITS, SubpixelPoint};
+use crate::cpu::raster::{PixelWindow, SUBPIXEL_BITS, SubpixelPoint};
 
 /// Calls `visit(column, row)` for every texel in `window` whose center the triangle covers. The corners have a positive
-/// [`doubled_area`](crate::render::cpu::raster::doubled_area).
+/// [`doubled_area`](crate::cpu::raster::doubled_area).
 pub fn cover_centers(corners: &[SubpixelPoint; 3], window: PixelWindow, mut visit: impl FnMut(u32, u32)) {
     let [a, b, c] = *corners;
     let mut edges = [edge(a, b, window.from), edge(b, c, window.from), edge(c, a, window.from)];
@@ -46,8 +46,8 @@ fn edge(from: SubpixelPoint, to: SubpixelPoint, first: [u32; 2]) -> [i64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::cpu::pattern::ONE;
-    use crate::render::cpu::raster::{cover, doubled_area};
+    use crate::cpu::pattern::ONE;
+    use crate::cpu::raster::{cover, doubled_area};
 
     #[test]
     fn the_same_texels_are_covered_as_in_a_picture_of_one_sample() {

@@ -9,7 +9,7 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use crate::render::shadow::{MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage, ShadowTexel};
+use crate::shadow::{MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage, ShadowTexel};
 
 /// The half-shadow's half breadth per meter of distance: the terrain's sun, 0.75° in radius, whose disc is as broad as
 /// a tent a quarter wider.

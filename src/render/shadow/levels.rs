@@ -4,15 +4,12 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use crate::draw::list::DrawList;
-use crate::limits::memory::{MemoryRefused, check_memory};
-use crate::render::shadow::casters::{LightBox, LightTriangles, ListTriangles};
-use crate::render::shadow::fill::Filling;
-use crate::render::shadow::{
-    LevelScale, LightAxes, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage,
-    ShadowPurpose, ShadowTexel,
-};
-use crate::view::camera::Camera;
+use sandtable_draw::list::DrawList;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use crate::shadow::casters::{LightBox, LightTriangles, ListTriangles};
+use crate::shadow::fill::Filling;
+use crate::shadow::{LevelScale, LightAxes, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage, ShadowPurpose, ShadowTexel};
+use sandtable_view::camera::Camera;
 
 /// The most pages along a side of a level: its texels fit the rasterizer's sub-pixel coordinates.
 const MOST_SIDE: f32 = 512.0;

@@ -1,7 +1,7 @@
 //! Roads.
 
-use crate::draw::color::Srgba;
-use crate::ribbon::texture::shade;
+use sandtable_draw::color::Srgba;
+use crate::texture::shade;
 
 /// A carriageway.
 pub(super) const ASPHALT: [u8; 3] = [126, 116, 110];

@@ -8,12 +8,12 @@
 //! It promises no bound: V is only one point of the triangles, and where the eye is above V but not above all of them, an
 //! error beside it can show. Nor is it monotone: splits must be forced.
 
-use crate::roam::criterion::Criterion;
-use crate::roam::criterion::lens::Lens;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::view::camera::Camera;
+use crate::criterion::Criterion;
+use crate::criterion::lens::Lens;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_view::camera::Camera;
 
 /// The length of a vertical error in the picture, over the tolerance.
 #[derive(Clone, Copy, Debug)]

@@ -10,11 +10,11 @@
 
 use glam::Vec3;
 
-use crate::roam::criterion::Criterion;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::view::camera::Camera;
+use crate::criterion::Criterion;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_view::camera::Camera;
 
 /// err · r / d over k.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,9 @@
 //! The object-space error, without a view.
 
-use crate::roam::criterion::Criterion;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::criterion::Criterion;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// The error over a tolerance in meters, for meshes without a camera.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::view::camera::Camera;
+use sandtable_view::camera::Camera;
 
 /// The eye, and the number of tolerances that a meter of error spans at a distance of one meter; with parallel rays, at
 /// any distance.

@@ -14,12 +14,12 @@
 
 use glam::Vec3;
 
-use crate::roam::criterion::Criterion;
-use crate::roam::criterion::lens::Lens;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::view::camera::Camera;
+use crate::criterion::Criterion;
+use crate::criterion::lens::Lens;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_view::camera::Camera;
 
 /// The error of a vertex as if all of it were at the vertex, over the tolerance.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@ pub mod midpoint;
 pub mod screen;
 pub mod spheres;
 
-use crate::roam::graph::Vertex;
+use crate::graph::Vertex;
 
 /// A measure of vertices.
 pub trait Criterion: Sync {

@@ -1,14 +1,14 @@
 //! The screen-space error whose tolerance holds at every post of the picture.
 
-use crate::roam::criterion::Criterion;
-use crate::roam::criterion::lens::Lens;
-use crate::roam::culling::PatchHeights;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::reach;
-use crate::view::camera::Camera;
-use crate::view::frustum::Frustum;
+use crate::criterion::Criterion;
+use crate::criterion::lens::Lens;
+use crate::culling::PatchHeights;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use crate::spheres::reach;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 /// The largest length that an error could span in the picture, over the tolerance.
 ///

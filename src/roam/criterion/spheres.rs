@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::roam::criterion::Criterion;
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::SphereMap;
+use crate::criterion::Criterion;
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use crate::spheres::SphereMap;
 
 /// A vertex is wanted while the eye is inside its sphere.
 #[derive(Clone, Copy, Debug)]

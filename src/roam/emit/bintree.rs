@@ -3,11 +3,11 @@
 //! Either as triples of grid vertices, for any patch, or per patch as triples of indices into the block of its (patch + 1)²
 //! vertices: the block never changes, and a frame renews the short list alone.
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::emit::walk::{self, WalkKey};
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::emit::walk::{self, WalkKey};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// Calls `emit` with the leaves of the patches whose south-west corners are listed, counter-clockwise from the apex. Within
 /// a patch every leaf shares an edge with the one before.
@@ -82,7 +82,7 @@ impl VertexBlock {
     /// Appends the leaves of one patch for which `keep` returns true to `list`, counter-clockwise from the apex.
     ///
     /// In a patch that a border cuts or that lacks data `keep` must test
-    /// [`drawn_posts`](crate::roam::emit::world::drawn_posts).
+    /// [`drawn_posts`](crate::emit::world::drawn_posts).
     pub fn append(
         self,
         active: &ActiveSet,
@@ -110,13 +110,13 @@ impl VertexBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::roam::criterion::flat::Flat;
-    use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, shares_edge};
-    use crate::roam::emit::quadtree;
-    use crate::roam::emit::strips::{self, Strips};
-    use crate::roam::errors::ErrorMap;
-    use crate::roam::refine::rebuild::rebuild;
+    use sandtable_mesh::check;
+    use crate::criterion::flat::Flat;
+    use crate::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, shares_edge};
+    use crate::emit::quadtree;
+    use crate::emit::strips::{self, Strips};
+    use crate::errors::ErrorMap;
+    use crate::refine::rebuild::rebuild;
     use proptest::prelude::*;
 
     /// The leaves by splitting triangles, the plain way.

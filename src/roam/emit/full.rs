@@ -1,8 +1,8 @@
 //! Every post of the ground: the reference for the other meshes.
 
-use crate::roam::bintree::Triangle;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::bintree::Triangle;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// Calls `emit` with the two finest triangles of every cell of the lattice in the patches whose south-west corners are
 /// listed, counter-clockwise from the right angle; row by row within a patch.
@@ -25,10 +25,10 @@ pub fn triangles(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::roam::active::ActiveSet;
-    use crate::roam::emit::bintree;
-    use crate::roam::emit::examples::{lattice, mesh_of, sorted};
+    use sandtable_mesh::check;
+    use crate::active::ActiveSet;
+    use crate::emit::bintree;
+    use crate::emit::examples::{lattice, mesh_of, sorted};
     use proptest::prelude::*;
 
     proptest! {

@@ -18,22 +18,22 @@
 //! vertices onto the lattice's border.
 //!
 //! A level that covers both data and no data is never chosen, and neither are coarse levels beside it: holes are those of the
-//! full mesh. The levels are not an [`ActiveSet`](crate::roam::active::ActiveSet), since stitched triangles are not the
+//! full mesh. The levels are not an [`ActiveSet`](crate::active::ActiveSet), since stitched triangles are not the
 //! bintree's. The measured error is that of whole levels; stitched triangles are within the coarser neighbor's on the border,
 //! and no bound is promised inside their row.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::roam::bintree::Triangle;
-use crate::roam::culling::PatchHeights;
-use crate::roam::errors::exact::triangle_error;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::quadtree::{NodeSide, SIDES};
-use crate::terrain::lattice::Lattice;
-use crate::view::camera::Camera;
+use crate::bintree::Triangle;
+use crate::culling::PatchHeights;
+use crate::errors::exact::triangle_error;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::quadtree::{NodeSide, SIDES};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_view::camera::Camera;
 
 /// The error of every level of every patch.
 #[derive(Clone, Debug, PartialEq)]
@@ -260,9 +260,9 @@ fn level_error(lattice: &Lattice, layout: &PatchLayout, corner: Vertex, step: i3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::roam::emit::examples::{full_area_m2, lattice, mesh_of, sorted};
-    use crate::roam::emit::full;
+    use sandtable_mesh::check;
+    use crate::emit::examples::{full_area_m2, lattice, mesh_of, sorted};
+    use crate::emit::full;
     use proptest::prelude::*;
 
     fn layout(columns: u32, rows: u32) -> PatchLayout {
@@ -326,8 +326,8 @@ mod tests {
                 let at = lattice.position(post).as_dvec2();
                 let facet = (0..mesh.triangles.len())
                     .map(|index| mesh.corners(index))
-                    .find(|facet| crate::terrain::triangle_surface::facet_contains(facet, at));
-                let z = crate::terrain::triangle_surface::plane_z(&facet.expect("covered"), at);
+                    .find(|facet| sandtable_terrain::triangle_surface::facet_contains(facet, at));
+                let z = sandtable_terrain::triangle_surface::plane_z(&facet.expect("covered"), at);
                 worst = worst.max((z - f64::from(lattice.height(post))).abs() as f32);
             }
             assert!((pyramids.error_m(corner, level) - worst).abs() < 1e-4, "level {level}: {worst}");

@@ -30,13 +30,13 @@ mod examples {
     use glam::DVec2;
     use proptest::prelude::Strategy;
 
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::active::ActiveSet;
-    use crate::roam::emit::{full, world};
-    use crate::roam::graph::Vertex;
-    use crate::roam::layout::PatchLayout;
-    use crate::roam::patched_ground::PatchedGround;
-    use crate::terrain::lattice::Lattice;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::active::ActiveSet;
+    use crate::emit::{full, world};
+    use crate::graph::Vertex;
+    use crate::layout::PatchLayout;
+    use crate::patched_ground::PatchedGround;
+    use sandtable_terrain::lattice::Lattice;
 
     /// Columns, rows and vertices to activate, some of them beyond the borders.
     pub type Activations = (u32, u32, Vec<(i32, i32)>);
@@ -77,7 +77,7 @@ mod examples {
     /// The plan area of the full mesh, square meters.
     pub fn full_area_m2(lattice: &Lattice, layout: &PatchLayout) -> f64 {
         let mesh = mesh_of(lattice, layout, |place| full::triangles(layout, layout.patches(), place));
-        crate::mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2
+        sandtable_mesh::check::check(&mesh).expect("the full mesh is conforming").plan_area_m2
     }
 
     /// What `emit` emits as a set: triangles rotated to start at their least corner, in order.

@@ -5,13 +5,13 @@
 
 use std::ops::ControlFlow;
 
-use crate::mesh::sink::VertexId;
-use crate::roam::active::ActiveSet;
-use crate::roam::emit::bintree;
-use crate::roam::emit::world::doubled_area;
-use crate::roam::graph::Vertex;
-use crate::roam::parts::{BorderCarry, PartPlan};
-use crate::terrain::lattice::Post;
+use sandtable_mesh::sink::VertexId;
+use crate::active::ActiveSet;
+use crate::emit::bintree;
+use crate::emit::world::doubled_area;
+use crate::graph::Vertex;
+use crate::parts::{BorderCarry, PartPlan};
+use sandtable_terrain::lattice::Post;
 
 /// A triangle with the numbers of its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,9 +112,9 @@ pub fn drawn<B>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::sink::MeshSink;
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::emit::examples::{activations, active_set, lattice, mesh_of};
+    use sandtable_mesh::sink::MeshSink;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::emit::examples::{activations, active_set, lattice, mesh_of};
     use proptest::prelude::*;
 
     proptest! {

@@ -20,11 +20,11 @@
 //! Source: the restricted quadtree with five-vertex nodes, six patterns and quarter turns, after Lindstrom et al. 1996. The
 //! triangles are those of the bintree from the same bits.
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::emit::bintree::{key, vertex};
-use crate::roam::emit::walk::WalkKey;
-use crate::roam::graph::Vertex;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::emit::bintree::{key, vertex};
+use crate::emit::walk::WalkKey;
+use crate::graph::Vertex;
 
 /// A side of a fan's triangles: from one place of the ring to another, counter-clockwise.
 type Rim = (u8, u8);
@@ -248,9 +248,9 @@ fn rims_in_runs(around: &NodeRing, mut visit: impl FnMut(&[Rim])) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::roam::emit::bintree;
-    use crate::roam::emit::examples::{activations, active_set, lattice, mesh_of, sorted, turned};
+    use sandtable_mesh::check;
+    use crate::emit::bintree;
+    use crate::emit::examples::{activations, active_set, lattice, mesh_of, sorted, turned};
     use proptest::prelude::*;
 
     proptest! {

@@ -17,9 +17,9 @@
 //! The leaves of a bintree in the order of its walk share edge after edge (Pascucci 2000 sends the same curve), so every
 //! patch is one strip; holes and borders break it into a few. Strips are made from any triangles in order.
 
-use crate::roam::active::ActiveSet;
-use crate::roam::emit::bintree;
-use crate::roam::graph::Vertex;
+use crate::active::ActiveSet;
+use crate::emit::bintree;
+use crate::graph::Vertex;
 
 /// Strips one behind the other.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ enum StripTail {
 
 impl Strips {
     /// Adds the patches whose south-west corners are listed, each a strip of the bintree's leaves for which `keep` returns
-    /// true: see [`drawn_posts`](crate::roam::emit::world::drawn_posts).
+    /// true: see [`drawn_posts`](crate::emit::world::drawn_posts).
     pub fn add_patches(
         &mut self,
         active: &ActiveSet,
@@ -174,11 +174,11 @@ pub fn unstrip(strip: &[Vertex], mut emit: impl FnMut([Vertex; 3])) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::check;
-    use crate::roam::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, sorted};
-    use crate::roam::emit::{quadtree, world};
-    use crate::roam::layout::PatchLayout;
-    use crate::roam::patched_ground::PatchedGround;
+    use sandtable_mesh::check;
+    use crate::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, sorted};
+    use crate::emit::{quadtree, world};
+    use crate::layout::PatchLayout;
+    use crate::patched_ground::PatchedGround;
     use proptest::prelude::*;
 
     fn unstripped(strips: &Strips, emit: &mut dyn FnMut([Vertex; 3])) {

@@ -16,7 +16,7 @@
 //! entry ─────── exit         entry ─ apex ─ exit
 //! ```
 
-use crate::roam::active::ActiveSet;
+use crate::active::ActiveSet;
 
 /// Twice the levels of the largest patch, 4096 cells a side, and the other root.
 const DEEPEST: usize = 26;

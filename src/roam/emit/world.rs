@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::mesh::sink::{MeshSink, VertexId};
-use crate::roam::graph::Vertex;
-use crate::roam::patched_ground::PatchedGround;
-use crate::terrain::lattice::Post;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use crate::graph::Vertex;
+use crate::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::Post;
 
 /// The posts of a triangle of vertices of the layout; `None` where it is not drawn: it has no area, as beyond the border, or
 /// a corner without data.
@@ -16,7 +16,7 @@ pub fn drawn_posts(ground: PatchedGround<'_>, corners: [Vertex; 3]) -> Option<[P
 }
 
 /// Twice a triangle's signed area in cells.
-pub(in crate::roam) fn doubled_area(posts: [Post; 3]) -> i64 {
+pub(crate) fn doubled_area(posts: [Post; 3]) -> i64 {
     let [a, b, c] = posts.map(|post| (i64::from(post.column), i64::from(post.row)));
     (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
 }
@@ -48,9 +48,9 @@ pub fn placing<'a>(ground: PatchedGround<'a>, sink: &'a mut impl MeshSink<Vec3>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::layout::PatchLayout;
-    use crate::terrain::lattice::Lattice;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::layout::PatchLayout;
+    use sandtable_terrain::lattice::Lattice;
     use glam::DVec2;
 
     #[test]

@@ -17,16 +17,16 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::roam::bintree::Triangle;
-use crate::roam::errors::ErrorMap;
-use crate::roam::errors::near::{self, BlockPosts};
-use crate::roam::errors::plane::PostPlane;
-use crate::roam::errors::rows::{RowSpan, RowSpans};
-use crate::roam::errors::scan::{Hypotenuse, PostTriangle, Worst, larger, largest};
-use crate::roam::errors::survey::TileSurvey;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::bintree::Triangle;
+use crate::errors::ErrorMap;
+use crate::errors::near::{self, BlockPosts};
+use crate::errors::plane::PostPlane;
+use crate::errors::rows::{RowSpan, RowSpans};
+use crate::errors::scan::{Hypotenuse, PostTriangle, Worst, larger, largest};
+use crate::errors::survey::TileSurvey;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// Vertices up to this step are measured block by block while the block's posts are in the cache; those beyond are few, and
 /// their posts are scanned in strips.

@@ -9,11 +9,11 @@
 
 use std::borrow::Cow;
 
-use crate::roam::errors::ErrorMap;
-use crate::roam::errors::sweep::{OwnError, SweepSource};
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::Lattice;
+use crate::errors::ErrorMap;
+use crate::errors::sweep::{OwnError, SweepSource};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::Lattice;
 
 impl ErrorMap {
     /// The midpoint errors of `lattice`; in parallel, the same for any number of threads.
@@ -75,7 +75,7 @@ fn off(from: f32, to: f32, at: f32) -> f32 {
 
 /// [`off`]; infinite where some of the three are NaN, 0 where all are.
 #[inline]
-pub(in crate::roam) fn torn_off(from: f32, to: f32, at: f32) -> f32 {
+pub(crate) fn torn_off(from: f32, to: f32, at: f32) -> f32 {
     let off = off(from, to, at);
     if !off.is_nan() {
         off

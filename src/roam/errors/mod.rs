@@ -19,11 +19,11 @@ pub mod scan;
 pub mod survey;
 mod sweep;
 
-use crate::roam::errors::scan::larger;
-use crate::roam::errors::sweep::{KnownErrors, SweepSource};
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::levels::{ChildPlaces, ChildRows, PassRow, both_sides};
+use crate::errors::scan::larger;
+use crate::errors::sweep::{KnownErrors, SweepSource};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::levels::{ChildPlaces, ChildRows, PassRow, both_sides};
 
 /// The object-space error of every vertex, in meters.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl ErrorMap {
 
     /// The errors of the row of vertices `y`.
     #[inline]
-    pub(in crate::roam) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
+    pub(crate) fn row(&self, layout: &PatchLayout, y: usize) -> &[f32] {
         &self.errors[y * layout.columns()..][..layout.columns()]
     }
 
@@ -63,7 +63,7 @@ impl ErrorMap {
     /// Sets the errors of a row of a pass again from the vertices' `own`, by column, and their children's; adds the vertices
     /// whose error changed to `changed`.
     #[inline]
-    pub(in crate::roam) fn renew_row(
+    pub(crate) fn renew_row(
         &mut self,
         layout: &PatchLayout,
         row: PassRow,

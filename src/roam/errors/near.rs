@@ -15,8 +15,8 @@ use std::ops::{Add, Mul, Sub};
 
 use glam::Vec4;
 
-use crate::roam::errors::scan::larger;
-use crate::roam::graph::{Vertex, VertexKind};
+use crate::errors::scan::larger;
+use crate::graph::{Vertex, VertexKind};
 
 /// The largest step that is treated here.
 pub const LARGEST_STEP: i32 = 4;

@@ -3,7 +3,7 @@
 //! It is measured from the triangle's first corner, so that its rounding does not depend on where the lattice begins, and a
 //! part of a terrain has the errors of the whole.
 
-use crate::terrain::lattice::{Lattice, Post};
+use sandtable_terrain::lattice::{Lattice, Post};
 
 /// A plane over the posts of a lattice.
 #[derive(Clone, Copy, Debug)]

@@ -5,11 +5,11 @@
 
 use rayon::prelude::*;
 
-use crate::roam::bintree::Triangle;
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::Lattice;
+use crate::bintree::Triangle;
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::Lattice;
 
 impl ErrorMap {
     /// The relief of `lattice` around every vertex in meters, raised to that of the children: infinite over data and no

@@ -1,6 +1,6 @@
 //! The posts that any triangle of posts covers, row by row: integers only, so that a post on an edge is never missed.
 
-use crate::terrain::lattice::Post;
+use sandtable_terrain::lattice::Post;
 
 /// The posts of one row that a triangle covers, ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,10 +19,10 @@
 
 use std::ops::Range;
 
-use crate::roam::bintree::Triangle;
-use crate::roam::errors::survey::is_plain;
-use crate::roam::graph::Vertex;
-use crate::terrain::lattice::Lattice;
+use crate::bintree::Triangle;
+use crate::errors::survey::is_plain;
+use crate::graph::Vertex;
+use sandtable_terrain::lattice::Lattice;
 
 /// Posts that are measured together.
 const LANES: usize = 8;

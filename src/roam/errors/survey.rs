@@ -5,8 +5,8 @@
 
 use rayon::prelude::*;
 
-use crate::roam::errors::scan::PostTriangle;
-use crate::terrain::lattice::Lattice;
+use crate::errors::scan::PostTriangle;
+use sandtable_terrain::lattice::Lattice;
 
 /// Posts along a tile's side: a smaller one scans less ground around a hole the slow way; a larger one makes fewer tiles.
 const TILE: usize = 32;
@@ -67,7 +67,7 @@ pub fn is_plain(heights: &[f32], pinned: &[bool]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::lattice::Post;
+    use sandtable_terrain::lattice::Post;
     use glam::DVec2;
 
     #[test]

@@ -19,8 +19,8 @@
 
 use rayon::prelude::*;
 
-use crate::roam::errors::scan::larger;
-use crate::roam::layout::PatchLayout;
+use crate::errors::scan::larger;
+use crate::layout::PatchLayout;
 
 /// A measure of a vertex's own error.
 pub trait OwnError {

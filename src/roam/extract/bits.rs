@@ -1,6 +1,6 @@
 //! The first two passes of extraction: one bit a vertex, and the vertices' numbers, which are counts of bits.
 
-use crate::roam::layout::PatchLayout;
+use crate::layout::PatchLayout;
 
 /// Columns and rows of the blocks that are skipped where their center is not active: sixteen errors are one cache line, and a
 /// quarter of a word of bits.

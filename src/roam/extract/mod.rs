@@ -21,13 +21,13 @@
 
 mod bits;
 
-use crate::roam::bintree::Triangle;
-use crate::roam::emit::world::doubled_area;
-use crate::roam::errors::ErrorMap;
-use crate::roam::extract::bits::{ActiveBits, places};
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::terrain::lattice::Post;
+use crate::bintree::Triangle;
+use crate::emit::world::doubled_area;
+use crate::errors::ErrorMap;
+use crate::extract::bits::{ActiveBits, places};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use sandtable_terrain::lattice::Post;
 
 /// A mesh of posts, and the memory it was made in: extracting again reuses it.
 #[derive(Clone, Debug, Default)]
@@ -357,11 +357,11 @@ fn rank(before: u32, word: u64, bit: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::trimesh::TriMesh;
-    use crate::roam::criterion::flat::Flat;
-    use crate::roam::displayed::DisplayedTerrain;
-    use crate::roam::refine::rebuild::rebuild;
-    use crate::terrain::lattice::Lattice;
+    use sandtable_mesh::trimesh::TriMesh;
+    use crate::criterion::flat::Flat;
+    use crate::displayed::DisplayedTerrain;
+    use crate::refine::rebuild::rebuild;
+    use sandtable_terrain::lattice::Lattice;
     use glam::DVec2;
     use proptest::prelude::*;
     use std::sync::Arc;

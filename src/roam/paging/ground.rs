@@ -5,21 +5,21 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 
-use crate::dem::cache::LruCache;
-use crate::dem::error::DemError;
-use crate::dem::formats::FileContent;
-use crate::dem::tiff::windows::GeoTiffWindows;
-use crate::dem::warp::{self, WarpError};
-use crate::dem::windows::Windows;
-use crate::roam::block::{BlockError, BlockSource, PatchBlock, RootSphere};
-use crate::roam::errors::ErrorMap;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::{DEFAULT_PATCH, MOST_PATCHES, PatchLayout};
-use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
-use crate::roam::paging::summary::{self, PatchSummary};
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::SphereMap;
-use crate::terrain::lattice::{Lattice, LatticeError};
+use sandtable_dem::cache::LruCache;
+use sandtable_dem::error::DemError;
+use sandtable_dem::formats::FileContent;
+use sandtable_dem::tiff::windows::GeoTiffWindows;
+use sandtable_dem::warp::{self, WarpError};
+use sandtable_dem::windows::Windows;
+use crate::block::{BlockError, BlockSource, PatchBlock, RootSphere};
+use crate::errors::ErrorMap;
+use crate::graph::Vertex;
+use crate::layout::{DEFAULT_PATCH, MOST_PATCHES, PatchLayout};
+use crate::paging::region::{PagedFrame, PagedRegion, Patches};
+use crate::paging::summary::{self, PatchSummary};
+use crate::patched_ground::PatchedGround;
+use crate::spheres::SphereMap;
+use sandtable_terrain::lattice::{Lattice, LatticeError};
 
 /// The parameters of paging.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-use crate::dem::windows::Windows;
-use crate::roam::block::BlockFault;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::query::windowed::post_heights;
+use sandtable_dem::windows::Windows;
+use crate::block::BlockFault;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::post_rect::PostRect;
+use sandtable_terrain::query::windowed::post_heights;
 
 /// The whole terrain, without its heights.
 #[derive(Clone, Copy, Debug)]

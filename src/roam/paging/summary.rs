@@ -5,13 +5,13 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::dem::windows::Windows;
-use crate::roam::block::BlockError;
-use crate::roam::culling::PatchHeights;
-use crate::roam::graph::Vertex;
-use crate::roam::paging::region::{PagedFrame, PagedRegion, Patches};
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::SphereMap;
+use sandtable_dem::windows::Windows;
+use crate::block::BlockError;
+use crate::culling::PatchHeights;
+use crate::graph::Vertex;
+use crate::paging::region::{PagedFrame, PagedRegion, Patches};
+use crate::patched_ground::PatchedGround;
+use crate::spheres::SphereMap;
 
 /// Patches along a square of the pass. With the surroundings 10 or 11 are measured for 8, 1.6 times the least work, and
 /// 450,000 vertices of patches of 64 are in memory; 16 would save a fifth of the work for 3.3 times the memory.
@@ -57,7 +57,7 @@ impl PatchSummary {
     /// Whether the eye is outside all spheres of the patch, whose middle is at `middle` in plan, so that it is drawn as its
     /// two root triangles.
     pub fn is_far(&self, middle: Vec2, eye: Vec3) -> bool {
-        let distance = crate::roam::criterion::spheres::distance(eye, middle.extend(self.middle));
+        let distance = crate::criterion::spheres::distance(eye, middle.extend(self.middle));
         self.radius == 0.0 || distance >= f64::from(self.radius)
     }
 }

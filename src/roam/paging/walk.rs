@@ -6,14 +6,14 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::dem::windows::Windows;
-use crate::roam::bintree::Triangle;
-use crate::roam::block::{BlockError, BlockSource, PatchBlock};
-use crate::roam::criterion::spheres::distance;
-use crate::roam::graph::Vertex;
-use crate::roam::paging::ground::PagedGround;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::spheres::SphereMap;
+use sandtable_dem::windows::Windows;
+use crate::bintree::Triangle;
+use crate::block::{BlockError, BlockSource, PatchBlock};
+use crate::criterion::spheres::distance;
+use crate::graph::Vertex;
+use crate::paging::ground::PagedGround;
+use crate::patched_ground::PatchedGround;
+use crate::spheres::SphereMap;
 
 /// Calls `visit` with the triangles of a patch for an eye in world space. `corner` is the patch's south-west corner, `side`
 /// the cells along its side.

@@ -1,7 +1,7 @@
 //! What an update changed.
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// The changes of one update.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

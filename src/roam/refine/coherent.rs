@@ -10,7 +10,7 @@
 //!   been active for it alone.
 //!
 //! So a vertex is active exactly when a visited triangle wants it or one of its descendants: the mesh equals that of
-//! [`rebuild`](crate::roam::refine::rebuild::rebuild) for the same criterion and patches, bit for bit, whatever the
+//! [`rebuild`](crate::refine::rebuild::rebuild) for the same criterion and patches, bit for bit, whatever the
 //! criterion and the frames before. Two bits a vertex say which of its triangles are visited; one would not do, since with
 //! a criterion that is not monotone one of them can exist by force alone.
 //!
@@ -19,13 +19,13 @@
 //!
 //! Costs one evaluation per vertex that is or could be split, and splits and merges only where the mesh changes.
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::criterion::Criterion;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::refine::changes::{ChangeTally, RefinementChanges};
-use crate::roam::refine::listed::ListedPatches;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::criterion::Criterion;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::refine::changes::{ChangeTally, RefinementChanges};
+use crate::refine::listed::ListedPatches;
 
 /// What happens to a patch that is no longer listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,12 +6,12 @@
 
 use std::ops::{Add, Sub};
 
-use crate::roam::bintree::Triangle;
-use crate::roam::emit::world::drawn_posts;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::refine::listed::ListedPatches;
+use crate::bintree::Triangle;
+use crate::emit::world::drawn_posts;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::refine::listed::ListedPatches;
 
 /// Numbers of triangles: drawn ones, and all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! The patches of an update, compared with those of the update before.
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 const NOW: u8 = 1;
 const BEFORE: u8 = 2;

@@ -1,7 +1,7 @@
 //! A set of vertices as a list.
 
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// A list of vertices, each once, with a membership bit for every vertex of the layout.
 #[derive(Clone, Debug)]

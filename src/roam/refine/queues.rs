@@ -22,16 +22,16 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Add;
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::criterion::Criterion;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::patched_ground::PatchedGround;
-use crate::roam::refine::changes::{ChangeTally, RefinementChanges};
-use crate::roam::refine::drawn::{Count, Drawn};
-use crate::roam::refine::listed::ListedPatches;
-use crate::roam::refine::members::VertexSet;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::criterion::Criterion;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::patched_ground::PatchedGround;
+use crate::refine::changes::{ChangeTally, RefinementChanges};
+use crate::refine::drawn::{Count, Drawn};
+use crate::refine::listed::ListedPatches;
+use crate::refine::members::VertexSet;
 
 /// The consecutive splits that may find no room before an update ends. A triangle or two of the budget stay unused; trying
 /// every other leaf for them would cost more than the rest of the frame.
@@ -45,7 +45,7 @@ pub const MOST_LEAVES: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// Every vertex that the criterion wants, whatever the number of triangles. Where no vertex's excess is above its
-    /// parents', the mesh is that of [`rebuild`](crate::roam::refine::rebuild::rebuild).
+    /// parents', the mesh is that of [`rebuild`](crate::refine::rebuild::rebuild).
     Tolerance,
     /// As fine as this number of drawn triangles allows, below the tolerance too.
     Budget(usize),

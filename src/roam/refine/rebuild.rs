@@ -6,11 +6,11 @@
 //!
 //! Costs one evaluation of the criterion per triangle of the resulting tree, whatever the size of the terrain.
 
-use crate::roam::active::ActiveSet;
-use crate::roam::bintree::Triangle;
-use crate::roam::criterion::Criterion;
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
+use crate::active::ActiveSet;
+use crate::bintree::Triangle;
+use crate::criterion::Criterion;
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
 
 /// The active vertices for one view, from the roots of the patches whose south-west corners are listed. Other patches stay
 /// as coarse as their neighbors allow.

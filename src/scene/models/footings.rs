@@ -2,25 +2,25 @@
 
 use std::collections::BTreeMap;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::ModelPlacement;
-use crate::description::words::{Clamp, Footing};
-use crate::earthworks::pad;
-use crate::earthworks::pad::Batters;
-use crate::geom::polygon;
-use crate::limits::LEVELED_CELLS;
-use crate::limits::LEVELED_PADS;
-use crate::scene::footprint::ModelFootprint;
-use crate::scene::models::PlacedModels;
-use crate::scene::placement::{outline, stand};
-use crate::scene::vertical_scale::VerticalScale;
-use crate::scene::world_frame::WorldFrame;
-use crate::scene::{GroundFit, Placement};
-use crate::terrain::full_resolution::FullResolution;
-use crate::terrain::lattice::{HIGHEST_M, Lattice};
-use crate::terrain::support_surface::SupportSurface;
-use crate::terrain::volumes::Volumes;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::ModelPlacement;
+use sandtable_description::words::{Clamp, Footing};
+use sandtable_earthworks::pad;
+use sandtable_earthworks::pad::Batters;
+use sandtable_geom::polygon;
+use sandtable_base::limits::LEVELED_CELLS;
+use sandtable_base::limits::LEVELED_PADS;
+use crate::footprint::ModelFootprint;
+use crate::models::PlacedModels;
+use crate::placement::{outline, stand};
+use crate::vertical_scale::VerticalScale;
+use crate::world_frame::WorldFrame;
+use crate::{GroundFit, Placement};
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::lattice::{HIGHEST_M, Lattice};
+use sandtable_terrain::support_surface::SupportSurface;
+use sandtable_terrain::volumes::Volumes;
 
 /// The margin of a pad around the footprint, as a part of the longer side.
 const PAD_REACH: f32 = 0.1;

@@ -7,15 +7,15 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::ops::Range;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::words::Clamp;
-use crate::model::Model;
-use crate::model::{built_in, read};
-use crate::scene::assets::Assets;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::footprint::ModelFootprint;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Clamp;
+use sandtable_model::Model;
+use sandtable_model::{built_in, read};
+use crate::assets::Assets;
+use crate::builder::SceneBuilder;
+use crate::footprint::ModelFootprint;
 
 /// The origin of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

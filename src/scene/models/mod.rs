@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A placement holds a model, a position in plan and how it meets the ground; each picture computes its height
-//! ([`crate::scene::placement`]).
+//! ([`crate::placement`]).
 
 pub mod footings;
 pub mod library;
@@ -16,27 +16,27 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::{FeatureSource, ModelPlacement};
-use crate::description::finding_code::FindingCode;
-use crate::description::scalar::Scalar;
-use crate::description::words::{Clamp, Footing};
-use crate::draw::list::FeatureId;
-use crate::limits::SCENE_MODELS;
-use crate::message::suggest::listed;
-use crate::scene::attributes::{Attributes, DefaultCounts};
-use crate::scene::builder::SceneBuilder;
-use crate::scene::feature_origin::FeatureOrigin;
-use crate::scene::models::library::Library;
-use crate::scene::scatter;
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::sources::{Sourced, Sources};
-use crate::scene::world_frame::WorldFrame;
-use crate::scene::{FeatureKind, GroundFit, Placement};
-use crate::terrain::full_resolution::FullResolution;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::{FeatureSource, ModelPlacement};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::scalar::Scalar;
+use sandtable_description::words::{Clamp, Footing};
+use sandtable_draw::list::FeatureId;
+use sandtable_base::limits::SCENE_MODELS;
+use sandtable_base::message::suggest::listed;
+use crate::attributes::{Attributes, DefaultCounts};
+use crate::builder::SceneBuilder;
+use crate::feature_origin::FeatureOrigin;
+use crate::models::library::Library;
+use crate::scatter;
+use crate::scene_findings::SceneFindings;
+use crate::sources::{Sourced, Sources};
+use crate::world_frame::WorldFrame;
+use crate::{FeatureKind, GroundFit, Placement};
+use sandtable_terrain::full_resolution::FullResolution;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// The placements of one `[[model]]`.
 pub struct InstanceGroup<'a> {

@@ -7,22 +7,22 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::description::features::FeatureSource;
-use crate::description::finding_code::FindingCode;
-use crate::description::words::Clamp;
-use crate::scene::Placement;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::footprint::ModelFootprint;
-use crate::scene::models::{InstanceGroup, PlacedModels};
-use crate::scene::placement::stand;
-use crate::scene::report::{InstancesRow, ModelRow};
-use crate::scene::scene_findings::SceneFindings;
-use crate::scene::vertical_scale::DrawnGround;
-use crate::scene::world_frame::WorldFrame;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::support_surface::SupportSurface;
-use crate::terrain::triangle_surface::TriangleSurface;
-use crate::terrain::volumes::Volumes;
+use sandtable_description::features::FeatureSource;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Clamp;
+use crate::Placement;
+use crate::builder::SceneBuilder;
+use crate::footprint::ModelFootprint;
+use crate::models::{InstanceGroup, PlacedModels};
+use crate::placement::stand;
+use crate::report::{InstancesRow, ModelRow};
+use crate::scene_findings::SceneFindings;
+use crate::vertical_scale::DrawnGround;
+use crate::world_frame::WorldFrame;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::support_surface::SupportSurface;
+use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_terrain::volumes::Volumes;
 
 /// Adds a row for each single model and for each table of instances. `volumes` holds the earth moved by the index of the
 /// placement.

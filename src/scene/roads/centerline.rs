@@ -1,23 +1,23 @@
 //! The document's roads as centerlines, each with what it is to become.
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::RoadTable;
-use crate::description::words::{self, Markings};
-use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
-use crate::ribbon::junction::Street;
-use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::{RibbonSurface, texture_length_m};
-use crate::scene::FeatureKind;
-use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::near;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sources;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::RoadTable;
+use sandtable_description::words::{self, Markings};
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::alignment::{Alignment, Support, Width};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use sandtable_ribbon::junction::Street;
+use sandtable_ribbon::stroke::StrokeOptions;
+use sandtable_ribbon::texture::{RibbonSurface, texture_length_m};
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::near;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
 
 /// How far from the ground a centerline may run whose road still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
@@ -112,7 +112,7 @@ fn centerline(
 }
 
 /// A pavement, with what is painted on asphalt.
-pub(in crate::scene) fn surface(word: words::RoadSurface, markings: Markings) -> RibbonSurface {
+pub(crate) fn surface(word: words::RoadSurface, markings: Markings) -> RibbonSurface {
     match (word, markings) {
         (words::RoadSurface::Gravel, _) => RibbonSurface::Gravel,
         (words::RoadSurface::Track, _) => RibbonSurface::Track,
@@ -124,7 +124,7 @@ pub(in crate::scene) fn surface(word: words::RoadSurface, markings: Markings) ->
 }
 
 /// The support of a road, by the expressions stated for it, else by its OpenStreetMap tags.
-pub(in crate::scene) fn support(road: &RoadTable, attributes: &Attributes) -> Support {
+pub(crate) fn support(road: &RoadTable, attributes: &Attributes) -> Support {
     let holds = |stated: &Option<_>, property| match stated {
         Some(expression) => attributes.holds(expression),
         None => attributes.affirm(property),
@@ -148,9 +148,9 @@ fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
 }
 
 #[cfg(test)]
-pub(in crate::scene::roads) mod tests {
+pub(in crate::roads) mod tests {
     use super::*;
-    use crate::description::parse::parse;
+    use sandtable_description::parse::parse;
     use glam::DVec2;
 
     /// A road along these points, six meters wide, from the document's first table.

@@ -8,25 +8,25 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::earthworks::alignment::design::design;
-use crate::earthworks::alignment::network::NodeId;
-use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
-use crate::earthworks::grading::grade;
-use crate::earthworks::grading::strip::{GradingStrip, StripEnd};
-use crate::limits::{GROUND_POSTS, ROAD_CROSSINGS, ROAD_PAIRS};
-use crate::scene::builder::SceneBuilder;
-use crate::scene::report::ConformedRoadRow;
-use crate::scene::roads::centerline::Centerline;
-use crate::scene::roads::meetings::{RoadMeetings, meetings};
-use crate::scene::roads::network_survey::{NetworkSurvey, Rules, conforms};
-use crate::scene::roads::profiles::RoadProfile;
-use crate::scene::roads::route::Route;
-use crate::terrain::densify;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::volumes::Volumes;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_earthworks::alignment::design::design;
+use sandtable_earthworks::alignment::network::NodeId;
+use sandtable_earthworks::alignment::{Alignment, Support, SupportSpan};
+use sandtable_earthworks::grading::grade;
+use sandtable_earthworks::grading::strip::{GradingStrip, StripEnd};
+use sandtable_base::limits::{GROUND_POSTS, ROAD_CROSSINGS, ROAD_PAIRS};
+use crate::builder::SceneBuilder;
+use crate::report::ConformedRoadRow;
+use crate::roads::centerline::Centerline;
+use crate::roads::meetings::{RoadMeetings, meetings};
+use crate::roads::network_survey::{NetworkSurvey, Rules, conforms};
+use crate::roads::profiles::RoadProfile;
+use crate::roads::route::Route;
+use sandtable_terrain::densify;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::volumes::Volumes;
 
 /// The length of a vertical curve in meters: for a crest between grades of 4 % up and down at 50 km/h.
 const CURVE_M: f64 = 50.0;

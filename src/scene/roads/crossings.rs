@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use crate::geom::leg_tree::{LegTree, LineLeg};
-use crate::geom::polyline::Polyline;
-use crate::geom::segment;
-use crate::ribbon::junction::Street;
+use sandtable_geom::leg_tree::{LegTree, LineLeg};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::segment;
+use sandtable_ribbon::junction::Street;
 
 /// A crossing at a smaller angle than this sine counts as this one: its clearance would have no end.
 const LEAST_SINE: f64 = 0.25;
@@ -81,9 +81,9 @@ fn is_end(line: &Polyline, station_m: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::alignment::Alignment;
-    use crate::ribbon::stroke::StrokeOptions;
-    use crate::ribbon::texture::RibbonSurface;
+    use sandtable_earthworks::alignment::Alignment;
+    use sandtable_ribbon::stroke::StrokeOptions;
+    use sandtable_ribbon::texture::RibbonSurface;
     use proptest::prelude::*;
 
     fn line(points: &[(f64, f64)]) -> Polyline {

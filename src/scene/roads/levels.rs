@@ -8,20 +8,20 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::earthworks::alignment::Support;
-use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::geom::profile::Profile;
-use crate::ribbon::junction::Street;
-use crate::scene::roads::centerline::Centerline;
-use crate::scene::roads::chains::{ChainEnd, SpanChain};
-use crate::scene::roads::crossings::{self, Overpass};
-use crate::scene::roads::spans::RoadSpan;
-use crate::scene::vertical_scale::VerticalScale;
-use crate::structure::bridge::depth_m;
-use crate::structure::deck_profile::{ClearancePoint, clearing};
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::deck::Deck;
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_earthworks::alignment::Support;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
+use sandtable_ribbon::junction::Street;
+use crate::roads::centerline::Centerline;
+use crate::roads::chains::{ChainEnd, SpanChain};
+use crate::roads::crossings::{self, Overpass};
+use crate::roads::spans::RoadSpan;
+use crate::vertical_scale::VerticalScale;
+use sandtable_structure::bridge::depth_m;
+use sandtable_structure::deck_profile::{ClearancePoint, clearing};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::deck::Deck;
+use sandtable_terrain::query::{Interpolation, ground_height};
 
 /// The clearance of a bridge over roads and water where it can be climbed to, in meters: 4.5 m for traffic and a reserve.
 pub const CLEARANCE_M: f64 = 5.0;

@@ -9,21 +9,21 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::earthworks::alignment::chain::ChainLink;
-use crate::geom::offset::Continuations;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::mesh::sink::MeshSink;
-use crate::ribbon::chain::chained;
-use crate::ribbon::crossing::crossings;
-use crate::ribbon::junction::{self, Street, StreetNetwork};
-use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{StrokePath, stroke};
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::near::Clipped;
-use crate::scene::roads::centerline::Centerline;
-use crate::scene::symbols::LineSymbol;
+use sandtable_earthworks::alignment::chain::ChainLink;
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::MeshSink;
+use sandtable_ribbon::chain::chained;
+use sandtable_ribbon::crossing::crossings;
+use sandtable_ribbon::junction::{self, Street, StreetNetwork};
+use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
+use sandtable_ribbon::stroke::{StrokePath, stroke};
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::builder::SceneBuilder;
+use crate::near::Clipped;
+use crate::roads::centerline::Centerline;
+use crate::symbols::LineSymbol;
 
 /// Meters in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;

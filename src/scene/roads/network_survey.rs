@@ -2,24 +2,24 @@
 
 use std::ops::Range;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::RoadTable;
-use crate::description::words::ProfileMode;
-use crate::earthworks::alignment::SupportSpan;
-use crate::earthworks::alignment::chain::LineEnd;
-use crate::earthworks::alignment::design::Design;
-use crate::earthworks::alignment::network::{RoadSection, SectionNetwork};
-use crate::earthworks::alignment::spans::EarthworkLimits;
-use crate::earthworks::grading::strip;
-use crate::geom::profile::Profile;
-use crate::limits::ROAD_STATIONS;
-use crate::scene::attributes::DefaultCounts;
-use crate::scene::roads::centerline::Centerline;
-use crate::scene::roads::meetings::{RoadMeetings, RoadStop};
-use crate::scene::roads::route::Route;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::profile::profile;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::RoadTable;
+use sandtable_description::words::ProfileMode;
+use sandtable_earthworks::alignment::SupportSpan;
+use sandtable_earthworks::alignment::chain::LineEnd;
+use sandtable_earthworks::alignment::design::Design;
+use sandtable_earthworks::alignment::network::{RoadSection, SectionNetwork};
+use sandtable_earthworks::alignment::spans::EarthworkLimits;
+use sandtable_earthworks::grading::strip;
+use sandtable_geom::profile::Profile;
+use sandtable_base::limits::ROAD_STATIONS;
+use crate::attributes::DefaultCounts;
+use crate::roads::centerline::Centerline;
+use crate::roads::meetings::{RoadMeetings, RoadStop};
+use crate::roads::route::Route;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::profile::profile;
 
 /// The rules for a road that the ground follows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::Support;
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::ribbon::texture::RibbonSurface;
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::alignment::Support;
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_ribbon::texture::RibbonSurface;
 
 /// A road's longitudinal profile.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! A road with its design: its longitudinal profile, and the road cut where bridges and tunnels begin.
 
-use crate::earthworks::alignment::{Alignment, Support, SupportSpan};
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::ribbon::junction::Street;
-use crate::scene::roads::centerline::Centerline;
+use sandtable_earthworks::alignment::{Alignment, Support, SupportSpan};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_ribbon::junction::Street;
+use crate::roads::centerline::Centerline;
 
 /// Spans shorter than this are part of their neighbors, in meters.
 const SHORTEST_M: f64 = 0.05;
@@ -109,7 +109,7 @@ impl Route {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::roads::centerline::tests::road;
+    use crate::roads::centerline::tests::road;
 
     fn profile(stations: &[f64], values: &[f64]) -> Profile {
         Profile::new(stations.to_vec(), values.to_vec()).expect("stations rise")

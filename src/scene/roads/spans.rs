@@ -2,23 +2,23 @@
 
 use std::collections::BTreeSet;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::words::Markings;
-use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::geom::offset::Continuations;
-use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
-use crate::ribbon::junction::{self, Street};
-use crate::ribbon::stroke::StrokeOptions;
-use crate::scene::FeatureKind;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::feature_origin::FeatureOrigin;
-use crate::scene::near;
-use crate::scene::roads::centerline::{self, Centerline};
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sources;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::words::Markings;
+use sandtable_earthworks::alignment::{Alignment, Support, Width};
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use sandtable_ribbon::junction::{self, Street};
+use sandtable_ribbon::stroke::StrokeOptions;
+use crate::FeatureKind;
+use crate::builder::SceneBuilder;
+use crate::feature_origin::FeatureOrigin;
+use crate::near;
+use crate::roads::centerline::{self, Centerline};
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
 
 /// How far from the ground a bridge may run that still reaches it, in meters.
 const REACH_M: f64 = 1000.0;

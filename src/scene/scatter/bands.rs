@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use glam::DVec2;
 
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
 
 /// The rings of a polygon, cut into rows of squares.
 pub struct Bands {

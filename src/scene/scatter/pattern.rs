@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use crate::scene::scatter::chance::Chance;
+use crate::scatter::chance::Chance;
 
 /// The greatest part of the bound `1 / πs²` that is asked for: nearer to it, most candidates would be made in vain.
 const MOST: f64 = 0.95;

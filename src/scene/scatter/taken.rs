@@ -7,10 +7,10 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec2;
 
-use crate::geom::convex;
-use crate::geom::polygon;
-use crate::geom::rect::Rect;
-use crate::geom::segment;
+use sandtable_geom::convex;
+use sandtable_geom::polygon;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::segment;
 
 /// A grid's squares have sides of two to this power, in meters.
 type Power = i32;

@@ -2,29 +2,29 @@
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::features::RiverTable;
-use crate::description::words::Water;
-use crate::draw::list::FeatureId;
-use crate::earthworks::alignment::{Alignment, Support, Width};
-use crate::earthworks::channel::flow::{self, Flow};
-use crate::geom::convex;
-use crate::geom::polyline::Polyline;
-use crate::geom::profile::Profile;
-use crate::geom::rect::Rect;
-use crate::geom::rect_tree::RectTree;
-use crate::ribbon::junction::Street;
-use crate::ribbon::stroke::StrokeOptions;
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::FeatureKind;
-use crate::scene::attributes::Attributes;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::near;
-use crate::scene::scene_findings::FeatureTable;
-use crate::scene::sources::Sources;
-use crate::scene::water::order::{self, RiverSurroundings};
-use crate::terrain::lattice::Lattice;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::features::RiverTable;
+use sandtable_description::words::Water;
+use sandtable_draw::list::FeatureId;
+use sandtable_earthworks::alignment::{Alignment, Support, Width};
+use sandtable_earthworks::channel::flow::{self, Flow};
+use sandtable_geom::convex;
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use sandtable_geom::rect_tree::RectTree;
+use sandtable_ribbon::junction::Street;
+use sandtable_ribbon::stroke::StrokeOptions;
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::near;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use crate::water::order::{self, RiverSurroundings};
+use sandtable_terrain::lattice::Lattice;
 
 /// How far from the ground a centerline may run whose water still reaches it, in meters.
 const REACH_M: f64 = 1000.0;

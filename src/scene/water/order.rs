@@ -19,8 +19,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::geom::polyline::{Polyline, VertexKey, vertex_key};
-use crate::geom::profile::Profile;
+use sandtable_geom::polyline::{Polyline, VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
 
 /// Where a line begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

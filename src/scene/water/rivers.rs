@@ -11,27 +11,27 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::description::diagnostic::Diagnostic;
-use crate::description::document::Document;
-use crate::description::finding_code::FindingCode;
-use crate::description::words::Water;
-use crate::earthworks::channel::{self, Channel, Climb, Cut, Cuts};
-use crate::geom::offset::Continuations;
-use crate::geom::polygon;
-use crate::geom::polyline::{VertexKey, vertex_key};
-use crate::geom::rect::Rect;
-use crate::mesh::sink::MeshSink;
-use crate::ribbon::junction::{self, Street};
-use crate::ribbon::plan::{PlanMesh, PlanVertex};
-use crate::ribbon::stroke::{StrokePath, stroke};
-use crate::ribbon::texture::RibbonSurface;
-use crate::scene::builder::SceneBuilder;
-use crate::scene::near::Clipped;
-use crate::scene::report::RiverRow;
-use crate::scene::sources::Sources;
-use crate::scene::symbols::LineSymbol;
-use crate::scene::water::network::{self, Stream};
-use crate::terrain::lattice::Lattice;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Water;
+use sandtable_earthworks::channel::{self, Channel, Climb, Cut, Cuts};
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::polygon;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::MeshSink;
+use sandtable_ribbon::junction::{self, Street};
+use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
+use sandtable_ribbon::stroke::{StrokePath, stroke};
+use sandtable_ribbon::texture::RibbonSurface;
+use crate::builder::SceneBuilder;
+use crate::near::Clipped;
+use crate::report::RiverRow;
+use crate::sources::Sources;
+use crate::symbols::LineSymbol;
+use crate::water::network::{self, Stream};
+use sandtable_terrain::lattice::Lattice;
 
 /// The corners of a confluence's disc: its rim lies within a thirteenth of its radius of the circle.
 const DISC_CORNERS: u32 = 8;

@@ -1,4 +1,4 @@
-//! The entities that are drawn, set by set, each with its drawing ([`crate::symbology::drawing`]).
+//! The entities that are drawn, set by set, each with its drawing ([`crate::drawing`]).
 //!
 //! The drawings follow the descriptions and figures of MIL-STD-2525D, appendices B to G.
 
@@ -9,7 +9,7 @@ mod land_installation;
 mod land_unit;
 mod sea_surface;
 
-use crate::symbology::fields::SymbolSet;
+use crate::fields::SymbolSet;
 
 /// An entity with its drawing.
 #[derive(Clone, Copy, Debug)]

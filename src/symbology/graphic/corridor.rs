@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput, TextCourse};
-use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::plane::{circle, direction, offset, turned};
+use crate::graphic::drawing::{GraphicDrawing, GraphicInput, TextCourse};
+use crate::graphic::kind::GraphicKind;
+use crate::graphic::plane::{circle, direction, offset, turned};
 
 /// The barbs of a lane in text heights.
 const LANE_EM: f64 = 2.95;

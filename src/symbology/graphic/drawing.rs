@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
-use crate::symbology::graphic::fields::GraphicFields;
+use crate::graphic::fields::GraphicFields;
 
 /// What a graphic is drawn from.
 #[derive(Clone, Copy, Debug)]
 pub struct GraphicInput<'a> {
-    /// Its points in meters, in the order of its draw rule, checked by [`crate::symbology::graphic::check::check`].
+    /// Its points in meters, in the order of its draw rule, checked by [`crate::graphic::check::check`].
     pub points: &'a [DVec2],
     /// The height of a text in meters, above 0: teeth, dashes and arrowheads are multiples of it.
     pub em_m: f64,

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
-use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::plane::{arc, arrowhead, circle, direction};
+use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::graphic::kind::GraphicKind;
+use crate::graphic::plane::{arc, arrowhead, circle, direction};
 
 /// Half of the bar at the end of a linear target, in text heights.
 const BAR_EM: f64 = 1.04;

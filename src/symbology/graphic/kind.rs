@@ -1,7 +1,7 @@
 //! The table of graphics: their words and codes, draw rules, points and fields.
 
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
-use crate::symbology::graphic::{area, axis, corridor, crossing, fires, lines, point, task, teeth, wire};
+use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::graphic::{area, axis, corridor, crossing, fires, lines, point, task, teeth, wire};
 
 /// The most points of a graphic: more than any staff plots, and few enough to check every pair of legs.
 pub const MOST_POINTS: usize = 2000;
@@ -292,8 +292,8 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::symbology::graphic::check::{PlacedGraphic, check};
-    use crate::symbology::graphic::fields::GraphicFields;
+    use crate::graphic::check::{PlacedGraphic, check};
+    use crate::graphic::fields::GraphicFields;
 
     #[test]
     fn words_and_codes_are_unique_and_rising() {

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use crate::geom::offset::{Continuations, LineBend, square};
-use crate::geom::polyline::Polyline;
+use sandtable_geom::offset::{Continuations, LineBend, square};
+use sandtable_geom::polyline::Polyline;
 
 /// The longest step of an arc in radians: a sagitta of 0.4 % of the radius.
 const ARC_STEP_RAD: f64 = TAU / 72.0;

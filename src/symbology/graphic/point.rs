@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::symbology::graphic::drawing::{GraphicDrawing, GraphicInput};
-use crate::symbology::graphic::kind::GraphicKind;
-use crate::symbology::graphic::plane::turned;
+use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
+use crate::graphic::kind::GraphicKind;
+use crate::graphic::plane::turned;
 
 /// The paper on which a point is drawn: right and up in text heights.
 struct PointPaper {

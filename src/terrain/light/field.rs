@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::{Vec2, Vec2Swizzles};
 use rayon::prelude::*;
 
-use crate::terrain::lattice::Lattice;
+use crate::lattice::Lattice;
 
 /// Values at every `every`-th post of a lattice, row by row from the south-west. The last row and the last column may
 /// lie beyond the lattice's border.

@@ -6,9 +6,9 @@
 
 use glam::Vec3;
 
-use crate::terrain::lattice::Lattice;
-use crate::terrain::light::field::CoarseField;
-use crate::terrain::light::sun::SunShadow;
+use crate::lattice::Lattice;
+use crate::light::field::CoarseField;
+use crate::light::sun::SunShadow;
 
 mod field;
 mod sky;

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use crate::terrain::light::field::{CoarseField, Mean};
+use crate::light::field::{CoarseField, Mean};
 
 /// The most cells along a side of the lattice of distant horizons.
 const MOST_FAR_CELLS: usize = 1024;

@@ -25,14 +25,14 @@
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
-use crate::dem::answer::{Answer, Status};
-use crate::dem::raster::{Raster, Samples};
-use crate::dem::sample::ON_CENTER;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::source::raster_height;
-use crate::terrain::query::tiles::{HeightTiles, TileSlot};
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::vectorized::vectorized;
+use sandtable_dem::answer::{Answer, Status};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::sample::ON_CENTER;
+use crate::lattice::Lattice;
+use crate::query::source::raster_height;
+use crate::query::tiles::{HeightTiles, TileSlot};
+use crate::query::{Interpolation, ground_height};
+use crate::vectorized::vectorized;
 
 /// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
 /// above 512 the arrays leave the cache.
@@ -65,7 +65,7 @@ pub struct HeightSlices<'a> {
 
 impl HeightSlices<'_> {
     /// Panics unless there is one height and one status for each of `count` positions.
-    pub(in crate::terrain::query) fn check_len(&self, count: usize) {
+    pub(in crate::query) fn check_len(&self, count: usize) {
         assert_eq!((count, count), (self.heights_m.len(), self.statuses.len()), "one answer per position");
     }
 
@@ -82,7 +82,7 @@ impl HeightSlices<'_> {
     }
 
     /// In chunks of `size`, the last one shorter where `size` does not divide the length.
-    pub(in crate::terrain::query) fn chunks_mut(
+    pub(in crate::query) fn chunks_mut(
         &mut self,
         size: usize,
     ) -> impl Iterator<Item = HeightSlices<'_>> {
@@ -91,7 +91,7 @@ impl HeightSlices<'_> {
     }
 
     /// Writes `answer` of each position.
-    pub(in crate::terrain::query) fn fill(&mut self, at: &[DVec2], answer: impl Fn(DVec2) -> Answer) {
+    pub(in crate::query) fn fill(&mut self, at: &[DVec2], answer: impl Fn(DVec2) -> Answer) {
         for ((&at, height_m), status) in at.iter().zip(&mut *self.heights_m).zip(&mut *self.statuses) {
             (*height_m, *status) = answer(at).parts();
         }
@@ -145,7 +145,7 @@ impl CellPositions {
 ///
 /// # Panics
 /// Where `out` is not as long as `at`.
-pub(in crate::terrain::query) fn answers(
+pub(in crate::query) fn answers(
     at: &[DVec2],
     out: &mut [Answer],
     task: impl Fn(&[DVec2], HeightSlices<'_>) + Sync,
@@ -164,7 +164,7 @@ pub(in crate::terrain::query) fn answers(
 }
 
 /// Spreads positions over all threads; `task` writes their heights and statuses.
-pub(in crate::terrain::query) fn spread(
+pub(in crate::query) fn spread(
     at: &[DVec2],
     out: HeightSlices<'_>,
     task: impl Fn(&[DVec2], HeightSlices<'_>) + Sync,
@@ -226,7 +226,7 @@ fn ground_passes(
 ///
 /// # Panics
 /// Where the slices are not as long as `at`.
-pub(in crate::terrain::query) fn bilinear_raster(raster: &Raster, at: &[DVec2], out: HeightSlices<'_>) {
+pub(in crate::query) fn bilinear_raster(raster: &Raster, at: &[DVec2], out: HeightSlices<'_>) {
     match &raster.samples {
         Samples::F32(samples) => bilinear_samples(raster, samples, at, out),
         Samples::F64(samples) => bilinear_samples(raster, samples, at, out),
@@ -335,7 +335,7 @@ fn place_in_cells(axes: &[LatticeAxis; 2], at: &[DVec2; CHUNK], positions: &mut 
 }
 
 /// The samples west and north of each position and the part of the way to the next, by the steps of
-/// [`crate::dem::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
+/// [`sandtable_dem::sample`]; NaN for positions on or beyond the outer samples' centers or on lines of centers.
 #[inline(always)]
 fn place_between_samples(
     raster: &Raster,
@@ -378,13 +378,13 @@ fn lower_of_pair(value: f64, last: f64) -> f64 {
 
 /// The whole number nearest to `value`, which lies within ±2⁵¹.
 #[inline(always)]
-pub(in crate::terrain::query) fn rounded(value: f64) -> f64 {
+pub(in crate::query) fn rounded(value: f64) -> f64 {
     (value + WHOLE) - WHOLE
 }
 
 /// A whole number from 0 to 2⁵¹ as an index.
 #[inline(always)]
-pub(in crate::terrain::query) fn index_of(whole: f64) -> usize {
+pub(in crate::query) fn index_of(whole: f64) -> usize {
     // The mask also proves to the compiler that nothing overflows where something is added.
     ((whole + WHOLE).to_bits() & ((1 << 51) - 1)) as usize
 }
@@ -429,7 +429,7 @@ fn gather_tiles(
     }
 }
 
-/// The formula of [`crate::terrain::query::cell::bilinear`].
+/// The formula of [`crate::query::cell::bilinear`].
 #[inline(always)]
 fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f64; CHUNK]) {
     for (index, height_m) in heights_m.iter_mut().enumerate() {
@@ -439,7 +439,7 @@ fn mix(positions: &CellPositions, corners: &CellCorners<f32>, heights_m: &mut [f
     }
 }
 
-/// The formula of [`crate::dem::sample`], where all four corners count.
+/// The formula of [`sandtable_dem::sample`], where all four corners count.
 #[inline(always)]
 fn mix_by_weights<S: Copy + Into<f64>>(
     positions: &CellPositions,

@@ -3,10 +3,10 @@
 //! Both have the same posts and so the same finest triangles; over each the difference is one plane, whose parts above and
 //! below zero are counted apart. A post that rose beside one that sank therefore counts for both.
 
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::pieces::GridRegion;
-use crate::terrain::query::zone::add_rises;
-use crate::terrain::volumes::Volumes;
+use crate::lattice::Lattice;
+use crate::query::pieces::GridRegion;
+use crate::query::zone::add_rises;
+use crate::volumes::Volumes;
 
 /// The difference between two snapshots.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,9 +62,9 @@ pub fn ground_change(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::earthworks::brush::set_heights;
-    use crate::terrain::lattice::Post;
-    use crate::terrain::post_rect::PostRect;
+    use sandtable_earthworks::brush::set_heights;
+    use crate::lattice::Post;
+    use crate::post_rect::PostRect;
     use glam::DVec2;
 
     fn ground() -> Lattice {

@@ -7,9 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::dem::answer::Status;
-use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
-use crate::terrain::lattice::Lattice;
+use sandtable_dem::answer::Status;
+use crate::cell_triangle::{CellTriangle, Diagonal};
+use crate::lattice::Lattice;
 
 /// The surface between the posts whose gradient is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,7 +74,7 @@ pub fn ground_gradient(lattice: &Lattice, patch: GradientSurface, at: DVec2) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::query::{Interpolation, ground_height};
+    use crate::query::{Interpolation, ground_height};
 
     const PATCHES: [GradientSurface; 2] = [GradientSurface::Planar, GradientSurface::Bilinear];
 

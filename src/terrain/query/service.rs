@@ -8,16 +8,16 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::DVec2;
 
-use crate::dem::answer::Answer;
-use crate::dem::raster::Raster;
-use crate::geom::crs::Crs;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::batch::{self, HeightSlices};
-use crate::terrain::query::deck::Deck;
-use crate::terrain::query::source::{source_height, source_task};
-use crate::terrain::query::tiles::LazyTiles;
-use crate::terrain::query::{Interpolation, Surface, ground_height};
-use crate::terrain::triangle_surface::TriangleSurface;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::raster::Raster;
+use sandtable_geom::crs::Crs;
+use crate::lattice::Lattice;
+use crate::query::batch::{self, HeightSlices};
+use crate::query::deck::Deck;
+use crate::query::source::{source_height, source_task};
+use crate::query::tiles::LazyTiles;
+use crate::query::{Interpolation, Surface, ground_height};
+use crate::triangle_surface::TriangleSurface;
 
 /// Positions between two checks whether tiles should be made, so that a single long batch gets them too.
 const STRETCH: usize = 1 << 20;
@@ -219,7 +219,7 @@ impl Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::triangle_surface::SurfaceTriangle;
+    use crate::triangle_surface::SurfaceTriangle;
     use glam::Vec3;
 
     fn service(height: impl Fn(u32, u32) -> f32) -> HeightService {
@@ -227,7 +227,7 @@ mod tests {
         let lattice =
             Lattice::new(DVec2::new(1000.0, 2000.0), DVec2::new(10.0, 20.0), 6, heights).expect("sound");
         let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1\n";
-        let source = crate::dem::read::read("a.asc", text.as_bytes(), &Default::default()).expect("sound");
+        let source = sandtable_dem::read::read("a.asc", text.as_bytes(), &Default::default()).expect("sound");
         HeightService::new(Arc::new(source), Crs::local(), Arc::new(lattice))
     }
 

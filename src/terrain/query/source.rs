@@ -1,21 +1,21 @@
 //! Heights of the raster as read, in its own grid.
 //!
-//! Nearest and bilinear are GDAL's ([`crate::dem::sample`]); they and the cubic reach half a sample beyond the centers of the
+//! Nearest and bilinear are GDAL's ([`sandtable_dem::sample`]); they and the cubic reach half a sample beyond the centers of the
 //! outer samples, whose heights they hold there. Planar and distance-weighted use the grid of sample centers and end at the outer ones. Heights in another unit
 //! are converted to meters.
 
 use glam::{DVec2, UVec2};
 
-use crate::dem::answer::Answer;
-use crate::dem::raster::Raster;
-use crate::dem::sample::{self, SampleGrid};
-use crate::geom::crs::Crs;
-use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::Post;
-use crate::terrain::query::Interpolation;
-use crate::terrain::query::batch::{self, HeightSlices};
-use crate::terrain::query::cell::interpolate;
-use crate::terrain::query::cubic::cubic;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::raster::Raster;
+use sandtable_dem::sample::{self, SampleGrid};
+use sandtable_geom::crs::Crs;
+use crate::cell_triangle::Diagonal;
+use crate::lattice::Post;
+use crate::query::Interpolation;
+use crate::query::batch::{self, HeightSlices};
+use crate::query::cell::interpolate;
+use crate::query::cubic::cubic;
 
 /// Positions that are transformed to the raster's system at a time, on the stack.
 const TRANSFORMED: usize = 512;
@@ -74,7 +74,7 @@ pub fn source_heights_apart(
 }
 
 /// [`source_height`] at many positions, on this thread.
-pub(in crate::terrain::query) fn source_task(
+pub(in crate::query) fn source_task(
     source: &Raster,
     from: &Crs,
     interpolation: Interpolation,
@@ -97,7 +97,7 @@ pub(in crate::terrain::query) fn source_task(
 }
 
 /// The transform from one system's positions to a raster's own.
-pub(crate) struct SourceTransform<'a> {
+pub struct SourceTransform<'a> {
     from: &'a Crs,
     /// The raster's system, where it is another.
     to: Option<&'a Crs>,
@@ -174,7 +174,7 @@ fn between_samples(samples: &impl SampleGrid, interpolation: Interpolation, at: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::read;
+    use sandtable_dem::read;
 
     fn read_grid(text: &str, crs: Option<Crs>) -> Raster {
         let hints = read::DemOptions { crs, ..read::DemOptions::default() }.into();

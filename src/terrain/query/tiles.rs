@@ -17,8 +17,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::batch::{index_of, rounded};
+use crate::lattice::{Lattice, Post};
+use crate::query::batch::{index_of, rounded};
 
 /// Cells along a tile's side.
 const CELLS: u32 = 3;

@@ -14,14 +14,14 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::answer::Answer;
-use crate::dem::error::DemErrorKind;
-use crate::dem::windows::{RasterPart, RasterWindow, Windows};
-use crate::geom::crs::Crs;
-use crate::terrain::lattice::{Lattice, LatticeError, Post};
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::query::source::{SourceTransform, raster_height};
-use crate::terrain::query::{Interpolation, ground_height};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::windows::{RasterPart, RasterWindow, Windows};
+use sandtable_geom::crs::Crs;
+use crate::lattice::{Lattice, LatticeError, Post};
+use crate::post_rect::PostRect;
+use crate::query::source::{SourceTransform, raster_height};
+use crate::query::{Interpolation, ground_height};
 
 /// The side of a square, in samples: as large as the tiles of most files, so that a square meets few.
 const SQUARE: u32 = 256;
@@ -52,7 +52,7 @@ struct PositionGroup {
     window: RasterWindow,
 }
 
-/// [`source_heights`](crate::terrain::query::source::source_heights) of a raster that is read in windows.
+/// [`source_heights`](crate::query::source::source_heights) of a raster that is read in windows.
 ///
 /// # Errors
 /// Samples cannot be read; `out` then means nothing.

@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::pieces::{GridRegion, PieceExtent, TrianglePiece};
-use crate::terrain::volumes::Volumes;
+use crate::lattice::Lattice;
+use crate::query::pieces::{GridRegion, PieceExtent, TrianglePiece};
+use crate::volumes::Volumes;
 
 /// Areas and heights within a polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +101,7 @@ pub fn volumes_to_level(lattice: &Lattice, region: &GridRegion, level_m: f64) ->
 }
 
 /// Adds the earth moved, in cells times meters, where a piece's cell corners rise by `rises`.
-pub(in crate::terrain::query) fn add_rises(cells: &mut Volumes, piece: TrianglePiece<'_>, rises: [f64; 4]) {
+pub(in crate::query) fn add_rises(cells: &mut Volumes, piece: TrianglePiece<'_>, rises: [f64; 4]) {
     for (corners, area) in piece.fan() {
         let (fill, cut) = above_and_below(corners.map(|at| piece.triangle.height(rises, at)));
         *cells += Volumes { cut_m3: cut, fill_m3: fill } * area;

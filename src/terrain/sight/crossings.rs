@@ -22,12 +22,12 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::terrain::cell_triangle::Diagonal;
-use crate::terrain::lattice::{Lattice, Post};
+use crate::cell_triangle::Diagonal;
+use crate::lattice::{Lattice, Post};
 
 /// The error of a position on a line, in cells: rounding alone, some 1e-10 on the largest lattices that memory holds. A
 /// position nearer than this to a line of posts may lie on either side of it.
-pub(in crate::terrain) const POSITION_ERROR: f64 = 1e-8;
+pub(crate) const POSITION_ERROR: f64 = 1e-8;
 
 /// A crossing of a line with an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct LineCrossing {
 }
 
 /// A part of a line: where it begins and ends, 0..=1.
-pub(in crate::terrain) type LinePart = (f64, f64);
+pub(crate) type LinePart = (f64, f64);
 
 /// Visits every crossing of the line `from`..`to` with edges of the finest triangles, in order, ends excluded, until
 /// `visit` breaks. Both ends are grid positions and may lie off the lattice, where there are no crossings; a line that is
@@ -88,7 +88,7 @@ fn part_between(from: f64, to: f64, last: f64) -> Option<LinePart> {
 
 /// An edge of a cell's border.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::terrain) enum CellEdge {
+pub(crate) enum CellEdge {
     /// Along this column of posts.
     Column(f64),
     /// Along this row of posts.
@@ -99,7 +99,7 @@ pub(in crate::terrain) enum CellEdge {
 
 /// The crossing with an edge of a cell's border, at the part of the line where it meets the edge's column or row.
 #[inline]
-pub(in crate::terrain) fn crossing_at(
+pub(crate) fn crossing_at(
     lattice: &Lattice,
     (from, to): (DVec2, DVec2),
     part: f64,
@@ -223,7 +223,7 @@ fn between(lattice: &Lattice, from: Post, to: Post, part: f64) -> f64 {
 
 /// The crossing with the diagonal of the one cell that the line passes in a part of it, if it crosses it inside.
 #[inline]
-pub(in crate::terrain) fn diagonal_between(
+pub(crate) fn diagonal_between(
     lattice: &Lattice,
     (from, to): (DVec2, DVec2),
     (first, last): LinePart,
@@ -254,7 +254,7 @@ pub(in crate::terrain) fn diagonal_between(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::query::{Interpolation, ground_height};
+    use crate::query::{Interpolation, ground_height};
 
     fn rough(columns: u32, rows: u32) -> Lattice {
         let height = |index: u32| ((index * 7919) % 101) as f32;

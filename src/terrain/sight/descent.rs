@@ -11,7 +11,7 @@
 //! ```
 //!
 //! A [`Probe`] decides which blocks are ruled out. It visits the crossings of every other cell, in order, with the values
-//! that [`crossings`](crate::terrain::sight::crossings::crossings) computes, to the last bit: a block ends where the line
+//! that [`crossings`](crate::sight::crossings::crossings) computes, to the last bit: a block ends where the line
 //! meets its border's column or row of posts, by the same division, and the same functions compute a crossing's height. So
 //! a probe that rules out only crossings without effect on its answer answers as if it had visited all.
 //!
@@ -23,12 +23,12 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::pyramid::{FINEST_BITS, Pyramid};
-use crate::terrain::sight::crossings::{CellEdge, LineCrossing, LinePart, crossing_at, diagonal_between};
+use crate::lattice::{Lattice, Post};
+use crate::pyramid::{FINEST_BITS, Pyramid};
+use crate::sight::crossings::{CellEdge, LineCrossing, LinePart, crossing_at, diagonal_between};
 
 /// A search along a line.
-pub(in crate::terrain) trait Probe {
+pub(crate) trait Probe {
     /// The result that ends the walk.
     type Found;
 
@@ -49,7 +49,7 @@ pub(in crate::terrain) trait Probe {
 
 /// Shows `probe` the crossings of the line `from`..`to` in order, except those of blocks that it rules out. Both ends are
 /// grid positions on the lattice, whose pyramid is `pyramid`.
-pub(in crate::terrain) fn descend<P: Probe>(
+pub(crate) fn descend<P: Probe>(
     lattice: &Lattice,
     pyramid: &Pyramid,
     ends: (DVec2, DVec2),

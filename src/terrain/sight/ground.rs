@@ -1,7 +1,7 @@
 //! The ground prepared for lines of sight: a lattice with the pyramid of its heights.
 //!
-//! Answers equal those of the plain walk ([`line_of_sight`](crate::terrain::sight::line::line_of_sight) and
-//! [`required_rise`](crate::terrain::sight::rise::required_rise)) to the last bit; ground without effect is skipped.
+//! Answers equal those of the plain walk ([`line_of_sight`](crate::sight::line::line_of_sight) and
+//! [`required_rise`](crate::sight::rise::required_rise)) to the last bit; ground without effect is skipped.
 //!
 //! **When a block is skipped.** A line skips a block when the block's highest post lies below the line's lowest point over
 //! it by more than their errors: the line's from rounding (`SightLine::rounding_m`), a crossing's height from rounding and
@@ -12,15 +12,15 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::dem::answer::Answer;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::post_rect::PostRect;
-use crate::terrain::pyramid::Pyramid;
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
-use crate::terrain::sight::descent::{Probe, descend};
-use crate::terrain::sight::line::{GroundedSight, Sight, SightEnd};
-use crate::terrain::sight::rise::{Raised, Rise, RiseSearch};
+use sandtable_dem::answer::Answer;
+use crate::lattice::Lattice;
+use crate::post_rect::PostRect;
+use crate::pyramid::Pyramid;
+use crate::sight::Curvature;
+use crate::sight::crossings::{LineCrossing, LinePart, POSITION_ERROR};
+use crate::sight::descent::{Probe, descend};
+use crate::sight::line::{GroundedSight, Sight, SightEnd};
+use crate::sight::rise::{Raised, Rise, RiseSearch};
 
 /// Lines of sight per task of a batch: some hundred microseconds' work.
 const CHUNK: usize = 512;
@@ -89,7 +89,7 @@ impl SightGround {
     }
 
     /// Whether `target` can be seen from `observer`: to the last bit
-    /// [`line_of_sight`](crate::terrain::sight::line::line_of_sight).
+    /// [`line_of_sight`](crate::sight::line::line_of_sight).
     pub fn line_of_sight(&self, observer: SightEnd, target: SightEnd, curvature: Curvature) -> Sight {
         let sight = match GroundedSight::new(&self.lattice, observer, target, curvature) {
             Ok(sight) => sight,
@@ -111,10 +111,10 @@ impl SightGround {
     }
 
     /// The rise of `raised` that lets the line clear the ground, and where that is decided: to the last bit
-    /// [`required_rise`](crate::terrain::sight::rise::required_rise).
+    /// [`required_rise`](crate::sight::rise::required_rise).
     ///
     /// # Errors
-    /// As for [`required_rise`](crate::terrain::sight::rise::required_rise).
+    /// As for [`required_rise`](crate::sight::rise::required_rise).
     pub fn required_rise(
         &self,
         observer: SightEnd,
@@ -131,7 +131,7 @@ impl SightGround {
     }
 
     /// How far a crossing's height may lie outside its block's extremes, in meters.
-    pub(in crate::terrain) fn slack_m(&self) -> f64 {
+    pub(crate) fn slack_m(&self) -> f64 {
         self.slack_m
     }
 }

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::dem::answer::Answer;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
+use sandtable_dem::answer::Answer;
+use crate::lattice::Lattice;
+use crate::query::{Interpolation, ground_height};
+use crate::sight::Curvature;
+use crate::sight::crossings::{LineCrossing, LinePart, crossings};
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct Blocker {
 /// Whether `target` can be seen from `observer`. Ground without data blocks nothing.
 ///
 /// Costs three crossings a cell up to the first blocker;
-/// [`SightGround::line_of_sight`](crate::terrain::sight::ground::SightGround::line_of_sight) gives the same answer for
+/// [`SightGround::line_of_sight`](crate::sight::ground::SightGround::line_of_sight) gives the same answer for
 /// less.
 pub fn line_of_sight(lattice: &Lattice, observer: SightEnd, target: SightEnd, curvature: Curvature) -> Sight {
     let sight = match GroundedSight::new(lattice, observer, target, curvature) {
@@ -56,14 +56,14 @@ pub fn line_of_sight(lattice: &Lattice, observer: SightEnd, target: SightEnd, cu
 
 /// A line of sight between two ends that have ground under them.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::terrain) struct GroundedSight {
+pub(crate) struct GroundedSight {
     observer: DVec2,
     target: DVec2,
     /// Both as grid positions.
-    pub(in crate::terrain) grid: (DVec2, DVec2),
+    pub(crate) grid: (DVec2, DVec2),
     length_m: f64,
     /// The line.
-    pub(in crate::terrain) line: SightLine,
+    pub(crate) line: SightLine,
 }
 
 impl GroundedSight {
@@ -71,7 +71,7 @@ impl GroundedSight {
     ///
     /// # Errors
     /// The ground's answer at the first end, the observer's before the target's, without a height.
-    pub(in crate::terrain) fn new(
+    pub(crate) fn new(
         lattice: &Lattice,
         observer: SightEnd,
         target: SightEnd,
@@ -94,7 +94,7 @@ impl GroundedSight {
 
     /// Breaks where the ground at a crossing is higher than the line.
     #[inline]
-    pub(in crate::terrain) fn check(&self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
+    pub(crate) fn check(&self, crossing: LineCrossing) -> ControlFlow<LineCrossing> {
         if self.line.is_below(crossing.height_m, crossing.part) {
             return ControlFlow::Break(crossing);
         }
@@ -102,7 +102,7 @@ impl GroundedSight {
     }
 
     /// The result of a walk along the whole line, which breaks at the first blocker.
-    pub(in crate::terrain) fn result(&self, walk: ControlFlow<LineCrossing>) -> Sight {
+    pub(crate) fn result(&self, walk: ControlFlow<LineCrossing>) -> Sight {
         match walk {
             ControlFlow::Break(crossing) => Sight::Blocked(self.place(crossing)),
             ControlFlow::Continue(()) => Sight::Clear,
@@ -110,7 +110,7 @@ impl GroundedSight {
     }
 
     /// A crossing as a position on the map.
-    pub(in crate::terrain) fn place(&self, crossing: LineCrossing) -> Blocker {
+    pub(crate) fn place(&self, crossing: LineCrossing) -> Blocker {
         Blocker {
             at: self.observer.lerp(self.target, crossing.part),
             distance_m: self.length_m * crossing.part,
@@ -153,14 +153,14 @@ impl SightLine {
     /// The line is a parabola that opens upward (downward where refraction exceeds the curvature): it hangs below its
     /// chord by no more than that.
     #[inline]
-    pub(in crate::terrain) fn lowest_m(&self, (first, last): LinePart) -> f64 {
+    pub(crate) fn lowest_m(&self, (first, last): LinePart) -> f64 {
         let span = last - first;
         let hang = 0.25 * self.sag_m.max(0.0) * span * span;
         self.height_m(first).min(self.height_m(last)) - hang
     }
 
     /// An upper bound of the rounding error of the line's height, in meters.
-    pub(in crate::terrain) fn rounding_m(&self) -> f64 {
+    pub(crate) fn rounding_m(&self) -> f64 {
         // Four operations, each off by half an epsilon of a value no larger than the sum of all three.
         8.0 * f64::EPSILON * (self.from_m.abs() + self.rise_m.abs() + self.sag_m.abs())
     }

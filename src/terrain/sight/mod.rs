@@ -7,7 +7,7 @@
 //! `(1 − k) l² / 8R` for crossings `l` apart, 2 µm at 10 m.
 //!
 //! **One definition.** [`line::line_of_sight`] is it. Every faster answer must equal it to the last bit, and tests check
-//! that: [`ground::SightGround`] is faster by a [`Pyramid`](crate::terrain::pyramid::Pyramid) of the highest and lowest posts.
+//! that: [`ground::SightGround`] is faster by a [`Pyramid`](crate::pyramid::Pyramid) of the highest and lowest posts.
 //!
 //! ```text
 //! crossings ─► line, rise (one line, all of it) ─► outlook (the visible stretches of a line)
@@ -16,7 +16,7 @@
 //! ```
 
 pub mod crossings;
-pub(in crate::terrain) mod descent;
+pub(crate) mod descent;
 pub mod ground;
 pub mod line;
 pub mod outlook;

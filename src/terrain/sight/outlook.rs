@@ -4,8 +4,8 @@
 //! ground before it. On straight ground the edge between hidden and visible is where the steepest direction so far meets
 //! it.
 
-use crate::terrain::profile::ProfileStation;
-use crate::terrain::sight::Curvature;
+use crate::profile::ProfileStation;
+use crate::sight::Curvature;
 
 /// A stretch of a line that is visible from its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +81,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::dem::answer::Answer;
+    use sandtable_dem::answer::Answer;
 
     fn stations(heights: &[(f64, f64)]) -> Vec<ProfileStation> {
         let station = |&(station_m, height): &(f64, f64)| ProfileStation {

@@ -11,12 +11,12 @@ use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
 
-use crate::terrain::cell_triangle::{CellTriangle, Diagonal};
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::crossings::{LineCrossing, LinePart};
-use crate::terrain::sight::descent::{Probe, descend};
-use crate::terrain::sight::ground::SightGround;
+use crate::cell_triangle::{CellTriangle, Diagonal};
+use crate::lattice::{Lattice, Post};
+use crate::query::{Interpolation, ground_height};
+use crate::sight::crossings::{LineCrossing, LinePart};
+use crate::sight::descent::{Probe, descend};
+use crate::sight::ground::SightGround;
 
 /// A half-line in world space, meters from the lattice's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]

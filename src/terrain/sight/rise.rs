@@ -14,12 +14,12 @@
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-use crate::dem::answer::Answer;
-use crate::terrain::lattice::Lattice;
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::{LineCrossing, LinePart, crossings};
-use crate::terrain::sight::descent::Probe;
-use crate::terrain::sight::line::{Blocker, GroundedSight, SightEnd};
+use sandtable_dem::answer::Answer;
+use crate::lattice::Lattice;
+use crate::sight::Curvature;
+use crate::sight::crossings::{LineCrossing, LinePart, crossings};
+use crate::sight::descent::Probe;
+use crate::sight::line::{Blocker, GroundedSight, SightEnd};
 
 /// The end of a line of sight that is raised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl Raised {
 /// The rise of `raised` that lets the line from `observer` to `target` clear the ground between them; `None` where there
 /// is nothing to clear, no edge of a triangle or no data between the ends.
 ///
-/// It is above 0 exactly where [`line_of_sight`](crate::terrain::sight::line::line_of_sight) is blocked. Costs three
+/// It is above 0 exactly where [`line_of_sight`](crate::sight::line::line_of_sight) is blocked. Costs three
 /// crossings a cell of the whole line.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub fn required_rise(
 }
 
 /// The search for the crossing that requires the greatest rise.
-pub(in crate::terrain) struct RiseSearch {
+pub(crate) struct RiseSearch {
     sight: GroundedSight,
     raised: Raised,
     /// The error of the line and of the ground under it, in meters.
@@ -87,12 +87,12 @@ pub(in crate::terrain) struct RiseSearch {
 }
 
 impl RiseSearch {
-    pub(in crate::terrain) fn new(sight: GroundedSight, raised: Raised, margin_m: f64) -> Self {
+    pub(crate) fn new(sight: GroundedSight, raised: Raised, margin_m: f64) -> Self {
         Self { sight, raised, margin_m, most_m: f64::NEG_INFINITY, at: None }
     }
 
     /// The greatest rise so far.
-    pub(in crate::terrain) fn rise(&self) -> Option<Rise> {
+    pub(crate) fn rise(&self) -> Option<Rise> {
         self.at.map(|crossing| Rise { rise_m: self.most_m, grazing: self.sight.place(crossing) })
     }
 }

@@ -22,13 +22,13 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
 
-use crate::bytes::ByteCursor;
-use crate::geom::crs::Crs;
-use crate::vector::builder::{FeatureParts, LayerBuilder};
-use crate::vector::error::{VectorError, shorten};
-use crate::vector::feature::{Properties, VectorLayer};
-use crate::vector::geopackage::wkb::WkbError;
-use crate::vector::hints::VectorHints;
+use sandtable_base::bytes::ByteCursor;
+use sandtable_geom::crs::Crs;
+use crate::builder::{FeatureParts, LayerBuilder};
+use crate::error::{VectorError, shorten};
+use crate::feature::{Properties, VectorLayer};
+use crate::geopackage::wkb::WkbError;
+use crate::hints::VectorHints;
 
 const FORMAT: &str = "GeoPackage";
 /// Steps of SQLite's virtual machine between two looks at their number.

@@ -11,9 +11,9 @@
 //! `geozero` 0.15 overflows the stack on nested collections and reads either ISO's types or EWKB's flags. They build
 //! seven and four more crates to save some 60 lines.
 
-use crate::bytes::{ByteCursor, ByteOrder};
-use crate::limits::GEOMETRY_DEPTH;
-use crate::vector::builder::{FeatureParts, Vertices, position};
+use sandtable_base::bytes::{ByteCursor, ByteOrder};
+use sandtable_base::limits::GEOMETRY_DEPTH;
+use crate::builder::{FeatureParts, Vertices, position};
 
 /// EWKB's flags in the type.
 const HAS_Z: u32 = 0x8000_0000;
@@ -146,9 +146,9 @@ fn read_positions(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::crs::Crs;
-    use crate::vector::builder::LayerBuilder;
-    use crate::vector::feature::{Feature, Geometry, Properties};
+    use sandtable_geom::crs::Crs;
+    use crate::builder::LayerBuilder;
+    use crate::feature::{Feature, Geometry, Properties};
     use glam::DVec2;
 
     fn features(bytes: &[u8]) -> Result<Vec<Feature>, WkbError> {

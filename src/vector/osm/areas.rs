@@ -5,12 +5,12 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use crate::limits::OSM_AREA_VERTICES;
-use crate::vector::builder::Vertices;
-use crate::vector::error::VectorError;
-use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
-use crate::vector::osm::significant_tags;
-use crate::vector::rings::{HoleRule, RingSorter};
+use sandtable_base::limits::OSM_AREA_VERTICES;
+use crate::builder::Vertices;
+use crate::error::VectorError;
+use crate::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
+use crate::osm::significant_tags;
+use crate::rings::{HoleRule, RingSorter};
 
 /// Assembles areas, and tracks the ways that they replace.
 pub(super) struct AreaAssembler<'a> {

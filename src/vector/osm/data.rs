@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::limits::OSM_BYTES;
-use crate::vector::builder::{Vertices, position};
+use sandtable_base::limits::OSM_BYTES;
+use crate::builder::{Vertices, position};
 
 /// Bytes that an allocation takes beyond its content.
 const ALLOCATION_BYTES: usize = 16;

@@ -26,12 +26,12 @@ mod pbf;
 mod protobuf;
 mod xml;
 
-use crate::vector::builder::{FeatureParts, LayerBuilder, position};
-use crate::vector::error::VectorError;
-use crate::vector::feature::{Properties, VectorLayer};
-use crate::vector::hints::VectorHints;
-use crate::vector::osm::areas::AreaAssembler;
-use crate::vector::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
+use crate::builder::{FeatureParts, LayerBuilder, position};
+use crate::error::VectorError;
+use crate::feature::{Properties, VectorLayer};
+use crate::hints::VectorHints;
+use crate::osm::areas::AreaAssembler;
+use crate::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 
 pub(super) fn is_pbf(bytes: &[u8]) -> bool {
     bytes.get(4..).is_some_and(|rest| rest.starts_with(b"\x0a\x09OSMHeader"))

@@ -3,7 +3,7 @@
 //! A message is fields one after another, each a number `field << 3 | wire type` and a value: 0 a number of seven bits
 //! a byte, 1 eight bytes, 2 a length and that many bytes, 5 four bytes. Nothing is allocated for unused fields.
 
-use crate::bytes::ByteCursor;
+use sandtable_base::bytes::ByteCursor;
 
 /// The message is cut short, or not a message.
 #[derive(Debug, thiserror::Error)]

@@ -1,10 +1,8 @@
 //! Extracts as XML, version 0.6: `node`, `way` and `relation` elements with `tag`, `nd` and `member` in them.
 
-use crate::vector::error::{VectorError, shorten};
-use crate::vector::osm::data::{
-    OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE,
-};
-use crate::vector::xml::{self, XmlElement, XmlReader};
+use crate::error::{VectorError, shorten};
+use crate::osm::data::{OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE};
+use crate::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";
 

@@ -13,10 +13,10 @@ use std::slice::ChunksExact;
 
 use serde_json::{Number, Value};
 
-use crate::bytes::ByteCursor;
-use crate::vector::encoding::TextEncoding;
-use crate::vector::error::VectorError;
-use crate::vector::feature::Properties;
+use sandtable_base::bytes::ByteCursor;
+use crate::encoding::TextEncoding;
+use crate::error::VectorError;
+use crate::feature::Properties;
 
 const FORMAT: &str = "dBASE table (.dbf)";
 

@@ -11,7 +11,7 @@
 //!
 //! The index lists the records, since a file that was edited in place keeps old ones between them; an outdated index
 //! is ignored ([`ShapefileReader::records`]). Measures (m) are not kept. Direction and containment decide which ring
-//! is a hole in which ([`rings`](crate::vector::rings)).
+//! is a hole in which ([`rings`](crate::rings)).
 //!
 //! Written by hand. `shapefile` 0.9 refuses two of eighteen real files for their outdated index, allocates 535 MB for a
 //! file of 1000 bytes with a count changed, recognizes holes by direction only, and builds ten more crates.
@@ -20,15 +20,15 @@ mod dbf;
 
 use glam::DVec3;
 
-use crate::bytes::ByteCursor;
-use crate::geom::crs::Crs;
-use crate::vector::builder::{FeatureParts, LayerBuilder, Vertices, position};
-use crate::vector::encoding::TextEncoding;
-use crate::vector::error::{VectorError, shorten};
-use crate::vector::feature::{Properties, VectorLayer};
-use crate::vector::hints::VectorHints;
-use crate::vector::rings::{HoleRule, RingSorter};
-use crate::vector::shapefile::dbf::{DbfRow, DbfTable};
+use sandtable_base::bytes::ByteCursor;
+use sandtable_geom::crs::Crs;
+use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
+use crate::encoding::TextEncoding;
+use crate::error::{VectorError, shorten};
+use crate::feature::{Properties, VectorLayer};
+use crate::hints::VectorHints;
+use crate::rings::{HoleRule, RingSorter};
+use crate::shapefile::dbf::{DbfRow, DbfTable};
 
 const FORMAT: &str = "ESRI shapefile";
 const HEADER_BYTES: usize = 100;
@@ -263,7 +263,7 @@ mod tests {
     use super::*;
     use std::sync::LazyLock;
 
-    use crate::vector::feature::Geometry;
+    use crate::feature::Geometry;
     use glam::DVec2;
 
     /// A file of records with this content.

@@ -11,8 +11,8 @@ pub mod transition;
 
 use glam::{DVec2, DVec3};
 
-use crate::view::navigation::pose::ViewPose;
-use crate::view::navigation::transition::PoseTransition;
+use crate::navigation::pose::ViewPose;
+use crate::navigation::transition::PoseTransition;
 
 /// World Z of the ground at a world position; `None` where there is none.
 pub type GroundZ<'a> = &'a dyn Fn(DVec2) -> Option<f64>;
@@ -283,7 +283,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::view::navigation::pose::wrapped;
+    use crate::navigation::pose::wrapped;
 
     fn hills(at: DVec2) -> Option<f64> {
         Some(40.0 * libm::sin(at.x * 0.01) * libm::cos(at.y * 0.013))

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-use crate::view::camera::{Camera, CameraError};
+use crate::camera::{Camera, CameraError};
 
 /// The steepest that a view looks up or down, radians: a hair from the vertical, where there would be no north.
 pub const STEEPEST_RAD: f64 = FRAC_PI_2 - 1e-3;

@@ -1,6 +1,6 @@
 //! The way from one pose to another: it begins and ends at rest, and turns the shorter way round.
 
-use crate::view::navigation::pose::{ViewPose, wrapped};
+use crate::navigation::pose::{ViewPose, wrapped};
 
 /// A pose between two others, by the time that has passed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use egui::{Slider, Ui};
 
-use crate::viewer::commands::{ViewCommand, key_text};
+use crate::commands::{ViewCommand, key_text};
 
 /// What the panel sets.
 #[derive(Clone, Copy, Debug, PartialEq)]

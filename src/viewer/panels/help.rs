@@ -2,7 +2,7 @@
 
 use egui::{Grid, Key, RichText, ScrollArea, Ui};
 
-use crate::viewer::commands::{KEYS, KeyAction, KeyBinding, shortcut_text};
+use crate::commands::{KEYS, KeyAction, KeyBinding, shortcut_text};
 
 /// What the mouse does, and two fingers on a trackpad.
 const POINTER: [(&str, &str); 6] = [

@@ -3,8 +3,8 @@
 use egui::{Key, Slider, TextEdit, Ui};
 use glam::{DVec2, Vec3};
 
-use crate::geom::crs::Crs;
-use crate::geom::sun_position::{SunPosition, sun_position, unix_seconds};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::sun_position::{SunPosition, sun_position, unix_seconds};
 
 /// What the panel shows.
 #[derive(Clone, Debug, Default, PartialEq)]

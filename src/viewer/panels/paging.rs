@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::viewer::paging::{MOST_PAGES, PagesKept, PagingStage};
+use crate::paging::{MOST_PAGES, PagesKept, PagingStage};
 
 /// Draws the state of the pages of a terrain of `size` samples.
 pub fn paging_panel(ui: &mut Ui, size: (u32, u32), stage: &PagingStage, kept: &PagesKept) {
@@ -32,7 +32,7 @@ pub fn paging_panel(ui: &mut Ui, size: (u32, u32), stage: &PagingStage, kept: &P
 #[cfg(all(test, feature = "viewer-tests"))]
 mod tests {
     use super::*;
-    use crate::roam::paging::ground::PagingCounts;
+    use sandtable_roam::paging::ground::PagingCounts;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::viewer::frame_times::{FrameTime, FrameTimes};
+use crate::frame_times::{FrameTime, FrameTimes};
 
 /// The height of the graph, in points.
 const HEIGHT: f32 = 70.0;
@@ -57,7 +57,7 @@ pub fn timing_panel(ui: &mut Ui, frames: &FrameTimes) {
 #[cfg(all(test, feature = "viewer-tests"))]
 mod tests {
     use super::*;
-    use crate::viewer::frame_times::FrameLoad;
+    use crate::frame_times::FrameLoad;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

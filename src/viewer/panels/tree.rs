@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use egui::{CollapsingHeader, Key, ScrollArea, TextEdit, Ui};
 
-use crate::draw::list::FeatureId;
-use crate::scene::{FeatureKind, SceneFeature};
+use sandtable_draw::list::FeatureId;
+use sandtable_scene::{FeatureKind, SceneFeature};
 
 /// The most features listed under a kind; further ones are found by their names.
 const MOST_LISTED: usize = 200;

@@ -6,10 +6,10 @@
 //! are of the calls alone.
 
 use glam::{DVec2, DVec3};
-use sandtable::dem::cell_grid::CellGrid;
-use sandtable::dem::gridding::{self, BeyondHull, GriddingMethod};
-use sandtable::dem::points::PointCloud;
-use sandtable::geom::rect::Rect;
+use sandtable_dem::cell_grid::CellGrid;
+use sandtable_dem::gridding::{self, BeyondHull, GriddingMethod};
+use sandtable_dem::points::PointCloud;
+use sandtable_geom::rect::Rect;
 use spade::{
     DelaunayTriangulation, FloatTriangulation, HasPosition, LastUsedVertexHintGenerator, Point2,
     Triangulation,

@@ -7,8 +7,8 @@ use std::fs;
 
 use glam::DVec2;
 use rayon::ThreadPoolBuilder;
-use sandtable::terrain::hillshade::{HillshadeOptions, hillshade};
-use sandtable::terrain::lattice::Lattice;
+use sandtable_terrain::hillshade::{HillshadeOptions, hillshade};
+use sandtable_terrain::lattice::Lattice;
 
 use crate::rounds::{ROUNDS, interleaved, median, ratio, time_ms};
 use crate::{fields, peers};

@@ -9,14 +9,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
-use sandtable::dem::answer::{Answer, Status};
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::geom::crs::Crs;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::query::batch::HeightSlices;
-use sandtable::terrain::query::service::{HeightService, Snapshot};
-use sandtable::terrain::query::tiles::HeightTiles;
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable_dem::answer::{Answer, Status};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_geom::crs::Crs;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::query::batch::HeightSlices;
+use sandtable_terrain::query::service::{HeightService, Snapshot};
+use sandtable_terrain::query::tiles::HeightTiles;
+use sandtable_terrain::query::{Interpolation, Surface};
 
 use crate::rounds::{ROUNDS, interleaved, median, ratio, time_ms};
 use crate::{fields, peers};

@@ -10,12 +10,12 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use sandtable::terrain::lattice::Lattice;
-use sandtable::terrain::pyramid::Pyramid;
-use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::ground::SightGround;
-use sandtable::terrain::sight::line::{Sight, SightEnd};
-use sandtable::terrain::sight::ray::Ray;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::pyramid::Pyramid;
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_terrain::sight::line::{Sight, SightEnd};
+use sandtable_terrain::sight::ray::Ray;
 
 use crate::fields::fractal;
 use crate::peers;

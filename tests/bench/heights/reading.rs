@@ -8,9 +8,9 @@
 use std::fs;
 use std::path::Path;
 
-use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::tiff::windows::GeoTiffWindows;
-use sandtable::dem::windows::{RasterWindow, Windows};
+use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::tiff::windows::GeoTiffWindows;
+use sandtable_dem::windows::{RasterWindow, Windows};
 
 use crate::fields;
 use crate::peers;

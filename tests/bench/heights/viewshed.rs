@@ -9,10 +9,10 @@ use std::path::Path;
 
 use glam::DVec2;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use sandtable::terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed};
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
+use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed};
 
 use crate::rounds::{interleaved, median, ratio, time_ms};
 use crate::{fields, peers};

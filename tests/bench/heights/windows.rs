@@ -6,17 +6,17 @@
 use std::path::Path;
 
 use glam::{DAffine2, DMat2, DVec2};
-use sandtable::dem::answer::Answer;
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::write;
-use sandtable::geom::crs::Crs;
-use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
-use sandtable::pipeline::windowed_elevation::GroundReach;
-use sandtable::terrain::profile::profile;
-use sandtable::terrain::query::{Interpolation, Surface};
-use sandtable::terrain::sight::line::SightEnd;
-use sandtable::terrain::sight::viewshed::{ViewshedCounts, ViewshedOptions, viewshed};
+use sandtable_dem::answer::Answer;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::write;
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::{Dataset, DatasetOptions};
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_terrain::profile::profile;
+use sandtable_terrain::query::{Interpolation, Surface};
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{ViewshedCounts, ViewshedOptions, viewshed};
 
 use crate::rounds::{ROUNDS, interleaved, median, ratio, time_ms};
 use crate::{fields, peers};

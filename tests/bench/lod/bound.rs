@@ -5,17 +5,17 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
-use sandtable::mesh::trimesh::TriMesh;
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bound::measure;
-use sandtable::roam::closure::least_closure;
-use sandtable::roam::displayed::DisplayedTerrain;
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::exact::own_errors;
-use sandtable::roam::errors::midpoint::midpoint_error_at;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::terrain::lattice::Lattice;
+use sandtable_mesh::trimesh::TriMesh;
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bound::measure;
+use sandtable_roam::closure::least_closure;
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::errors::exact::own_errors;
+use sandtable_roam::errors::midpoint::midpoint_error_at;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_terrain::lattice::Lattice;
 
 use crate::fields::fractal;
 

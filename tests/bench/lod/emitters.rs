@@ -4,20 +4,20 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::DVec2;
-use sandtable::mesh::trimesh::TriMesh;
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::criterion::flat::Flat;
-use sandtable::roam::emit::bintree::VertexBlock;
-use sandtable::roam::emit::geomipmap::{self, PatchLevels, Pyramids};
-use sandtable::roam::emit::strips::{StripStats, Strips};
-use sandtable::roam::emit::{bintree, full, quadtree, world};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::terrain::lattice::Lattice;
+use sandtable_mesh::trimesh::TriMesh;
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::criterion::flat::Flat;
+use sandtable_roam::emit::bintree::VertexBlock;
+use sandtable_roam::emit::geomipmap::{self, PatchLevels, Pyramids};
+use sandtable_roam::emit::strips::{StripStats, Strips};
+use sandtable_roam::emit::{bintree, full, quadtree, world};
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_terrain::lattice::Lattice;
 
 use crate::fields::fractal;
 

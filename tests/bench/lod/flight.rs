@@ -3,9 +3,9 @@
 //! Radius 0.3 of the block's side, 30 cells above the smoothed ground, 60° × 47°, 8° down; `speed` cells a frame.
 
 use glam::{DVec2, Vec2, Vec3};
-use sandtable::terrain::lattice::Lattice;
-use sandtable::view::camera::Camera;
-use sandtable::view::flight::{CircularFlight, GroundClearance};
+use sandtable_terrain::lattice::Lattice;
+use sandtable_view::camera::Camera;
+use sandtable_view::flight::{CircularFlight, GroundClearance};
 
 /// Meters between posts.
 pub const CELL_M: f32 = 10.0;
@@ -21,7 +21,7 @@ pub fn cameras(heights: &[f32], speed: f32, frames: usize) -> Vec<Camera> {
         clearance: GroundClearance { height_m: 30.0 * CELL_M, smoothing_m: 2.0 * CELL_M },
     };
     let stations = circle.stations(frames, &|at| bilinear(heights, n, at / CELL_M));
-    let camera = |station: &sandtable::view::flight::FlightStation| station.camera(1.0, 60_000.0);
+    let camera = |station: &sandtable_view::flight::FlightStation| station.camera(1.0, 60_000.0);
     stations.iter().map(|station| camera(station).expect("the flight looks ahead")).collect()
 }
 

@@ -4,8 +4,8 @@
 //! A frame is culling, the mesh, and the index lists of the patches that changed; nothing is drawn. The first frame
 //! of each flight is not counted.
 
-use sandtable::roam::spheres::SphereMap;
-use sandtable::view::camera::Camera;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_view::camera::Camera;
 
 use crate::stateless::Stateless;
 use crate::walks::{Following, Queueing, Rebuilding, Walk, World};

@@ -6,17 +6,17 @@ use std::fs;
 use std::time::Instant;
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable::dem::error::DemErrorKind;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::windows::{RasterWindow, Windows};
-use sandtable::roam::block::BlockSource;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
-use sandtable::roam::paging::walk::walk;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::spheres::SphereMap;
-use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_roam::block::BlockSource;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
+use sandtable_roam::paging::walk::walk;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 /// Posts a side.
 const POSTS: u32 = 8193;

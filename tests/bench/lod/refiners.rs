@@ -12,23 +12,23 @@
 use std::time::{Duration, Instant};
 
 use glam::{DVec2, Vec2, Vec3};
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::midpoint::Midpoint;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{Culling, cull};
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::DEFAULT_PATCH;
-use sandtable::roam::measured_ground::MeasuredGround;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::changes::RefinementChanges;
-use sandtable::roam::refine::coherent::Coherent;
-use sandtable::roam::refine::queues::{Goal, Queues};
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::lattice::{Lattice, Post};
-use sandtable::view::camera::Camera;
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::midpoint::Midpoint;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::culling::{Culling, cull};
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::DEFAULT_PATCH;
+use sandtable_roam::measured_ground::MeasuredGround;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::refine::changes::RefinementChanges;
+use sandtable_roam::refine::coherent::Coherent;
+use sandtable_roam::refine::queues::{Goal, Queues};
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_terrain::lattice::{Lattice, Post};
+use sandtable_view::camera::Camera;
 
 use crate::fields::fractal;
 

@@ -4,7 +4,7 @@
 //! writes 32-bit indices. Lengths are in cells, heights too. It knows one square of 2ⁿ + 1 posts, no patches, no
 //! holes, no drawing lists, and is as fast as plain code gets at that.
 
-use sandtable::view::camera::Camera;
+use sandtable_view::camera::Camera;
 
 use crate::flight::{CELL_M, planes, side};
 use crate::rounds::bisected;

@@ -1,18 +1,18 @@
 //! The contenders of the frame: each brings culling, mesh and index lists up to date for one camera.
 
-use sandtable::roam::block::WholeGround;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{Culling, InView};
-use sandtable::roam::emit::bintree::VertexBlock;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::DEFAULT_PATCH;
-use sandtable::roam::measured_ground::MeasuredGround;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::refine::deferred::Deferred;
-use sandtable::roam::refine::queues::{Goal, Queues};
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::roam::spheres::SphereMap;
-use sandtable::view::camera::Camera;
+use sandtable_roam::block::WholeGround;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::culling::{Culling, InView};
+use sandtable_roam::emit::bintree::VertexBlock;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::DEFAULT_PATCH;
+use sandtable_roam::measured_ground::MeasuredGround;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::refine::deferred::Deferred;
+use sandtable_roam::refine::queues::{Goal, Queues};
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_view::camera::Camera;
 
 use crate::flight;
 

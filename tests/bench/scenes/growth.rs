@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use sandtable::scene::FeatureKind;
+use sandtable_scene::FeatureKind;
 
 use crate::tests_common::scratch::Scratch;
 use crate::{built, peak_mib, seconds};

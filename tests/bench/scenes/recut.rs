@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::ribbon::patches::StalePatch;
-use sandtable::scene::picture::{camera, display, recut};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_ribbon::patches::StalePatch;
+use sandtable_picture::{camera, display, recut};
 
 use crate::rounds::{median, quantile, time_ms};
 

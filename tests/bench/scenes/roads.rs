@@ -7,10 +7,10 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sandtable::description::parse::parse_bytes;
-use sandtable::scene::SceneModel;
-use sandtable::scene::assets::Assets;
-use sandtable::scene::build::build;
+use sandtable_description::parse::parse_bytes;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build;
 
 use crate::rounds::{interleaved, median, ratio, time_ms};
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::time::Instant;
 
-use sandtable::pipeline::scene_file::open_scene;
+use sandtable_scene::scene_file::open_scene;
 
 use crate::tests_common::scratch::Scratch;
 

@@ -4,19 +4,19 @@ use std::sync::Arc;
 
 use glam::{DAffine2, DMat2, DVec2};
 use proptest::prelude::*;
-use sandtable::dem::error::DemErrorKind;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::windows::{RasterWindow, Windows};
-use sandtable::geom::crs::Crs;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::block::{BlockSource, PatchBlock, WholeGround};
-use sandtable::roam::culling::PatchHeights;
-use sandtable::roam::errors::exact::triangle_error;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::paging::ground::{PagedGround, PagingError, PagingOptions, exact_spheres};
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::terrain::lattice::{Lattice, Post};
+use sandtable_dem::error::DemErrorKind;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::windows::{RasterWindow, Windows};
+use sandtable_geom::crs::Crs;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::block::{BlockSource, PatchBlock, WholeGround};
+use sandtable_roam::culling::PatchHeights;
+use sandtable_roam::errors::exact::triangle_error;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::paging::ground::{PagedGround, PagingError, PagingOptions, exact_spheres};
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_terrain::lattice::{Lattice, Post};
 
 use crate::paging::windows::Seeded;
 

@@ -4,12 +4,12 @@ use geo::algorithm::buffer::{Buffer, BufferStyle, LineCap, LineJoin};
 use geo::{Area, BooleanOps, LineString, MultiPolygon, Polygon};
 use glam::DVec2;
 use proptest::prelude::*;
-use sandtable::description::words::Join;
-use sandtable::earthworks::alignment::Alignment;
-use sandtable::geom::polyline::Polyline;
-use sandtable::ribbon::partition::{apart, overlap_m2};
-use sandtable::ribbon::plan::PlanMesh;
-use sandtable::ribbon::stroke::{StrokeOptions, StrokePath, stroke};
+use sandtable_description::words::Join;
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::polyline::Polyline;
+use sandtable_ribbon::partition::{apart, overlap_m2};
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 
 /// The area of `geo`'s buffer with flat ends.
 fn buffer_m2(points: &[DVec2], width_m: f64, join: Join) -> f64 {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::{FeatureKind, SceneModel};
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_scene::{FeatureKind, SceneModel};
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -1,8 +1,8 @@
 //! Small scenes on level ground, where every area can be worked out by hand.
 
-use sandtable::mesh::sink::VertexId;
-use sandtable::ribbon::texture::RibbonSurface;
-use sandtable::scene::SceneModel;
+use sandtable_mesh::sink::VertexId;
+use sandtable_ribbon::texture::RibbonSurface;
+use sandtable_scene::SceneModel;
 
 use crate::common::scratch::Scratch;
 use crate::roads::{area_m2, built, check_laid, scene};

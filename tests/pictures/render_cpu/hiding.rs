@@ -1,12 +1,12 @@
 //! What hides what: drapes, ridges, solids, holes, transparency.
 
 use glam::{DVec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
-use sandtable::draw::material::{AlphaMode, Material};
-use sandtable::draw::pixels::Pixels;
-use sandtable::render::picture::Rendering;
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DepthLayer, DrawList, FeatureId};
+use sandtable_draw::material::{AlphaMode, Material};
+use sandtable_draw::pixels::Pixels;
+use sandtable_render::picture::Rendering;
+use sandtable_view::camera::Camera;
 
 use crate::render_cpu::landscape::{
     BOX, FOREST, ROAD, box_mesh, draped_material, draped_strip, ground_map, ground_material, ground_mesh,

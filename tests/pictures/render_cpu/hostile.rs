@@ -2,14 +2,12 @@
 
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
-use sandtable::draw::color::Srgba;
-use sandtable::draw::list::{
-    DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId,
-};
-use sandtable::draw::material::{AlphaMode, Material};
-use sandtable::draw::pixels::Pixels;
-use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::render::cpu::{CpuRenderError, RenderQuality, SampleCount, render};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable_draw::material::{AlphaMode, Material};
+use sandtable_draw::pixels::Pixels;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_render::cpu::{CpuRenderError, RenderQuality, SampleCount, render};
 
 use crate::render_cpu::landscape::{BOX, draped_material, ground_map, ground_material, ground_mesh, item};
 use crate::render_cpu::{count, northward, shot, wall};

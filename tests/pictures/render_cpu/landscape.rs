@@ -1,13 +1,13 @@
 //! A small landscape made by formula: hills, a ground map, a road cut to the ground's triangles, boxes.
 
 use glam::{DVec2, Mat4, Vec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
-use sandtable::draw::lighting::{Haze, Lighting, ReliefShading};
-use sandtable::draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
-use sandtable::draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable::draw::pixels::Pixels;
-use sandtable::mesh::sink::{MeshSink, VertexId};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::{ColorRamp, Contours, GroundMap, GroundPost};
+use sandtable_draw::lighting::{Haze, Lighting, ReliefShading};
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::pixels::Pixels;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 
 /// Half the side of the landscape in meters.
 pub const HALF_M: f32 = 9_000.0;

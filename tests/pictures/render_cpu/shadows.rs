@@ -1,13 +1,13 @@
 //! Shadows of solids: they begin at the foot, their edges are soft, what is lit is evenly lit.
 
 use glam::{Vec2, Vec3};
-use sandtable::draw::color::Srgba;
-use sandtable::draw::lighting::ReliefShading;
-use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
-use sandtable::draw::material::{AlphaMode, Material};
-use sandtable::draw::pixels::Pixels;
-use sandtable::render::picture::Rendering;
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::lighting::ReliefShading;
+use sandtable_draw::list::{DepthLayer, DrawList, FeatureId};
+use sandtable_draw::material::{AlphaMode, Material};
+use sandtable_draw::pixels::Pixels;
+use sandtable_render::picture::Rendering;
+use sandtable_view::camera::Camera;
 
 use crate::render_cpu::landscape::{BOX, ground_map, ground_material, ground_mesh, item};
 use crate::render_cpu::{feature, looking, quad, shot};
@@ -37,7 +37,7 @@ fn plain(to_sun: Vec3, height: fn(f32, f32) -> f32) -> DrawList {
     list.lighting.to_sun = to_sun;
     let mut map = ground_map(101, 200.0, false, height);
     map.ramp =
-        sandtable::draw::ground::ColorRamp::new(vec![(0.0, Srgba::opaque(180, 170, 150))]).expect("one stop");
+        sandtable_draw::ground::ColorRamp::new(vec![(0.0, Srgba::opaque(180, 170, 150))]).expect("one stop");
     list.ground = Some(map.into());
     item(&mut list, ground_mesh(40, 200.0, height), ground_material(), DepthLayer::Ground, FeatureId::GROUND);
     list

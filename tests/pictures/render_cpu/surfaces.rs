@@ -1,18 +1,18 @@
 //! What surfaces look like: textures in perspective, contours, haze, borders, depths.
 
 use glam::{Vec2, Vec3};
-use sandtable::draw::color::{Srgba, linear_from_srgb};
-use sandtable::draw::ground::Contours;
-use sandtable::draw::list::{DepthLayer, DrawList, FeatureId};
-use sandtable::draw::material::Material;
-use sandtable::draw::pixels::Pixels;
-use sandtable::view::camera::Camera;
+use sandtable_draw::color::{Srgba, linear_from_srgb};
+use sandtable_draw::ground::Contours;
+use sandtable_draw::list::{DepthLayer, DrawList, FeatureId};
+use sandtable_draw::material::Material;
+use sandtable_draw::pixels::Pixels;
+use sandtable_view::camera::Camera;
 
 use crate::render_cpu::landscape::{BOX, ground_map, ground_material, ground_mesh, item};
 use crate::render_cpu::{count, depth, feature, looking, northward, plain_light, quad, shot, wall};
 
 /// A floor 40 m wide and 80 m deep, 2 m below an eye that looks north.
-fn floor() -> sandtable::draw::list::DrawMesh {
+fn floor() -> sandtable_draw::list::DrawMesh {
     let corner = |x: f32, y: f32| Vec3::new(x, y, -2.0);
     quad([corner(-20.0, 0.0), corner(20.0, 0.0), corner(20.0, 80.0), corner(-20.0, 80.0)], Srgba::WHITE)
 }
@@ -141,7 +141,7 @@ fn contours_keep_their_width_from_near_to_far() {
         DrawList { ground: Some(ground_map(101, 500.0, false, slope).into()), ..DrawList::default() };
     plain_light(&mut list);
     let map = std::sync::Arc::make_mut(list.ground.as_mut().expect("just put there"));
-    map.ramp = sandtable::draw::ground::ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
+    map.ramp = sandtable_draw::ground::ColorRamp::new(vec![(0.0, Srgba::WHITE)]).expect("one stop");
     map.contours = Some(Contours {
         interval_m: 10.0,
         major_every: 1_000_000,

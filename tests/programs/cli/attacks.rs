@@ -5,7 +5,7 @@ use std::process::Command;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use sandtable::archive;
+use sandtable_base::archive;
 
 use crate::common::scratch::Scratch;
 

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable::geom::aabb::Aabb;
-use sandtable::model::error::CompanionError;
-use sandtable::model::read;
-use sandtable::model::{Companions, Model};
+use sandtable_geom::aabb::Aabb;
+use sandtable_model::error::CompanionError;
+use sandtable_model::read;
+use sandtable_model::{Companions, Model};
 
 use crate::cli::{Ran, project, run_in};
 use crate::common::scratch::Scratch;
@@ -86,7 +86,7 @@ fn ground_and_drapes_cover_every_place_once() {
     let size = (high - low).truncate();
     let area = |name: &dyn Fn(&str) -> bool| -> f32 {
         let parts = model.parts.iter().filter(|part| name(&model.materials[part.material.0 as usize].name));
-        let at = |part: &sandtable::model::ModelPart, index: usize| {
+        let at = |part: &sandtable_model::ModelPart, index: usize| {
             Vec3::from(part.mesh.vertices[index].position).truncate()
         };
         parts

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::dem::read::DemOptions;
-use sandtable::geom::crs::Crs;
-use sandtable::geom::geoid::Geoid;
-use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
-use sandtable::pipeline::windowed_elevation::GroundReach;
-use sandtable::terrain::query::{Interpolation, Surface, ground_height};
+use sandtable_dem::read::DemOptions;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geoid::Geoid;
+use sandtable_query::dataset::{Dataset, DatasetOptions};
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_terrain::query::{Interpolation, Surface, ground_height};
 use serde_json::Value;
 
 use crate::cli::{project, run, run_in, run_with_input};

@@ -2,9 +2,9 @@
 
 use glam::{DAffine2, DVec2};
 use sandtable::Crs;
-use sandtable::dem::formats::DemFormat;
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::dem::write::write;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::write::write;
 
 use crate::cli::{project, run_in};
 use crate::common::scratch::Scratch;

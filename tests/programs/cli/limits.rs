@@ -2,7 +2,7 @@
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use sandtable::archive;
+use sandtable_base::archive;
 use std::io::Write;
 
 use crate::cli::attacks::sparse_tiff;
@@ -25,7 +25,7 @@ fn with_limit(scratch: &Scratch, command: &[&str], limit: &str) -> Ran {
 
 /// The names of the page with their values; `None` for fixed ones.
 fn page() -> Vec<(String, Option<String>)> {
-    let text = std::fs::read_to_string(project("src/LIMITS.md")).expect("the page is there");
+    let text = std::fs::read_to_string(project("src/base/LIMITS.md")).expect("the page is there");
     let rows = text.lines().filter_map(|line| line.strip_prefix("| `"));
     rows.map(|row| {
         let (name, rest) = row.split_once("` | ").expect("a name in quotes");

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable::dem::read::{DemHints, read};
-use sandtable::dem::warp::to_metric;
-use sandtable::mesh::check;
-use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::mesh::trimesh::TriMesh;
-use sandtable::model::Companions;
-use sandtable::model::error::CompanionError;
-use sandtable::roam::bound::measure;
-use sandtable::terrain::lattice::Lattice;
+use sandtable_dem::read::{DemHints, read};
+use sandtable_dem::warp::to_metric;
+use sandtable_mesh::check;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_mesh::trimesh::TriMesh;
+use sandtable_model::Companions;
+use sandtable_model::error::CompanionError;
+use sandtable_roam::bound::measure;
+use sandtable_terrain::lattice::Lattice;
 use serde_json::Value;
 
 use crate::cli::{Ran, project, run_in};
@@ -115,7 +115,7 @@ fn all_four_formats_hold_the_same_mesh_and_name_its_origin() {
     let (vertices, triangles) = (told(&outs[0], "vertices") as usize, told(&outs[0], "triangles") as usize);
     let bytes = |name: &str| std::fs::read(scratch.at(name)).expect("written");
     for name in ["a.obj", "a.glb"] {
-        let model = sandtable::model::read::read(name, &bytes(name), &Alone).expect("a model");
+        let model = sandtable_model::read::read(name, &bytes(name), &Alone).expect("a model");
         let drawn: usize = model.parts.iter().map(|part| part.mesh.triangles.len()).sum();
         assert_eq!(drawn, triangles, "{name}");
     }
@@ -143,7 +143,7 @@ fn an_imported_glb_stands_upright_and_looks_north() {
     mesh(&scratch, "2", "a.glb").ok();
     mesh(&scratch, "2", "a.obj").ok();
     let bytes = std::fs::read(scratch.at("a.glb")).expect("written");
-    let model = sandtable::model::read::read("a.glb", &bytes, &Alone).expect("a model");
+    let model = sandtable_model::read::read("a.glb", &bytes, &Alone).expect("a model");
     let expected = obj(&scratch.at("a.obj"));
     let bounds = |points: &mut dyn Iterator<Item = Vec3>| {
         points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))

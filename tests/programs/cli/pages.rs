@@ -6,9 +6,9 @@ use std::path::Path;
 use std::process::Command;
 
 use image::RgbImage;
-use sandtable::pipeline::picture::{PictureSize, draw_view};
-use sandtable::pipeline::scene_file::open_scene;
-use sandtable::render::RenderBackend;
+use sandtable_sheet::picture::{PictureSize, draw_view};
+use sandtable_scene::scene_file::open_scene;
+use sandtable_render::RenderBackend;
 use serde_json::Value;
 
 use crate::cli::{project, run_in};

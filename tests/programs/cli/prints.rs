@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::Vec3;
-use sandtable::mesh::check::check_solid;
-use sandtable::mesh::sink::{MeshSink, VertexId};
-use sandtable::mesh::trimesh::TriMesh;
+use sandtable_mesh::check::check_solid;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_mesh::trimesh::TriMesh;
 
 use crate::cli::{project, run_in};
 use crate::common::scratch::Scratch;

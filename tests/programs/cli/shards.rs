@@ -336,7 +336,7 @@ fn plans_that_nobody_wrote_are_refused_without_a_panic() {
 fn restated(head: &str, lines: &str) -> String {
     let mut head: Value = serde_json::from_str(head).expect("an object");
     head["shards"]["bytes"] = lines.len().into();
-    head["shards"]["sha256"] = sandtable::pipeline::fingerprint::content_hash(lines.as_bytes()).into();
+    head["shards"]["sha256"] = sandtable_files::fingerprint::content_hash(lines.as_bytes()).into();
     format!("{head:#}")
 }
 

@@ -4,8 +4,8 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use sandtable::geom::crs::Crs;
-use sandtable::geom::geodesic::Geodesic;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geodesic::Geodesic;
 
 use crate::cli::run_in;
 use crate::common::scratch::Scratch;

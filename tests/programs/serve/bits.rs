@@ -5,11 +5,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use glam::DVec2;
-use sandtable::geom::crs::Crs;
-use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
-use sandtable::pipeline::ground::QueriedGround;
-use sandtable::pipeline::windowed_elevation::GroundReach;
-use sandtable::terrain::query::{Interpolation, Surface};
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::{Dataset, DatasetOptions};
+use sandtable_query::ground::QueriedGround;
+use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_terrain::query::{Interpolation, Surface};
 
 use crate::common::data::data;
 use crate::serve::client::{Server, numbers, strings};

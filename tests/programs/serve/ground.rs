@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use sandtable::pipeline::dataset::{Dataset, DatasetOptions};
-use sandtable::terrain::profile::profile;
-use sandtable::terrain::sight::Curvature;
-use sandtable::terrain::sight::line::SightEnd;
-use sandtable::terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions, viewshed};
+use sandtable_query::dataset::{Dataset, DatasetOptions};
+use sandtable_terrain::profile::profile;
+use sandtable_terrain::sight::Curvature;
+use sandtable_terrain::sight::line::SightEnd;
+use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, ViewshedOptions, viewshed};
 use serde_json::json;
 
 use crate::common::data::data;

@@ -1,8 +1,8 @@
 //! `/v1/DATASET`: what the Open Topo Data API documents, and what is more.
 
 use glam::DVec2;
-use sandtable::geom::crs::Crs;
-use sandtable::geom::geoid::Geoid;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geoid::Geoid;
 use serde_json::{Value, json};
 
 use crate::common::scratch::Scratch;

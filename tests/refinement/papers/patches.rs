@@ -3,26 +3,26 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DAffine2, DMat2, DVec2, Vec3};
-use sandtable::dem::raster::{Raster, Samples};
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::block::BlockSource;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::flat::Flat;
-use sandtable::roam::criterion::midpoint::Midpoint;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{Culling, cull, patches_in_view};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
-use sandtable::roam::paging::walk::walk;
-use sandtable::roam::refine::changes::RefinementChanges;
-use sandtable::roam::refine::coherent::{Coherent, Hidden};
-use sandtable::roam::refine::queues::{Goal, Queues};
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::block::BlockSource;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::flat::Flat;
+use sandtable_roam::criterion::midpoint::Midpoint;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::culling::{Culling, cull, patches_in_view};
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
+use sandtable_roam::paging::walk::walk;
+use sandtable_roam::refine::changes::RefinementChanges;
+use sandtable_roam::refine::coherent::{Coherent, Hidden};
+use sandtable_roam::refine::queues::{Goal, Queues};
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 use crate::papers::{World, camera, leaves, same};
 

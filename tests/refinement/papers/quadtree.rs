@@ -4,21 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use glam::Vec3;
-use sandtable::roam::active::ActiveSet;
-use sandtable::roam::bintree::Triangle;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::anisotropic::Anisotropic;
-use sandtable::roam::criterion::screen::ScreenError;
-use sandtable::roam::culling::patches_in_view;
-use sandtable::roam::emit::{bintree, quadtree};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::errors::midpoint::midpoint_error_at;
-use sandtable::roam::graph::{Vertex, VertexKind};
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::quadtree::{Address, NodeSide, NodeSquare, QuadNode, SIDES};
-use sandtable::roam::refine::rebuild::rebuild;
-use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
+use sandtable_roam::active::ActiveSet;
+use sandtable_roam::bintree::Triangle;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::anisotropic::Anisotropic;
+use sandtable_roam::criterion::screen::ScreenError;
+use sandtable_roam::culling::patches_in_view;
+use sandtable_roam::emit::{bintree, quadtree};
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::errors::midpoint::midpoint_error_at;
+use sandtable_roam::graph::{Vertex, VertexKind};
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::quadtree::{Address, NodeSide, NodeSquare, QuadNode, SIDES};
+use sandtable_roam::refine::rebuild::rebuild;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 use crate::papers::{World, camera, leaves, same};
 

@@ -1,12 +1,12 @@
 //! What each paper's criterion says of a vertex.
 
 use glam::Vec3;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::anisotropic::Anisotropic;
-use sandtable::roam::criterion::block::BlockRelief;
-use sandtable::roam::criterion::midpoint::Midpoint;
-use sandtable::roam::graph::Vertex;
-use sandtable::view::camera::Camera;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::anisotropic::Anisotropic;
+use sandtable_roam::criterion::block::BlockRelief;
+use sandtable_roam::criterion::midpoint::Midpoint;
+use sandtable_roam::graph::Vertex;
+use sandtable_view::camera::Camera;
 
 use crate::refiners::terrain::Terrain;
 

@@ -2,22 +2,22 @@
 
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
-use sandtable::roam::criterion::Criterion;
-use sandtable::roam::criterion::anisotropic::Anisotropic;
-use sandtable::roam::criterion::block::BlockRelief;
-use sandtable::roam::criterion::flat::Flat;
-use sandtable::roam::criterion::midpoint::Midpoint;
-use sandtable::roam::criterion::screen::ScreenError;
-use sandtable::roam::criterion::spheres::Spheres;
-use sandtable::roam::culling::{PatchHeights, patches_in_view};
-use sandtable::roam::errors::ErrorMap;
-use sandtable::roam::graph::Vertex;
-use sandtable::roam::layout::PatchLayout;
-use sandtable::roam::patched_ground::PatchedGround;
-use sandtable::roam::spheres::SphereMap;
-use sandtable::terrain::lattice::Lattice;
-use sandtable::view::camera::Camera;
-use sandtable::view::frustum::Frustum;
+use sandtable_roam::criterion::Criterion;
+use sandtable_roam::criterion::anisotropic::Anisotropic;
+use sandtable_roam::criterion::block::BlockRelief;
+use sandtable_roam::criterion::flat::Flat;
+use sandtable_roam::criterion::midpoint::Midpoint;
+use sandtable_roam::criterion::screen::ScreenError;
+use sandtable_roam::criterion::spheres::Spheres;
+use sandtable_roam::culling::{PatchHeights, patches_in_view};
+use sandtable_roam::errors::ErrorMap;
+use sandtable_roam::graph::Vertex;
+use sandtable_roam::layout::PatchLayout;
+use sandtable_roam::patched_ground::PatchedGround;
+use sandtable_roam::spheres::SphereMap;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_view::camera::Camera;
+use sandtable_view::frustum::Frustum;
 
 /// A terrain with every map that a criterion asks for.
 #[derive(Debug)]

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sandtable::description::document::Document;
-use sandtable::description::parse::parse_including;
-use sandtable::description::scalar::Scalar;
-use sandtable::description::selection::Selection;
+use sandtable_description::document::Document;
+use sandtable_description::parse::parse_including;
+use sandtable_description::scalar::Scalar;
+use sandtable_description::selection::Selection;
 
 /// The scene `scenes/hill.toml` with this text, beside files of these names.
 fn scene(text: &str, files: &[(&str, &str)]) -> Result<Document, String> {

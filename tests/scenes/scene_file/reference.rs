@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use sandtable::description::declaration::{KeyDeclaration, KeyKind, Presence};
-use sandtable::description::document::Document;
-use sandtable::description::phases::PHASES_KEY;
-use sandtable::description::styles::STYLE_KEY;
-use sandtable::description::words::{RampName, WordDeclaration, declarations};
+use sandtable_description::declaration::{KeyDeclaration, KeyKind, Presence};
+use sandtable_description::document::Document;
+use sandtable_description::phases::PHASES_KEY;
+use sandtable_description::styles::STYLE_KEY;
+use sandtable_description::words::{RampName, WordDeclaration, declarations};
 
 const HEAD: &str = "# Scene files: keys and defaults
 

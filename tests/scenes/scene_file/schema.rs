@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use sandtable::description::parse::parse;
-use sandtable::description::schema::schema;
+use sandtable_description::parse::parse;
+use sandtable_description::schema::schema;
 use serde_json::{Value, json};
 
 use crate::scene_file::{BROKEN, COMPLETE, FEATURES, LEAST};

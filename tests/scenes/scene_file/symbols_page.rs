@@ -5,13 +5,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use sandtable::symbology::entities::{SETS, SymbolEntity, entities};
-use sandtable::symbology::fields::{
-    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
-    SymbolVersion,
-};
-use sandtable::symbology::modifiers::modifiers;
-use sandtable::symbology::texts::{TEXT_FIELDS, TextPlace};
+use sandtable_symbology::entities::{SETS, SymbolEntity, entities};
+use sandtable_symbology::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
+use sandtable_symbology::modifiers::modifiers;
+use sandtable_symbology::texts::{TEXT_FIELDS, TextPlace};
 
 /// The entities of MIL-STD-2525D in the sets that have drawings.
 const STANDARD: &str = include_str!("../../symbology/standard.txt");

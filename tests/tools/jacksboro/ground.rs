@@ -6,7 +6,7 @@
 //! needed, so the result is the same everywhere.
 
 use glam::DVec2;
-use sandtable::dem::read::{DemHints, read};
+use sandtable_dem::read::{DemHints, read};
 
 /// WGS 84 semi-major axis in meters.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;

@@ -4,7 +4,7 @@
 //! is made by formula: round hills and a hollow on a gentle slope, an elevation model without any georeference.
 
 use glam::DVec2;
-use sandtable::geom::crs::Crs;
+use sandtable_geom::crs::Crs;
 
 use super::ground::Ground;
 

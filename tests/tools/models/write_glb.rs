@@ -1,7 +1,7 @@
 //! Binary glTF: one mesh an object, one primitive a material, textures within.
 
 use glam::{Vec2, Vec3};
-use sandtable::draw::color::linear_from_srgb;
+use sandtable_draw::color::linear_from_srgb;
 use serde_json::{Value, json};
 
 use super::shape::{Face, Object, Shape, png};

@@ -1,7 +1,7 @@
 //! The invariants of a patch that is up to date.
 
-use crate::roam::refine::deferred::patch::{EyeStation, PatchMesh};
-use crate::roam::refine::deferred::topology::{NONE, Topology, triangle};
+use crate::refine::deferred::patch::{EyeStation, PatchMesh};
+use crate::refine::deferred::topology::{NONE, Topology, triangle};
 
 impl PatchMesh {
     /// Checks that every active vertex has its parents active and counts its active children, that a vertex is active

@@ -1,11 +1,11 @@
 //! Edits of a terrain in memory, followed vertex by vertex: no patch is read and compared as a whole.
 
-use crate::roam::block::BlockError;
-use crate::roam::dynamic::{DynamicTerrain, Edit};
-use crate::roam::field::HeightField;
-use crate::roam::graph::Vertex;
-use crate::roam::refine::deferred::Deferred;
-use crate::roam::refine::deferred::patch::RenewedVertex;
+use crate::block::BlockError;
+use crate::dynamic::{DynamicTerrain, Edit};
+use crate::field::HeightField;
+use crate::graph::Vertex;
+use crate::refine::deferred::Deferred;
+use crate::refine::deferred::patch::RenewedVertex;
 
 impl Deferred<DynamicTerrain> {
     /// Takes over an edit of the source. The next update applies it; [`Deferred::edit`] with the edit's patches does the same

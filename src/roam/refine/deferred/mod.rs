@@ -26,15 +26,15 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::geom::rect::Rect;
-use crate::roam::active::ActiveSet;
-use crate::roam::block::{BlockError, BlockSource, PatchBlock};
-use crate::roam::graph::Vertex;
-use crate::roam::layout::PatchLayout;
-use crate::roam::refine::changes::RefinementChanges;
-use crate::roam::refine::deferred::patch::{Decider, EyeStation, PatchMesh, UpdateCounts};
-use crate::roam::refine::deferred::topology::Topology;
-use crate::roam::refine::deferred::wheel::{FARTHEST, Wheel};
+use sandtable_geom::rect::Rect;
+use crate::active::ActiveSet;
+use crate::block::{BlockError, BlockSource, PatchBlock};
+use crate::graph::Vertex;
+use crate::layout::PatchLayout;
+use crate::refine::changes::RefinementChanges;
+use crate::refine::deferred::patch::{Decider, EyeStation, PatchMesh, UpdateCounts};
+use crate::refine::deferred::topology::Topology;
+use crate::refine::deferred::wheel::{FARTHEST, Wheel};
 
 /// Ticks in the distance between posts. Coarser ticks make more vertices due every frame, finer ones more slots to turn;
 /// arbitrary within a few times of this.

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::geom::rect::Rect;
-use crate::roam::block::BlockSource;
-use crate::roam::graph::Vertex;
-use crate::roam::refine::deferred::Deferred;
-use crate::roam::refine::deferred::patch::PatchMesh;
-use crate::roam::refine::deferred::topology::{NONE, Topology, triangle};
-use crate::terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
+use sandtable_geom::rect::Rect;
+use crate::block::BlockSource;
+use crate::graph::Vertex;
+use crate::refine::deferred::Deferred;
+use crate::refine::deferred::patch::PatchMesh;
+use crate::refine::deferred::topology::{NONE, Topology, triangle};
+use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// The displayed triangles of the listed patches.
 pub struct DeferredSurface<'a, S> {
@@ -121,9 +121,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::roam::displayed::DisplayedTerrain;
-    use crate::roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
-    use crate::terrain::lattice::Lattice;
+    use crate::displayed::DisplayedTerrain;
+    use crate::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
+    use sandtable_terrain::lattice::Lattice;
 
     fn facets(surface: &dyn TriangleSurface, rect: &Rect) -> BTreeSet<[[u32; 3]; 3]> {
         let mut seen = BTreeSet::new();

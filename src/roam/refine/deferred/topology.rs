@@ -15,7 +15,7 @@
 //! the second-level cache. Vertices are numbered by level, coarsest first, and row by row within a level, so that a patch of
 //! a few triangles reads few cache lines.
 
-use crate::roam::graph::{Vertex, VertexKind};
+use crate::graph::{Vertex, VertexKind};
 
 /// No vertex, no triangle, no place: outside the patch or not there.
 pub const NONE: u16 = u16::MAX;
@@ -67,7 +67,7 @@ impl Topology {
                 }
             }
         }
-        let roots = crate::roam::bintree::Triangle::roots(corner, side)
+        let roots = crate::bintree::Triangle::roots(corner, side)
             .map(|root| root.corners().map(|vertex| place.local(vertex)));
         let ring = nodes[CENTER as usize].ring;
         nodes[CENTER as usize].splits = [triangle(ring[1], 0), triangle(ring[3], 0)];

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use crate::terrain::lattice::{Lattice, Post};
+use crate::lattice::{Lattice, Post};
 
 /// One octant of the circle.
 #[derive(Clone, Copy, Debug)]

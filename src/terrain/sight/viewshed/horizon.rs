@@ -18,8 +18,8 @@
 
 use std::ops::RangeInclusive;
 
-use crate::terrain::sight::viewshed::bucket::{Bucket, ChainStanding, Doubt, EdgeChain, HorizonPiece};
-use crate::terrain::sight::viewshed::ring::PostRing;
+use crate::sight::viewshed::bucket::{Bucket, ChainStanding, Doubt, EdgeChain, HorizonPiece};
+use crate::sight::viewshed::ring::PostRing;
 
 /// A terrain edge as the observer sees it, `u0` < `u1`.
 #[derive(Clone, Copy, Debug, PartialEq)]

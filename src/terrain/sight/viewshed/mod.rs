@@ -7,7 +7,7 @@
 //! Other programs are fast at the price of the answer: propagating one reference plane or one interpolated slope from ring
 //! to ring (Wang, Robinson and White 2000; XDraw, Franklin 1994) misses every tenth visible post, and a plane sweep over
 //! cells (Van Kreveld 1996) takes cells for flat. Here the ground is the triangles of the
-//! [lattice](crate::terrain::lattice), as everywhere.
+//! [lattice](crate::lattice), as everywhere.
 //!
 //! Where a lattice holds only some of its posts, these are the posts that are looked at; they must reach as far as the range,
 //! or to the lattice's border.
@@ -27,15 +27,15 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::dem::answer::Answer;
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::query::{Interpolation, ground_height};
-use crate::terrain::sight::Curvature;
-use crate::terrain::sight::crossings::crossings;
-use crate::terrain::sight::line::{SightEnd, SightLine};
-use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
-use crate::terrain::stop_flag::StopFlag;
+use sandtable_dem::answer::Answer;
+use crate::lattice::{Lattice, Post};
+use crate::query::{Interpolation, ground_height};
+use crate::sight::Curvature;
+use crate::sight::crossings::crossings;
+use crate::sight::line::{SightEnd, SightLine};
+use crate::sight::viewshed::frame::OctantFrame;
+use crate::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
+use crate::stop_flag::StopFlag;
 
 /// The parameters of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +140,7 @@ impl Viewshed {
 }
 
 /// The viewshed of an observer: a post is [`PostVisibility::Visible`] exactly where the line of sight to a target on it is
-/// clear, as [`line_of_sight`](crate::terrain::sight::line::line_of_sight) defines it. Targets stand on the posts
+/// clear, as [`line_of_sight`](crate::sight::line::line_of_sight) defines it. Targets stand on the posts
 /// themselves: their columns and rows are whole numbers, whatever the rounding of their map coordinates.
 ///
 /// Costs some 15 ns a post on one thread where most is hidden and up to 200 where most is visible, spread over all

@@ -1,8 +1,8 @@
 //! The strips of cells around the observer. The edges of the first pass the observer on all sides, so all are clipped to the
 //! wedge; where they come too near for `rise / x` to be meaningful, they count as high as their higher end.
 
-use crate::terrain::sight::viewshed::ring::{PostRing, RingPost};
-use crate::terrain::sight::viewshed::sweep::{NEAREST, Sweep};
+use crate::sight::viewshed::ring::{PostRing, RingPost};
+use crate::sight::viewshed::sweep::{NEAREST, Sweep};
 
 impl Sweep<'_> {
     /// Adds the strip that the observer stands in, or one of the next, to the horizon.

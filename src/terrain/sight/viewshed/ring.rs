@@ -2,7 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use crate::terrain::sight::viewshed::frame::OctantFrame;
+use crate::sight::viewshed::frame::OctantFrame;
 
 /// Rings read at once: where rings run across the rows of the lattice, a cache line holds the heights of as many.
 const CHUNK: usize = 16;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::terrain::sight::viewshed::Sector;
+use crate::sight::viewshed::Sector;
 
 /// Directions nearer to a sector than this may lie in it, in degrees: more than the rounding of an azimuth.
 const SLACK_DEG: f64 = 1e-6;

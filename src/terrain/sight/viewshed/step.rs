@@ -11,8 +11,8 @@
 
 use std::ops::Range;
 
-use crate::terrain::sight::viewshed::ring::PostRing;
-use crate::terrain::vectorized::vectorized;
+use crate::sight::viewshed::ring::PostRing;
+use crate::vectorized::vectorized;
 
 /// How the posts, edges and cells of a ring stand to the ring before; of blocks that may rise alone.
 ///

@@ -22,13 +22,13 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::terrain::lattice::{Lattice, Post};
-use crate::terrain::sight::viewshed::bucket::{Doubt, EdgeChain};
-use crate::terrain::sight::viewshed::frame::OctantFrame;
-use crate::terrain::sight::viewshed::horizon::{Horizon, HorizonEdge, HorizonSpan};
-use crate::terrain::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
-use crate::terrain::sight::viewshed::step::RingStep;
-use crate::terrain::stop_flag::StopFlag;
+use crate::lattice::{Lattice, Post};
+use crate::sight::viewshed::bucket::{Doubt, EdgeChain};
+use crate::sight::viewshed::frame::OctantFrame;
+use crate::sight::viewshed::horizon::{Horizon, HorizonEdge, HorizonSpan};
+use crate::sight::viewshed::ring::{BLOCK, PostRing, RingChunk, RingPost, RingView};
+use crate::sight::viewshed::step::RingStep;
+use crate::stop_flag::StopFlag;
 
 /// How far the sweep's numbers may differ from those of a line of sight.
 #[derive(Clone, Copy, Debug)]

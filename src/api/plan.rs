@@ -1,0 +1,93 @@
+//! Work that exceeds one machine, cut into shards.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::api::error::Error;
+use sandtable_shards::gather::{PlanProgress, gather};
+use sandtable_shards::plan::ShardPlan;
+use sandtable_shards::record::ShardState;
+use sandtable_shards::work::{ShardWorker, is_done};
+
+/// A plan that the command `plan` wrote; `src/shards/SHARDS.md` is the page of it. Its shards may be done from many threads, programs
+/// and machines, in any order.
+pub struct WorkPlan {
+    plan: Arc<ShardPlan>,
+    /// What shards share, opened, for each thread that did one; taken out while one does.
+    idle: Mutex<Vec<ShardWorker>>,
+}
+
+/// How far a plan is, and what was made of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GatheredPlan {
+    /// The number of shards whose results are there and are those of their records.
+    pub done: usize,
+    /// The numbers of those without a record.
+    pub missing: Vec<usize>,
+    /// The numbers of those whose record is of another plan, or whose results are not those of it.
+    pub stale: Vec<usize>,
+    /// The files that were written: of the product where all shards are done, else an index at most.
+    pub output: Vec<PathBuf>,
+}
+
+impl WorkPlan {
+    /// The plan in a folder.
+    ///
+    /// # Errors
+    /// [`Error::Plan`].
+    pub fn open(folder: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { plan: Arc::new(ShardPlan::open(folder.as_ref())?), idle: Mutex::default() })
+    }
+
+    /// What is made: `heights`, `viewsheds`, `atlas` or `tiles`.
+    pub fn product(&self) -> &'static str {
+        self.plan.product.word()
+    }
+
+    /// The number of shards.
+    pub fn count(&self) -> usize {
+        self.plan.count()
+    }
+
+    /// Whether a shard is done, by its record and the sizes of its files.
+    pub fn is_done(&self, shard: usize) -> bool {
+        is_done(&self.plan, shard)
+    }
+
+    /// Checks that the inputs are what was planned with.
+    ///
+    /// # Errors
+    /// [`Error::Plan`] names the first that is not.
+    pub fn verify_inputs(&self) -> Result<(), Error> {
+        Ok(self.plan.verify_inputs()?)
+    }
+
+    /// Does a shard, done or not: writes its results, then its record. The first one of a thread checks and opens the inputs,
+    /// which later ones share.
+    ///
+    /// # Errors
+    /// [`Error::Plan`]; other shards may still be done.
+    pub fn work(&self, shard: usize) -> Result<(), Error> {
+        let idle = self.idle().pop();
+        let mut worker = idle.map_or_else(|| ShardWorker::open(&self.plan), Ok)?;
+        worker.work(shard)?;
+        self.idle().push(worker);
+        Ok(())
+    }
+
+    /// How far the plan is; writes the product, to `out` or into the plan's folder, where all shards are done.
+    ///
+    /// # Errors
+    /// [`Error::Plan`].
+    pub fn gather(&self, out: Option<&Path>) -> Result<GatheredPlan, Error> {
+        let progress = PlanProgress::read(&self.plan);
+        let output = gather(&self.plan, &progress, out)?;
+        let (missing, stale) = (progress.with(ShardState::Missing), progress.with(ShardState::Stale));
+        Ok(GatheredPlan { done: progress.with(ShardState::Done).len(), missing, stale, output })
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<ShardWorker>> {
+        // Workers are put in whole.
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,134 @@
+//! The command line: one file a command, which turns arguments into the options of a library, runs
+//! it and prints the result.
+
+mod address_space;
+mod arguments;
+mod backend;
+mod check;
+mod convert;
+mod dem_info;
+mod error;
+mod explain;
+mod export;
+mod fly;
+mod gather;
+mod grid;
+mod height;
+mod licenses;
+mod limit;
+mod lod;
+mod lod_selection;
+mod los;
+mod mesh;
+mod model;
+mod new;
+mod options;
+mod output;
+mod output_format;
+mod pick;
+mod plan;
+mod profile;
+mod progress;
+mod remote;
+mod render;
+mod render_series;
+mod report;
+mod schema;
+mod serve;
+#[cfg(unix)]
+mod signals;
+#[cfg(unix)]
+mod supervisor;
+mod threads;
+mod values;
+mod view;
+mod viewshed;
+mod work;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::arguments::{Arguments, Command, DemCommand, ModelCommand};
+use crate::error::CliError;
+use sandtable_query::service::ServiceOptions;
+use sandtable_editing::viewing::ViewerOptions;
+pub use sandtable_render::OtherRenderer;
+
+/// A height service: serves until a signal ends it.
+pub type ServeProgram = fn(&ServiceOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
+
+/// A window on a scene: returns when it is closed.
+pub type ViewProgram = fn(&ViewerOptions) -> Result<(), Box<dyn Error + Send + Sync>>;
+
+/// What other programs run for commands of the same names; `None` where they are not built in.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BuiltInPrograms {
+    /// Runs `serve`.
+    pub serve: Option<ServeProgram>,
+    /// Runs `view`.
+    pub view: Option<ViewProgram>,
+    /// Draws for `--backend gpu`.
+    pub gpu: Option<OtherRenderer>,
+}
+
+/// Runs the program: parses the arguments, runs the command, reports errors.
+///
+/// Exit codes: 0 done, 1 the input is wrong, 2 usage.
+pub fn main(programs: BuiltInPrograms) -> ExitCode {
+    let arguments = Arguments::parse();
+    #[cfg(unix)]
+    if let Some(code) = supervisor::supervise() {
+        return code;
+    }
+    let done = run(&arguments, programs);
+    remote::note_traffic();
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.report(),
+    }
+}
+
+fn run(arguments: &Arguments, programs: BuiltInPrograms) -> Result<(), CliError> {
+    // Before anything is read: what reads a limit holds it.
+    limit::set(&arguments.limit)?;
+    remote::set(&arguments.allow_remote)?;
+    let threads = address_space::threads_for(&arguments.command)?;
+    // A picture has threads of its own.
+    if !matches!(arguments.command, Command::Render(_)) {
+        threads::start(threads)?;
+    }
+    // The service ends by itself, when its last answers are read, and writes no files.
+    #[cfg(unix)]
+    if !matches!(arguments.command, Command::Serve(_)) {
+        signals::handle();
+    }
+    match &arguments.command {
+        Command::Render(arguments) => render::run(arguments, threads, programs.gpu),
+        Command::Pick(arguments) => pick::run(arguments),
+        Command::Fly(arguments) => fly::run(arguments, programs.gpu),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
+        Command::New(arguments) => new::run(arguments),
+        Command::Schema => schema::run(),
+        Command::Licenses => licenses::run(),
+        Command::Dem { command: DemCommand::Info(arguments) } => dem_info::run(arguments),
+        Command::Dem { command: DemCommand::Convert(arguments) } => convert::run(arguments),
+        Command::Dem { command: DemCommand::Grid(arguments) } => grid::run(arguments),
+        Command::Model { command: ModelCommand::Info(arguments) } => model::run(arguments),
+        Command::Height(arguments) => height::run(arguments),
+        Command::Profile(arguments) => profile::run(arguments),
+        Command::Los(arguments) => los::run(arguments),
+        Command::Viewshed(arguments) => viewshed::run(arguments),
+        Command::Plan { command } => plan::run(command),
+        Command::Work(arguments) => work::run(arguments),
+        Command::Gather(arguments) => gather::run(arguments),
+        Command::Serve(arguments) => serve::run(arguments, programs.serve),
+        Command::View(arguments) => view::run(arguments, programs.view),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Mesh(arguments) => mesh::run(arguments),
+        Command::Lod(arguments) => lod::run(arguments),
+    }
+}

@@ -1,0 +1,525 @@
+//! The renderer of a window: a scene that stays on the device, of which a frame sends only what changed.
+//!
+//! ```text
+//! load(DrawList) ─► materials, ground map, solids ┐
+//! update(GroundChanges) ─► patches, drapes        ├─► draw: sky ─ ground ─ drapes ─ solids ─ transparent solids
+//! set_shadows(LiveShadows) ─► shadow maps         ┘   pick: the same to a single pixel
+//!
+//! loader() ─► another thread: prepare ─► show, show_shadows      as load and set_shadows, without a late frame
+//! ```
+//!
+//! The ground and what lies on it come by patches ([`sandtable_draw::patches`]); everything else is drawn as in a picture, by
+//! the same shaders and the same rules of depth.
+//!
+//! # Ground
+//! One call draws all patches (`ground_calls`). With several samples a pixel their triangles are shaded as they are drawn.
+//! With one, as where the processor draws, only their depths are, and what each pixel then shows is shaded once
+//! (`ground_pixels.wgsl`): a driver that shades blocks of pixels does most of its work for nothing where triangles are as small
+//! as pixels.
+//!
+//! # Shadows
+//! Shadow maps of solids are made for a camera, by the processor, in some ten milliseconds: too long for every frame. A map
+//! is therefore kept while the camera moves. It stays right wherever it reaches, because shadows do not depend on the eye;
+//! only how fine its texels are does. Beyond it nothing is shaded. Whoever moves the camera makes a new map, on another
+//! thread, when the eye has moved a good part of its distance to the ground.
+
+mod arena;
+mod encode;
+mod ground_calls;
+mod ground_map;
+mod patches;
+pub mod pick;
+pub mod prepared;
+mod targets;
+
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::lighting::Lighting;
+use sandtable_draw::list::{DrawList, DrawListError};
+use sandtable_draw::patches::{GroundChanges, PatchId};
+use crate::adapter::Gpu;
+use crate::error::GpuError;
+use crate::frame::{FrameGroup, FrameTextures};
+use crate::geometry::GpuGeometry;
+use crate::live::encode::Encoder;
+use crate::live::ground_map::EditedMap;
+use crate::live::patches::PatchStore;
+use crate::live::pick::{PickTarget, PickedPoint};
+use crate::live::prepared::{LiveLoader, PreparedScene, PreparedShadows, PreparedWindows};
+use crate::live::targets::{LiveFormat, LiveTargets};
+use crate::materials::GpuMaterials;
+use crate::memory::Loader;
+use crate::parts::ShaderParts;
+use crate::passes::{PassStage, PassViews, ScenePass};
+use crate::pipelines::{FEATURE, GpuPass, Layouts, PassTarget, Pipelines, shader};
+use crate::plan::{DrawCall, PipelineKey, Plan};
+use crate::shadow::ShadowView;
+use crate::uniforms::{FrameScene, FrameUniforms};
+use crate::windows::WindowTexture;
+use sandtable_render::shadow::Shadows;
+use sandtable_view::camera::Camera;
+
+/// How finely frames are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LiveQuality {
+    /// Samples per pixel: 1, or 4 where the adapter can.
+    pub samples: u32,
+    /// The most readings of a texture along a pixel seen at a grazing angle, 1..=16.
+    pub anisotropy: u16,
+}
+
+/// What of a frame is up to its viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LiveOptions {
+    /// Whether the ground's triangles are outlined.
+    pub wireframe: bool,
+}
+
+/// What was sent to the device for a change, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UploadedBytes {
+    /// Vertices of the ground.
+    pub vertices: u64,
+    /// Triangles of the ground.
+    pub triangles: u64,
+    /// What lies on the ground.
+    pub drapes: u64,
+    /// Posts of the ground map.
+    pub map: u64,
+}
+
+/// What a frame drew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LiveStatistics {
+    /// Patches of ground.
+    pub patches: u32,
+    /// Calls of the device.
+    pub calls: u32,
+    /// Triangles of ground and of what lies on it.
+    pub triangles: u64,
+}
+
+/// Shadow maps of solids.
+#[derive(Clone, Debug, Default)]
+pub struct LiveShadows(Shadows);
+
+/// Draws a scene frame after frame.
+#[derive(Debug)]
+pub struct LiveRenderer {
+    gpu: Gpu,
+    format: LiveFormat,
+    layouts: Arc<Layouts>,
+    colors: Pipelines,
+    features: Pipelines,
+    encoder: Option<Encoder>,
+    targets: Option<LiveTargets>,
+    scene: Option<LoadedScene>,
+}
+
+/// What becomes of the patches that are shown when another list is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPatches {
+    /// They stay: the list is of the same walk, so that its materials of what lies on the ground have the same numbers.
+    All,
+    /// They go: the scene is another one.
+    None,
+}
+
+/// A scene on the device.
+#[derive(Debug)]
+struct LoadedScene {
+    map: EditedMap,
+    lighting: Lighting,
+    shadows: [ShadowView; 2],
+    row_bits: u32,
+    parts: ShaderParts,
+    textures: FrameTextures,
+    frame: FrameGroup,
+    materials: GpuMaterials,
+    geometry: GpuGeometry,
+    plan: Plan,
+    patches: PatchStore,
+    pick: PickTarget,
+}
+
+impl LiveQuality {
+    /// What an adapter draws fluently: a processor that draws itself takes one sample.
+    pub fn of(gpu: &Gpu) -> Self {
+        /// The most readings of a texture that a processor affords.
+        const SOFTWARE_ANISOTROPY: u16 = 4;
+        match gpu.is_software {
+            true => Self { samples: 1, anisotropy: gpu.anisotropy.min(SOFTWARE_ANISOTROPY) },
+            false => Self { samples: gpu.samples, anisotropy: gpu.anisotropy },
+        }
+    }
+}
+
+impl UploadedBytes {
+    /// All together.
+    pub fn total(&self) -> u64 {
+        self.vertices + self.triangles + self.drapes + self.map
+    }
+}
+
+impl LiveStatistics {
+    fn count(&mut self, triangles: u32) {
+        self.calls += 1;
+        self.triangles += u64::from(triangles);
+    }
+
+    fn add(&mut self, other: Self) {
+        self.patches += other.patches;
+        self.calls += other.calls;
+        self.triangles += other.triangles;
+    }
+}
+
+impl LiveShadows {
+    /// The maps for what `camera` sees of a list with its ground; takes some ten milliseconds, on any thread.
+    ///
+    /// # Errors
+    /// [`GpuError::List`] where the list is unsound, [`GpuError::Memory`] where there is not the memory for them.
+    pub fn new(list: &DrawList, camera: &Camera) -> Result<Self, GpuError> {
+        list.check()?;
+        Ok(Self(Shadows::new(list, camera)?))
+    }
+}
+
+impl LiveRenderer {
+    /// A renderer for a window's texture of `format`, at the quality that the adapter affords.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        Self::with_quality(gpu, format, LiveQuality::of(gpu))
+    }
+
+    /// A renderer of a chosen quality; what the adapter cannot do is lowered.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn with_quality(
+        gpu: &Gpu,
+        format: wgpu::TextureFormat,
+        quality: LiveQuality,
+    ) -> Result<Self, GpuError> {
+        let samples = if quality.samples >= gpu.samples { gpu.samples } else { 1 };
+        let anisotropy = quality.anisotropy.clamp(1, gpu.anisotropy);
+        let gpu = gpu.with_anisotropy(anisotropy);
+        let mut format = LiveFormat { window: format, samples, shade_pixels: false };
+        let made = gpu.guarded("building its shaders", || {
+            let layouts = Layouts::new(&gpu);
+            let shader = shader(&gpu);
+            let target = |pass, format, samples| {
+                Pipelines::new(&gpu, &layouts, &shader, PassTarget { pass, format, samples })
+            };
+            let colors = target(GpuPass::Color, format.drawn(), samples);
+            let features = target(GpuPass::Feature, FEATURE, 1);
+            let encoder = (format.drawn() != format.window).then(|| Encoder::new(&gpu, format.window));
+            Ok((Arc::new(layouts), colors, features, encoder))
+        });
+        let (layouts, colors, features, encoder) = made?;
+        format.shade_pixels = colors.shade_pixels(&gpu);
+        Ok(Self { gpu, format, layouts, colors, features, encoder, targets: None, scene: None })
+    }
+
+    /// The device that it draws with.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Takes over a scene: its materials, ground map and light, and all items that neither are ground nor lie on it. The
+    /// ground and what lies on it are those of the updates that follow.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the scene loaded before stays.
+    pub fn load(&mut self, list: &DrawList) -> Result<(), GpuError> {
+        let prepared = self.loader().prepare(list, &LiveShadows::default())?;
+        self.show(prepared, KeptPatches::None);
+        Ok(())
+    }
+
+    /// What prepares scenes for this renderer on other threads.
+    pub fn loader(&self) -> LiveLoader {
+        LiveLoader::new(&self.gpu, &self.layouts, [&self.colors, &self.features])
+    }
+
+    /// Shows a scene that a loader of this renderer has prepared.
+    pub fn show(&mut self, prepared: PreparedScene, kept: KeptPatches) {
+        let PreparedScene { mut scene, pipelines: [colors, features] } = prepared;
+        self.colors.adopt(colors);
+        self.features.adopt(features);
+        if let (KeptPatches::All, Some(before)) = (kept, self.scene.take()) {
+            // Without them the ground is shown from the map alone.
+            let _ = scene.take_windows(&self.gpu, &self.layouts, before.textures.windows().clone());
+            let added = std::mem::replace(&mut scene.patches, before.patches);
+            scene.patches.adopt_materials(added);
+        }
+        scene.make(&self.gpu, &mut self.colors, &mut self.features);
+        self.scene = Some(*scene);
+    }
+
+    /// Takes over what changed on the ground, and says what was sent for it. Does nothing before a scene is loaded.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn update(&mut self, changes: &GroundChanges) -> Result<UploadedBytes, GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(UploadedBytes::default()) };
+        self.gpu.guarded("sending what changed", || {
+            let mut sent = scene.patches.update(&self.gpu, changes)?;
+            for change in &changes.map {
+                sent.map += scene.map.change(&self.gpu, scene.textures.ground(), change)?;
+            }
+            Ok(sent)
+        })
+    }
+
+    /// Lights the scene anew: sun, sky and haze, not the shadows.
+    pub fn set_lighting(&mut self, lighting: Lighting) {
+        if let Some(scene) = &mut self.scene {
+            scene.lighting = lighting;
+            let parts = scene.parts.with(ShaderParts::of_picture(None, &lighting, [false; 2]));
+            if parts != scene.parts {
+                scene.parts = parts;
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
+        }
+    }
+
+    /// Replaces the map that the ground's color and light are read from.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the map before stays.
+    pub fn set_ground(&mut self, map: Option<Arc<GroundMap>>) -> Result<(), GpuError> {
+        if let Some(map) = &map {
+            map.check().map_err(DrawListError::from)?;
+        }
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("sending the ground map", || {
+            let loader = Loader::new(&self.gpu);
+            scene.textures.replace_ground(&loader, map.as_deref())?;
+            scene.frame = FrameGroup::new(&loader, &self.layouts, &scene.textures)?;
+            let shadows = scene.parts.shadows();
+            scene.parts = ShaderParts::of_picture(map.as_deref(), &scene.lighting, shadows);
+            scene.map = EditedMap::new(map);
+            scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            Ok(())
+        })
+    }
+
+    /// Replaces the windows of finer ground by those that a loader of this renderer has prepared. Does nothing before a scene
+    /// is loaded.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the windows before stay.
+    pub fn show_windows(&mut self, PreparedWindows(windows): PreparedWindows) -> Result<(), GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("showing finer ground", || {
+            let parts = scene.parts;
+            scene.take_windows(&self.gpu, &self.layouts, windows)?;
+            if scene.parts != parts {
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
+            Ok(())
+        })
+    }
+
+    /// Replaces the shadows of solids.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the shadows before stay.
+    pub fn set_shadows(&mut self, shadows: &LiveShadows) -> Result<(), GpuError> {
+        let prepared = self.loader().prepare_shadows(shadows)?;
+        self.show_shadows(prepared)
+    }
+
+    /// Replaces the shadows of solids by those that a loader of this renderer has prepared.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; the shadows before stay.
+    pub fn show_shadows(&mut self, prepared: PreparedShadows) -> Result<(), GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        self.gpu.guarded("showing the shadows", || {
+            let PreparedShadows { textures, views, has_shadows } = prepared;
+            scene.textures.replace_shadows(textures);
+            scene.frame = FrameGroup::new(&Loader::new(&self.gpu), &self.layouts, &scene.textures)?;
+            scene.shadows = views;
+            let parts = scene.parts.with(ShaderParts::of_picture(None, &scene.lighting, has_shadows));
+            if parts != scene.parts {
+                scene.parts = parts;
+                scene.make(&self.gpu, &mut self.colors, &mut self.features);
+            }
+            Ok(())
+        })
+    }
+
+    /// Records a frame to `target`, a texture of the renderer's format and of `size` pixels, as `camera` sees it, whose
+    /// picture should have that size. Nothing is drawn where a side is zero or no scene is loaded. The camera and the patches
+    /// of the last frame recorded before a submission count for all of them.
+    ///
+    /// # Errors
+    /// See [`GpuError`]; after [`GpuError::Driver`] the device is to be opened anew.
+    pub fn draw(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        size: (u32, u32),
+        camera: &Camera,
+        options: &LiveOptions,
+    ) -> Result<LiveStatistics, GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(LiveStatistics::default()) };
+        if size.0 == 0 || size.1 == 0 {
+            return Ok(LiveStatistics::default());
+        }
+        let (gpu, format) = (&self.gpu, self.format);
+        let known = self.targets.take().filter(|targets| targets.size == size);
+        let targets = gpu.guarded("resizing its textures", || {
+            known.map_or_else(|| LiveTargets::new(&Loader::new(gpu), &self.layouts, format, size), Ok)
+        })?;
+        let drawn = gpu.guarded("drawing a frame", || {
+            scene.frame.write(gpu, &scene.constants(camera, size));
+            let patches = scene.patches.shown(camera);
+            let ground = scene.patches.ground_calls(gpu, &patches)?;
+            if options.wireframe {
+                scene.patches.store_lines(gpu, &patches)?;
+                self.colors.make(gpu, [PipelineKey::PATCH_LINES]);
+            }
+            let shown = targets.linear.as_ref().unwrap_or(target);
+            let views = PassViews {
+                stage: PassStage::Whole,
+                label: "frame",
+                color: targets.samples.as_ref().unwrap_or(shown),
+                resolved: targets.samples.is_some().then_some(shown),
+                depth: &targets.depth,
+            };
+            let (colors, parts) = (&self.colors, scene.parts);
+            let mut drawn;
+            let mut pass = match &targets.depths_read {
+                Some(depths) => {
+                    let stage = views.of(PassStage::Depths, "depths of the ground");
+                    let mut pass = scene.begin(&stage, encoder, colors);
+                    drawn = scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH_DEPTHS);
+                    drop(pass);
+                    let stage = views.of(PassStage::Pixels, "pixels of the ground");
+                    let mut pass = scene.begin(&stage, encoder, colors);
+                    pass.ground_pixels(ground_key(PipelineKey::GROUND_PIXELS, parts), depths);
+                    pass.sky();
+                    drop(pass);
+                    scene.begin(&views.of(PassStage::Rest, "frame"), encoder, colors)
+                }
+                None => {
+                    let mut pass = scene.begin(&views, encoder, colors);
+                    pass.sky();
+                    let key = ground_key(PipelineKey::PATCH, parts);
+                    drawn = scene.patches.draw_ground(&mut pass, &ground, key);
+                    pass
+                }
+            };
+            drawn.add(scene.draw_rest(&mut pass, GpuPass::Color, camera, (&patches, *options)));
+            drop(pass);
+            if let (Some(encode), Some(linear)) = (&self.encoder, &targets.linear) {
+                encode.record(gpu, encoder, linear, target);
+            }
+            Ok(drawn)
+        });
+        self.targets = Some(targets);
+        drawn
+    }
+
+    /// What the picture of `camera` shows at the position `pixel`, in pixels from its upper left corner; `None` for the
+    /// sky, for what lies outside, and before a scene is loaded. Waits for the device.
+    ///
+    /// # Errors
+    /// See [`GpuError`].
+    pub fn pick(&mut self, camera: &Camera, pixel: Vec2) -> Result<Option<PickedPoint>, GpuError> {
+        let Some(scene) = &mut self.scene else { return Ok(None) };
+        let size = camera.size();
+        let is_inside = pixel.cmpge(Vec2::ZERO).all() && pixel.x < size.0 as f32 && pixel.y < size.1 as f32;
+        if !is_inside {
+            return Ok(None);
+        }
+        let gpu = &self.gpu;
+        gpu.guarded("picking a pixel", || {
+            scene.frame.write(gpu, &scene.constants(camera, size));
+            let patches = scene.patches.shown(camera);
+            let ground = scene.patches.ground_calls(gpu, &patches)?;
+            let mut encoder = gpu.encoder("pick");
+            let pass = scene.pick.begin(&mut encoder, &scene.frame.group, pixel, size);
+            let mut pass = ScenePass::new(pass, &self.features, &scene.materials);
+            scene.patches.draw_ground(&mut pass, &ground, PipelineKey::PATCH);
+            scene.draw_rest(&mut pass, GpuPass::Feature, camera, (&patches, LiveOptions::default()));
+            drop(pass);
+            scene.pick.read(gpu, encoder)
+        })
+    }
+}
+
+impl LoadedScene {
+    fn take_windows(&mut self, gpu: &Gpu, layouts: &Layouts, windows: WindowTexture) -> Result<(), GpuError> {
+        if !windows.places().is_empty() {
+            self.parts = self.parts.with(ShaderParts::WINDOWS);
+        }
+        self.textures.replace_windows(windows);
+        self.frame = FrameGroup::new(&Loader::new(gpu), layouts, &self.textures)?;
+        Ok(())
+    }
+
+    /// Makes the pipelines that it draws with and that are missing.
+    fn make(&self, gpu: &Gpu, colors: &mut Pipelines, features: &mut Pipelines) {
+        let [color_keys, feature_keys] = self.plan.keys(self.parts);
+        let ground = match colors.shade_pixels(gpu) {
+            true => vec![PipelineKey::PATCH_DEPTHS, ground_key(PipelineKey::GROUND_PIXELS, self.parts)],
+            false => vec![ground_key(PipelineKey::PATCH, self.parts)],
+        };
+        colors.make(gpu, color_keys.into_iter().chain([PipelineKey::SKY]).chain(ground));
+        colors.make(gpu, self.patches.keys(GpuPass::Color, self.parts));
+        features.make(gpu, feature_keys.into_iter().chain([PipelineKey::PATCH]));
+        features.make(gpu, self.patches.keys(GpuPass::Feature, self.parts));
+    }
+
+    fn constants(&self, camera: &Camera, size: (u32, u32)) -> FrameUniforms {
+        let Self { shadows, row_bits, .. } = *self;
+        let (ground, windows) = (self.map.map(), self.textures.windows().places());
+        let scene = FrameScene { ground, windows, lighting: &self.lighting, shadows, row_bits };
+        FrameUniforms::new(scene, camera).with_size(size)
+    }
+
+    fn begin<'e, 'a>(
+        &'a self,
+        views: &PassViews<'_>,
+        encoder: &'e mut wgpu::CommandEncoder,
+        colors: &'a Pipelines,
+    ) -> ScenePass<'e, 'a> {
+        ScenePass::new(views.begin(encoder, &self.frame.group), colors, &self.materials)
+    }
+
+    /// Draws everything but the sky and the ground; `patches` are those shown.
+    fn draw_rest(
+        &self,
+        pass: &mut ScenePass<'_, '_>,
+        which: GpuPass,
+        camera: &Camera,
+        (patches, options): (&[PatchId], LiveOptions),
+    ) -> LiveStatistics {
+        let parts = self.parts;
+        let mut drawn = self.patches.draw_drapes(pass, which, patches, parts);
+        if options.wireframe {
+            drawn.add(self.patches.draw_lines(pass, patches));
+        }
+        let calls: Vec<&DrawCall> = match which {
+            GpuPass::Color => self.plan.color.iter().chain(self.plan.transparent(camera)).collect(),
+            GpuPass::Feature => self.plan.features.iter().collect(),
+        };
+        drawn.calls += calls.len() as u32;
+        pass.draw(&self.geometry, calls, parts);
+        drawn
+    }
+}
+
+/// What draws the ground's colors, of pixels or of patches.
+fn ground_key(key: PipelineKey, picture: ShaderParts) -> PipelineKey {
+    key.with_parts(ShaderParts::GROUND.in_picture(picture))
+}

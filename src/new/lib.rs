@@ -1,0 +1,210 @@
+//! A first scene file for an elevation model and vector files, to be edited by hand.
+//!
+//! ```text
+//! elevation ──► ground: range of heights, extent ──┐
+//! vectors ────► survey: what each layer holds ─────┴─► text ──► DIR/scene.toml
+//! ```
+//!
+//! The file is meant to be read: a comment on every table, sizes stated even where they are the default. File names are
+//! relative to the scene file, so that a folder can be moved together with its data. Nothing is copied: the scene reads
+//! data under the parent of DIR as it is; for other data the user must allow the folders of [`WrittenScene::allowed`].
+
+mod cameras;
+mod crop;
+mod folder;
+mod rules;
+mod survey;
+mod text;
+mod title;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+
+use sandtable_annotate::nice::NiceNumber;
+use sandtable_dem::undeclared::undeclared_nodata;
+use sandtable_description::parse::parse;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_files::disk::{self, SystemError, WriteFileError};
+use crate::cameras::cameras;
+use crate::crop::{around_vectors, with_straight_edges};
+use crate::folder::{FolderError, SceneFolder};
+use crate::survey::SurveyError;
+use crate::text::{SceneDraft, VectorDraft};
+use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_remote::address::is_address_path;
+use sandtable_scene::SceneModel;
+use sandtable_scene::assets::Assets;
+use sandtable_scene::build::build_with;
+use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
+
+/// The name of the scene file in its folder.
+const FILE_NAME: &str = "scene.toml";
+
+/// About as many contour lines as the eye can follow.
+const CONTOURS: f64 = 12.0;
+
+/// Options for a new scene file.
+#[derive(Clone, Debug, Default)]
+pub struct NewSceneOptions {
+    /// The folder for the scene file; it is made where it does not exist.
+    pub folder: PathBuf,
+    /// Elevation files, tiles of one raster, or their addresses; at least one.
+    pub dem: Vec<PathBuf>,
+    /// Vector files, or their addresses.
+    pub vectors: Vec<PathBuf>,
+    /// The title; where `None`, the name of the most important place or of the district of the vectors, else that of the
+    /// first elevation file or its folder.
+    pub title: Option<String>,
+    /// The coordinate system of elevation that names none, as a scene file states it.
+    pub crs: Option<String>,
+}
+
+/// A scene file that was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrittenScene {
+    /// The file.
+    pub path: PathBuf,
+    /// The folders that the scene reads besides the parent of its own.
+    pub allowed: Vec<PathBuf>,
+}
+
+/// A scene file that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum NewSceneError {
+    #[error("{}: there is such a file already; remove it, or name another folder", .0.display())]
+    Exists(PathBuf),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error(transparent)]
+    Survey(#[from] SurveyError),
+    #[error(transparent)]
+    Ground(#[from] OpenSceneError),
+    #[error(transparent)]
+    Write(#[from] WriteFileError),
+}
+
+/// Writes a scene file. `progress` is called with the name of each step as it begins.
+///
+/// # Errors
+/// See [`NewSceneError`]; nothing is written then, and no folder stays behind.
+pub fn write(
+    options: &NewSceneOptions,
+    progress: &dyn Fn(&'static str),
+) -> Result<WrittenScene, NewSceneError> {
+    progress("surveying files");
+    let path = options.folder.join(FILE_NAME);
+    if path.symlink_metadata().is_ok() {
+        return Err(NewSceneError::Exists(path));
+    }
+    let folder = SceneFolder::new(&options.folder)?;
+    let dem = options.dem.iter().map(|file| folder.name_of(file)).collect::<Result<Vec<_>, _>>()?;
+    let vectors =
+        options.vectors.iter().map(|file| survey_file(file, &folder)).collect::<Result<Vec<_>, _>>()?;
+    let on_disk = options.dem.iter().chain(&options.vectors).filter(|file| !is_address_path(file));
+    let allowed = folder.folders_to_allow(on_disk)?;
+
+    progress("reading elevation");
+    let draft = SceneDraft { dem, crs: options.crs.clone(), ..SceneDraft::default() };
+    let is_new = !options.folder.exists();
+    let system = |error: io::Error| WriteFileError::new(&path, SystemError::from(error));
+    fs::create_dir_all(&options.folder).map_err(system)?;
+    let mut draft = complete(&path, draft, &vectors, &allowed).inspect_err(|_| {
+        if is_new {
+            // Does nothing where the folder is no longer empty.
+            let _ = fs::remove_dir(&options.folder);
+        }
+    })?;
+    if let Some(title) = &options.title {
+        draft.title = title.clone();
+    } else if draft.title.is_empty() {
+        draft.title = title::of_file(&options.dem[0]);
+    }
+    disk::write(&path, text::scene(&draft, &vectors).as_bytes())?;
+    Ok(WrittenScene { path, allowed })
+}
+
+fn survey_file(file: &Path, folder: &SceneFolder) -> Result<VectorDraft, NewSceneError> {
+    Ok(VectorDraft { file: folder.name_of(file)?, layers: survey::layers(file)? })
+}
+
+/// Completes the draft from the elevation: heights, extent and cameras, and the title where the vectors have one.
+fn complete(
+    path: &Path,
+    mut draft: SceneDraft,
+    vectors: &[VectorDraft],
+    allowed: &[PathBuf],
+) -> Result<SceneDraft, OpenSceneError> {
+    let assets = Assets::new(path, allowed)?;
+    // What is found of the ground is as fine as its first picture.
+    let pictures = PlannedPictures::default();
+    let built = |draft: &SceneDraft| {
+        let document = parse(&path.to_string_lossy(), &text::terrain(draft))?;
+        Ok::<_, OpenSceneError>(build_with(&document, &assets, ElevationNeed::Pictures(&pictures), &|_| ())?)
+    };
+    let mut scene = built(&draft)?;
+    draft.nodata = undeclared_nodata(scene.heights.snapshot().source());
+    let surveyed = vectors;
+    let vectors = extent(surveyed, &scene.crs);
+    let around_vectors = around_vectors(vectors, scene.lattice.map_extent());
+    draft.extent = around_vectors.map(|extent| extent.stated_in(&scene));
+    if !draft.nodata.is_empty() {
+        scene = built(&draft)?;
+        let straight = || with_straight_edges(&scene.lattice).map(|extent| extent.stated_in(&scene));
+        draft.extent = draft.extent.or_else(straight);
+    }
+    if draft.extent.is_some() {
+        scene = built(&draft)?;
+    }
+    draft.title = title::of_vectors(surveyed, &scene).unwrap_or_default();
+    let (lattice, (low, high)) = (&scene.lattice, scene.height_range_m);
+    let size_m = lattice.extent().size().max_element();
+    draft.relief_m = f64::from(high - low);
+    draft.crs_name = scene.stated_crs.name().to_owned();
+    draft.exaggeration = exaggeration(draft.relief_m / size_m);
+    draft.contours_m = NiceNumber::at_most(draft.relief_m / CONTOURS).map(|nice| nice.value());
+    draft.cameras = cameras(&scene, vectors, draft.exaggeration);
+    for camera in &mut draft.cameras {
+        camera.shown = camera.shown.map(|shown| stated(shown, &scene));
+    }
+    Ok(draft)
+}
+
+/// A rectangle of the ground, in the system of inline points; where that is another one, the largest whose sides cut
+/// through none of its corners. What has no place in that system stays as it is.
+fn stated(rect: Rect, scene: &SceneModel) -> Rect {
+    if scene.stated_crs == scene.crs {
+        return rect;
+    }
+    let corner = |x: f64, y: f64| scene.crs.transform(&scene.stated_crs, DVec2::new(x, y));
+    let Rect { min, max } = rect;
+    let corners = [corner(min.x, min.y), corner(max.x, min.y), corner(min.x, max.y), corner(max.x, max.y)];
+    let [Ok(low_left), Ok(low_right), Ok(high_left), Ok(high_right)] = corners else { return rect };
+    let inner = Rect {
+        min: DVec2::new(low_left.x.max(high_left.x), low_left.y.max(low_right.y)),
+        max: DVec2::new(low_right.x.min(high_right.x), high_left.y.min(high_right.y)),
+    };
+    if inner.is_empty() { Rect::around([low_left, low_right, high_left, high_right]) } else { inner }
+}
+
+/// The vertical exaggeration for a relief as a share of the extent: flat country shows nothing at true scale.
+fn exaggeration(relief: f64) -> f64 {
+    match relief {
+        _ if relief > 0.05 => 1.0,
+        _ if relief > 0.02 => 2.0,
+        _ => 3.0,
+    }
+}
+
+/// The box of all features, in the scene's system; empty where there are none. Features that cannot be transformed to it
+/// are left out.
+fn extent(vectors: &[VectorDraft], crs: &Crs) -> Rect {
+    let layers = vectors.iter().flat_map(|vector| &vector.layers);
+    Rect::around(
+        layers.flat_map(|layer| layer.corners.iter().filter_map(|at| layer.crs.transform(crs, *at).ok())),
+    )
+}

@@ -1,0 +1,416 @@
+//! A survey of vector files: which tables of a scene file could take their features.
+//!
+//! Each [`TableRule`] is a table that could be written, with the expression that selects its features. The expression
+//! is evaluated for every feature, so that the counts are those of the scene, and no table is written that selects
+//! nothing. Where no rule matches a layer, its name may still say what it holds. The names of places and districts are
+//! kept, since one of them may be the scene's title.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::ptr;
+use std::sync::Arc;
+
+use glam::DVec2;
+use serde_json::Value;
+
+use sandtable_description::expression::Expression;
+use sandtable_description::scalar::Scalar;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
+use sandtable_base::limits::ASSET_BYTES;
+use sandtable_files::addressed;
+use sandtable_files::error::FileError;
+use sandtable_files::disk::{self, ReadFileError};
+use crate::rules::{BOUNDARIES, LabelRule, RULES, TableRule};
+use sandtable_scene::attributes::Attributes;
+use sandtable_vector::error::VectorError;
+use sandtable_vector::feature::{Feature, Geometry, Polygon, VectorLayer};
+use sandtable_vector::hints::VectorHints;
+use sandtable_vector::read;
+
+/// One layer of a file.
+pub(super) struct SurveyedLayer {
+    /// Its name in a scene file; `None` where the file has one layer.
+    pub name: Option<String>,
+    /// The tables that take something from it, in drawing order.
+    pub matches: Vec<TableMatch>,
+    /// Features that no table takes, by shape.
+    pub rest: Vec<LeftFeatures>,
+    /// The names of cities, towns and the like.
+    pub places: Vec<NamedPlace>,
+    /// Districts with administrative boundaries.
+    pub districts: Vec<NamedDistrict>,
+    /// Whether its features have the property `fclass` of Geofabrik's shapefiles.
+    pub has_fclass: bool,
+    /// Its coordinate system.
+    pub crs: Crs,
+    /// Corners and middles of the sides of the box of the features that tables draw, boundaries apart, in its system; of
+    /// all features where there are none of these, and none where it has no feature.
+    pub corners: Vec<DVec2>,
+}
+
+/// A table and how many features it takes.
+pub(super) struct TableMatch {
+    pub rule: &'static TableRule,
+    pub count: usize,
+    pub selection: FeatureSelection,
+}
+
+/// Which features of a layer a table takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FeatureSelection {
+    /// Those for which the rule's condition holds.
+    ByCondition,
+    /// All.
+    All,
+}
+
+/// The features of one shape that no table takes.
+pub(super) struct LeftFeatures {
+    /// `lines`, `polygons` or `points`.
+    pub kind: &'static str,
+    pub count: usize,
+    /// The [`MOST_EXAMPLES`] properties that most of them have, each with a value.
+    pub examples: Vec<(String, Value)>,
+}
+
+/// The place of a name that may be the title of a scene.
+pub(super) struct NamedPlace {
+    pub name: String,
+    /// The lower, the more important.
+    pub rank: f64,
+    pub at: DVec2,
+}
+
+/// A district with a name.
+pub(super) struct NamedDistrict {
+    pub name: String,
+    /// OpenStreetMap's `admin_level`: the higher, the smaller the district.
+    pub level: f64,
+    pub polygons: Vec<Polygon>,
+}
+
+/// As many properties as a reader looks over.
+const MOST_EXAMPLES: usize = 12;
+
+/// A vector file that cannot be surveyed.
+#[derive(Debug, thiserror::Error)]
+pub enum SurveyError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] ReadFileError),
+    /// The file is not one that is read.
+    #[error(transparent)]
+    Vector(#[from] FileError<VectorError>),
+}
+
+/// Surveys each layer of a vector file, or of that at an address.
+///
+/// # Errors
+/// See [`SurveyError`].
+pub(super) fn layers(file: &Path) -> Result<Vec<SurveyedLayer>, SurveyError> {
+    let bytes = addressed::read(file, ASSET_BYTES.get())?;
+    let name = disk::file_name(file);
+    let companions = addressed::companions(file, ASSET_BYTES.get());
+    let found = |name: &str| companions.get(name);
+    let read = |layer: Option<&str>| {
+        read::read(&name, &bytes, &VectorHints { layer, companions: &found, ..VectorHints::default() })
+    };
+    let vector = FileError::<VectorError>::at(file);
+    let surveyed = match read(None) {
+        Ok(layer) => Ok(vec![survey(Arc::new(layer), None, &name)]),
+        Err(VectorError::WhichLayer { names, .. }) => {
+            let layers = distinct(names).into_iter().map(|name| {
+                let layer = read(Some(&name)).map_err(&vector)?;
+                Ok(survey(Arc::new(layer), Some(name.clone()), &name))
+            });
+            layers.collect::<Result<_, _>>().map(without_excerpts)
+        }
+        Err(error) => Err(vector(error).into()),
+    };
+    companions.check()?;
+    surveyed
+}
+
+/// The layers of one file without the matches that another layer is named after: of a file with a layer of all
+/// buildings, the schools are among them.
+fn without_excerpts(mut layers: Vec<SurveyedLayer>) -> Vec<SurveyedLayer> {
+    for rule in RULES {
+        let is_named_after =
+            |layer: &SurveyedLayer| rule.is_named_in(layer.name.as_deref().unwrap_or_default());
+        let takes = |layer: &SurveyedLayer| layer.matches.iter().any(|found| ptr::eq(found.rule, rule));
+        if layers.iter().any(|layer| is_named_after(layer) && takes(layer)) {
+            for layer in layers.iter_mut().filter(|layer| !is_named_after(layer)) {
+                layer.matches.retain(|found| !ptr::eq(found.rule, rule));
+            }
+        }
+    }
+    layers
+}
+
+/// The layers that hold different features: of OpenStreetMap the complete ones without their excerpts, of GPX not the
+/// single points of lines.
+fn distinct(names: Vec<String>) -> Vec<String> {
+    const OSM: [&str; 3] = ["points", "lines", "multipolygons"];
+    const GPX_POINTS: [&str; 2] = ["route_points", "track_points"];
+    let is_osm = OSM.iter().all(|layer| names.iter().any(|name| name == layer));
+    let is_kept = |name: &str| (!is_osm || OSM.contains(&name)) && !GPX_POINTS.contains(&name);
+    names.into_iter().filter(|name| is_kept(name)).collect()
+}
+
+/// Surveys a layer; `title` is its own name or that of its file.
+fn survey(layer: Arc<VectorLayer>, name: Option<String>, title: &str) -> SurveyedLayer {
+    let mut taken = vec![false; layer.features.len()];
+    // What the scene is about: not what no table takes, nor boundaries, which reach far out to sea, nor distant names.
+    let mut around = Rect::EMPTY;
+    let mut matches = Vec::new();
+    let mut places = Vec::new();
+    for rule in RULES {
+        let condition = Expression::parse(rule.condition).expect("a test parses every condition");
+        let takes = |&index: &usize| {
+            fits(rule, &layer.features[index].geometry)
+                && Attributes::new(Arc::clone(&layer), index).holds(&condition)
+        };
+        let indices: Vec<usize> = (0..taken.len()).filter(takes).collect();
+        let count = indices.len();
+        if let Some(label) = rule.label.as_ref().filter(|label| label.is_title) {
+            places.extend(indices.iter().filter_map(|&index| named_place(&layer, index, label)));
+        }
+        if rule.what != BOUNDARIES && rule.label.is_none() {
+            let vertices = indices.iter().flat_map(|&index| layer.features[index].geometry.vertices());
+            around = vertices.fold(around, |around, vertex| around.with(*vertex));
+        }
+        indices.into_iter().for_each(|index| taken[index] = true);
+        let selection =
+            if count == taken.len() { FeatureSelection::All } else { FeatureSelection::ByCondition };
+        matches.extend((count > 0).then_some(TableMatch { rule, count, selection }));
+    }
+    if let (true, Some(found)) = (matches.is_empty(), match_by_name(&layer, title)) {
+        taken = layer.features.iter().map(|feature| fits(found.rule, &feature.geometry)).collect();
+        matches.push(found);
+    }
+    let left = layer.features.iter().zip(&taken).filter(|(_, taken)| !**taken).map(|(feature, _)| feature);
+    let left: Vec<&Feature> = left.collect();
+    let rest = ["lines", "polygons", "points"].into_iter().filter_map(|kind| left_features(&left, kind));
+    let rest = rest.collect();
+    let all = layer.features.iter().flat_map(|feature| feature.geometry.vertices().copied());
+    let bounds = if around.is_empty() { Rect::around(all) } else { around };
+    let corners = if bounds.is_empty() { Vec::new() } else { bounds.grid_points().collect() };
+    let districts = districts(&layer);
+    let has_fclass = layer.features.iter().any(|feature| feature.properties.contains_key("fclass"));
+    SurveyedLayer { name, matches, rest, places, districts, has_fclass, crs: layer.crs.clone(), corners }
+}
+
+/// The table that the name of a layer suggests.
+fn match_by_name(layer: &VectorLayer, title: &str) -> Option<TableMatch> {
+    RULES.iter().filter(|rule| rule.is_named_in(title)).find_map(|rule| {
+        let count = layer.features.iter().filter(|feature| fits(rule, &feature.geometry)).count();
+        (count > 0).then_some(TableMatch { rule, count, selection: FeatureSelection::All })
+    })
+}
+
+fn fits(rule: &TableRule, geometry: &Geometry) -> bool {
+    geometry.kind() == rule.shape
+}
+
+/// The features of a shape among those `left`, with the properties that most of them have, each with its first value;
+/// `None` where there are none.
+fn left_features(left: &[&Feature], kind: &'static str) -> Option<LeftFeatures> {
+    let of_kind = || left.iter().filter(|feature| feature.geometry.kind() == kind);
+    let mut found: BTreeMap<&str, (usize, &Value)> = BTreeMap::new();
+    for (name, value) in of_kind().flat_map(|feature| &feature.properties) {
+        let says_something = match value {
+            Value::String(text) => !text.trim().is_empty(),
+            Value::Number(_) | Value::Bool(_) => true,
+            _ => false,
+        };
+        if says_something {
+            found.entry(name).or_insert((0, value)).0 += 1;
+        }
+    }
+    let mut found: Vec<_> = found.into_iter().collect();
+    // Stable: by name where equally many have them.
+    found.sort_by_key(|(_, (count, _))| std::cmp::Reverse(*count));
+    let example = |(name, (_, value)): (&str, (usize, &Value))| (name.to_owned(), value.clone());
+    let examples = found.into_iter().take(MOST_EXAMPLES).map(example).collect();
+    let count = of_kind().count();
+    (count > 0).then_some(LeftFeatures { kind, count, examples })
+}
+
+fn named_place(layer: &Arc<VectorLayer>, index: usize, label: &LabelRule) -> Option<NamedPlace> {
+    let attributes = Attributes::new(Arc::clone(layer), index);
+    let evaluated = |text: &str| attributes.evaluated(&Expression::parse(text).ok()?);
+    let name = match evaluated(label.name)? {
+        Scalar::Text(name) => name.trim().to_owned(),
+        Scalar::Bool(_) | Scalar::Number(_) => return None,
+    };
+    let at = *layer.features[index].geometry.vertices().next()?;
+    let rank = evaluated(label.rank)?.number()?;
+    (!name.is_empty()).then_some(NamedPlace { name, rank, at })
+}
+
+/// The districts of a layer, by the tags of OpenStreetMap.
+fn districts(layer: &VectorLayer) -> Vec<NamedDistrict> {
+    let district = |feature: &Feature| {
+        let text = |property: &str| feature.properties.get(property).and_then(Value::as_str).map(str::trim);
+        let name = text("name").filter(|name| !name.is_empty())?;
+        let level = feature.properties.get("admin_level")?;
+        let level =
+            level.as_f64().or_else(|| level.as_str()?.trim().parse().ok()).filter(|at| at.is_finite())?;
+        let polygons = feature.polygons();
+        let is_district = text("boundary") == Some("administrative") && !polygons.is_empty();
+        is_district.then(|| NamedDistrict { name: name.to_owned(), level, polygons: polygons.to_vec() })
+    };
+    layer.features.iter().filter_map(district).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_openstreetmap_the_complete_layers_are_taken() {
+        let names = ["points", "lines", "multipolygons", "roads", "water"].map(String::from).to_vec();
+        assert_eq!(distinct(names), ["points", "lines", "multipolygons"]);
+        assert_eq!(distinct(vec!["roads".into(), "water".into()]), ["roads", "water"]);
+    }
+
+    /// The tables that take something from a layer of features of one shape with these properties: what they are and how
+    /// many they take, and how many features are left.
+    fn surveyed(title: &str, kind: &str, properties: &[&str]) -> (Vec<(&'static str, usize)>, usize) {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
+        let feature = |properties: &&str| Feature {
+            geometry: match kind {
+                "points" => Geometry::Points(vec![DVec2::ZERO]),
+                "lines" => Geometry::Lines(vec![corners.to_vec()]),
+                _ => Geometry::Polygons(vec![Polygon { exterior: corners.to_vec(), holes: Vec::new() }]),
+            },
+            elevations: None,
+            properties: serde_json::from_str(properties).expect("an object"),
+        };
+        let features = properties.iter().map(feature).collect();
+        let layer = VectorLayer { features, crs: Crs::wgs84(), notes: Vec::new() };
+        let found = survey(Arc::new(layer), None, title);
+        let left = found.rest.iter().map(|rest| rest.count).sum();
+        (found.matches.iter().map(|found| (found.rule.what, found.count)).collect(), left)
+    }
+
+    #[test]
+    fn the_schemas_of_many_countries_are_recognized() {
+        type Case =
+            (&'static str, &'static str, &'static [&'static str], &'static [(&'static str, usize)], usize);
+        let cases: [Case; 17] = [
+            (
+                "gis_osm_roads_free_1",
+                "lines",
+                &[r#"{"fclass": "primary"}"#, r#"{"fclass": "track_grade3"}"#, r#"{"fclass": "busway"}"#],
+                &[("Tracks and paths", 1), ("Main roads", 1)],
+                1,
+            ),
+            ("gis_osm_landuse", "polygons", &[r#"{"fclass": "forest"}"#], &[("Land cover", 1)], 0),
+            (
+                "bgt_wegdeel",
+                "polygons",
+                &[r#"{"bgt_functie": "fietspad", "bgt_fysiekvoorkomen": "erf"}"#],
+                &[("Carriageways and paths as areas (BGT)", 1)],
+                0,
+            ),
+            (
+                "bgt_waterdeel",
+                "polygons",
+                &[r#"{"bgt_type": "waterloop"}"#, r#"{"bgt_type": "greppel, droge sloot"}"#],
+                &[("Water (BGT)", 1)],
+                1,
+            ),
+            (
+                "bgt_begroeidterreindeel",
+                "polygons",
+                &[r#"{"bgt_fysiekvoorkomen": "loofbos"}"#],
+                &[("Plant cover (BGT)", 1)],
+                0,
+            ),
+            ("onbegroeidterreindeel", "polygons", &[r#"{"oms": 1}"#], &[("Bare ground (BGT)", 1)], 0),
+            ("pand", "polygons", &[r#"{"identificatieBAGPND": "0344"}"#], &[("Buildings (BGT, BAG)", 1)], 0),
+            (
+                "tl_2023_08031_roads",
+                "lines",
+                &[
+                    r#"{"MTFCC": "S1100"}"#,
+                    r#"{"MTFCC": "S1400"}"#,
+                    r#"{"MTFCC": "S1500"}"#,
+                    r#"{"MTFCC": "R1011"}"#,
+                ],
+                &[("Trails (TIGER)", 1), ("Streets (TIGER)", 1), ("Main roads (TIGER)", 1)],
+                1,
+            ),
+            ("linearwater", "lines", &[r#"{"MTFCC": "H3010"}"#], &[("Streams and rivers (TIGER)", 1)], 0),
+            (
+                "areawater",
+                "polygons",
+                &[r#"{"MTFCC": "H2030"}"#, r#"{"MTFCC": "H3010"}"#],
+                &[("Lakes (TIGER)", 1)],
+                1,
+            ),
+            (
+                "RoadLink",
+                "lines",
+                &[r#"{"class": "A Road"}"#, r#"{"class": "B Road"}"#, r#"{"class": "Unknown"}"#],
+                &[("Streets (OS)", 1), ("Country roads (OS)", 1), ("Main roads (OS)", 1)],
+                0,
+            ),
+            ("Road", "lines", &[r#"{"CLASSIFICA": "Local Street"}"#], &[("Streets (OS)", 1)], 0),
+            (
+                "WatercourseLink",
+                "lines",
+                &[r#"{"form": "inlandRiver"}"#, r#"{"form": "lake"}"#],
+                &[("Watercourses (OS)", 1)],
+                1,
+            ),
+            ("SU_Woodland", "polygons", &[r#"{"FEATCODE": 15400}"#], &[("Woods", 1)], 0),
+            (
+                "TRONCON_DE_ROUTE",
+                "lines",
+                &[r#"{"NATURE": "Chemin"}"#, r#"{"NATURE": "Route à 1 chaussée", "LARGEUR": 4.5}"#],
+                &[("Tracks and paths (BD TOPO)", 1), ("Roads (BD TOPO)", 1)],
+                0,
+            ),
+            (
+                "TRONCON_HYDROGRAPHIQUE",
+                "lines",
+                &[r#"{"NATURE": "Ecoulement naturel"}"#],
+                &[("Watercourses (BD TOPO)", 1)],
+                0,
+            ),
+            (
+                "BATIMENT",
+                "polygons",
+                &[r#"{"NATURE": "Indifférenciée", "HAUTEUR": 7.5}"#],
+                &[("Buildings (BD TOPO)", 1)],
+                0,
+            ),
+        ];
+        for (title, kind, properties, wanted, left) in cases {
+            assert_eq!(surveyed(title, kind, properties), (wanted.to_vec(), left), "{title}");
+        }
+    }
+
+    #[test]
+    fn no_two_rules_take_the_same_feature_or_its_name() {
+        let is_name = |what: &str| RULES.iter().any(|rule| rule.what == what && rule.label.is_some());
+        let values = RULES.iter().flat_map(|rule| rule.condition.split('\'').skip(1).step_by(2));
+        for value in values {
+            let rules = |property: &str| {
+                let properties = serde_json::json!({ property: value, "name": "a", "NAME": "a" }).to_string();
+                ["points", "lines", "polygons"].map(|kind| surveyed("", kind, &[&properties]).0)
+            };
+            for property in
+                ["highway", "fclass", "nature", "class", "MTFCC", "place", "bgt_fysiekvoorkomen", "form"]
+            {
+                for taken in rules(property) {
+                    let names = taken.iter().filter(|(what, _)| is_name(what)).count();
+                    assert!(names <= 1 && taken.len() - names <= 1, "{property} = {value}: {taken:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Tactical graphics for one camera, laid over everything else on the ground.
+//!
+//! A graphic is drawn for the picture's scale where it lies: its text height is a number of pixels at the mean distance of
+//! its points. So a tooth is as large as a letter on every picture, and the same graphic has more of them seen from near.
+
+use rayon::prelude::*;
+
+use glam::DVec2;
+
+use sandtable_description::words::GraphicStatus;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::polygon::doubled_area;
+use sandtable_geom::rect::Rect;
+use sandtable_ribbon::area;
+use sandtable_scene::SceneModel;
+use sandtable_scene::graphics::SceneGraphic;
+use crate::graphic_colors::{graphic_color, opposing};
+use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LineLook};
+use crate::placed_text::{PlacedCourse, PlacedText};
+use sandtable_symbology::graphic::drawing::{GraphicInput, StrokeDash, StrokeSide, TextCourse};
+use sandtable_terrain::triangle_surface::TriangleSurface;
+
+/// The smallest part of a graphic's size that its text height is: a graphic of a few pixels is not all teeth.
+const SMALLEST: f64 = 1.0 / 8.0;
+
+/// The graphics that a camera sees: casings, lines, and texts.
+pub(super) fn draped(
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    displayed: &dyn TriangleSurface,
+) -> ([Vec<DrapedPart>; 2], Vec<PlacedText>) {
+    let drawn = each(scene, view, |pen| pen.draped(displayed));
+    let (mut parts, mut texts) = ([Vec::new(), Vec::new()], Vec::new());
+    for ([casings, lines], more) in drawn {
+        parts[0].extend(casings);
+        parts[1].extend(lines);
+        texts.extend(more);
+    }
+    (parts, texts)
+}
+
+/// What `finish` makes of each graphic in view, and its texts.
+pub(super) fn each<T: Send>(
+    scene: &SceneModel,
+    view: &GraphicView<'_>,
+    finish: impl Fn(GraphicPen) -> T + Sync,
+) -> Vec<(T, Vec<PlacedText>)> {
+    let finished = |graphic| drawn(graphic, view).map(|(pen, texts)| (finish(pen), texts));
+    scene.graphics.par_iter().filter_map(finished).collect()
+}
+
+/// The colors that graphics are drawn in.
+pub(super) fn colors(scene: &SceneModel) -> impl Iterator<Item = Srgba> {
+    scene.graphics.iter().flat_map(|graphic| {
+        [graphic.side, opposing(graphic.side)].map(|side| graphic_color(side, graphic.kind.tint))
+    })
+}
+
+/// One graphic in plan; `None` where all of it is behind the eye.
+fn drawn(graphic: &SceneGraphic, view: &GraphicView<'_>) -> Option<(GraphicPen, Vec<PlacedText>)> {
+    let em_m = view.em_m(&graphic.points)?;
+    let size_m = Rect::around(graphic.points.iter().copied()).size().length();
+    let em_m = if size_m > 0.0 { em_m.min(size_m * SMALLEST) } else { em_m };
+    let input = GraphicInput {
+        points: &graphic.points,
+        em_m,
+        up: view.up(graphic.points[0]),
+        width_m: graphic.width_m,
+        fields: &graphic.fields,
+    };
+    let drawing = graphic.kind.draw(&input);
+    let own = graphic_color(graphic.side, graphic.kind.tint);
+    let mut pen = GraphicPen::default();
+    for stroke in &drawing.strokes {
+        let color = match stroke.side {
+            StrokeSide::Own => own,
+            StrokeSide::Opposing => graphic_color(opposing(graphic.side), graphic.kind.tint),
+        };
+        let is_dashed = stroke.dash == StrokeDash::Dashed || graphic.status == GraphicStatus::Planned;
+        view.draw(&mut pen, &stroke.points, LineLook { color, is_dashed }, graphic.feature);
+    }
+    for ring in &drawing.fills {
+        area::fill(&counter_clockwise(ring), &[], 1.0, pen.plan(own, graphic.feature));
+    }
+    let texts = drawing
+        .texts
+        .into_iter()
+        .map(|text| PlacedText {
+            at: view.on_ground(text.at),
+            toward: view.on_ground(text.at + text.toward * em_m),
+            course: match &text.course {
+                TextCourse::Level => PlacedCourse::Level,
+                TextCourse::Ends(line) => PlacedCourse::Ends(view.pieces(line)),
+                TextCourse::Once(line) => PlacedCourse::Once(view.pieces(line)),
+                TextCourse::Repeated(line) => PlacedCourse::Repeated(view.pieces(line)),
+            },
+            text: text.text,
+            color: own,
+            feature: graphic.feature,
+        })
+        .collect();
+    Some((pen, texts))
+}
+
+/// A ring counter-clockwise.
+fn counter_clockwise(ring: &[DVec2]) -> Vec<DVec2> {
+    let mut ring = ring.to_vec();
+    if doubled_area(&ring) < 0.0 {
+        ring.reverse();
+    }
+    ring
+}

@@ -1,0 +1,221 @@
+//! From a scene and a camera to a draw list: refine, emit, drape, set solids and models.
+
+mod airspace;
+pub mod all_round;
+mod canopy;
+pub mod detail;
+mod drapes;
+pub mod graphic_colors;
+mod graphic_lines;
+mod graphics;
+mod ground;
+mod haze;
+mod hole;
+mod lake_tint;
+mod line_scale;
+mod markings;
+pub mod models;
+pub mod nested;
+pub mod nested_ground;
+mod nested_plan;
+mod nested_surface;
+mod overlay;
+pub mod placed_text;
+pub mod recut;
+pub mod setting;
+pub mod sheet_cuts;
+mod sight;
+mod solids;
+pub mod standing;
+mod symbols;
+mod table;
+mod uprights;
+pub mod voids;
+
+use std::sync::Arc;
+
+use glam::{Mat4, Vec3};
+
+use sandtable_description::words::TableTop;
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::lighting::Lighting;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
+use sandtable_geom::aabb::Aabb;
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_scene::ground_map::GroundMapKey;
+use crate::nested_ground::NestedHeights;
+use crate::detail::Viewer;
+use sandtable_scene::framing::fitted_view::fitted_aim;
+use sandtable_scene::framing::parallel_view::parallel_camera;
+use crate::placed_text::PlacedText;
+use crate::setting::PictureSetting;
+use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_view::camera::{Camera, CameraError, far_m};
+
+/// The draw list of a scene for one camera.
+pub struct ViewDraw {
+    /// The draw list.
+    pub list: DrawList,
+    /// The displayed ground.
+    pub displayed: Arc<DisplayedTerrain>,
+    /// Triangles of the ground among those drawn.
+    pub ground_triangles: usize,
+    /// The texts of tactical graphics.
+    pub graphic_texts: Vec<PlacedText>,
+    /// The heights of the nested grounds among them.
+    pub nested: NestedHeights,
+}
+
+/// The camera for a view on a picture of `size` pixels, its far plane behind the whole scene.
+///
+/// # Errors
+/// See [`CameraError`].
+pub fn camera(scene: &SceneModel, view: &SceneView, size: (u32, u32)) -> Result<Camera, CameraError> {
+    let (min, max) = scene.bounds;
+    let (eye, target) = match view.aim {
+        ViewAim::At { eye, target } => (eye, target),
+        ViewAim::Fitted(fitted) => fitted_aim(scene, &fitted, view.fov_y_rad, size),
+        ViewAim::Parallel(parallel) => return parallel_camera(scene, &parallel, size),
+    };
+    Camera::new(eye, target, view.fov_y_rad, size, (0.5, far_m(&Aabb { min, max }, eye)))
+}
+
+/// The draw list for one camera. `progress` is called with the name of each step as it begins.
+pub fn build_draw_list(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
+    drawn_for(scene, camera, ListPurpose::Picture, progress)
+}
+
+/// The shapes of [`build_draw_list`], for who measures them: the ground is neither lit nor colored.
+pub fn build_shapes(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> ViewDraw {
+    drawn_for(scene, camera, ListPurpose::Shapes, progress)
+}
+
+fn drawn_for(
+    scene: &SceneModel,
+    camera: &Camera,
+    purpose: ListPurpose,
+    progress: &dyn Fn(&'static str),
+) -> ViewDraw {
+    progress("refining terrain");
+    let displayed = Arc::new(display(scene, camera));
+    let ListedScene { list, ground_triangles, graphic_texts } =
+        listed(scene, &displayed, Viewer::Camera(camera), purpose, progress);
+    ViewDraw { list, displayed, ground_triangles, graphic_texts, nested: NestedHeights::default() }
+}
+
+/// The ground and what stands and lies on it, for who models it: nothing that is only drawn on a picture of it, such as
+/// symbols, tactical graphics and viewsheds.
+pub fn build_relief(scene: &SceneModel, camera: &Camera, progress: &dyn Fn(&'static str)) -> DrawList {
+    progress("refining terrain");
+    let displayed = display(scene, camera);
+    listed(scene, &displayed, Viewer::Camera(camera), ListPurpose::Relief, progress).list
+}
+
+/// What is to be drawn of a scene whose terrain is shown as `displayed`, and how many triangles of it are ground: all
+/// models wherever they stand, as their files have them. `progress` is called with the name of each step as it begins.
+pub fn draw_list(
+    scene: &SceneModel,
+    displayed: &DisplayedTerrain,
+    progress: &dyn Fn(&'static str),
+) -> (DrawList, usize) {
+    let listed = listed(scene, displayed, Viewer::Anyone, ListPurpose::Picture, progress);
+    (listed.list, listed.ground_triangles)
+}
+
+/// A draw list with what else a picture needs.
+struct ListedScene {
+    list: DrawList,
+    ground_triangles: usize,
+    graphic_texts: Vec<PlacedText>,
+}
+
+/// What a draw list is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ListPurpose {
+    /// To be seen.
+    Picture,
+    /// To be measured: nobody asks how the ground is lit.
+    Shapes,
+    /// To be modeled: as to be measured, without what is only drawn on it or beside it.
+    Relief,
+}
+
+/// Whether `camera` shows the scene as a block on a table.
+pub fn shows_table(scene: &SceneModel, camera: &Camera) -> bool {
+    has_table(scene, PictureSetting::new(camera, scene.bounds))
+}
+
+fn has_table(scene: &SceneModel, setting: PictureSetting) -> bool {
+    scene.table != TableTop::None && setting == PictureSetting::Block
+}
+
+fn listed(
+    scene: &SceneModel,
+    displayed: &DisplayedTerrain,
+    viewer: Viewer<'_>,
+    purpose: ListPurpose,
+    progress: &dyn Fn(&'static str),
+) -> ListedScene {
+    let camera = match viewer {
+        Viewer::Camera(camera) | Viewer::Around(camera) => Some(camera),
+        Viewer::Anyone => None,
+    };
+    let to_sun = scene.sunlight.to_sun(camera);
+    let level = camera.map_or(0, |camera| ground::map_level(scene, camera));
+    let map = match purpose {
+        ListPurpose::Picture => scene.map(GroundMapKey { level, to_sun }, || progress("lighting terrain")),
+        ListPurpose::Shapes | ListPurpose::Relief => Arc::new(GroundMap::level()),
+    };
+    let lighting = match camera {
+        Some(camera) => lighting(scene, camera, to_sun),
+        None => Lighting { to_sun, ..Lighting::default() },
+    };
+    let mut list = DrawList { ground: Some(map), lighting, ..DrawList::default() };
+    let setting = camera.map(|camera| PictureSetting::new(camera, scene.bounds));
+    let walls = ground::add(&mut list, scene, displayed);
+    let ground_triangles = list.triangle_count();
+    progress("draping features");
+    drapes::add(&mut list, scene, displayed, viewer);
+    let annotated = camera.filter(|_| purpose != ListPurpose::Relief);
+    let graphic_texts = annotated.map(|camera| overlay::add(&mut list, scene, camera, displayed, progress));
+    progress("setting models");
+    ground::add_plinth(&mut list, scene, walls);
+    if annotated.is_some() && setting.is_some_and(|setting| has_table(scene, setting)) {
+        table::add(&mut list, scene);
+    }
+    solids::add(&mut list, scene);
+    if annotated.is_some() {
+        voids::add(&mut list, scene);
+    }
+    uprights::add(&mut list, scene, displayed);
+    models::add(&mut list, scene, displayed, viewer);
+    if annotated.is_some() {
+        airspace::add(&mut list, scene);
+    }
+    ListedScene { list, ground_triangles, graphic_texts: graphic_texts.unwrap_or_default() }
+}
+
+/// The light, the haze and the backdrop of a picture; `to_sun` is the unit vector toward the sun.
+pub fn lighting(scene: &SceneModel, camera: &Camera, to_sun: Vec3) -> Lighting {
+    let setting = PictureSetting::new(camera, scene.bounds);
+    let (lighting, (min, max)) = (Lighting::default(), scene.bounds);
+    let haze = haze::haze(lighting.haze.color, scene.haze_m, camera, Aabb { min, max }, setting);
+    Lighting { to_sun, haze, backdrop: setting.backdrop(), ..lighting }
+}
+
+/// The ground as `camera` shows it, off by at most the scene's own tolerance.
+pub fn display(scene: &SceneModel, camera: &Camera) -> DisplayedTerrain {
+    scene.ground().displayed_to(camera, scene.tolerance_px)
+}
+
+fn add_mesh(
+    list: &mut DrawList,
+    mesh: DrawMesh,
+    material: MaterialId,
+    layer: DepthLayer,
+    feature: FeatureId,
+) {
+    let triangles = 0..mesh.triangles.len() as u32;
+    let mesh = list.add_mesh(mesh);
+    list.items.push(DrawItem { mesh, triangles, material, world_from_mesh: Mat4::IDENTITY, layer, feature });
+}

@@ -1,0 +1,26 @@
+//! Questions about the ground, and their answers: heights, profiles, lines of sight and viewsheds of a dataset.
+//!
+//! ```text
+//! files ─► dem ─► ground ─► dataset ──► profile, sight, viewshed     answers about the ground
+//!                  ▲
+//! scene file ──────┘
+//! ```
+//!
+//! No step reads arguments or the clock, and none prints: a step returns values, notes for the user and typed errors.
+
+pub mod bounded_mesh;
+pub mod convert;
+pub mod dataset;
+pub mod dem;
+pub mod gridding;
+pub mod ground;
+pub mod heights_above;
+pub mod outside_note;
+pub mod parted_elevation;
+pub mod positions;
+pub mod post_raster;
+pub mod profile;
+pub mod service;
+pub mod sight;
+pub mod viewshed;
+pub mod windowed_elevation;

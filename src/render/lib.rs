@@ -1,0 +1,52 @@
+//! Renders draw lists to pictures, by the processor or by a graphics adapter.
+//!
+//! `cpu/` is deterministic and needs nothing but the processor. `gpu/` needs an adapter and the Cargo feature `gpu`.
+//! Both draw the same list by the same formulas, read far ground and far textures from the same coarser levels, and
+//! shadows from the same maps.
+
+pub mod cpu;
+pub mod mip_levels;
+pub mod picture;
+pub mod shadow;
+
+use std::error::Error;
+
+use sandtable_draw::list::DrawList;
+use crate::cpu::{CpuRenderError, RenderQuality};
+use crate::picture::Rendering;
+use sandtable_view::camera::Camera;
+
+/// Draws a list elsewhere than on the processor: the same picture, within what rounding leaves.
+pub type OtherRenderer = fn(&DrawList, &Camera) -> Result<Rendering, Box<dyn Error + Send + Sync>>;
+
+/// The renderer to draw with.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum RenderBackend {
+    /// The processor: the same bytes on every machine.
+    #[default]
+    Cpu,
+    /// A graphics adapter, by a renderer of the crate `sandtable-gpu`.
+    Gpu(OtherRenderer),
+}
+
+/// Why a draw list cannot be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The CPU renderer failed.
+    #[error(transparent)]
+    Cpu(#[from] CpuRenderError),
+    /// The GPU renderer failed.
+    #[error(transparent)]
+    Gpu(Box<dyn Error + Send + Sync>),
+}
+
+/// The picture of `list` as `camera` sees it, by the chosen renderer at its default quality.
+///
+/// # Errors
+/// See [`RenderError`].
+pub fn render(list: &DrawList, camera: &Camera, backend: RenderBackend) -> Result<Rendering, RenderError> {
+    match backend {
+        RenderBackend::Cpu => Ok(cpu::render(list, camera, &RenderQuality::default())?),
+        RenderBackend::Gpu(render) => render(list, camera).map_err(RenderError::Gpu),
+    }
+}

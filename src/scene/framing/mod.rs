@@ -1,0 +1,7 @@
+//! How a camera is fitted to the ground that it shows, before and after its heights are known.
+
+pub mod fit;
+pub mod fitted_view;
+pub mod parallel_view;
+pub mod shaped_page;
+pub mod shown_step;

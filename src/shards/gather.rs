@@ -1,0 +1,83 @@
+//! Gathering: which shards are missing or stale, and the product of all.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
+use sandtable_files::disk;
+use crate::error::{PlanError, PlanFault, ShardError};
+use crate::plan::{PlannedProduct, ShardPlan};
+use crate::record::{self, ShardState};
+use crate::{atlas, heights, tiles, viewsheds};
+
+/// How far the shards of a plan are, by their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanProgress(Vec<ShardState>);
+
+impl PlanProgress {
+    /// Reads the records and results of all shards of a plan; one whose results are not those of its record is stale.
+    pub fn read(plan: &ShardPlan) -> Self {
+        let state = |id: usize| record::verified_state(plan, id);
+        Self((0..plan.count()).into_par_iter().map(state).collect())
+    }
+
+    /// The numbers of the shards in a state.
+    pub fn with(&self, state: ShardState) -> Vec<usize> {
+        (0..self.0.len()).filter(|&id| self.0[id] == state).collect()
+    }
+
+    /// Whether all shards are done.
+    pub fn is_complete(&self) -> bool {
+        self.0.iter().all(|&state| state == ShardState::Done)
+    }
+}
+
+/// Writes the product of a plan, to `out` or into the plan's folder, and returns its files: where all shards are done, or an
+/// index of those that are.
+///
+/// # Errors
+/// An input has changed, a file cannot be read or written, or `out` has no extension of the product.
+pub fn gather(
+    plan: &ShardPlan,
+    progress: &PlanProgress,
+    out: Option<&Path>,
+) -> Result<Vec<PathBuf>, ShardError> {
+    let own = |name: &str| out.map_or_else(|| plan.folder.join(name), Path::to_owned);
+    match &plan.product {
+        PlannedProduct::Atlas(arguments) => {
+            let page = checked(plan, own("index.html"))?;
+            let items = checked(plan, page.with_file_name("items.json"))?;
+            plan.verify_inputs()?;
+            atlas::gather::gather(plan, arguments, &progress.0, (&page, &items))?;
+            Ok(vec![page, items])
+        }
+        _ if !progress.is_complete() => Ok(Vec::new()),
+        PlannedProduct::Heights(arguments) => {
+            let out = checked(plan, own("heights.csv"))?;
+            plan.verify_inputs()?;
+            heights::gather::gather(plan, arguments, &out)?;
+            Ok(vec![out])
+        }
+        PlannedProduct::Tiles(arguments) => Ok(vec![tiles::gather::gather(plan, arguments, out)?]),
+        PlannedProduct::Viewsheds(arguments) => {
+            let out = checked(plan, own("viewsheds.tif"))?;
+            let extension = out.extension().unwrap_or_default().to_string_lossy().into_owned();
+            let format = DemFormat::to_write(&extension).ok_or_else(|| {
+                let message =
+                    format!("rasters are written as {WRITTEN_EXTENSIONS}; name a file that ends so");
+                PlanError::new(&out, PlanFault::Output(message))
+            })?;
+            plan.verify_inputs()?;
+            viewsheds::gather::gather(plan, arguments, &out, format)?;
+            Ok(vec![out])
+        }
+    }
+}
+
+/// A path to which a product can be written: none of an input.
+fn checked(plan: &ShardPlan, out: PathBuf) -> Result<PathBuf, ShardError> {
+    let inputs: Vec<PathBuf> = plan.inputs.iter().map(|input| plan.folder.join(&input.path)).collect();
+    disk::check_output(&out, &inputs)?;
+    Ok(out)
+}

@@ -1,0 +1,91 @@
+//! Tactical graphics and layers of sight in the legend.
+
+use std::collections::BTreeSet;
+
+use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
+use sandtable_description::words::{GraphicSide, RangeExtent, ViewshedTint};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
+use sandtable_render::picture::Rendering;
+use sandtable_scene::SceneModel;
+use sandtable_picture::graphic_colors::{HIDDEN, HIDDEN_LINE, SEEN, SEEN_LINE, graphic_color, side_color};
+use sandtable_symbology::graphic::kind::GraphicTint;
+
+/// The width of a graphic's line in design pixels.
+const LINE: f32 = 2.6;
+
+/// The ground that a tint is shown over, and the share of light of the line round its swatch.
+const GROUND: Srgba = Srgba::opaque(200, 205, 190);
+const EDGE: f32 = 0.45;
+
+/// The sides, obstacles and tints that `picture` shows of `scene`, in order.
+pub fn overlay_entries(scene: &SceneModel, picture: &Rendering) -> Vec<LegendEntry> {
+    if scene.graphics.is_empty() && scene.sight.is_empty() {
+        return Vec::new();
+    }
+    let shown: BTreeSet<FeatureId> = picture.features.iter().copied().collect();
+    let mut entries = Vec::new();
+    let mut seen = BTreeSet::new();
+    for graphic in scene.graphics.iter().filter(|graphic| shown.contains(&graphic.feature)) {
+        let class = match graphic.kind.tint {
+            GraphicTint::Obstacle => None,
+            GraphicTint::Own => Some(graphic.side),
+        };
+        seen.insert(class);
+    }
+    for class in seen.into_iter().rev() {
+        let color = graphic_color(
+            class.unwrap_or_default(),
+            if class.is_some() { GraphicTint::Own } else { GraphicTint::Obstacle },
+        );
+        entries.push(line(class.map_or("Obstacle", side_name), color));
+    }
+    for layer in &scene.sight.viewsheds {
+        let named = |text: &str| match layer.name.as_str() {
+            "" => text.to_owned(),
+            name => format!("{text}: {name}"),
+        };
+        if layer.tint != ViewshedTint::Hidden {
+            entries.push(area(named("In sight"), SEEN));
+        }
+        if layer.tint != ViewshedTint::Seen {
+            entries.push(area(named("Hidden"), HIDDEN));
+        }
+    }
+    if !scene.sight.sights.is_empty() {
+        entries.push(line("Line of sight over seen ground", SEEN_LINE));
+        entries.push(line("Line of sight over hidden ground", HIDDEN_LINE));
+    }
+    for range in &scene.sight.ranges {
+        let name = if range.name.is_empty() { "Range" } else { &range.name };
+        let extent = if range.fill == RangeExtent::Seen { " (in sight)" } else { "" };
+        entries.push(line(&format!("{name}{extent}"), side_color(range.side)));
+    }
+    entries
+}
+
+fn side_name(side: GraphicSide) -> &'static str {
+    match side {
+        GraphicSide::Friend => "Friendly",
+        GraphicSide::Hostile => "Enemy",
+        GraphicSide::Neutral => "Neutral",
+        GraphicSide::Unknown => "Unknown",
+    }
+}
+
+fn line(name: &str, color: Srgba) -> LegendEntry {
+    LegendEntry {
+        name: name.to_owned(),
+        swatch: LegendSwatch::Line { fill: color, casing: None, width: LINE },
+    }
+}
+
+/// A tint over the ground.
+fn area(name: String, tint: Srgba) -> LegendEntry {
+    let share = f32::from(tint.0[3]) / 255.0;
+    let fill = GROUND.linear().lerp(tint.linear(), share);
+    LegendEntry {
+        name,
+        swatch: LegendSwatch::Area { fill: Srgba::from_linear(fill), edge: Srgba::from_linear(fill * EDGE) },
+    }
+}

@@ -1,0 +1,26 @@
+//! Annotated pictures of scenes: a view is drawn, its names, legend, grid and margin are laid out, and the sheet is written.
+//!
+//! ```text
+//! scene, view ─► picture ─► labels, legend, grid, margin, rim ─► sheet_file     PNG, PDF, SVG
+//!                   └─────► picture_buffers, picture_statistics, sidecar       what the pixels show
+//! ```
+
+mod contour_marks;
+pub mod graphic_texts;
+pub mod grid;
+pub mod labels;
+pub mod legend;
+mod legend_overlay;
+mod legend_symbols;
+mod line_labels;
+pub mod look;
+pub mod margin;
+pub mod military;
+pub mod picture;
+pub mod picture_buffers;
+pub mod picture_statistics;
+pub mod print_ink;
+pub mod rim;
+pub mod sheet_file;
+pub mod sidecar;
+pub mod viewshed_map;

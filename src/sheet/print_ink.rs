@@ -1,0 +1,18 @@
+//! How classes are printed in black.
+
+use sandtable_draw::print_pattern::PrintPattern;
+
+/// How a class is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PrintInk {
+    /// The relief with a pattern over it.
+    Pattern(PrintPattern),
+    /// A pattern on white in a black outline.
+    Outlined(PrintPattern),
+    /// White in a black outline.
+    Cased,
+    /// Black.
+    Black,
+    /// Dark gray in a black outline.
+    Solid,
+}

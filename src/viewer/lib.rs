@@ -1,0 +1,74 @@
+//! The window that walks through a scene.
+//!
+//! ```text
+//! window ─► keys, pointer ─► app ─► panels ─► commands        egui; no adapter needed: tests run it without a window
+//!   │                         │
+//!   │                         ├─ loading ─► scene              on a thread, with progress; and on others:
+//!   │                         ├─ opened scene: walk, camera       relisting: what stands, its light; shadowing; drawing:
+//!   │                         │                                   pictures; reaching: nested spheres; paging: terrain on
+//!   │                         │                                   disk; disk_answers: its heights; all of them: worker
+//!   └─────► graphics ◄── changes of the ground, camera         wgpu: the surface, the scene, the panels over it
+//! ```
+//!
+//! `app` is all of the window but its surface: `show` draws panels and takes input, `advance` moves the camera and asks the
+//! walk what changed. `window` lends it a surface and the clock.
+
+mod app;
+#[cfg(all(test, feature = "viewer-tests"))]
+mod app_tests;
+mod commands;
+mod disk_answers;
+mod drawing_job;
+pub mod error;
+mod finer_ground;
+mod following;
+mod frame_times;
+mod ghost;
+mod graphics;
+mod labels;
+mod layout;
+mod letter_run;
+mod lettering;
+mod line_names;
+mod line_piece;
+mod loading;
+mod measuring;
+mod moving;
+mod name_lines;
+mod notices;
+mod opened;
+mod paging;
+#[cfg(all(test, feature = "viewer-tests"))]
+mod paging_tests;
+mod panels;
+mod place;
+mod reaching;
+mod recent;
+mod relisting;
+mod saving;
+mod scene_graphics;
+mod scene_load;
+mod script;
+mod script_run;
+mod session;
+mod shadowing;
+mod snapshots;
+mod symbol_layer;
+mod tool_use;
+mod view_area;
+mod viewsheds;
+mod watch;
+mod window;
+mod worker;
+
+use sandtable_editing::viewing::ViewerOptions;
+use crate::error::ViewerError;
+
+/// Opens a window on what `options` name; returns when it is closed.
+///
+/// # Errors
+/// [`ViewerError`]: no window or no graphics adapter can be had here. A file that cannot be opened is not an error: the
+/// window says so.
+pub fn run(options: &ViewerOptions) -> Result<(), ViewerError> {
+    window::run(options)
+}

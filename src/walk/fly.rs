@@ -1,0 +1,174 @@
+//! A flight through a scene, frame by frame: numbered pictures in a folder, or one animated PNG.
+//!
+//! Frames in a folder are drawn once: a run that was ended goes on with the first that is not there. A note beside them
+//! says of what they are, so that frames of different scenes, sizes or versions are never mixed.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use sandtable_draw::pixels::Pixels;
+use sandtable_files::disk::{self, ReadFileError, WriteFileError};
+use sandtable_files::fingerprint::fingerprint;
+use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
+use sandtable_render::RenderBackend;
+use sandtable_scene::SceneModel;
+use sandtable_scene::flights::SceneFlight;
+
+/// The note beside the frames.
+const NOTE: &str = "frames.json";
+
+/// What is drawn of a flight.
+#[derive(Clone, Copy, Debug)]
+pub struct FlyOptions {
+    /// The size of a frame.
+    pub size: PictureSize,
+    /// How many frames there are; at least 1.
+    pub frames: u32,
+    /// Frames in a second.
+    pub fps: u16,
+    /// The renderer.
+    pub backend: RenderBackend,
+}
+
+/// Why a flight is not drawn.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages explain the variants")]
+pub enum FlyError {
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    #[error(transparent)]
+    Read(#[from] ReadFileError),
+    #[error(transparent)]
+    Write(#[from] WriteFileError),
+    #[error("{}: these are frames of something else: the scene, the size, the frames or the program changed; name another folder, or remove this one", .0.display())]
+    OtherFrames(PathBuf),
+}
+
+/// How many frames were drawn, and how many were there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameCount {
+    /// Drawn now.
+    pub drawn: u32,
+    /// Drawn by an earlier run.
+    pub kept: u32,
+}
+
+/// Draws the frames of `flight` that are not in `folder` yet, as `frame-00001.png` and so on. `scene_file` is the file of
+/// the scene. `done` is called after each frame with its number.
+///
+/// # Errors
+/// See [`FlyError`].
+pub fn fly_to_folder(
+    (scene, scene_file): (&SceneModel, &Path),
+    flight: &SceneFlight,
+    options: &FlyOptions,
+    folder: &Path,
+    done: &dyn Fn(u32),
+) -> Result<FrameCount, FlyError> {
+    disk::make_folder(folder)?;
+    let note = format!("{:#}\n", note(scene, scene_file, flight, options)?);
+    let note_path = folder.join(NOTE);
+    if note_path.is_file() {
+        if disk::read(&note_path)? != note.as_bytes() {
+            return Err(FlyError::OtherFrames(note_path));
+        }
+    } else {
+        disk::write(&note_path, note.as_bytes())?;
+    }
+    let mut count = FrameCount::default();
+    for number in 1..=options.frames {
+        let path = folder.join(format!("frame-{number:05}.png"));
+        // A frame is written whole or not at all.
+        if path.is_file() {
+            count.kept += 1;
+        } else {
+            disk::check_output(&path, &scene.files)?;
+            disk::write_picture(&path, &frame(scene, flight, options, number)?)?;
+            count.drawn += 1;
+        }
+        done(number);
+    }
+    Ok(count)
+}
+
+/// Draws all frames of `flight` into one animated PNG, which plays without end. `done` is called after each frame with its
+/// number.
+///
+/// # Errors
+/// See [`FlyError`].
+pub fn fly_to_file(
+    scene: &SceneModel,
+    flight: &SceneFlight,
+    options: &FlyOptions,
+    path: &Path,
+    done: &dyn Fn(u32),
+) -> Result<(), FlyError> {
+    disk::check_output(path, &scene.files)?;
+    let mut failure = None;
+    let written = disk::write_with(path, |out| {
+        let mut draw = |number| {
+            let drawn = frame(scene, flight, options, number);
+            done(number);
+            drawn.map_err(|error| {
+                failure = Some(error);
+                io::Error::other("a frame cannot be drawn")
+            })
+        };
+        animate(out, options, &mut draw)
+    });
+    match failure {
+        Some(error) => Err(error.into()),
+        None => Ok(written?),
+    }
+}
+
+/// Writes an animated PNG (PNG 3rd edition, section 11.3.4) of the frames that `draw` draws.
+fn animate(
+    out: &mut impl Write,
+    options: &FlyOptions,
+    draw: &mut dyn FnMut(u32) -> io::Result<Pixels>,
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, options.size.width, options.size.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_animated(options.frames, 0)?;
+    encoder.set_frame_delay(1, options.fps)?;
+    let mut writer = encoder.write_header()?;
+    for number in 1..=options.frames {
+        let pixels = draw(number)?;
+        let rgb: Vec<u8> =
+            pixels.data().iter().flat_map(|color| [color.0[0], color.0[1], color.0[2]]).collect();
+        writer.write_image_data(&rgb)?;
+    }
+    Ok(writer.finish()?)
+}
+
+/// Frame `number` from 1.
+fn frame(
+    scene: &SceneModel,
+    flight: &SceneFlight,
+    options: &FlyOptions,
+    number: u32,
+) -> Result<Pixels, PictureError> {
+    let share = f64::from(number - 1) / f64::from((options.frames - 1).max(1));
+    Ok(render_view(scene, &flight.view(share), options.size, options.backend, &|_| ())?.pixels)
+}
+
+/// What the frames depend on.
+fn note(
+    scene: &SceneModel,
+    scene_file: &Path,
+    flight: &SceneFlight,
+    options: &FlyOptions,
+) -> Result<Value, ReadFileError> {
+    Ok(json!({
+        "program": concat!("sandtable ", env!("CARGO_PKG_VERSION")),
+        "scene": fingerprint(scene_file, &scene.files)?,
+        "flight": flight.name,
+        "frames": options.frames,
+        "frames_per_second": options.fps,
+        "size": [options.size.width, options.size.height],
+        "backend": format!("{:?}", options.backend).to_lowercase(),
+    }))
+}

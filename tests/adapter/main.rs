@@ -1,0 +1,11 @@
+//! Pictures by a graphics adapter, and its shaders.
+
+#[path = "../common/adapters.rs"]
+mod adapters;
+#[path = "../common/mod.rs"]
+mod common;
+
+mod render_gpu;
+mod render_live;
+mod render_parity;
+mod shaders;
