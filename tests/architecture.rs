@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("SANDTABLE_ROOT");
 
 /// The cells of every row of the table whose heading row is `heading`.
 fn table(page: &str, heading: &str) -> Vec<Vec<String>> {

@@ -27,12 +27,12 @@ use glam::DVec2;
 use sandtable_annotate::paint::annotate;
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::{DepthLayer, FeatureId};
-use sandtable_sheet::labels::{AnnotatedGround, annotations};
+use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_render::cpu;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_scene::{FeatureKind, SceneModel};
+use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 use common::scratch::Scratch;

@@ -54,11 +54,7 @@ pub(crate) struct SetMargin {
 }
 
 /// Lays out the margin of a page; coordinates are those of the page.
-pub(crate) fn compose(
-    notes: &MarginNotes,
-    annotations: &Annotations,
-    composer: &mut Composer,
-) -> SetMargin {
+pub(crate) fn compose(notes: &MarginNotes, annotations: &Annotations, composer: &mut Composer) -> SetMargin {
     composer.sheet.has_panels = false;
     let frame = &notes.frame;
     let mut margin = SetMargin { drawing: Drawing::default(), inset: None, left_out: Vec::new() };

@@ -27,11 +27,7 @@ pub struct RimMark {
 
 /// Draws the marks that fit: inside the margin, off the furniture in `taken`, and off each other, the first before the
 /// later. Returns one drawing per mark that is drawn.
-pub(crate) fn draw_marks(
-    marks: &[RimMark],
-    taken: &[PixelBox],
-    composer: &mut Composer,
-) -> Vec<Drawing> {
+pub(crate) fn draw_marks(marks: &[RimMark], taken: &[PixelBox], composer: &mut Composer) -> Vec<Drawing> {
     let mut drawn: Vec<Drawing> = Vec::new();
     let sheet = composer.sheet;
     let within = sheet.bounds().grown(-sheet.px(3.0));

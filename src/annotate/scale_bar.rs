@@ -109,11 +109,7 @@ fn measure(bar: &ScaleBar, longest_px: f32) -> Option<NiceBar> {
 
 /// The scale bar on its panel with the upper left corner at the origin, and `grid` under its note; `None` where the scale
 /// is unusable.
-pub(crate) fn compose(
-    bar: &ScaleBar,
-    grid: Option<&str>,
-    composer: &mut Composer,
-) -> Option<Drawing> {
+pub(crate) fn compose(bar: &ScaleBar, grid: Option<&str>, composer: &mut Composer) -> Option<Drawing> {
     let measure = measure(bar, composer.sheet.px(LONGEST))?;
     let style = composer.style(14.0, TextStyle::REGULAR);
     let mut notes = vec![composer.line(&bar.holds.note(), style)];

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::read::DemOptions;
-use sandtable_geom::crs::Crs;
 use crate::api::dem::Dem;
 use crate::api::error::Error;
 use crate::api::terrain::Terrain;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::read::DemOptions;
+use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{Dataset, DatasetOptions, QueryError, transform};
 use sandtable_query::positions::InputLine;
 use sandtable_query::profile::GroundProfile;

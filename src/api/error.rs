@@ -4,22 +4,22 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
+use crate::api::dem::SamplesError;
+use sandtable_base::message::chain::error_text;
 use sandtable_dem::answer::Status;
 use sandtable_dem::formats::WRITTEN_EXTENSIONS;
 use sandtable_description::finding::Finding;
-use sandtable_base::message::chain::error_text;
-use crate::api::dem::SamplesError;
+use sandtable_files::disk::WriteFileError;
+use sandtable_files::error::diagnostics_text;
+use sandtable_files::raster_file::WriteRasterError;
 use sandtable_query::bounded_mesh::MeshError;
 use sandtable_query::dataset::{OpenError, QueryError};
 use sandtable_query::dem::OpenDemError;
-use sandtable_files::error::diagnostics_text;
-use sandtable_files::disk::WriteFileError;
 use sandtable_query::ground::GroundError;
-use sandtable_sheet::picture::PictureError;
 use sandtable_query::profile::ProfileError;
-use sandtable_files::raster_file::WriteRasterError;
 use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_shards::error::ShardError;
+use sandtable_sheet::picture::PictureError;
 use sandtable_view::camera::CameraError;
 
 /// Why an operation failed. The operation's own error is the source, or the error itself where nothing is to add.

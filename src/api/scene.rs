@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::api::error::Error;
 use sandtable_description::finding::Finding;
 use sandtable_draw::pixels::Pixels;
-use crate::api::error::Error;
 use sandtable_files::disk;
-use sandtable_sheet::picture::{PictureSize, render_view};
 use sandtable_lint::opened::open_linted;
-use sandtable_scene::scene_file::open_scene;
 use sandtable_render::RenderBackend;
 use sandtable_scene as scene;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_sheet::picture::{PictureSize, render_view};
 use sandtable_terrain::query::service::HeightService;
 
 /// A digital terrain model: the ground, the features on it and the views of it that its file describes.

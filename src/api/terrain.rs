@@ -5,11 +5,11 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::api::dem::Dem;
+use crate::api::error::Error;
 use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
 use sandtable_mesh::trimesh::TriMesh;
-use crate::api::dem::Dem;
-use crate::api::error::Error;
 use sandtable_query::bounded_mesh::{BoundedMesh, MeshError};
 use sandtable_query::ground;
 use sandtable_query::post_raster::hillshade_raster;

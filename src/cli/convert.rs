@@ -11,18 +11,20 @@ use crate::output::{print_lines, row};
 use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::number;
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::message::chain::error_text;
 use sandtable_dem::formats::DemFormat;
 use sandtable_dem::read::DemOptions;
 use sandtable_dem::warp::WarpError;
 use sandtable_dem::warp::reproject::Resampling;
 use sandtable_dem::windows::MOST_KEPT_SAMPLES;
 use sandtable_dem::write::{WrittenDem, WrittenWindows};
-use sandtable_geom::crs::Crs;
-use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_base::message::chain::error_text;
-use sandtable_query::convert::{ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows};
-use sandtable_query::dem::{self, OpenedDem};
 use sandtable_files::raster_file;
+use sandtable_geom::crs::Crs;
+use sandtable_query::convert::{
+    ConvertError, ConvertOptions, Converted, VoidHandling, convert, convert_windows,
+};
+use sandtable_query::dem::{self, OpenedDem};
 
 #[derive(Debug, Args)]
 #[command(

@@ -4,8 +4,8 @@ use clap::Args;
 
 use crate::error::CliError;
 use crate::output::{aligned, print_lines};
-use sandtable_description::finding_code::FindingCode;
 use sandtable_base::message::suggest::{nearest, quoted};
+use sandtable_description::finding_code::FindingCode;
 
 /// The characters of a line of text.
 const WIDTH: usize = 100;

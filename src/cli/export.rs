@@ -11,10 +11,10 @@ use crate::output::{print_lines, row};
 use crate::output_format::output_format;
 use crate::progress::StepTimer;
 use crate::values::number;
-use sandtable_export::scene_export::{ExportFormat, export};
-use sandtable_files::disk;
-use sandtable_export::scene_page::export_page;
 use sandtable_export::print_model::{self, PrintFormat, PrintModel, PrintSize, print_model};
+use sandtable_export::scene_export::{ExportFormat, export};
+use sandtable_export::scene_page::export_page;
+use sandtable_files::disk;
 use sandtable_scene::scene_file::{open_scene, open_scene_true_to_scale};
 
 /// The largest error of exported ground in meters, where none is stated.

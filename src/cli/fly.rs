@@ -5,17 +5,17 @@ use std::path::PathBuf;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::options::SceneArguments;
 use crate::output::{print_lines, row};
 use crate::progress::StepTimer;
 use crate::values::{choice, number, picture_size};
 use sandtable_base::limits::FLIGHT_FRAMES;
-use sandtable_walk::fly::{FlyOptions, fly_to_file, fly_to_folder};
+use sandtable_render::OtherRenderer;
 use sandtable_sheet::picture::PictureSize;
 use sandtable_walk::flown_scene::open_scene_with_flight;
-use crate::backend::BackendName;
-use sandtable_render::OtherRenderer;
+use sandtable_walk::fly::{FlyOptions, fly_to_file, fly_to_folder};
 
 #[derive(Debug, Args)]
 #[command(

@@ -14,11 +14,11 @@ use sandtable_dem::cell_grid::CellGrid;
 use sandtable_dem::gridding::{self, BeyondHull, GridError, Gridded, GriddingMethod};
 use sandtable_dem::points::PointCloud;
 use sandtable_dem::write::WrittenDem;
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use sandtable_files::error::FileError;
 use sandtable_query::gridding::PointSources;
-use sandtable_files::raster_file;
 
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]

@@ -52,8 +52,8 @@ use clap::Parser;
 
 use crate::arguments::{Arguments, Command, DemCommand, ModelCommand};
 use crate::error::CliError;
-use sandtable_query::service::ServiceOptions;
 use sandtable_editing::viewing::ViewerOptions;
+use sandtable_query::service::ServiceOptions;
 pub use sandtable_render::OtherRenderer;
 
 /// A height service: serves until a signal ends it.

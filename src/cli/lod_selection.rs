@@ -3,7 +3,9 @@
 use std::fmt::{self, Display};
 
 use sandtable_base::message::choice::Choice;
-use sandtable_walk::lod::method::{CriterionKind, Emit, IndexEmitter, LodMethod, Refine, Refiner, SphereRule};
+use sandtable_walk::lod::method::{
+    CriterionKind, Emit, IndexEmitter, LodMethod, Refine, Refiner, SphereRule,
+};
 
 /// The methods that are compared by default: each criterion and each refiner once, those of spheres side by side.
 const SELECTION: &[LodMethod] = &[

@@ -4,12 +4,12 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use sandtable_annotate::chart_sight::paint;
-use sandtable_annotate::nice;
 use crate::error::CliError;
 use crate::options::{ChartArguments, DatasetArguments};
 use crate::output::{print, print_lines, row};
 use crate::values::{RaisedPosition, number, raised_position};
+use sandtable_annotate::chart_sight::paint;
+use sandtable_annotate::nice;
 use sandtable_files::disk;
 use sandtable_query::positions::format_position;
 use sandtable_query::sight::{GroundedEnd, SightQuery, SightReport};

@@ -9,10 +9,10 @@ use crate::error::CliError;
 use crate::output::print_lines;
 use crate::progress::StepTimer;
 use sandtable_new::{self as new_scene, NewSceneOptions, WrittenScene};
-use sandtable_scene::scene_file::open_scene_for;
 use sandtable_remote::access::RemoteAccess;
 use sandtable_remote::address::{AllowedHost, is_address_path};
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
+use sandtable_scene::scene_file::open_scene_for;
 
 #[derive(Debug, Args)]
 #[command(after_help = "\

@@ -11,13 +11,13 @@ use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_dem::formats::raw::RawLayout;
 use sandtable_dem::height_datum::HeightDatum;
 use sandtable_dem::read::DemOptions;
+use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::datum_shift::DatumShift;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
-use sandtable_files::disk;
 use sandtable_query::ground::QueriedGround;
-use sandtable_sheet::picture::PictureSize;
 use sandtable_query::windowed_elevation::GroundReach;
+use sandtable_sheet::picture::PictureSize;
 
 /// The scene file of a command, and the files it may read.
 #[derive(Debug, Args)]

@@ -7,14 +7,14 @@ use clap::Args;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use sandtable_annotate::chart_profile::paint;
 use crate::error::CliError;
 use crate::options::{ChartArguments, DatasetArguments};
 use crate::output::{print, stream};
 use crate::values::{PositionList, choice, positions};
+use sandtable_annotate::chart_profile::paint;
+use sandtable_files::disk;
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{Dataset, QueryError, transform};
-use sandtable_files::disk;
 use sandtable_query::positions::{InputLine, read_line};
 use sandtable_query::profile::{GroundProfile, ProfileError};
 use sandtable_query::windowed_elevation::GroundReach;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use sandtable_annotate::report::{AnnotationReport, LabelMove, SymbolReport};
+use crate::backend::BackendName;
 use crate::check::{contents, counted};
 use crate::error::CliError;
 use crate::options::AccessArguments;
@@ -14,14 +14,14 @@ use crate::progress::StepTimer;
 use crate::render_series::{RenderFailure, RenderedFile, RenderedPicture, RenderedScene, render};
 use crate::threads;
 use crate::values::{choice, picture_size};
-use sandtable_description::finding::{Finding, Severity};
+use sandtable_annotate::report::{AnnotationReport, LabelMove, SymbolReport};
 use sandtable_base::message::suggest::{nearest, quoted};
+use sandtable_description::finding::{Finding, Severity};
 use sandtable_files::disk::{self, WriteFileCause, WriteFileError};
-use sandtable_sheet::picture::PictureSize;
-use sandtable_sheet::picture_statistics::Lightness;
-use crate::backend::BackendName;
 use sandtable_render::OtherRenderer;
 use sandtable_scene::{SceneModel, SceneView};
+use sandtable_sheet::picture::PictureSize;
+use sandtable_sheet::picture_statistics::Lightness;
 
 /// The longest text of a label in the summary, in characters.
 const LONGEST_LABEL: usize = 60;
@@ -79,11 +79,7 @@ impl RenderArguments {
 }
 
 /// Renders with `threads` threads.
-pub fn run(
-    arguments: &RenderArguments,
-    threads: usize,
-    gpu: Option<OtherRenderer>,
-) -> Result<(), CliError> {
+pub fn run(arguments: &RenderArguments, threads: usize, gpu: Option<OtherRenderer>) -> Result<(), CliError> {
     let pool = threads::pool(threads)?;
     let backend = arguments.backend.renderer(gpu);
     let outputs = outputs(arguments)?;

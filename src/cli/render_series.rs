@@ -3,28 +3,28 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use sandtable_annotate::contact_sheet::{ContactPicture, ContactSheet};
-use sandtable_annotate::report::AnnotationReport;
+use crate::backend::BackendName;
 use crate::error::CliError;
 use crate::progress::StepTimer;
 use crate::render::{RenderArguments, find_camera, named_by_option};
+use sandtable_annotate::contact_sheet::{ContactPicture, ContactSheet};
+use sandtable_annotate::report::AnnotationReport;
+use sandtable_base::message::suggest::quoted;
 use sandtable_draw::list::DrawList;
 use sandtable_draw::pixels::Pixels;
-use sandtable_files::png::encode_png;
-use sandtable_base::message::suggest::quoted;
 use sandtable_files::disk;
 use sandtable_files::fingerprint::fingerprint;
 use sandtable_files::output_files::OutputFiles;
+use sandtable_files::png::encode_png;
+use sandtable_render::RenderBackend;
+use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
+use sandtable_scene::scene_file::{open_scene_for, phases};
+use sandtable_scene::{SceneModel, SceneView};
 use sandtable_sheet::picture::{ComposedView, DrawnView, PictureSize, compose_view, draw_view};
 use sandtable_sheet::picture_buffers::PictureBuffers;
 use sandtable_sheet::picture_statistics::PictureStatistics;
-use sandtable_scene::scene_file::{open_scene_for, phases};
 use sandtable_sheet::sheet_file::{picture_description, write_sheet};
 use sandtable_sheet::sidecar::SidecarDraft;
-use crate::backend::BackendName;
-use sandtable_render::RenderBackend;
-use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
-use sandtable_scene::{SceneModel, SceneView};
 
 /// A scene in one phase, and the pictures of it.
 pub struct RenderedScene {
@@ -85,8 +85,14 @@ pub fn render(
 ) -> Result<RenderedFile, CliError> {
     let check = if arguments.sheet { disk::check_picture_output } else { disk::check_sheet_output };
     check(path, &[file]).map_err(|error| named_by_option(error, "this is the scene file itself"))?;
-    let mut series =
-        RenderSeries { arguments, backend, file, steps, outputs: OutputFiles::default(), failures: Vec::new() };
+    let mut series = RenderSeries {
+        arguments,
+        backend,
+        file,
+        steps,
+        outputs: OutputFiles::default(),
+        failures: Vec::new(),
+    };
     let scenes = series.scenes(path)?;
     if arguments.sheet {
         steps.begin("writing the sheet");

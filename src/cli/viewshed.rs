@@ -16,13 +16,13 @@ use crate::output_format::raster_format;
 use crate::progress::StepTimer;
 use crate::values::{number, number_pair};
 use sandtable_dem::formats::DemFormat;
+use sandtable_files::{disk, raster_file};
 use sandtable_geom::crs::Crs;
 use sandtable_query::dataset::{QueryError, transform};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::viewshed::{ViewshedSummary, raster, windows};
-use sandtable_sheet::viewshed_map::{SheetText, viewshed_map};
 use sandtable_query::windowed_elevation::GroundReach;
-use sandtable_files::{disk, raster_file};
+use sandtable_sheet::viewshed_map::{SheetText, viewshed_map};
 use sandtable_terrain::sight::line::SightEnd;
 use sandtable_terrain::sight::viewshed::{Sector, Viewshed, ViewshedCounts, ViewshedOptions, viewshed};
 

@@ -3,8 +3,8 @@
 use glam::{DAffine2, DVec2};
 
 use crate::raster::north_up;
-use sandtable_geom::rect::Rect;
 use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_geom::rect::Rect;
 
 /// How many cells a side of a stated extent may be off a whole number: decimal fractions are not exact in binary.
 const SLACK_CELLS: f64 = 1e-6;

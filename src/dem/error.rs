@@ -2,12 +2,12 @@
 
 use glam::{U64Vec2, UVec2};
 
-use sandtable_base::archive::ArchiveError;
 use crate::formats;
-use sandtable_geom::crs::CrsError;
+use sandtable_base::archive::ArchiveError;
 use sandtable_base::limits::memory::MemoryRefused;
 use sandtable_base::limits::work_limit::WorkLimit;
 use sandtable_base::limits::{BLOCK_SAMPLES, COMPANION_BYTES, SPARSE_BYTES, UNPACKED_RASTER_BYTES};
+use sandtable_geom::crs::CrsError;
 
 /// Why an elevation file was not read.
 #[derive(Debug, thiserror::Error)]

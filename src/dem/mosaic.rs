@@ -12,9 +12,9 @@ use glam::{DVec2, I64Vec2, U64Vec2};
 
 use crate::raster::{Raster, SampleFloat, Samples};
 use crate::units::FOOT_M;
-use sandtable_geom::crs::Crs;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::TILE_SAMPLES;
+use sandtable_geom::crs::Crs;
 
 /// How far, in cells, a tile's samples may lie from the nodes of the first tile's grid.
 pub const ALIGNMENT: f64 = 1e-3;

@@ -2,16 +2,16 @@
 
 use std::cell::OnceCell;
 
-use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use crate::error::{DemError, DemErrorKind};
 use crate::formats::height_encoding::HeightEncoding;
 use crate::formats::raw::RawLayout;
 use crate::formats::{DemFormat, FORMATS, FileContent, Recognition, raw};
 use crate::raster::{Raster, Samples};
 use crate::windows::{RasterWindow, Windows};
-use sandtable_geom::crs::Crs;
+use sandtable_base::archive::{self, ArchiveError, ZipReader};
 use sandtable_base::limits::COMPANION_BYTES;
 use sandtable_base::limits::UNPACKED_RASTER_BYTES;
+use sandtable_geom::crs::Crs;
 
 /// The bytes of a packed file that are unpacked before it is known what it is.
 pub const HEAD_BYTES: u64 = 64 << 10;
@@ -401,7 +401,7 @@ fn split_extension(name: &str) -> (&str, &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_base::archive::tests::zipped;
+    use sandtable_base::archive::zip;
 
     #[test]
     fn tiles_are_named_by_extensions_that_nothing_else_has() {
@@ -431,14 +431,15 @@ mod tests {
     #[test]
     fn the_elevation_file_in_an_archive_is_read_with_its_companions() {
         let grid = b"ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n";
-        let archive = zipped(&[("readme.txt", b"1 2 3"), ("d/a.asc", &grid[..]), ("d/a.prj", b"EPSG:32612")]);
+        let archive = zip(&[("readme.txt", b"1 2 3"), ("d/a.asc", &grid[..]), ("d/a.prj", b"EPSG:32612")])
+            .expect("memory");
         let raster = read("a.zip", &archive, &DemHints::default()).expect("a grid in it");
         assert_eq!(raster.crs.and_then(|crs| crs.epsg()), Some(32612));
-        let nested = zipped(&[("a.hgt.zip", &archive[..])]);
+        let nested = zip(&[("a.hgt.zip", &archive[..])]).expect("memory");
         assert!(
             read("b.zip", &nested, &DemHints::default()).expect_err("nested").to_string().contains("twice")
         );
-        let without = zipped(&[("readme.txt", &b"1 2 3"[..])]);
+        let without = zip(&[("readme.txt", &b"1 2 3"[..])]).expect("memory");
         assert!(
             read("c.zip", &without, &DemHints::default()).expect_err("none").to_string().contains(".hgt")
         );

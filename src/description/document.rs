@@ -41,7 +41,10 @@ use crate::declaration::{KeyDeclaration, Presence};
 use crate::diagnostic::Diagnostic;
 use crate::earthworks::EarthworkTable;
 use crate::feature_value::DefaultedValue;
-use crate::features::{AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable, RoadTable, ScatterTable};
+use crate::features::{
+    AreaTable, BridgeTable, BuildingTable, FeatureSource, FenceTable, LakeTable, ModelPlacement, RiverTable,
+    RoadTable, ScatterTable,
+};
 use crate::finding_code::FindingCode;
 use crate::graphics::{GraphicTable, RangeTable, SightTable, ViewshedTable};
 use crate::key;
@@ -52,7 +55,9 @@ use crate::stated::Stated;
 use crate::symbols::SymbolTable;
 use crate::table::Table;
 use crate::unused::UnusedDefinitions;
-use crate::words::{CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop};
+use crate::words::{
+    CameraProjection, GridName, HeightEncodingWord, LabelKind, PaperName, SheetLayout, StylePreset, TableTop,
+};
 use sandtable_geom::crs::Crs;
 
 /// Compass directions in degrees.

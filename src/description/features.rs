@@ -20,7 +20,10 @@ use crate::reader::TableReader;
 use crate::selection::Selection;
 use crate::stated::Stated;
 use crate::table::Table;
-use crate::words::{Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode, RoadSurface, RoofShape, Water};
+use crate::words::{
+    Anchor, BaseRule, Border, Clamp, Cover, FenceKind, Footing, Join, LevelRule, Markings, ProfileMode,
+    RoadSurface, RoofShape, Water,
+};
 use sandtable_geom::crs::Crs;
 
 /// Widths of roads and rivers, and distances between things.

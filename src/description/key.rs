@@ -16,8 +16,8 @@ use crate::selection::Selection;
 use crate::table::Table;
 use crate::value::KeyValue;
 use crate::words::declarations;
-use sandtable_geom::crs::Crs;
 use sandtable_base::message::choice::Choice;
+use sandtable_geom::crs::Crs;
 
 /// The type of a key: its declaration, and the function that reads a value of type `V`.
 pub(super) struct Key<V, A = ()> {

@@ -15,12 +15,12 @@ use crate::finding_code::FindingCode;
 use crate::include::joined;
 use crate::reader::{DecodeContext, TableName};
 use crate::scalar::Scalar;
-use sandtable_geom::crs::Crs;
 use sandtable_base::limits::INLINE_POINTS;
 use sandtable_base::limits::SCENE_LIST;
 use sandtable_base::limits::SCENE_TEXT;
 use sandtable_base::message::choice::Choice;
 use sandtable_base::message::suggest::{quoted, remedy};
+use sandtable_geom::crs::Crs;
 
 /// The largest coordinate, in any unit: beyond it centimeters are lost to rounding.
 pub(super) const COORDINATES: Bounds = Bounds::Within(-1e9, 1e9);

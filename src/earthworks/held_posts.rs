@@ -65,8 +65,8 @@ impl HeldPosts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_terrain::densify::densify;
     use glam::DVec2;
+    use sandtable_terrain::densify::densify;
 
     fn lattice(pins: &[(u32, u32)]) -> Lattice {
         let mut lattice = Lattice::new(DVec2::ZERO, DVec2::ONE, 7, vec![5.0; 42]).expect("sound");

@@ -6,19 +6,19 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use sandtable_dem::raster::Raster;
-use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
-use sandtable_description::document::Document;
-use sandtable_description::parse::parse_in_phase;
-use sandtable_geom::crs::{Crs, CrsError};
 use crate::edit::{EditPlace, EditValue, NewTable, SceneEdit};
 use crate::effect::{self, EditEffect, EditPreview, EffectOfEdit};
 use crate::scene_text::{self, SceneTextError};
 use crate::text_change::TextChange;
+use sandtable_dem::raster::Raster;
+use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
+use sandtable_description::document::Document;
+use sandtable_description::parse::parse_in_phase;
 use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
-use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_scene::assets::{AssetError, Assets};
 use sandtable_scene::build::build;
+use sandtable_scene::scene_file::OpenSceneError;
 use sandtable_scene::{SceneFeature, SceneModel};
 use sandtable_terrain::lattice::Lattice;
 

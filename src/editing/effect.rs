@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use glam::{DVec2, Vec2};
 
+use crate::edit::{EditPlace, SceneEdit};
+use crate::scene_text::number_at;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{Document, LabelTable};
 use sandtable_description::features::ModelPlacement;
 use sandtable_description::words::Footing;
 use sandtable_earthworks::earthwork::{Earthwork, MovedEarth, foreseen};
 use sandtable_geom::rect::Rect;
-use crate::edit::{EditPlace, SceneEdit};
-use crate::scene_text::number_at;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::attributes::DefaultCounts;
 use sandtable_scene::earthworks::{NamedEarthwork, of_table};

@@ -5,8 +5,8 @@
 //!                     └────► hover ─► the edit as it would be ─► its preview
 //! ```
 
-use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 use crate::edit::{EarthworkDraft, SceneEdit};
+use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 
 /// What a tool draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -10,11 +10,11 @@ use glam::{DVec2, Vec3};
 use crate::editor::SceneSource;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-use sandtable_sheet::picture::{ComposedView, PictureError, PictureSize, compose_view, draw_view};
-use sandtable_scene::scene_file::OpenSceneError;
-use sandtable_sheet::sheet_file::{WriteSheetError, picture_description, write_sheet};
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
+use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_sheet::picture::{ComposedView, PictureError, PictureSize, compose_view, draw_view};
+use sandtable_sheet::sheet_file::{WriteSheetError, picture_description, write_sheet};
 use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_view::camera::{Camera, ViewProjection};
 

@@ -7,10 +7,10 @@ use std::io::{self, Write};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
+use crate::SceneExport;
 use sandtable_draw::color::{Srgba, linear_from_srgb};
 use sandtable_draw::list::{DrawItem, DrawVertex, MaterialId, MeshId};
 use sandtable_draw::material::{AlphaMode, Material, TextureId};
-use crate::SceneExport;
 use sandtable_files::png::encode_png;
 use sandtable_mesh::numbering::Numbering;
 use sandtable_mesh::write::glb::{GlbNode, GlbPrimitive, GlbScene, GlbVertices};

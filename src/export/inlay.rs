@@ -111,8 +111,8 @@ fn add_piece(mesh: &mut DrawMesh, piece: &[DVec2], facet: &SurfaceTriangle, temp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::Srgba;
     use glam::Vec2;
+    use sandtable_draw::color::Srgba;
 
     fn mesh(triangles: &[[Vec3; 3]]) -> DrawMesh {
         let mut mesh = DrawMesh::default();

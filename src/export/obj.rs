@@ -8,10 +8,10 @@ use std::io::{self, Write};
 
 use glam::{Mat3, Vec2, Vec3};
 
+use crate::SceneExport;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawItem, DrawList, DrawVertex, MaterialId};
 use sandtable_draw::material::{AlphaMode, TextureId};
-use crate::SceneExport;
 use sandtable_files::png::encode_png;
 use sandtable_mesh::sink::VertexId;
 use sandtable_mesh::write::obj::{ObjObject, ObjWriter, word};

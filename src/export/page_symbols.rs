@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 
+use crate::page::PageSymbol;
 use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
 use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
-use crate::page::PageSymbol;
 use sandtable_scene::SceneModel;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
 

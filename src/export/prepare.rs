@@ -3,11 +3,11 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::bake::{BakedGround, bake};
+use crate::inlay::cut_out;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh};
 use sandtable_draw::material::{Albedo, AlphaMode, NormalSource};
-use crate::bake::{BakedGround, bake};
-use crate::inlay::cut_out;
 
 /// The height above the ground, in meters, of translucent drapes: they cannot replace the ground, and in its plane they
 /// would flicker. Arbitrary, but too small to see.
@@ -96,11 +96,11 @@ mod tests {
     use sandtable_draw::lighting::ReliefShading;
     use std::sync::Arc;
 
+    use glam::{Mat4, Vec2};
     use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
     use sandtable_draw::list::{DrawVertex, FeatureId};
     use sandtable_draw::material::Material;
     use sandtable_mesh::sink::MeshSink;
-    use glam::{Mat4, Vec2};
 
     fn square(low: f32, high: f32) -> DrawMesh {
         let mut mesh = DrawMesh::default();
@@ -152,7 +152,8 @@ mod tests {
 
     fn area(list: &DrawList, item: usize) -> f32 {
         let mesh = &list.meshes[list.items[item].mesh.0 as usize];
-        let at = |id: sandtable_mesh::sink::VertexId| Vec3::from(mesh.vertices[id.index()].position).truncate();
+        let at =
+            |id: sandtable_mesh::sink::VertexId| Vec3::from(mesh.vertices[id.index()].position).truncate();
         mesh.triangles.iter().map(|&[a, b, c]| (at(b) - at(a)).perp_dot(at(c) - at(a)) / 2.0).sum()
     }
 

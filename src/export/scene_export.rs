@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use sandtable_draw::list::DrawList;
 use crate::{SceneExport, glb, obj, prepare};
-use sandtable_mesh::write::Remarks;
+use sandtable_draw::list::DrawList;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-use sandtable_scene::SceneModel;
+use sandtable_mesh::write::Remarks;
 use sandtable_picture as picture;
+use sandtable_scene::SceneModel;
 
 /// A format of exported scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

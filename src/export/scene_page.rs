@@ -4,21 +4,21 @@ use std::path::Path;
 
 use glam::{DVec2, Vec3};
 
-use sandtable_draw::list::FeatureId;
 use crate::page::batches::ShowRange;
 use crate::page::{PageCamera, PageFacts, PageForm, PageLabel, PageScene, PageTooLarge, page};
+use crate::page_symbols::symbol_pictures;
+use sandtable_base::message::choice::Choice;
+use sandtable_draw::list::FeatureId;
+use sandtable_files::disk::{self, WriteFileError};
 use sandtable_geom::chebyshev::ChebyshevTable;
 use sandtable_geom::crs::Crs;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use sandtable_base::message::choice::Choice;
-use sandtable_files::disk::{self, WriteFileError};
-use crate::page_symbols::symbol_pictures;
-use sandtable_roam::displayed::DisplayedTerrain;
-use sandtable_scene::flights::SceneFlight;
 use sandtable_picture::all_round::{AllRoundScene, ItemShown, all_round};
 use sandtable_picture::camera;
 use sandtable_picture::detail::ListedForm;
 use sandtable_picture::placed_text::PlacedText;
+use sandtable_roam::displayed::DisplayedTerrain;
+use sandtable_scene::flights::SceneFlight;
 use sandtable_scene::plinth::base_z;
 use sandtable_scene::{SceneLabel, SceneModel, SceneView};
 use sandtable_view::camera::{CameraError, ViewProjection};

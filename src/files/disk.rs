@@ -5,11 +5,11 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 
-use sandtable_draw::pixels::Pixels;
-use crate::png::encode_png;
-use sandtable_base::limits::INPUT_BYTES;
 use crate::error::FileError;
 use crate::output_files::OutputFiles;
+use crate::png::encode_png;
+use sandtable_base::limits::INPUT_BYTES;
+use sandtable_draw::pixels::Pixels;
 use sandtable_remote::address::is_address_path;
 use sandtable_remote::error::RemoteError;
 

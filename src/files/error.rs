@@ -4,8 +4,8 @@ use std::error::Error;
 use std::iter::successors;
 use std::path::{Path, PathBuf};
 
-use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
 use crate::disk::display_name;
+use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
 
 /// An error about a file.
 #[derive(Debug, thiserror::Error)]

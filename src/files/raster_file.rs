@@ -3,14 +3,14 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::disk::{self, ReadFileError, SystemError, WriteFileError};
+use crate::error::FileError;
+use crate::output_files::OutputFiles;
 use sandtable_dem::error::DemErrorKind;
 use sandtable_dem::formats::DemFormat;
 use sandtable_dem::raster::Raster;
 use sandtable_dem::windows::Windows;
 use sandtable_dem::write::{self, Companion, WriteError, WriteWindowsError, WrittenDem, WrittenWindows};
-use crate::error::FileError;
-use crate::disk::{self, ReadFileError, SystemError, WriteFileError};
-use crate::output_files::OutputFiles;
 
 /// A raster that cannot be written.
 #[derive(Debug, thiserror::Error)]

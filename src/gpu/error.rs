@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use sandtable_draw::list::DrawListError;
-use sandtable_base::limits::memory::MemoryRefused;
 use crate::adapter::GpuApi;
+use sandtable_base::limits::memory::MemoryRefused;
+use sandtable_draw::list::DrawListError;
 
 /// Why the GPU renderer gives no picture. In every case but an unsound list, the CPU renderer can draw it.
 #[derive(Debug, thiserror::Error)]

@@ -3,9 +3,6 @@
 use bytemuck::{bytes_of, cast_slice};
 use rayon::prelude::*;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::ground::GroundMap;
-use sandtable_draw::pixels::Pixels;
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::ground::GroundTextures;
@@ -15,6 +12,9 @@ use crate::pipelines::Layouts;
 use crate::shadow::ShadowTextures;
 use crate::uniforms::{FrameUniforms, RAMP_COLUMNS};
 use crate::windows::WindowTexture;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::pixels::Pixels;
 use sandtable_render::shadow::Shadows;
 
 /// The textures of group 0.

@@ -6,13 +6,13 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable, cast_slice};
 use glam::{Mat4, Vec3};
 
-use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
-use sandtable_mesh::sink::VertexId;
 use crate::error::GpuError;
 use crate::materials::MaterialRow;
 use crate::memory::Loader;
 use crate::plan::{DrawShape, Plan};
 use crate::uniforms::Instance;
+use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
+use sandtable_mesh::sink::VertexId;
 use sandtable_view::camera::Camera;
 
 /// A corner in world space: `Corner` and `Owner` in the shader.

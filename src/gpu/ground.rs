@@ -20,11 +20,11 @@ use std::iter::successors;
 use bytemuck::cast_slice;
 use rayon::prelude::*;
 
-use sandtable_draw::ground::{GroundMap, GroundPost};
-use sandtable_draw::ground_levels::{PostCount, coarser_levels};
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::memory::{Loader, texture};
+use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_levels::{PostCount, coarser_levels};
 
 /// More levels than the largest texture has; the length of the shader's array.
 pub const MOST_LEVELS: usize = 24;

@@ -34,7 +34,6 @@ mod shadow;
 mod uniforms;
 mod windows;
 
-use sandtable_draw::list::DrawList;
 use crate::adapter::{Gpu, GpuApi};
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
@@ -49,6 +48,7 @@ use crate::plan::{PipelineKey, Plan};
 use crate::readback::Targets;
 use crate::shadow::ShadowView;
 use crate::uniforms::{FrameScene, FrameUniforms};
+use sandtable_draw::list::DrawList;
 use sandtable_render::picture::Rendering;
 use sandtable_render::shadow::Shadows;
 use sandtable_view::camera::Camera;

@@ -14,14 +14,14 @@ use std::collections::BTreeMap;
 use bytemuck::cast_slice;
 use rayon::prelude::*;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DrawList, MaterialId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable_draw::pixels::Pixels;
 use crate::error::GpuError;
 use crate::memory::{Loader, bind, texture, view};
 use crate::pipelines::Layouts;
 use crate::uniforms::SurfaceConstants;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawList, MaterialId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::pixels::Pixels;
 use sandtable_render::mip_levels::smaller_levels;
 
 /// Materials in a row of the table, and texels of each; the shader's constants of the same names.
@@ -272,8 +272,8 @@ mod tests {
     use bytemuck::bytes_of;
 
     use super::*;
-    use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, FeatureId};
     use glam::Mat4;
+    use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, FeatureId};
 
     /// A list of materials with textures of the given sides, each drawn once as opaque and once as blended.
     fn list(textures: &[[u32; 2]]) -> DrawList {

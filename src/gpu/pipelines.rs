@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use sandtable_draw::list::{DRAPE_TOLERANCE, DrawVertex};
 use crate::adapter::{Gpu, GpuApi};
 use crate::geometry::MergedVertex;
 use crate::plan::{DepthRule, PipelineKey, VertexSource};
 use crate::uniforms::{FrameUniforms, Instance};
+use sandtable_draw::list::{DRAPE_TOLERANCE, DrawVertex};
 
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// The format of depth. Reversed depth needs floats: their resolution near zero is why it is reversed.

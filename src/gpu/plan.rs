@@ -17,10 +17,10 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
-use sandtable_draw::material::AlphaMode;
 use crate::materials::{ArrayId, TexturePlaces};
 use crate::parts::ShaderParts;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, MeshId};
+use sandtable_draw::material::AlphaMode;
 use sandtable_view::camera::Camera;
 
 /// The most triangles that one merged buffer holds: 72 MiB at the most, where no two triangles share a corner. Larger
@@ -314,12 +314,12 @@ mod tests {
     use glam::Mat4;
 
     use super::*;
+    use crate::materials::TextureScope;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DrawMesh, DrawVertex, FeatureId};
     use sandtable_draw::material::Material;
     use sandtable_draw::pixels::Pixels;
     use sandtable_mesh::sink::{MeshSink, VertexId};
-    use crate::materials::TextureScope;
 
     fn mesh(triangles: usize) -> DrawMesh {
         let mut mesh = DrawMesh::default();

@@ -6,13 +6,13 @@
 use core::time::Duration;
 use std::sync::mpsc;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::FeatureId;
-use sandtable_draw::pixels::Pixels;
 use crate::adapter::Gpu;
 use crate::error::{DriverError, GpuError};
 use crate::memory::{Loader, texture};
 use crate::pipelines::{COLOR, DEPTH, FEATURE};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
+use sandtable_draw::pixels::Pixels;
 use sandtable_render::picture::Rendering;
 
 /// How long a picture may take before the device counts as hung. A software adapter needs a second for millions of

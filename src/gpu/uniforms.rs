@@ -3,6 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
+use crate::geometry::SurfaceOwner;
+use crate::ground::{MOST_LEVELS, levels};
+use crate::shadow::ShadowView;
+use crate::windows::{MOST_WINDOWS, WindowPlace};
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::{STOP_COUNT, bathymetry};
 use sandtable_draw::ground::GroundMap;
@@ -12,10 +16,6 @@ use sandtable_draw::list::DrawItem;
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
 use sandtable_draw::undergrowth::Undergrowth;
 use sandtable_draw::water::WaterColor;
-use crate::geometry::SurfaceOwner;
-use crate::ground::{MOST_LEVELS, levels};
-use crate::shadow::ShadowView;
-use crate::windows::{MOST_WINDOWS, WindowPlace};
 use sandtable_render::picture::LEAST_VISIBLE_ALPHA;
 use sandtable_view::camera::{Camera, ViewProjection};
 

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use rayon::prelude::*;
 
-use sandtable_draw::ground::GroundMapError;
-use sandtable_draw::ground_window::GroundWindow;
-use sandtable_draw::list::DrawListError;
 use crate::error::GpuError;
 use crate::ground::packed;
 use crate::memory::{Loader, texture};
+use sandtable_draw::ground::GroundMapError;
+use sandtable_draw::ground_window::GroundWindow;
+use sandtable_draw::list::DrawListError;
 
 /// The length of the shader's array.
 pub const MOST_WINDOWS: usize = 8;

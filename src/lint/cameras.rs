@@ -6,6 +6,10 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
+use crate::context::LintContext;
+use crate::ground_line::{ground_along, place};
+use crate::sink::FindingSink;
+use crate::standing::standing_index;
 use sandtable_description::document::CameraTable;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
@@ -13,15 +17,11 @@ use sandtable_draw::list::FeatureId;
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::rect::Rect;
-use crate::context::LintContext;
-use crate::ground_line::{ground_along, place};
-use crate::sink::FindingSink;
-use crate::standing::standing_index;
-use sandtable_sheet::picture::{PictureSize, framed_camera};
-use sandtable_walk::pick::pixel_ray;
 use sandtable_scene::{SceneModel, SceneView, ViewAim};
+use sandtable_sheet::picture::{PictureSize, framed_camera};
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
+use sandtable_walk::pick::pixel_ray;
 
 /// A scene whose longest side takes fewer pixels of the picture's width cannot be made out.
 const LEAST_PX: f32 = 20.0;

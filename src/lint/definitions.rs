@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::unused::UnusedInclude;
-use sandtable_base::message::suggest::quoted;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_base::message::suggest::quoted;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::unused::UnusedInclude;
 use sandtable_scene::FeatureKind;
 
 /// Finds styles and phases that no table names, included files without effect, and names that several tables have.

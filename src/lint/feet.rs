@@ -5,13 +5,13 @@
 
 use std::path::Path;
 
+use crate::context::LintContext;
+use crate::sink::FindingSink;
+use sandtable_base::message::suggest::quoted;
 use sandtable_dem::raster::Raster;
 use sandtable_dem::vertical::{name_of_wkt, unit_of_wkt};
 use sandtable_description::finding_code::FindingCode;
-use sandtable_base::message::suggest::quoted;
 use sandtable_files::disk::file_stem;
-use crate::context::LintContext;
-use crate::sink::FindingSink;
 
 /// What the units are in meters that are called a foot: the international one, that of US surveys, and older ones.
 const FEET_M: std::ops::Range<f64> = 0.3047..0.3049;

@@ -8,13 +8,13 @@
 
 use glam::DVec2;
 
+use crate::context::LintContext;
+use crate::sink::FindingSink;
+use crate::table_sources::{SourceRole, table_sources};
 use sandtable_dem::units::FOOT_M;
 use sandtable_description::features::ModelPlacement;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::Clamp;
-use crate::context::LintContext;
-use crate::sink::FindingSink;
-use crate::table_sources::{SourceRole, table_sources};
 use sandtable_scene::Placement;
 use sandtable_scene::attributes::Attributes;
 use sandtable_terrain::query::{Interpolation, ground_height};

@@ -1,8 +1,8 @@
 //! Pictures of the ground that are too coarse for it.
 
-use sandtable_description::finding_code::FindingCode;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_description::finding_code::FindingCode;
 
 /// A pixel wider than so many cells of the elevation model is seen as a blur before the ground shows its own cells.
 const MOST_CELLS: f32 = 4.0;

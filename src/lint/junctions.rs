@@ -8,13 +8,13 @@
 
 use glam::DVec2;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_draw::list::FeatureId;
-use sandtable_geom::polyline::{VertexKey, vertex_key};
 use crate::context::LintContext;
 use crate::ground_line::place;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_draw::list::FeatureId;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
 use sandtable_ribbon::junction::LONGEST_REACH;
 use sandtable_scene::symbols::LineSymbol;
 

@@ -8,17 +8,17 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
+use crate::ground_line::ground_along;
+use crate::standing::standing_index;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::polyline::Polyline;
-use crate::ground_line::ground_along;
-use crate::standing::standing_index;
-use sandtable_walk::pick::{StandingIndex, pixel_ray};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::label_course::LabelCourse;
 use sandtable_scene::{FeatureKind, SceneLabel, SceneModel};
 use sandtable_view::camera::{Camera, Projected};
+use sandtable_walk::pick::{StandingIndex, pixel_ray};
 
 /// The most places that are looked at; those of more labels count as seen. Bounds the time of a check.
 const MOST_PLACES: usize = 2000;

@@ -4,18 +4,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use sandtable_annotate::paint::compose_sheet;
-use sandtable_annotate::report::AnnotationReport;
-use sandtable_description::finding_code::FindingCode;
-use sandtable_draw::list::FeatureId;
-use sandtable_base::message::suggest::quoted;
-use sandtable_sheet::labels::{AnnotatedGround, annotations};
 use crate::context::LintContext;
 use crate::label_sight::{LabelSight, label_sight};
 use crate::sink::FindingSink;
-use sandtable_sheet::picture::{PictureSize, framed_camera};
+use sandtable_annotate::paint::compose_sheet;
+use sandtable_annotate::report::AnnotationReport;
+use sandtable_base::message::suggest::quoted;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_draw::list::FeatureId;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_scene::{SceneModel, SceneView};
+use sandtable_sheet::labels::{AnnotatedGround, annotations};
+use sandtable_sheet::picture::{PictureSize, framed_camera};
 
 /// The most texts that a message quotes.
 const MOST_QUOTED: usize = 3;

@@ -3,11 +3,11 @@
 //! The ground is cut and filled to meet the water, so that no gap shows in the picture; how much it takes says whether the
 //! level is right. One that is far off all of the shore is found while the scene is built.
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_draw::list::FeatureId;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_draw::list::FeatureId;
 use sandtable_scene::FeatureKind;
 use sandtable_scene::report::LakeRow;
 use sandtable_scene::water::lake_level::far_off_m;

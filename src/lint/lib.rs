@@ -35,10 +35,10 @@ mod unseen;
 mod voids;
 mod worst;
 
-use sandtable_description::document::Document;
-use sandtable_description::finding::Finding;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_description::document::Document;
+use sandtable_description::finding::Finding;
 use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::sources::Sources;

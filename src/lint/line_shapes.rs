@@ -1,14 +1,14 @@
 //! Roads, rivers and shores whose lines cannot be what they stand for: too narrow, folded, crossing or coming back on
 //! themselves.
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_earthworks::alignment::Width;
-use sandtable_geom::own_crossing::own_crossing;
-use sandtable_geom::tight_bend::{REVERSAL_RAD, TightBend, tight_bends, turns};
 use crate::context::LintContext;
 use crate::ground_line::place;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_earthworks::alignment::Width;
+use sandtable_geom::own_crossing::own_crossing;
+use sandtable_geom::tight_bend::{REVERSAL_RAD, TightBend, tight_bends, turns};
 use sandtable_scene::FeatureKind;
 use sandtable_scene::symbols::LineSymbol;
 

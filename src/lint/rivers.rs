@@ -5,13 +5,13 @@
 
 use std::ops::Range;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::words::Water;
-use sandtable_geom::profile::Profile;
 use crate::context::LintContext;
 use crate::ground_line::{ground_along, place};
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Water;
+use sandtable_geom::profile::Profile;
 
 /// A rise up to this is not told, meters: the relative error that the makers of global elevation models promise
 /// (Farr et al. 2007). Less is as likely the model's fault.

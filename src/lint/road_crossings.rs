@@ -4,6 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use crate::context::LintContext;
+use crate::ground_line::place;
+use crate::sink::FindingSink;
+use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::leg_tree::{LegTree, LineLeg};
@@ -11,10 +15,6 @@ use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
 use sandtable_geom::segment;
-use crate::context::LintContext;
-use crate::ground_line::place;
-use crate::sink::FindingSink;
-use crate::worst::WorstOfTables;
 use sandtable_scene::SceneModel;
 use sandtable_scene::symbols::LineSymbol;
 

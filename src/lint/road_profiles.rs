@@ -5,12 +5,12 @@
 //! runs from the ground at one end to the ground at the other, unless its level is stated; it is held to what its road
 //! states as `max_grade`, else to what bridges have.
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_earthworks::alignment::Support;
 use crate::context::LintContext;
 use crate::ground_line::{ground_along, place};
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_earthworks::alignment::Support;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::roads::profiles::RoadProfile;
 

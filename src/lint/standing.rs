@@ -8,11 +8,11 @@ use glam::{Mat4, Vec2, Vec3};
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
 use sandtable_geom::rect::Rect;
 use sandtable_model::Model;
-use sandtable_walk::pick::StandingIndex;
 use sandtable_scene::SceneModel;
 use sandtable_scene::footprint::ModelFootprint;
 use sandtable_scene::placement::stand;
 use sandtable_terrain::support_surface::SupportSurface;
+use sandtable_walk::pick::StandingIndex;
 
 /// The solids and the models that `is_wanted` takes by their feature and a rectangle around them, in world coordinates.
 pub fn standing_index(scene: &SceneModel, is_wanted: &dyn Fn(FeatureId, &Rect) -> bool) -> StandingIndex {

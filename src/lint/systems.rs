@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_geom::crs::Crs;
-use sandtable_geom::datum_shift::DatumShift;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
 use crate::table_sources::table_sources;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::datum_shift::DatumShift;
 use sandtable_scene::overridden_crs::OverriddenCrs;
 
 /// Degrees from the central meridian of a UTM zone at which lengths are off by 0.1 %, as in no zone; zones are 3° wide on

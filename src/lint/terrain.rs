@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_geom::rect::Rect;
-use sandtable_base::message::suggest::quoted;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
 use crate::table_sources::{SourceRole, table_sources};
+use sandtable_base::message::suggest::quoted;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::rect::Rect;
 use sandtable_scene::source_reach::SourceOverlap;
 
 /// A smaller share of a feature or a file off the model is the width of a pen.

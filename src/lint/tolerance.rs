@@ -1,8 +1,8 @@
 //! A tolerance of the drawn ground that shows.
 
-use sandtable_description::finding_code::FindingCode;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_description::finding_code::FindingCode;
 
 /// The greatest error of the drawn ground in pixels that is not told: four pixels are as thick as a road's line, so that
 /// more moves what stands on the ground off its place for everyone to see.

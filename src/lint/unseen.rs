@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_geom::aabb::Aabb;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
 use crate::standing::reach;
-use sandtable_sheet::picture::{PictureSize, framed_camera};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::aabb::Aabb;
 use sandtable_scene::SceneModel;
+use sandtable_sheet::picture::{PictureSize, framed_camera};
 use sandtable_view::frustum::Frustum;
 
 /// How far above the ground's box draped features and what stands on them may reach, meters: power lines over a gorge.

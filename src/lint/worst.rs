@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use sandtable_description::finding_code::FindingCode;
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_description::finding_code::FindingCode;
 
 /// Findings of one kind, of which each table's worst is told and the others are counted.
 #[derive(Debug, Default)]

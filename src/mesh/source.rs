@@ -6,9 +6,9 @@ use std::io;
 
 use glam::Vec3;
 
-use sandtable_geom::aabb::Aabb;
 use crate::sink::VertexId;
 use crate::trimesh::TriMesh;
+use sandtable_geom::aabb::Aabb;
 
 /// How large a mesh is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -24,13 +24,13 @@
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
+use crate::{Model, ModelPart};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_draw::material::{AlphaMode, Material};
 use sandtable_draw::pixels::Pixels;
 use sandtable_mesh::sink::MeshSink;
-use crate::impostor_raster::{ImpostorRaster, ImpostorSource, SAMPLES};
-use crate::{Model, ModelPart};
 
 /// Pixels along the side of a tile: twice the size at which an impostor is drawn, so that masks stay crisp.
 pub(super) const TILE: u32 = 64;

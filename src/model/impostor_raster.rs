@@ -5,12 +5,12 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::impostor::{INNER, ViewAxes};
+use crate::{Model, ModelPart};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_draw::material::{AlphaMode, Material};
 use sandtable_draw::pixels::Pixels;
-use crate::impostor::{INNER, ViewAxes};
-use crate::{Model, ModelPart};
 
 /// Samples along the side of a pixel.
 pub(super) const SAMPLES: u32 = 3;

@@ -33,12 +33,12 @@ mod triangulate;
 
 use glam::Vec3;
 
+use crate::error::CompanionError;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, MaterialId};
 use sandtable_draw::material::Material;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::aabb::Aabb;
-use crate::error::CompanionError;
 
 /// A model: X right, Y to its back, Z up, front toward −Y; in the file's units.
 #[derive(Clone, Debug, Default)]

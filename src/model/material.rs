@@ -1,8 +1,8 @@
 //! Materials of 3DS and OBJ files: a color, a color map, an opacity map.
 
+use crate::texture::Textures;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::material::{AlphaMode, Material};
-use crate::texture::Textures;
 
 /// A material whose maps are not loaded yet.
 #[derive(Clone, Debug)]

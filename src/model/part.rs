@@ -5,13 +5,13 @@
 
 use glam::{Vec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
-use sandtable_base::limits::MODEL_TRIANGLES;
-use sandtable_mesh::numbering::Numbering;
-use sandtable_mesh::sink::{MeshSink, VertexId};
 use crate::ModelPart;
 use crate::error::ModelError;
+use sandtable_base::limits::MODEL_TRIANGLES;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
+use sandtable_mesh::numbering::Numbering;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 
 /// Counts the triangles of a model against [`MODEL_TRIANGLES`].
 #[derive(Debug, Default)]

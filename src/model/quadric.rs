@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use sandtable_geom::triangle;
 use crate::soup::{PointId, Soup, WedgeId};
+use sandtable_geom::triangle;
 
 /// The sum of squared distances from a set of planes, as a quadratic function of position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -26,12 +26,12 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec3, Vec3};
 
-use sandtable_draw::list::DrawVertex;
-use sandtable_geom::triangle;
 use crate::appearance::difference;
 use crate::quadric::{Quadric, edges, quadrics};
 use crate::soup::{PointId, Soup, SoupWedge, WedgeId};
 use crate::{Model, ModelPart};
+use sandtable_draw::list::DrawVertex;
+use sandtable_geom::triangle;
 
 /// Models of fewer triangles have no levels: they cost no more than the items that draw them.
 pub const MIN_TRIANGLES: usize = 64;

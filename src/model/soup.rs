@@ -10,11 +10,11 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::{Model, ModelPart};
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_geom::triangle;
 use sandtable_mesh::numbering::{Numbering, weld_key};
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::{Model, ModelPart};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct PointId(pub u32);

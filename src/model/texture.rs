@@ -5,15 +5,15 @@ use std::io::Cursor;
 
 use image::{ImageFormat, ImageReader, Limits};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::material::TextureId;
-use sandtable_draw::pixels::Pixels;
+use crate::error::CompanionError;
+use crate::{Companions, Model};
 use sandtable_base::limits::TEXTURE_PIXELS;
 use sandtable_base::limits::TEXTURE_SIDE;
 use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use sandtable_base::message::chain::error_text;
-use crate::error::CompanionError;
-use crate::{Companions, Model};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::material::TextureId;
+use sandtable_draw::pixels::Pixels;
 
 /// Bytes of a pixel while a picture is decoded: as the file has it, at most four numbers of 16 bits; as eight bits; and as ours.
 const BYTES_PER_PIXEL: u64 = 16;

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
+use crate::stated;
 use sandtable_dem::largest_rectangle::largest_rectangle;
 use sandtable_geom::rect::Rect;
-use crate::stated;
 use sandtable_scene::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 

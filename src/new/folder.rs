@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use sandtable_files::error::FileError;
 use sandtable_files::disk::SystemError;
+use sandtable_files::error::FileError;
 use sandtable_remote::address::is_address;
 
 /// The folder of a new scene file.

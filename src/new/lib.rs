@@ -23,23 +23,23 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use sandtable_annotate::nice::NiceNumber;
-use sandtable_dem::undeclared::undeclared_nodata;
-use sandtable_description::parse::parse;
-use sandtable_geom::crs::Crs;
-use sandtable_geom::rect::Rect;
-use sandtable_files::disk::{self, SystemError, WriteFileError};
 use crate::cameras::cameras;
 use crate::crop::{around_vectors, with_straight_edges};
 use crate::folder::{FolderError, SceneFolder};
 use crate::survey::SurveyError;
 use crate::text::{SceneDraft, VectorDraft};
-use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_annotate::nice::NiceNumber;
+use sandtable_dem::undeclared::undeclared_nodata;
+use sandtable_description::parse::parse;
+use sandtable_files::disk::{self, SystemError, WriteFileError};
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 use sandtable_remote::address::is_address_path;
 use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
 use sandtable_scene::planned_pictures::{ElevationNeed, PlannedPictures};
+use sandtable_scene::scene_file::OpenSceneError;
 
 /// The name of the scene file in its folder.
 const FILE_NAME: &str = "scene.toml";

@@ -5,12 +5,12 @@ use std::ptr;
 
 use serde_json::Value;
 
-use sandtable_dem::undeclared::UndeclaredNodata;
-use sandtable_geom::rect::Rect;
 use crate::cameras::CameraDraft;
 use crate::crop::ExtentDraft;
 use crate::rules::{self, RULES};
 use crate::survey::{FeatureSelection, LeftFeatures, SurveyedLayer, TableMatch};
+use sandtable_dem::undeclared::UndeclaredNodata;
+use sandtable_geom::rect::Rect;
 
 /// The properties of the scene; zero and empty before they are determined.
 #[derive(Default)]

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use sandtable_geom::polygon;
-use sandtable_base::message::capitalized::capitalized;
-use sandtable_files::disk;
 use crate::rules::LEAST_TITLE_RANK;
 use crate::survey::NamedDistrict;
 use crate::text::VectorDraft;
+use sandtable_base::message::capitalized::capitalized;
+use sandtable_files::disk;
+use sandtable_geom::polygon;
 use sandtable_scene::SceneModel;
 
 /// Words of file names that are written in capitals.

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::add_mesh;
+use crate::graphic_colors::graphic_color;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_draw::material::{AlphaMode, Material};
 use sandtable_scene::SceneModel;
 use sandtable_scene::graphics::SceneGraphic;
-use crate::add_mesh;
-use crate::graphic_colors::graphic_color;
 use sandtable_structure::faces::Faces;
 use sandtable_symbology::graphic::kind::GraphicShape;
 

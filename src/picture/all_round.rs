@@ -10,21 +10,23 @@ use std::f32::consts::FRAC_PI_2;
 use glam::Mat4;
 use rayon::prelude::*;
 
+use crate::detail::ListedForm;
+use crate::drapes::{
+    BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
+};
+use crate::lake_tint::longest_lakes;
+use crate::line_scale::LineScale;
+use crate::placed_text::PlacedText;
+use crate::symbols::{DrapedSymbol, PlannedSymbol, SymbolUv, planned_with};
+use crate::{airspace, ground, models, overlay, solids, table, uprights, voids};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_roam::displayed::DisplayedTerrain;
-use sandtable_scene::ground_map::GroundMapKey;
-use crate::detail::ListedForm;
-use crate::drapes::{BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered};
-use crate::lake_tint::longest_lakes;
-use crate::line_scale::LineScale;
 use sandtable_scene::framing::parallel_view::parallel_camera;
-use crate::placed_text::PlacedText;
-use crate::symbols::{DrapedSymbol, PlannedSymbol, SymbolUv, planned_with};
-use crate::{airspace, ground, models, overlay, solids, table, uprights, voids};
+use sandtable_scene::ground_map::GroundMapKey;
 use sandtable_scene::symbols::LineSymbol;
 use sandtable_scene::{ParallelView, Ribbon, SceneModel};
 use sandtable_terrain::triangle_surface::TriangleSurface;

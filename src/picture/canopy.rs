@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::add_mesh;
+use crate::detail::PlacedModel;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable_draw::material::Material;
@@ -24,8 +26,6 @@ use sandtable_mesh::sink::MeshSink;
 use sandtable_model::Model;
 use sandtable_model::detail::ApparentSize;
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
-use crate::detail::PlacedModel;
 use sandtable_scene::undergrowth::{CrownGround, crown_reach};
 use sandtable_terrain::support_surface::SupportSurface;
 

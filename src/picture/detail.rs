@@ -11,6 +11,7 @@ use std::ops::Range;
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
+use crate::canopy::{CanopyPlant, canopies};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
 use sandtable_draw::material::{Material, TextureId};
@@ -18,7 +19,6 @@ use sandtable_model::detail::{ApparentSize, DetailForm, ModelDetail};
 use sandtable_model::impostor::Impostor;
 use sandtable_model::{Model, ModelPart};
 use sandtable_scene::SceneModel;
-use crate::canopy::{CanopyPlant, canopies};
 use sandtable_view::camera::Camera;
 use sandtable_view::frustum::Frustum;
 

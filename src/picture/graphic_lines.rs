@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::add_mesh;
+use crate::line_scale::LineScale;
+use crate::symbols::cap;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::material::{AlphaMode, Material, NormalSource};
@@ -21,9 +24,6 @@ use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
-use crate::line_scale::LineScale;
-use crate::symbols::cap;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;

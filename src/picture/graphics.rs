@@ -7,6 +7,9 @@ use rayon::prelude::*;
 
 use glam::DVec2;
 
+use crate::graphic_colors::{graphic_color, opposing};
+use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LineLook};
+use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::GraphicStatus;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::polygon::doubled_area;
@@ -14,9 +17,6 @@ use sandtable_geom::rect::Rect;
 use sandtable_ribbon::area;
 use sandtable_scene::SceneModel;
 use sandtable_scene::graphics::SceneGraphic;
-use crate::graphic_colors::{graphic_color, opposing};
-use crate::graphic_lines::{DrapedPart, GraphicPen, GraphicView, LineLook};
-use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_symbology::graphic::drawing::{GraphicInput, StrokeDash, StrokeSide, TextCourse};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 

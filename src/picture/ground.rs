@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use crate::add_mesh;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable_draw::material::{Albedo, Material, NormalSource};
@@ -11,7 +12,6 @@ use sandtable_geom::aabb::Aabb;
 use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
 use sandtable_scene::plinth::{base_plate, plinth};
 use sandtable_terrain::cell_triangle::CellTriangle;
 use sandtable_terrain::lattice::{Lattice, Post};

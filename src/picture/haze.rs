@@ -6,9 +6,9 @@
 
 use glam::Vec3;
 
+use crate::setting::PictureSetting;
 use sandtable_draw::lighting::Haze;
 use sandtable_geom::aabb::Aabb;
-use crate::setting::PictureSetting;
 use sandtable_view::camera::Camera;
 
 /// Transmittance at the far edge of the scene in a view from above.

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, Mat4, Vec3};
 
+use crate::nested_plan::is_within;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MeshId};
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::nested_plan::is_within;
 
 /// How far off the border of a rectangle a vertex may be that lies on it, in meters: rounding of f32 positions.
 const ON_BORDER_M: f64 = 0.05;

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, Vec2};
 
+use crate::line_scale::LineScale;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_draw::pixels::Pixels;
@@ -16,7 +17,6 @@ use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::SceneModel;
-use crate::line_scale::LineScale;
 use sandtable_terrain::water_shore::OPEN_SHARE;
 
 /// Cells along the longer side of a lake: its color changes from shore to middle, over some tens of them.

@@ -36,19 +36,19 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 
+use crate::detail::Viewer;
+use crate::nested_ground::NestedHeights;
+use crate::placed_text::PlacedText;
+use crate::setting::PictureSetting;
 use sandtable_description::words::TableTop;
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_geom::aabb::Aabb;
 use sandtable_roam::displayed::DisplayedTerrain;
-use sandtable_scene::ground_map::GroundMapKey;
-use crate::nested_ground::NestedHeights;
-use crate::detail::Viewer;
 use sandtable_scene::framing::fitted_view::fitted_aim;
 use sandtable_scene::framing::parallel_view::parallel_camera;
-use crate::placed_text::PlacedText;
-use crate::setting::PictureSetting;
+use sandtable_scene::ground_map::GroundMapKey;
 use sandtable_scene::{SceneModel, SceneView, ViewAim};
 use sandtable_view::camera::{Camera, CameraError, far_m};
 

@@ -7,9 +7,9 @@
 
 use glam::{DVec2, DVec3};
 
+use crate::line_scale::LineScale;
 use sandtable_draw::list::DrawMesh;
 use sandtable_mesh::sink::VertexId;
-use crate::line_scale::LineScale;
 
 /// Markings of a road this wide, in pixels of a picture 1080 lines high, are gone, and of one as wide as the second are
 /// whole. Between the two a marking is a quarter to half a pixel wide.
@@ -61,11 +61,11 @@ fn gradient([a, b, c]: [DVec2; 3], values: [f64; 3]) -> Option<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::DrawVertex;
     use sandtable_mesh::sink::MeshSink;
     use sandtable_view::camera::Camera;
-    use glam::Vec3;
 
     #[test]
     fn the_change_of_a_value_is_found_whichever_way_a_triangle_lies() {

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::detail::{self, ListedForm, PlacedModel, Viewer};
+use crate::{add_mesh, canopy};
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh};
 use sandtable_draw::material::Material;
 use sandtable_scene::footprint::ModelFootprint;
-use crate::detail::{self, ListedForm, PlacedModel, Viewer};
-use crate::{add_mesh, canopy};
 use sandtable_scene::placement::stand;
 use sandtable_scene::scatter::chance::Chance;
 use sandtable_scene::{Placement, SceneModel};

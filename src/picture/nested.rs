@@ -12,6 +12,15 @@ use std::sync::Arc;
 use glam::{DVec2, Mat4, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::detail::Viewer;
+use crate::hole::{cut_hole, skirt};
+use crate::nested_ground::{NestedGround, NestedHeights};
+use crate::nested_surface::{NestedSurface, SurfacePart};
+use crate::setting::PictureSetting;
+use crate::{
+    ViewDraw, airspace, display, drapes, ground, has_table, lighting, models, overlay, solids, table,
+    uprights, voids,
+};
 use sandtable_draw::ground::GroundMap;
 use sandtable_draw::ground_inset::GroundInset;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, FeatureId, MaterialId, MeshId};
@@ -19,12 +28,6 @@ use sandtable_draw::material::TextureId;
 use sandtable_geom::rect::Rect;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::ground_map::{GroundMapKey, form_level, ground_map};
-use crate::nested_ground::{NestedGround, NestedHeights};
-use crate::detail::Viewer;
-use crate::hole::{cut_hole, skirt};
-use crate::nested_surface::{NestedSurface, SurfacePart};
-use crate::setting::PictureSetting;
-use crate::{ViewDraw, airspace, display, drapes, ground, has_table, lighting, models, overlay, solids, table, uprights, voids};
 use sandtable_scene::texture_shading::sky_in_part;
 use sandtable_scene::{FeatureKind, SceneFeature, SceneModel};
 use sandtable_view::camera::Camera;

@@ -8,15 +8,15 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
+use crate::nested_plan::{NestedPlan, nested_plans};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::stated::Stated;
 use sandtable_description::words::TableTop;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::finer_elevation::{FinerElevation, part_document};
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build_with;
-use crate::nested_plan::{NestedPlan, nested_plans};
+use sandtable_scene::finer_elevation::{FinerElevation, part_document};
 use sandtable_scene::planned_pictures::ElevationNeed;
 use sandtable_scene::world_frame::WorldFrame;
 use sandtable_scene::{FittedView, ParallelView, SceneLabel, SceneModel, SceneView, ViewAim};

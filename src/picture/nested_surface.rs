@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
+use crate::hole::outside;
 use sandtable_geom::rect::Rect;
 use sandtable_roam::displayed::DisplayedTerrain;
-use crate::hole::outside;
 use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// A displayed ground.

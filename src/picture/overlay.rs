@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::DrawList;
-use sandtable_scene::SceneModel;
 use crate::graphic_lines::{CASING, GraphicPen, GraphicView, LinePlan, add_parts};
 use crate::placed_text::PlacedText;
 use crate::{graphics, sight};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawList;
+use sandtable_scene::SceneModel;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 

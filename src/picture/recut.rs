@@ -10,6 +10,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
+use crate::drapes::{
+    BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered,
+};
+use crate::graphic_lines::{self, LinePlan};
+use crate::lake_tint::{LakeTint, longest_lakes};
+use crate::line_scale::LineScale;
+use crate::markings::faded;
+use crate::placed_text::PlacedText;
+use crate::sight::{self, TintPlan};
+use crate::symbols::{PlannedSymbol, RibbonShow, planned};
+use crate::{ground, overlay};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
 use sandtable_draw::patches::DrapedPiece;
@@ -19,15 +30,6 @@ use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::patched_ground::PatchedGround;
-use crate::drapes::{BELOW_RIVERS, BELOW_ROADS, RibbonLook, add_material, fill_color, lake_material, sources, tapered};
-use crate::graphic_lines::{self, LinePlan};
-use crate::lake_tint::{LakeTint, longest_lakes};
-use crate::line_scale::LineScale;
-use crate::markings::faded;
-use crate::placed_text::PlacedText;
-use crate::sight::{self, TintPlan};
-use crate::symbols::{PlannedSymbol, RibbonShow, planned};
-use crate::{ground, overlay};
 use sandtable_scene::symbols::LineSymbol;
 use sandtable_scene::{Ribbon, SceneModel};
 use sandtable_terrain::lattice::Lattice;

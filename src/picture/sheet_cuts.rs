@@ -2,8 +2,8 @@
 
 use std::array;
 
-use sandtable_ribbon::patches::{CutDrapes, DrapeParts};
 use crate::recut::GroundSheets;
+use sandtable_ribbon::patches::{CutDrapes, DrapeParts};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// What lies on the ground as it is planned now, by sheet.

@@ -8,6 +8,10 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, UVec2, Vec2, Vec4};
 
+use crate::add_mesh;
+use crate::graphic_colors::{self, HIDDEN, SEEN, side_color};
+use crate::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
+use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_description::words::{RangeExtent, ViewshedTint};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, FeatureId, MaterialId};
@@ -17,10 +21,6 @@ use sandtable_mesh::sink::MeshSink;
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
-use crate::graphic_colors::{self, HIDDEN, SEEN, side_color};
-use crate::graphic_lines::{GraphicPen, GraphicView, LAYER, LineLook};
-use crate::placed_text::{PlacedCourse, PlacedText};
 use sandtable_scene::seen_ground::{PostFrame, SceneSight, SceneViewshed, SeenPosts, SightedLine};
 use sandtable_scene::sight_layers::{SceneRange, heading};
 use sandtable_terrain::lattice::{Lattice, Post};

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use crate::add_mesh;
 use sandtable_draw::list::{DepthLayer, DrawList};
 use sandtable_draw::material::Material;
 use sandtable_ribbon::texture::texture;
 use sandtable_scene::facade::facade;
-use crate::add_mesh;
 use sandtable_scene::{Coat, SceneModel};
 
 /// Adds all solids.

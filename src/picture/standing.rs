@@ -6,13 +6,13 @@
 
 use glam::Vec3;
 
-use sandtable_draw::list::DrawList;
-use sandtable_scene::SceneModel;
-use sandtable_scene::ground_map::GroundMapKey;
 use crate::detail::Viewer;
 use crate::models::PlacementMoves;
 use crate::setting::PictureSetting;
 use crate::{airspace, ground, has_table, lighting, models, solids, table, uprights, voids};
+use sandtable_draw::list::DrawList;
+use sandtable_scene::SceneModel;
+use sandtable_scene::ground_map::GroundMapKey;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
 
+use crate::line_scale::LineScale;
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_earthworks::alignment::{Alignment, Support, Width};
 use sandtable_geom::polyline::Polyline;
@@ -28,7 +29,6 @@ use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::SceneModel;
-use crate::line_scale::LineScale;
 use sandtable_scene::symbols::{LineSymbol, drawn_width_m};
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;

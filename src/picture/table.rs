@@ -5,6 +5,7 @@
 
 use glam::{DVec2, FloatExt, Vec3};
 
+use crate::add_mesh;
 use sandtable_description::words::TableTop;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
@@ -13,7 +14,6 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::MeshSink;
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
 use sandtable_scene::plinth::base_z;
 use sandtable_scene::table_shadow::{TableShadow, table_rect};
 use sandtable_scene::wood::wood;

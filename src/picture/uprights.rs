@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
+use crate::add_mesh;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh};
 use sandtable_draw::material::Material;
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::support_surface::SupportSurface;
 use sandtable_terrain::triangle_surface::TriangleSurface;

@@ -3,12 +3,12 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::add_mesh;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawList, DrawMesh, DrawVertex, FeatureId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material};
 use sandtable_mesh::sink::MeshSink;
 use sandtable_scene::SceneModel;
-use crate::add_mesh;
 use sandtable_scene::plinth::floor_z;
 
 /// The color of the lines: neutral, and lighter than ink, so that the ground stays the figure.

@@ -14,11 +14,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::ground::GroundError;
 use sandtable_geom::aabb::Aabb;
 use sandtable_mesh::sink::VertexId;
 use sandtable_mesh::source::{MeshSize, MeshSource};
 use sandtable_mesh::trimesh::TriMesh;
-use crate::ground::GroundError;
 use sandtable_roam::active::ActiveSet;
 use sandtable_roam::bound::Deviation;
 use sandtable_roam::closure::least_closure_of_parts;

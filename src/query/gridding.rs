@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use glam::{DVec2, DVec3};
 
 use sandtable_dem::points::{self, PointCloud, PointHints, PointsError};
-use sandtable_geom::crs::{Crs, CrsError};
-use sandtable_files::error::FileError;
 use sandtable_files::disk::{self, ReadFileError};
+use sandtable_files::error::FileError;
+use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_vector::error::VectorError;
 use sandtable_vector::feature::{Feature, Geometry, Polygon, VectorLayer};
 use sandtable_vector::hints::VectorHints;

@@ -6,10 +6,10 @@ use std::str::FromStr;
 
 use glam::DVec2;
 
-use sandtable_geom::crs::Crs;
 use sandtable_files::csv::{LineError, fields, is_header, numbered_lines};
-use sandtable_files::error::FileError;
 use sandtable_files::disk::{self, ReadFileError};
+use sandtable_files::error::FileError;
+use sandtable_geom::crs::Crs;
 use sandtable_vector::error::VectorError;
 use sandtable_vector::hints::VectorHints;
 use sandtable_vector::read;

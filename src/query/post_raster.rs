@@ -97,9 +97,9 @@ pub fn hillshade_raster(lattice: &Lattice, options: &HillshadeOptions, crs: &Crs
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
     use sandtable_dem::formats::DemFormat;
     use sandtable_dem::write::write;
-    use glam::DVec2;
     use std::io::Cursor;
 
     #[test]

@@ -6,16 +6,16 @@
 
 use glam::DVec2;
 
+use crate::dataset::{QueryError, transform};
+use crate::ground::QueriedGround;
+use crate::positions::{InputLine, format_position};
 use sandtable_annotate::chart::ChartText;
 use sandtable_annotate::chart_ground::ChartPoint;
 use sandtable_annotate::chart_profile::ProfileChart;
 use sandtable_annotate::nice;
+use sandtable_base::limits::PROFILE_STEPS;
 use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
-use sandtable_base::limits::PROFILE_STEPS;
-use crate::dataset::{QueryError, transform};
-use crate::ground::QueriedGround;
-use crate::positions::{InputLine, format_position};
 use sandtable_terrain::profile::{ProfileStation, ProfileSummary, Sampling, sampled_profile};
 
 /// Stretches without ground that are shorter than this, in meters, are not mentioned.

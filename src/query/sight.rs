@@ -2,15 +2,15 @@
 
 use glam::DVec2;
 
+use crate::dataset::{QueryError, transform};
+use crate::ground::QueriedGround;
+use crate::positions::format_position;
+use crate::profile::chart_points;
 use sandtable_annotate::chart::ChartText;
 use sandtable_annotate::chart_sight::{SightBlocker, SightChart};
 use sandtable_annotate::nice;
 use sandtable_dem::answer::Answer;
 use sandtable_geom::crs::Crs;
-use crate::dataset::{QueryError, transform};
-use crate::ground::QueriedGround;
-use crate::positions::format_position;
-use crate::profile::chart_points;
 use sandtable_terrain::profile::profile;
 use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_terrain::sight::Curvature;

@@ -3,8 +3,8 @@
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 
-use sandtable_base::message::suggest::quoted;
 use crate::error::RemoteError;
+use sandtable_base::message::suggest::quoted;
 
 /// The longest address: keys of S3 have up to 1024 bytes.
 const MOST_BYTES: usize = 4096;

@@ -15,12 +15,12 @@ use reqwest::header::{CONTENT_LENGTH, CONTENT_RANGE, HeaderMap, HeaderValue, RAN
 use reqwest::redirect::Policy;
 use reqwest::{Client, Response, StatusCode, Url};
 
-use sandtable_base::message::chain::error_text;
 use crate::access::RemoteAccess;
 use crate::error::RemoteError;
 use crate::request_error::{fault, host_of, plain, request_error};
 use crate::times::RemoteTimes;
 use crate::traffic::Traffic;
+use sandtable_base::message::chain::error_text;
 
 /// The most redirections of a request: one to the bucket's own region, one to a host of its own.
 const MOST_REDIRECTIONS: usize = 4;

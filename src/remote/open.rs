@@ -1,7 +1,7 @@
 //! Opening files by their addresses.
 
-use sandtable_dem::formats::FileContent;
 use crate::error::RemoteError;
+use sandtable_dem::formats::FileContent;
 
 #[cfg(feature = "cloud")]
 use crate::access::RemoteAccess;

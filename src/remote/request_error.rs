@@ -8,9 +8,9 @@ use object_store::client::{HttpError, HttpErrorKind};
 use reqwest::Url;
 use rustls::CertificateError;
 
-use sandtable_base::message::chain::error_text;
 use crate::error::RemoteError;
 use crate::times::RemoteTimes;
+use sandtable_base::message::chain::error_text;
 
 /// The error of a request that would end the same way again.
 pub(crate) fn fault(error: RemoteError) -> HttpError {

@@ -11,9 +11,9 @@ pub mod shadow;
 
 use std::error::Error;
 
-use sandtable_draw::list::DrawList;
 use crate::cpu::{CpuRenderError, RenderQuality};
 use crate::picture::Rendering;
+use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
 
 /// Draws a list elsewhere than on the processor: the same picture, within what rounding leaves.

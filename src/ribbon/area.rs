@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
+use crate::plan::PlanVertex;
 use sandtable_geom::polygon;
 use sandtable_mesh::sink::MeshSink;
-use crate::plan::PlanVertex;
 
 /// Writes the polygon with `exterior` and `holes`, in world coordinates, to `sink`; the texture repeats every
 /// `texture_m` meters east and north.

@@ -8,12 +8,12 @@
 
 use glam::DVec2;
 
-use sandtable_earthworks::alignment::Alignment;
-use sandtable_geom::offset::Continuations;
-use sandtable_geom::polyline::Polyline;
 use crate::partition;
 use crate::plan::PlanMesh;
 use crate::stroke::{StrokeOptions, StrokePath, stroke};
+use sandtable_earthworks::alignment::Alignment;
+use sandtable_geom::offset::Continuations;
+use sandtable_geom::polyline::Polyline;
 
 /// A dash and the gap after it, in widths of the line.
 const DASH: f64 = 5.0;

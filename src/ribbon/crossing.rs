@@ -6,12 +6,12 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::junction::JunctionNode;
+use crate::plan::PlanMesh;
 use sandtable_geom::convex;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
-use crate::junction::JunctionNode;
-use crate::plan::PlanMesh;
 
 /// Ground smaller than this is rounding, in square meters: a sliver of 10 m by 0.1 mm.
 const SLIVER_M2: f64 = 1e-3;
@@ -92,9 +92,9 @@ impl<'a> Joined<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stroke::{StrokeOptions, StrokePath, stroke};
     use sandtable_earthworks::alignment::Alignment;
     use sandtable_geom::polyline::Polyline;
-    use crate::stroke::{StrokeOptions, StrokePath, stroke};
 
     fn ribbon(points: [(f64, f64); 2], width_m: f64) -> PlanMesh {
         let line = Polyline::new(points.map(DVec2::from), 0.0).expect("a line");

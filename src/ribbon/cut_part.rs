@@ -1,10 +1,10 @@
 //! One ribbon's part in a patch, cut to the ground triangle by triangle, so that what still lies is kept.
 
+use crate::drape::Draper;
+use crate::plan::{PlanMesh, PlanVertex};
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::drape::Draper;
-use crate::plan::{PlanMesh, PlanVertex};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// A part cut to the ground.

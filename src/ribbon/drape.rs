@@ -9,12 +9,12 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::plan::{PlanMesh, PlanVertex, TextureMap};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::plan::{PlanMesh, PlanVertex, TextureMap};
 use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface, plane_z};
 
 /// Pieces smaller than this are rounding left over where edges coincide.

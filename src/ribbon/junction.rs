@@ -20,13 +20,13 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::stroke::StrokeOptions;
+use crate::texture::RibbonSurface;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_earthworks::alignment::chain::LineEnd;
 use sandtable_geom::convex;
 use sandtable_geom::offset::{Continuations, LineBend};
 use sandtable_geom::polyline::{VertexKey, vertex_key};
-use crate::stroke::StrokeOptions;
-use crate::texture::RibbonSurface;
 
 /// Widths that differ by less than this are one, in meters: what two file formats make of one number.
 const SAME_WIDTH_M: f64 = 1e-6;
@@ -308,11 +308,11 @@ impl HullArm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::PlanMesh;
+    use crate::stroke::{StrokePath, stroke};
     use sandtable_earthworks::alignment::Support;
     use sandtable_geom::polygon;
     use sandtable_geom::polyline::Polyline;
-    use crate::plan::PlanMesh;
-    use crate::stroke::{StrokePath, stroke};
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")

@@ -15,14 +15,14 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::cutting::{self, SLIVER_M2};
+use crate::plan::{PlanMesh, TextureMap};
 use sandtable_geom::convex;
 use sandtable_geom::morton;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::cutting::{self, SLIVER_M2};
-use crate::plan::{PlanMesh, TextureMap};
 
 /// How many triangles are cut in one go by a thread: a few thousand cuts, against a hand-over of a microsecond.
 const CHUNK: usize = 256;
@@ -144,10 +144,10 @@ fn fan(piece: &[DVec2]) -> impl Iterator<Item = [DVec2; 3]> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_earthworks::alignment::Alignment;
-    use sandtable_geom::polyline::Polyline;
     use crate::stroke::{StrokeOptions, StrokePath, stroke};
     use proptest::prelude::*;
+    use sandtable_earthworks::alignment::Alignment;
+    use sandtable_geom::polyline::Polyline;
 
     fn ribbon(points: &[(f64, f64)], width_m: f64) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.01).expect("a line");

@@ -19,13 +19,13 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::cut_part::CutPart;
+use crate::drape::check_clearance;
+use crate::plan::{PlanMesh, PlanVertex, TextureMap};
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_mesh::sink::MeshSink;
-use crate::cut_part::CutPart;
-use crate::drape::check_clearance;
-use crate::plan::{PlanMesh, PlanVertex, TextureMap};
 use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// Parts smaller than this are rounding, in square meters.
@@ -278,9 +278,9 @@ fn divide(ribbon: usize, plan: &PlanMesh, borders: &Borders, patches: &mut [Patc
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stroke::{StrokeOptions, StrokePath, stroke};
     use sandtable_earthworks::alignment::Alignment;
     use sandtable_geom::polyline::Polyline;
-    use crate::stroke::{StrokeOptions, StrokePath, stroke};
 
     fn borders() -> Borders {
         Borders { east: vec![0.0, 40.0, 80.0, 100.0], north: vec![0.0, 40.0, 70.0] }

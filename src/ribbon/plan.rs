@@ -54,11 +54,7 @@ impl PlanMesh {
     }
 
     /// Adds convex polygons' triangles, counter-clockwise, that lie on a textured one.
-    pub(crate) fn write(
-        &mut self,
-        triangles: impl Iterator<Item = [DVec2; 3]>,
-        texture: &TextureMap,
-    ) {
+    pub(crate) fn write(&mut self, triangles: impl Iterator<Item = [DVec2; 3]>, texture: &TextureMap) {
         for corners in triangles {
             let ids = corners.map(|at| self.vertex(PlanVertex { at, uv: texture.at(at) }));
             self.triangle(ids);

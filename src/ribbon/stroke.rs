@@ -6,14 +6,14 @@
 
 use glam::{DVec2, Vec2};
 
+use crate::joint::{JointFan, RibbonJoint};
+use crate::plan::PlanVertex;
+use crate::texture::{RibbonSurface, texture_length_m};
 use sandtable_description::words::Join;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_earthworks::alignment::chain::{ChainLink, LineEnd};
 use sandtable_geom::offset::{Continuations, LineBend, square};
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::joint::{JointFan, RibbonJoint};
-use crate::plan::PlanVertex;
-use crate::texture::{RibbonSurface, texture_length_m};
 
 /// The widest taper between cross-sections, as a ratio: a texture's lines have a kink between a quad's two triangles.
 const TAPER_STEP: f64 = 1.1;
@@ -206,10 +206,10 @@ fn write_triangle(corners: [(VertexId, PlanVertex); 3], sink: &mut impl MeshSink
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::PlanMesh;
     use sandtable_earthworks::alignment::Width;
     use sandtable_geom::polyline::Polyline;
     use sandtable_geom::profile::Profile;
-    use crate::plan::PlanMesh;
 
     fn stroked(points: &[(f64, f64)], width_m: f64, options: &StrokeOptions) -> PlanMesh {
         let line = Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line");

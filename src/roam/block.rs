@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use sandtable_dem::error::DemErrorKind;
 use crate::graph::Vertex;
 use crate::layout::PatchLayout;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
+use sandtable_dem::error::DemErrorKind;
 use sandtable_terrain::lattice::LatticeError;
 
 /// The (patch + 1)² vertices of one patch, row by row from the south-west; those on a border are the same in both patches

@@ -8,8 +8,8 @@ use std::cmp::Reverse;
 
 use glam::{DVec2, DVec3};
 
-use sandtable_mesh::trimesh::TriMesh;
 use crate::errors::rows::RowSpans;
+use sandtable_mesh::trimesh::TriMesh;
 use sandtable_terrain::lattice::{Lattice, Post};
 
 /// Vertical distances between a mesh and the ground, meters.
@@ -140,12 +140,7 @@ fn post_of(lattice: &Lattice, mesh: &TriMesh, vertex: usize) -> Option<Post> {
 }
 
 /// The distance of a post from the plane of a triangle; from the corner itself where it is one.
-pub(crate) fn distance(
-    lattice: &Lattice,
-    corners: &[DVec3; 3],
-    posts: &[Post; 3],
-    post: Post,
-) -> f64 {
+pub(crate) fn distance(lattice: &Lattice, corners: &[DVec3; 3], posts: &[Post; 3], post: Post) -> f64 {
     let height = f64::from(lattice.height(post));
     if let Some(corner) = posts.iter().position(|&corner| corner == post) {
         return (height - corners[corner].z).abs();
@@ -197,8 +192,8 @@ impl DeviationSums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::sink::{MeshSink, VertexId};
     use glam::{DVec2, Vec3};
+    use sandtable_mesh::sink::{MeshSink, VertexId};
 
     fn square() -> (Lattice, TriMesh) {
         let heights = vec![0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, -1.0, 0.0];

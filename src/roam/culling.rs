@@ -220,9 +220,9 @@ impl PatchCull<'_> {
 mod tests {
     use super::*;
     use crate::layout::PatchLayout;
-    use sandtable_terrain::lattice::Lattice;
     use glam::{DVec2, Vec2};
     use proptest::prelude::*;
+    use sandtable_terrain::lattice::Lattice;
 
     fn plain(ground: PatchedGround<'_>, heights: &PatchHeights, frustum: &Frustum) -> Vec<Vertex> {
         let seen = |&corner: &Vertex| {

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use sandtable_geom::rect::Rect;
-use sandtable_mesh::sink::MeshSink;
 use crate::active::ActiveSet;
 use crate::emit::{bintree, world};
 use crate::graph::Vertex;
 use crate::patched_ground::PatchedGround;
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::MeshSink;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
@@ -83,11 +83,11 @@ impl TriangleSurface for DisplayedTerrain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::layout::PatchLayout;
     use glam::DVec2;
     use proptest::prelude::*;
+    use sandtable_mesh::check;
+    use sandtable_mesh::trimesh::TriMesh;
 
     fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Arc<Lattice> {
         let mut heights: Vec<f32> =

@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use sandtable_earthworks::brush::{BrushChanges, Change};
 use crate::active::ActiveSet;
 use crate::block::{BlockError, BlockSource, PatchBlock, RootSphere, WholeGround};
 use crate::criterion::Criterion;
@@ -28,6 +27,7 @@ use crate::patched_ground::PatchedGround;
 use crate::roughness::Roughness;
 use crate::sphere_task::{SphereTask, TaskGround};
 use crate::spheres::{OwnRadius, SphereMap};
+use sandtable_earthworks::brush::{BrushChanges, Change};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::volumes::Volumes;
 

@@ -8,7 +8,6 @@
 //! The result equals, bit for bit, one computed from the new heights. Where an edit has several rectangles, all heights are
 //! changed first and the updates follow one by one.
 
-use sandtable_earthworks::brush::Change;
 use crate::errors::ErrorMap;
 use crate::errors::exact::{own_error, triangles_split_at};
 use crate::errors::midpoint::torn_off;
@@ -19,6 +18,7 @@ use crate::layout::PatchLayout;
 use crate::levels::{LevelPass, PassRow, VertexRect, passes};
 use crate::patched_ground::PatchedGround;
 use crate::spheres::{OwnRadius, SphereMap};
+use sandtable_earthworks::brush::Change;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 

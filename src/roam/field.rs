@@ -84,8 +84,8 @@ fn coordinate(post: u32, cell: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::layout::PatchLayout;
-    use sandtable_terrain::lattice::Lattice;
     use glam::DVec3;
+    use sandtable_terrain::lattice::Lattice;
 
     #[test]
     fn a_field_has_the_places_of_its_ground() {

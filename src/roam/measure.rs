@@ -193,9 +193,9 @@ mod tests {
     use crate::displayed::DisplayedTerrain;
     use crate::graph::Vertex;
     use crate::patched_ground::PatchedGround;
-    use sandtable_terrain::triangle_surface::TriangleSurface;
     use glam::DVec2;
     use proptest::prelude::*;
+    use sandtable_terrain::triangle_surface::TriangleSurface;
     use std::sync::Arc;
 
     fn lattice(columns: u32, rows: u32, holes: &[usize]) -> Arc<Lattice> {

@@ -96,7 +96,6 @@ impl<'a> PartDistances<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::bound::measure;
     use crate::closure::least_closure;
     use crate::displayed::DisplayedTerrain;
@@ -105,6 +104,7 @@ mod tests {
     use crate::parts::tests::CutGround;
     use glam::DVec2;
     use proptest::prelude::*;
+    use sandtable_mesh::trimesh::TriMesh;
     use std::sync::Arc;
 
     proptest! {

@@ -87,9 +87,9 @@ fn block(layout: &PatchLayout) -> VertexBlock {
 mod tests {
     use super::*;
     use crate::displayed::DisplayedTerrain;
+    use glam::{DVec2, Vec2, Vec3};
     use sandtable_terrain::lattice::Lattice;
     use sandtable_terrain::triangle_surface::TriangleSurface;
-    use glam::{DVec2, Vec2, Vec3};
     use std::collections::BTreeSet;
 
     fn plan_key(corners: [Vec2; 3]) -> [[i64; 2]; 3] {

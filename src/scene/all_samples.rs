@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_base::limits::memory::check_memory;
 use sandtable_dem::answer::Answer;
 use sandtable_dem::error::DemErrorKind;
 use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
@@ -12,12 +14,12 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_base::limits::memory::check_memory;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::query::Interpolation;
-use sandtable_terrain::query::windowed::{LatticePartError, lattice_part, post_heights, windowed_ground_heights};
+use sandtable_terrain::query::windowed::{
+    LatticePartError, lattice_part, post_heights, windowed_ground_heights,
+};
 
 /// Posts beside those that are asked for: those of the cells around them, and a few for rounding.
 const HALO: f64 = 4.0;

@@ -6,6 +6,12 @@
 
 use glam::DVec2;
 
+use crate::FeatureKind;
+use crate::builder::SceneBuilder;
+use crate::crossed_shapes::CrossedShapes;
+use crate::near::Clipped;
+use crate::scene_findings::FeatureTable;
+use crate::sources::{Sourced, Sources};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::AreaTable;
@@ -20,12 +26,6 @@ use sandtable_ribbon::border::{Dashes, border, edge};
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_ribbon::texture::cover::{EDGE_M, border_color, cover_length_m, is_natural};
-use crate::FeatureKind;
-use crate::builder::SceneBuilder;
-use crate::crossed_shapes::CrossedShapes;
-use crate::near::Clipped;
-use crate::scene_findings::FeatureTable;
-use crate::sources::{Sourced, Sources};
 use sandtable_vector::feature::Polygon;
 
 /// Adds the document's areas to `collected`. Those off the ground and those without an area are left out, and those for

@@ -16,10 +16,10 @@ use std::io::{self, Read, Seek};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use sandtable_dem::formats::FileContent;
-use sandtable_dem::raster::Raster;
 use sandtable_base::limits::ASSET_BYTES;
 use sandtable_base::message::suggest::{nearest, quoted};
+use sandtable_dem::formats::FileContent;
+use sandtable_dem::raster::Raster;
 use sandtable_model::Companions;
 use sandtable_model::error::CompanionError;
 use sandtable_remote::address::is_address;

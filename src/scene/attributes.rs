@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::feature_origin::FeatureOrigin;
 use sandtable_description::expression::Expression;
 use sandtable_description::feature_value::{DefaultedValue, FeatureValue, FromScalar};
 use sandtable_description::features::FeatureSource;
 use sandtable_description::scalar::Scalar;
-use crate::feature_origin::FeatureOrigin;
 use sandtable_vector::feature::{Geometry, VectorLayer};
 
 /// The properties of one feature; none for a feature that the scene file itself states.

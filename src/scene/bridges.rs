@@ -12,16 +12,6 @@
 
 use std::collections::BTreeSet;
 
-use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::Document;
-use sandtable_description::finding_code::FindingCode;
-use sandtable_earthworks::alignment::chain::{ChainLink, Direction};
-use sandtable_earthworks::alignment::{Alignment, Support};
-use sandtable_geom::polyline::{VertexKey, vertex_key};
-use sandtable_geom::profile::Profile;
-use sandtable_geom::rect::Rect;
-use sandtable_base::limits::BRIDGE_PIERS;
-use sandtable_ribbon::texture::RibbonSurface;
 use crate::builder::{SceneBuilder, described};
 use crate::report::SpanRow;
 use crate::roads::centerline::Centerline;
@@ -31,6 +21,16 @@ use crate::roads::profiles::BridgeProfile;
 use crate::roads::spans::{self, RoadSpan};
 use crate::sources::Sources;
 use crate::{Coat, FeatureKind, Solid};
+use sandtable_base::limits::BRIDGE_PIERS;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::Document;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_earthworks::alignment::chain::{ChainLink, Direction};
+use sandtable_earthworks::alignment::{Alignment, Support};
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
+use sandtable_geom::rect::Rect;
+use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_structure::bridge::{self, Across, BridgeOptions, magnified};
 use sandtable_structure::deck::DeckSection;
 use sandtable_structure::deck_profile::ClearancePoint;

@@ -1,10 +1,5 @@
 //! The output of the passes over a document: features with their ids, ribbons, solids, findings and reports.
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::FeatureId;
-use sandtable_ribbon::partition;
-use sandtable_ribbon::plan::PlanMesh;
-use sandtable_ribbon::texture::RibbonSurface;
 use crate::attributes::DefaultCounts;
 use crate::feature_origin::FeatureOrigin;
 use crate::graphics::SceneGraphic;
@@ -14,6 +9,11 @@ use crate::scene_findings::SceneFindings;
 use crate::spot_heights::LakeSurface;
 use crate::symbols::LineSymbol;
 use crate::{FeatureKind, FeatureSolid, Ribbon, SceneFeature, Solid};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
+use sandtable_ribbon::partition;
+use sandtable_ribbon::plan::PlanMesh;
+use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
 /// The features of a scene so far, with their meshes, findings and reports.

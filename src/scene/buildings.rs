@@ -8,6 +8,16 @@
 
 use glam::DVec2;
 
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::building_colors::color_named;
+use crate::crossed_shapes::CrossedShapes;
+use crate::report::BuildingPadRow;
+use crate::scene_findings::SceneFindings;
+use crate::sources::{Sourced, Sources};
+use crate::vertical_scale::DrawnGround;
+use crate::{Coat, FeatureKind, FeatureSolid, Solid};
+use sandtable_base::message::choice::Choice;
 use sandtable_description::color::Color;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -19,16 +29,6 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_earthworks::leveling;
 use sandtable_geom::polygon;
-use sandtable_base::message::choice::Choice;
-use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::building_colors::color_named;
-use crate::crossed_shapes::CrossedShapes;
-use crate::report::BuildingPadRow;
-use crate::scene_findings::SceneFindings;
-use crate::sources::{Sourced, Sources};
-use crate::vertical_scale::DrawnGround;
-use crate::{Coat, FeatureKind, FeatureSolid, Solid};
 use sandtable_structure::building::{BuildingLevels, Paint, STORY_M, check, raise as raised};
 use sandtable_structure::building_footing::WallFooting;
 use sandtable_structure::building_footprint::BuildingFootprint;

@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::iter::successors;
 
+use crate::assets::AssetError;
 use sandtable_dem::error::DemErrorKind;
 use sandtable_dem::imagery::ImageryErrorKind;
 use sandtable_dem::mosaic::MosaicError;
@@ -12,7 +13,6 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::CrsError;
 use sandtable_model::error::ModelError;
 use sandtable_remote::error::RemoteError;
-use crate::assets::AssetError;
 use sandtable_vector::error::VectorError;
 
 /// The error with the code of its cause, unless it has a code of its own.

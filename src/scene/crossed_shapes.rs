@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use crate::builder::{SceneBuilder, described};
+use crate::world_frame::WorldFrame;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::own_crossing::own_crossing;
-use crate::builder::{SceneBuilder, described};
-use crate::world_frame::WorldFrame;
 use sandtable_vector::feature::Polygon;
 
 /// Those of one table.

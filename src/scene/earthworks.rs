@@ -6,6 +6,13 @@
 
 use glam::DVec2;
 
+use crate::attributes::{Attributes, DefaultCounts};
+use crate::builder::SceneBuilder;
+use crate::near::MERGE_M;
+use crate::report::EarthworkRow;
+use crate::sources::{Sourced, Sources};
+use sandtable_base::limits::EARTHWORK_STEPS;
+use sandtable_base::message::choice::Choice;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::earthworks::EarthworkTable;
@@ -17,13 +24,6 @@ use sandtable_earthworks::held_posts::HeldPosts;
 use sandtable_earthworks::level_ground::LevelGround;
 use sandtable_earthworks::pad::Batters;
 use sandtable_geom::polyline::Polyline;
-use sandtable_base::limits::EARTHWORK_STEPS;
-use sandtable_base::message::choice::Choice;
-use crate::attributes::{Attributes, DefaultCounts};
-use crate::builder::SceneBuilder;
-use crate::near::MERGE_M;
-use crate::report::EarthworkRow;
-use crate::sources::{Sourced, Sources};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::water_cover::{WaterCover, water_cover};
 

@@ -11,6 +11,13 @@ use std::cell::RefCell;
 
 use glam::DVec2;
 
+use crate::assets::{AssetError, Assets};
+use crate::overridden_crs::OverriddenCrs;
+use crate::planned_pictures::ElevationNeed;
+use crate::reduced_elevation::{ReducedElevation, reduced_as_needed};
+use crate::scene_findings::SceneFindings;
+use sandtable_base::limits::{COMPANION_BYTES, PICTURED_SAMPLES, RASTER_SAMPLES};
+use sandtable_base::message::suggest::quoted;
 use sandtable_dem::crop::{crop_window, part, window_samples};
 use sandtable_dem::error::{DemError, DemErrorKind};
 use sandtable_dem::formats::height_encoding::HeightEncoding;
@@ -31,14 +38,7 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::HeightEncodingWord;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::{COMPANION_BYTES, PICTURED_SAMPLES, RASTER_SAMPLES};
-use sandtable_base::message::suggest::quoted;
 use sandtable_remote::address::is_address;
-use crate::assets::{AssetError, Assets};
-use crate::overridden_crs::OverriddenCrs;
-use crate::planned_pictures::ElevationNeed;
-use crate::reduced_elevation::{ReducedElevation, reduced_as_needed};
-use crate::scene_findings::SceneFindings;
 
 /// Samples beside an extent that are read of large files, so that voids on its border are known to end.
 const MARGIN: u32 = 512;

@@ -14,6 +14,12 @@ use std::cell::RefCell;
 
 use glam::{DVec2, Vec2};
 
+use crate::all_samples::{AllSamples, PartTooLarge};
+use crate::assets::Assets;
+use crate::build::part_ground;
+use crate::finer_elevation::part_document;
+use crate::scene_findings::SceneFindings;
+use crate::world_frame::WorldFrame;
 use sandtable_dem::windows::Windows;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -22,12 +28,6 @@ use sandtable_description::features::FenceTable;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::{BaseRule, FenceKind, Footing, ProfileMode, RangeExtent};
 use sandtable_geom::rect::Rect;
-use crate::all_samples::{AllSamples, PartTooLarge};
-use crate::assets::Assets;
-use crate::build::part_ground;
-use crate::finer_elevation::part_document;
-use crate::scene_findings::SceneFindings;
-use crate::world_frame::WorldFrame;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::windowed::LatticePartError;
 use sandtable_terrain::query::{Interpolation, ground_height};

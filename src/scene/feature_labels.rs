@@ -7,14 +7,6 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::LabelTable;
-use sandtable_description::expression::Expression;
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::scalar::Scalar;
-use sandtable_geom::crs::Crs;
-use sandtable_geom::polygon::{doubled_area, inner_point};
-use sandtable_geom::polyline::Polyline;
 use crate::SceneLabel;
 use crate::attributes::Attributes;
 use crate::exact_ground::ExactGround;
@@ -24,6 +16,14 @@ use crate::scene_findings::SceneFindings;
 use crate::sources::Sources;
 use crate::views::whole_meters;
 use crate::world_frame::WorldFrame;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::LabelTable;
+use sandtable_description::expression::Expression;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::scalar::Scalar;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::polygon::{doubled_area, inner_point};
+use sandtable_geom::polyline::Polyline;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_vector::feature::{Geometry, Polygon};
 

@@ -3,6 +3,16 @@
 //! Two passes, as for buildings: trenches are dug before the roads come, everything is set where the ground is finished.
 //! What stands is only planned here; [`sandtable_structure::draped_solid`] sets it on the displayed ground for every picture.
 
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::crossed_shapes::CrossedShapes;
+use crate::near::{self, Clipped};
+use crate::report::TrenchRow;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use crate::vertical_scale::DrawnGround;
+use crate::{FeatureKind, FeatureSolid};
+use sandtable_base::limits::LINE_PIECES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::FenceTable;
@@ -15,19 +25,9 @@ use sandtable_earthworks::alignment::Alignment;
 use sandtable_earthworks::brush::Trench;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::LINE_PIECES;
 use sandtable_ribbon::plan::PlanMesh;
 use sandtable_ribbon::stroke::{StrokeOptions, StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
-use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::crossed_shapes::CrossedShapes;
-use crate::near::{self, Clipped};
-use crate::report::TrenchRow;
-use crate::scene_findings::FeatureTable;
-use crate::sources::Sources;
-use crate::vertical_scale::DrawnGround;
-use crate::{FeatureKind, FeatureSolid};
 use sandtable_structure::bands::{BandSize, bare_m, hedge, parapets, rails, wall};
 use sandtable_structure::draped_solid::DrapedSolid;
 use sandtable_structure::fence::{Posts, spans, stands};

@@ -5,16 +5,16 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::{Document, FlightTable};
-use sandtable_geom::polyline::Polyline;
-use sandtable_geom::profile::Profile;
-use sandtable_geom::smooth::smoothed;
 use crate::assets::Assets;
 use crate::near::MERGE_M;
 use crate::sources::Sources;
 use crate::world_frame::WorldFrame;
 use crate::{SceneModel, SceneView, ViewAim};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::{Document, FlightTable};
+use sandtable_geom::polyline::Polyline;
+use sandtable_geom::profile::Profile;
+use sandtable_geom::smooth::smoothed;
 use sandtable_view::camera::Camera;
 
 /// Vertices of a path: as many as frames of a minute.

@@ -1,10 +1,10 @@
 //! The font that a scene names.
 
+use crate::assets::Assets;
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_draw::font::{FontFile, LARGEST_FONT_BYTES};
-use sandtable_base::message::suggest::quoted;
-use crate::assets::Assets;
 
 /// The font of `document`; `None` where it names none.
 ///

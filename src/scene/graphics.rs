@@ -2,6 +2,13 @@
 
 use glam::DVec2;
 
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use sandtable_base::limits::SCENE_GRAPHICS;
+use sandtable_base::message::suggest::{nearest, quoted};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::graphics::GraphicTable;
@@ -10,13 +17,6 @@ use sandtable_description::stated::Stated;
 use sandtable_description::words::{GraphicSide, GraphicStatus};
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::SCENE_GRAPHICS;
-use sandtable_base::message::suggest::{nearest, quoted};
-use crate::FeatureKind;
-use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::scene_findings::FeatureTable;
-use crate::sources::Sources;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::fields::{SymbolIdentity, SymbolSet, SymbolStatus};
 use sandtable_symbology::graphic::check::{GraphicError, MOST_RANGES, PlacedGraphic, check};

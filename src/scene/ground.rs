@@ -5,6 +5,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::assets::Assets;
+use crate::elevation::{BESIDE, ReadElevation, nothing_within};
+use crate::planned_pictures::ElevationNeed;
+use crate::scene_findings::SceneFindings;
 use sandtable_dem::crop::crop;
 use sandtable_dem::largest_rectangle::{largest_rectangle, outside};
 use sandtable_dem::raster::Raster;
@@ -18,10 +22,6 @@ use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use crate::assets::Assets;
-use crate::elevation::{BESIDE, ReadElevation, nothing_within};
-use crate::planned_pictures::ElevationNeed;
-use crate::scene_findings::SceneFindings;
 use sandtable_terrain::lattice::Lattice;
 
 /// The raster as read and the lattice made of it.

@@ -4,14 +4,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Vec2, Vec3};
 
-use sandtable_dem::raster::Samples;
-use sandtable_draw::ground::{GroundMap, GroundPost};
-use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
-use sandtable_draw::lighting::ReliefShading;
 use crate::SceneModel;
 use crate::relief_strength::ReliefStrength;
 use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
+use sandtable_dem::raster::Samples;
+use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
+use sandtable_draw::lighting::ReliefShading;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::light::TerrainLight;
 use sandtable_terrain::terraces::without_terraces;
@@ -55,10 +55,7 @@ impl GroundMapCache {
 
 /// The height, slope and light at a level of the posts; 0 is all of them, each further level every second post of the one
 /// before, smoothed.
-pub fn ground_map(
-    scene: &SceneModel,
-    GroundMapKey { level: number, to_sun }: GroundMapKey,
-) -> GroundMap {
+pub fn ground_map(scene: &SceneModel, GroundMapKey { level: number, to_sun }: GroundMapKey) -> GroundMap {
     let lattice = &scene.lattice;
     let beside_light =
         || (&scene.water().is_water, WaterShore::new(lattice, scene.water()), undergrowth(scene));

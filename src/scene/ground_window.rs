@@ -6,11 +6,11 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use sandtable_draw::ground::{GroundMap, GroundPost};
-use sandtable_draw::ground_window::GroundWindow;
 use crate::SceneModel;
 use crate::ground_map::is_whole_meters;
 use crate::texture_shading::sky_in_part;
+use sandtable_draw::ground::{GroundMap, GroundPost};
+use sandtable_draw::ground_window::GroundWindow;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::light::TerrainLight;
 use sandtable_terrain::post_rect::PostRect;

@@ -8,6 +8,8 @@
 use glam::{DAffine2, DVec2};
 use rayon::prelude::*;
 
+use crate::assets::Assets;
+use sandtable_base::limits::COMPANION_BYTES;
 use sandtable_dem::imagery::Imagery;
 use sandtable_dem::read::{DemHints, DemOptions};
 use sandtable_dem::warp::row_positions::positions;
@@ -19,8 +21,6 @@ use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::pixels::Pixels;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::COMPANION_BYTES;
-use crate::assets::Assets;
 use sandtable_terrain::lattice::Lattice;
 
 /// The longest side in pixels: more than a screen of 4K shows of the ground, and 64 MiB at the most. Finer pictures lose

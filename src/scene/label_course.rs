@@ -2,10 +2,10 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_geom::join::joined;
-use sandtable_geom::polyline::Polyline;
 use crate::near::MERGE_M;
 use crate::world_frame::WorldFrame;
+use sandtable_geom::join::joined;
+use sandtable_geom::polyline::Polyline;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_vector::feature::Polygon;
 

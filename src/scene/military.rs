@@ -2,18 +2,18 @@
 
 use glam::Vec3;
 
+use crate::attributes::Attributes;
+use crate::feature_labels::{place, written};
+use crate::scene_findings::SceneFindings;
+use crate::sources::Sources;
+use crate::world_frame::WorldFrame;
+use sandtable_base::limits::SCENE_SYMBOLS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::stated::Stated;
 use sandtable_description::symbols::SymbolTable;
 use sandtable_geom::crs::Crs;
-use sandtable_base::limits::SCENE_SYMBOLS;
-use crate::attributes::Attributes;
-use crate::feature_labels::{place, written};
-use crate::scene_findings::SceneFindings;
-use crate::sources::Sources;
-use crate::world_frame::WorldFrame;
 use sandtable_symbology::code::SymbolCode;
 use sandtable_symbology::symbol::MilitarySymbol;
 use sandtable_symbology::texts::{SymbolNote, SymbolText, TEXT_FIELDS, placed};

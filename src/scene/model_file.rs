@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use crate::assets::{AssetError, Assets};
+use sandtable_files::disk::{self, ReadFileError};
+use sandtable_files::error::FileError;
 use sandtable_model::Model;
 use sandtable_model::error::ModelError;
 use sandtable_model::read;
-use sandtable_files::error::FileError;
-use sandtable_files::disk::{self, ReadFileError};
-use crate::assets::{AssetError, Assets};
 
 /// A model that cannot be opened.
 #[derive(Debug, thiserror::Error)]

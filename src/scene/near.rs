@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::{Polyline, kept};
-use sandtable_geom::rect::Rect;
-use sandtable_mesh::sink::{MeshSink, VertexId};
-use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sourced;
+use sandtable_geom::polyline::{Polyline, kept};
+use sandtable_geom::rect::Rect;
+use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 
 /// Vertices nearer to each other than this have no direction worth a joint, in meters.
 pub const MERGE_M: f64 = 0.01;

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::document::Document;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::geodesic::Geodesic;
-use sandtable_base::message::suggest::quoted;
 
 /// Two realizations of one datum are nearer to each other than this, meters.
 const LEAST_M: f64 = 1.0;

@@ -13,11 +13,11 @@
 
 use glam::{DVec2, Mat4, Quat, Vec2, Vec3};
 
+use crate::Placement;
+use crate::footprint::{ModelFootprint, Under};
 use sandtable_description::words::{Anchor, Clamp, Footing};
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;
-use crate::Placement;
-use crate::footprint::{ModelFootprint, Under};
 use sandtable_structure::plinth;
 use sandtable_terrain::support_surface::SupportSurface;
 
@@ -165,13 +165,13 @@ fn tilted(lean: Vec2) -> Quat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::list::FeatureId;
     use crate::GroundFit;
     use crate::vertical_scale::VerticalScale;
+    use glam::DVec2;
+    use sandtable_draw::list::FeatureId;
     use sandtable_terrain::full_resolution::FullResolution;
     use sandtable_terrain::lattice::Lattice;
     use sandtable_terrain::triangle_surface::TriangleSurface;
-    use glam::DVec2;
 
     const FOOTPRINT: ModelFootprint =
         ModelFootprint { min: Vec3::new(-6.0, -4.0, -1.5), max: Vec3::new(6.0, 4.0, -1.5) };

@@ -6,10 +6,10 @@
 //! and span the model's range. `viridis` and `cividis` are perceptually uniform: equal steps of height differ equally to
 //! the eye, to one that tells no red from green too (Smith and van der Walt 2015; Nuñez, Anderton and Renslow 2018).
 
+use crate::land_cover::{CoverLines, TRANSITION_M};
 use sandtable_description::words::RampName;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::ColorRamp;
-use crate::land_cover::{CoverLines, TRANSITION_M};
 
 /// The tints of an atlas from the green of lowlands to the white of snow, L* 61 to 94.
 const ATLAS: [(f32, [u8; 3]); 7] = [
@@ -118,8 +118,8 @@ fn stretched(stops: Vec<(f32, Srgba)>, (low, high): (f32, f32)) -> ColorRamp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::lightness;
     use sandtable_base::message::choice::Choice;
+    use sandtable_draw::color::lightness;
 
     fn ground(low: f32, high: f32, latitude: f64) -> TintedGround {
         TintedGround { range_m: (low, high), latitude_deg: Some(latitude) }

@@ -1,5 +1,11 @@
 //! Elevation of more samples than a scene needs: means of squares of them, read in windows or from an overview of the file.
 
+use crate::exact_ground::depends_on_samples;
+use crate::finer_elevation::level_samples;
+use crate::framing::shown_step::{UnreadGround, shown_step};
+use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
+use crate::scene_findings::SceneFindings;
+use sandtable_base::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
 use sandtable_dem::raster::Raster;
 use sandtable_dem::reduced::reduced;
 use sandtable_dem::warp::metric_windows::MetricSystem;
@@ -8,12 +14,6 @@ use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
-use sandtable_base::limits::{PICTURED_SAMPLES, RASTER_SAMPLES, REDUCED_SAMPLES};
-use crate::exact_ground::depends_on_samples;
-use crate::finer_elevation::level_samples;
-use crate::framing::shown_step::{UnreadGround, shown_step};
-use crate::planned_pictures::{ElevationNeed, NearGround, PlannedPictures};
-use crate::scene_findings::SceneFindings;
 
 /// Means of samples are held everywhere where they are fewer than this many times the samples that pictures read whole.
 const MOST_MEANS: u64 = 2;

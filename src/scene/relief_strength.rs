@@ -5,10 +5,10 @@
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
 
+use crate::vertical_scale::VerticalScale;
 use sandtable_draw::color::luminance;
 use sandtable_draw::ground::ColorRamp;
 use sandtable_draw::lighting::{ReliefPoint, ReliefShading};
-use crate::vertical_scale::VerticalScale;
 use sandtable_terrain::lattice::{Lattice, Post};
 
 /// The mean slope, meters per meter, to which the slopes of gentle ground are raised for their shading: that of hills. More

@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::SceneModel;
+use crate::assets::{AssetError, Assets};
+use crate::build::{SceneGround, build, build_ground, build_with};
+use crate::cause_code::coded;
+use crate::planned_pictures::ElevationNeed;
+use sandtable_base::message::chain::error_text;
+use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
 use sandtable_description::document::Document;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::parse::parse_in_phase;
-use sandtable_base::message::chain::error_text;
-use sandtable_base::message::suggest::{quoted, remedy};
 use sandtable_files::disk::{self, ReadFileError};
-use crate::cause_code::coded;
-use crate::SceneModel;
-use crate::assets::{AssetError, Assets};
-use crate::build::{SceneGround, build, build_ground, build_with};
-use crate::planned_pictures::ElevationNeed;
 
 /// A scene that cannot be opened.
 #[derive(Debug, thiserror::Error)]

@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::FeatureKind;
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::document::Document;
 use sandtable_description::features::FeatureSource;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::source_text::SourceText;
-use sandtable_base::message::suggest::quoted;
-use crate::FeatureKind;
 
 /// Findings so far, about one scene file.
 #[derive(Clone, Debug)]

@@ -6,10 +6,10 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
+use crate::exact_ground::{ExactGround, ExactPartError};
 use sandtable_description::words::ViewshedTint;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::rect::Rect;
-use crate::exact_ground::{ExactGround, ExactPartError};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::profile::profile;
 use sandtable_terrain::query::{Interpolation, ground_height};

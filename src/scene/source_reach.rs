@@ -7,13 +7,13 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use crate::misplacement::{Misplacement, misplacement};
+use crate::world_frame::WorldFrame;
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use sandtable_base::message::suggest::quoted;
-use crate::misplacement::{Misplacement, misplacement};
-use crate::world_frame::WorldFrame;
 
 /// The most vertices of a source that are kept, as they are written, to find out why it lies off the ground.
 const SAMPLED: usize = 256;

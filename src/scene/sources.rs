@@ -6,6 +6,12 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use crate::assets::Assets;
+use crate::attributes::Attributes;
+use crate::source_reach::SourceReach;
+use crate::world_frame::WorldFrame;
+use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::expression::Expression;
 use sandtable_description::features::FeatureSource;
@@ -14,12 +20,6 @@ use sandtable_description::selection::Selection;
 use sandtable_description::stated::Stated;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::self_crossing::count_crossings;
-use sandtable_base::limits::{ASSET_BYTES, RING_CROSSINGS};
-use sandtable_base::message::suggest::quoted;
-use crate::assets::Assets;
-use crate::attributes::Attributes;
-use crate::source_reach::SourceReach;
-use crate::world_frame::WorldFrame;
 use sandtable_vector::error::{VectorError, did_you_mean, list};
 use sandtable_vector::feature::{Geometry, Polygon, VectorLayer};
 use sandtable_vector::filter::{Condition, Filter};

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, Vec2};
 
-use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::words::LabelKind;
-use sandtable_geom::polygon::inner_point;
 use crate::SceneLabel;
 use crate::exact_ground::{ExactGround, ExactSpot};
 use crate::label_course::LabelCourse;
 use crate::views::whole_meters;
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::words::LabelKind;
+use sandtable_geom::polygon::inner_point;
 use sandtable_terrain::prominence::summits;
 
 /// Named labels come before all spot heights.

@@ -2,6 +2,9 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::ramps::{TintedGround, named};
+use sandtable_base::message::choice::Choice;
+use sandtable_base::message::suggest::quoted;
 use sandtable_description::color::{Color, RampChoice};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
@@ -10,9 +13,6 @@ use sandtable_draw::color::Srgba;
 use sandtable_draw::ground::{ColorRamp, Contours};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::declination::CalendarDay;
-use sandtable_base::message::choice::Choice;
-use sandtable_base::message::suggest::quoted;
-use crate::ramps::{TintedGround, named};
 
 /// A translucent brown.
 const CONTOUR_COLOR: Srgba = Srgba([112, 74, 40, 150]);

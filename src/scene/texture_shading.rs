@@ -76,8 +76,8 @@ fn bent(texture: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::lighting::ReliefPoint;
     use glam::Vec3;
+    use sandtable_draw::lighting::ReliefPoint;
 
     const SIDE: u32 = 129;
 

@@ -5,8 +5,8 @@
 
 use glam::Vec2;
 
-use sandtable_model::Model;
 use crate::SceneModel;
+use sandtable_model::Model;
 
 /// The radius of a cone in radii of its crown: litter lies beyond the boughs.
 const REACH: f32 = 1.4;

@@ -4,12 +4,6 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
 use glam::{DVec2, Vec3};
 
-use sandtable_description::diagnostic::Diagnostic;
-use sandtable_description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::stated::Stated;
-use sandtable_description::words::CameraProjection;
-use sandtable_geom::rect::Rect;
 use crate::attributes::Attributes;
 use crate::exact_ground::ExactGround;
 use crate::feature_labels;
@@ -20,6 +14,12 @@ use crate::sources::Sources;
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
 use crate::{FittedView, ParallelView, SceneLabel, SceneView, ViewAim};
+use sandtable_description::diagnostic::Diagnostic;
+use sandtable_description::document::{CameraTable, Document, LabelTable, PAPER_DPI, paper_mm};
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::stated::Stated;
+use sandtable_description::words::CameraProjection;
+use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 

@@ -2,9 +2,9 @@
 
 use glam::FloatExt;
 
+use crate::scatter::chance::Chance;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
-use crate::scatter::chance::Chance;
 
 /// Texels along a side.
 const SIZE: u32 = 512;

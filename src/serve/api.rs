@@ -2,12 +2,12 @@
 //!
 //! The queries refuse what is not in it, and the page at `/` and the OpenAPI document are made of it.
 
-use sandtable_dem::height_datum::HeightDatum;
-use sandtable_base::message::choice::Choice;
-use sandtable_query::service::{PathPrefix, ServiceLimits};
 use crate::api::ApiNeed::{Optional, Required};
 use crate::api::ApiValue::{Count, Number, Text, Words};
 use crate::{health, ready};
+use sandtable_base::message::choice::Choice;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_query::service::{PathPrefix, ServiceLimits};
 use sandtable_terrain::query::Interpolation;
 
 /// An address of the service.

@@ -7,11 +7,11 @@
 use glam::DVec2;
 use serde::Serialize;
 
-use sandtable_geom::crs::Crs;
-use sandtable_query::dataset::check_datums;
 use crate::parameters::Parameters;
 use crate::polyline;
 use crate::reply::{HttpError, quoted};
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::check_datums;
 
 /// The coordinates of a request.
 #[derive(Clone, Debug)]

@@ -8,13 +8,13 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
+use crate::query::Service;
+use crate::reply::{HttpError, OK, quoted};
 use sandtable_base::message::chain::error_text;
 use sandtable_query::dataset::{Dataset, OpenError, QueryError};
 use sandtable_query::ground::QueriedGround;
 use sandtable_query::service::{NamedFile, ServiceOptions};
 use sandtable_query::windowed_elevation::GroundReach;
-use crate::query::Service;
-use crate::reply::{HttpError, OK, quoted};
 
 pub struct ServedDataset {
     pub name: String,

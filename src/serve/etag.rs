@@ -13,9 +13,9 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::Response;
 
-use sandtable_files::fingerprint::content_hash;
 use crate::query::Service;
 use crate::{health, ready};
+use sandtable_files::fingerprint::content_hash;
 
 /// Answers longer than this are hashed on another thread: a millisecond.
 const LIGHT_BYTES: usize = 256 * 1024;

@@ -4,10 +4,10 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use sandtable_base::message::chain::error_text;
 use crate::datasets::{DatasetFacts, ServedDataset};
 use crate::query::Service;
 use crate::reply::OK;
+use sandtable_base::message::chain::error_text;
 
 /// Its path.
 pub const PATH: &str = "/health";

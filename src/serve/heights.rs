@@ -23,16 +23,16 @@ use serde::Serialize;
 use serde_json::Serializer;
 use serde_json::ser::Formatter;
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
-use sandtable_base::message::chain::error_text;
-use sandtable_query::heights_above::bring_heights;
 use crate::coordinates::{Coordinates, Location};
 use crate::datasets::ServedDataset;
 use crate::parameters::Parameters;
 use crate::query::{Query, QueryWeight, Service};
 use crate::reply::{HttpError, JsonArray, OK, quoted};
 use crate::samples::along_path;
+use sandtable_base::message::chain::error_text;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_query::heights_above::bring_heights;
 use sandtable_terrain::query::{Interpolation, Surface};
 use sandtable_terrain::stop_flag::StopFlag;
 

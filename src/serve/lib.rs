@@ -47,10 +47,6 @@ use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{Semaphore, oneshot};
 
-use sandtable_geom::crs::Crs;
-use sandtable_geom::geoid::Geoid;
-use sandtable_query::dataset::OpenError;
-use sandtable_query::service::{ServiceLimits, ServiceOptions};
 use crate::answers::{AnswerMemory, UNITS_OF_CLIENT};
 use crate::clients::{ClientShares, Clients};
 use crate::datasets::Datasets;
@@ -58,6 +54,10 @@ use crate::listener::{Gate, RequestConnection};
 use crate::parameters::{LONG_BODIES, LONG_BODIES_OF_CLIENT};
 use crate::query::Service;
 use crate::ready::Readiness;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geoid::Geoid;
+use sandtable_query::dataset::OpenError;
+use sandtable_query::service::{ServiceLimits, ServiceOptions};
 
 /// Why the service cannot start or continue.
 #[derive(Debug, thiserror::Error)]

@@ -18,11 +18,11 @@ use percent_encoding::percent_decode;
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use tokio::sync::SemaphorePermit;
 
-use sandtable_base::message::choice::Choice;
 use crate::answers::taking_from_slow;
 use crate::clients::{Connection, HeldResource};
 use crate::query::Service;
 use crate::reply::{HttpError, quoted};
+use sandtable_base::message::choice::Choice;
 
 /// The most parameters: no query has as many.
 const MOST: usize = 32;

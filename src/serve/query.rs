@@ -6,11 +6,6 @@ use axum::response::Response;
 use glam::DVec2;
 use tokio::sync::Semaphore;
 
-use sandtable_geom::crs::Crs;
-use sandtable_geom::geoid::Geoid;
-use sandtable_query::ground::QueriedGround;
-use sandtable_query::service::{PathPrefix, RequestLog, ServiceLimits};
-use sandtable_query::windowed_elevation::GroundReach;
 use crate::answers::AnswerMemory;
 use crate::api::ApiAddress;
 use crate::clients::Clients;
@@ -19,6 +14,11 @@ use crate::datasets::{Datasets, ServedDataset};
 use crate::parameters::Parameters;
 use crate::ready::Readiness;
 use crate::reply::HttpError;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::geoid::Geoid;
+use sandtable_query::ground::QueriedGround;
+use sandtable_query::service::{PathPrefix, RequestLog, ServiceLimits};
+use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::stop_flag::StopFlag;
 

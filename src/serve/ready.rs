@@ -12,11 +12,11 @@ use axum::Json;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
-use sandtable_base::message::chain::error_text;
-use sandtable_query::dataset::QueryError;
 use crate::datasets::ServedDataset;
 use crate::query::Service;
 use crate::reply::{HttpError, OK};
+use sandtable_base::message::chain::error_text;
+use sandtable_query::dataset::QueryError;
 use sandtable_terrain::query::{Interpolation, Surface};
 
 /// Its path.

@@ -30,7 +30,6 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use sandtable_query::service::RequestLog;
 use crate::clients::Connection;
 use crate::heights::HeightsQuery;
 use crate::listener::RequestConnection;
@@ -41,6 +40,7 @@ use crate::query::{Query, QueryWeight, Service};
 use crate::reply::{HttpError, quoted};
 use crate::viewshed::ViewshedQuery;
 use crate::{answers, api, datasets, etag, health, help, host, openapi, ready};
+use sandtable_query::service::RequestLog;
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// Values longer than this are parsed on another thread, because parsing takes longer than the move.

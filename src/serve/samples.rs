@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use sandtable_geom::geodesic::Geodesic;
 use crate::coordinates::AxisOrder;
+use sandtable_geom::geodesic::Geodesic;
 
 /// `count` positions at equal distances along the path through `vertices`, both ends included.
 ///

@@ -27,7 +27,9 @@ use crate::reply::{HttpError, OK, quoted};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::line::SightEnd;
-use sandtable_terrain::sight::viewshed::{self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions};
+use sandtable_terrain::sight::viewshed::{
+    self, PostVisibility, Sector, Viewshed, ViewshedCounts, ViewshedOptions,
+};
 use sandtable_terrain::stop_flag::StopFlag;
 
 /// The size of a post in `runs`, at most: where no two neighbors are alike.

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use sandtable_base::limits::{PLAN_OBSERVERS, PLAN_POINTS, PLAN_SHARDS, RASTER_SAMPLES};
+use sandtable_files::disk::{ReadFileError, WriteFileError};
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file::WriteRasterError;
 use sandtable_query::dataset::{OpenError, QueryError};
 use sandtable_query::dem::OpenDemError;
-use sandtable_files::error::FileError;
-use sandtable_files::disk::{ReadFileError, WriteFileError};
 use sandtable_query::ground::GroundError;
 use sandtable_query::heights_above::HeightsAboveError;
-use sandtable_sheet::picture::PictureError;
 use sandtable_query::positions::PositionsError;
-use sandtable_files::raster_file::WriteRasterError;
 use sandtable_scene::scene_file::OpenSceneError;
+use sandtable_sheet::picture::PictureError;
 
 /// A plan that cannot be made, a shard that cannot be done, or results that cannot be gathered.
 #[derive(Debug, thiserror::Error)]

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
-use sandtable_files::disk;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{PlannedProduct, ShardPlan};
 use crate::record::{self, ShardState};
 use crate::{atlas, heights, tiles, viewsheds};
+use sandtable_dem::formats::{DemFormat, WRITTEN_EXTENSIONS};
+use sandtable_files::disk;
 
 /// How far the shards of a plan are, by their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]

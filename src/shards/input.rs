@@ -15,14 +15,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::error::{PlanError, PlanFault, ShardError};
+use crate::plan_path::place;
+use sandtable_base::limits::INPUT_BYTES;
 use sandtable_dem::read::is_tile_name;
 use sandtable_dem::vrt::{VrtTiles, is_vrt};
-use sandtable_base::limits::INPUT_BYTES;
 use sandtable_files::addressed;
 use sandtable_files::disk::{self, ReadFileCause, ReadFileError, SystemError};
 use sandtable_files::fingerprint::hexadecimal;
-use crate::error::{PlanError, PlanFault, ShardError};
-use crate::plan_path::place;
 use sandtable_remote::address::is_address_path;
 use sandtable_remote::error::RemoteError;
 use sandtable_remote::open::AddressVersion;

@@ -6,10 +6,6 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use sandtable_base::limits::PLAN_SHARDS;
-use sandtable_files::disk;
-use sandtable_files::fingerprint::content_hash;
-use sandtable_files::output_files::OutputFiles;
 use crate::atlas::arguments::AtlasArguments;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::heights::arguments::HeightsArguments;
@@ -17,6 +13,10 @@ use crate::input::PlanInput;
 use crate::shard::Shard;
 use crate::tiles::arguments::TilesArguments;
 use crate::viewsheds::arguments::ViewshedsArguments;
+use sandtable_base::limits::PLAN_SHARDS;
+use sandtable_files::disk;
+use sandtable_files::fingerprint::content_hash;
+use sandtable_files::output_files::OutputFiles;
 
 /// The value of `format` in `plan.json`.
 const FORMAT: &str = "sandtable-plan";

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use sandtable_dem::read::DemOptions;
-use sandtable_geom::crs::Crs;
-use sandtable_base::message::choice::Choice;
-use sandtable_query::dataset::{Dataset, DatasetOptions};
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::input::{PlanInput, elevation_files};
 use crate::plan_path::{place, relative, written};
+use sandtable_base::message::choice::Choice;
+use sandtable_dem::read::DemOptions;
+use sandtable_geom::crs::Crs;
+use sandtable_query::dataset::{Dataset, DatasetOptions};
 
 /// A dataset as a plan states it: what [`DatasetOptions`] says, in words.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use crate::error::{PlanError, PlanFault, ShardError};
 use sandtable_base::limits::INPUT_BYTES;
 use sandtable_files::csv::{LineError, numbered_lines};
 use sandtable_files::disk::{self, ReadFileCause, ReadFileError, SystemError};
 use sandtable_query::positions::{PositionColumns, PositionFault, PositionsError, WrittenPosition};
-use crate::error::{PlanError, PlanFault, ShardError};
 
 /// Bytes that are read at once: enough for all threads to have work.
 const BATCH: usize = 8 << 20;

@@ -8,13 +8,13 @@ use rayon::prelude::*;
 
 use serde::{Deserialize, Serialize};
 
-use sandtable_files::disk;
-use sandtable_files::fingerprint::content_hash;
-use sandtable_files::output_files::OutputFiles;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::input::{has_size, hash};
 use crate::plan::ShardPlan;
 use crate::shard::stem;
+use sandtable_files::disk;
+use sandtable_files::fingerprint::content_hash;
+use sandtable_files::output_files::OutputFiles;
 
 /// The value of `format` in a record.
 const FORMAT: &str = "sandtable-shard";

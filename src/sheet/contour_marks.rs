@@ -10,9 +10,9 @@ use sandtable_annotate::annotation::{ContourMarks, NumberedContour};
 use sandtable_annotate::nice::format_number;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::isolines::{Isoline, ValueGrid, isolines};
+use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
-use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_view::camera::Camera;
 
 /// The rows of elevations read from a picture: on fewer, lines leave the drawn ones; on more, time is spent.

@@ -2,11 +2,11 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::line_labels::{is_seen, visible_pieces};
 use sandtable_annotate::annotation::{LineLabel, LinePlacement, OverlayText};
 use sandtable_description::words::LabelKind;
-use crate::line_labels::{is_seen, visible_pieces};
-use sandtable_render::picture::Rendering;
 use sandtable_picture::placed_text::{PlacedCourse, PlacedText};
+use sandtable_render::picture::Rendering;
 use sandtable_view::camera::Camera;
 
 /// Half of the width of a graphic's line with its casing, in pixels of a picture 1080 lines high.

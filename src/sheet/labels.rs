@@ -1,14 +1,5 @@
 //! Makes the annotations of a picture from its scene and camera.
 
-use sandtable_annotate::annotation::{Annotations, PictureLabel};
-use sandtable_annotate::cover::SceneCover;
-use sandtable_annotate::legend::Legend;
-use sandtable_annotate::north::NorthArrow;
-use sandtable_annotate::scale_bar::ScaleBar;
-use sandtable_annotate::sheet_frame::SheetFrame;
-use sandtable_description::words::SheetLayout;
-use sandtable_draw::bathymetry::with_bathymetry;
-use sandtable_draw::list::FeatureId;
 use crate::contour_marks::contour_marks;
 use crate::graphic_texts::{GraphicTexts, graphic_texts};
 use crate::grid::{grid_over, picture_grid};
@@ -19,10 +10,19 @@ use crate::line_labels::{is_seen, line_label};
 use crate::margin::margin_notes;
 use crate::military::picture_symbols;
 use crate::rim::rim_marks;
-use sandtable_render::picture::Rendering;
-use sandtable_scene::label_course::LabelCourse;
+use sandtable_annotate::annotation::{Annotations, PictureLabel};
+use sandtable_annotate::cover::SceneCover;
+use sandtable_annotate::legend::Legend;
+use sandtable_annotate::north::NorthArrow;
+use sandtable_annotate::scale_bar::ScaleBar;
+use sandtable_annotate::sheet_frame::SheetFrame;
+use sandtable_description::words::SheetLayout;
+use sandtable_draw::bathymetry::with_bathymetry;
+use sandtable_draw::list::FeatureId;
 use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_picture::placed_text::PlacedText;
+use sandtable_render::picture::Rendering;
+use sandtable_scene::label_course::LabelCourse;
 use sandtable_scene::{SceneLabel, SceneModel};
 use sandtable_view::camera::Camera;
 
@@ -49,7 +49,8 @@ pub fn annotations(
     let has_classes = shows(furniture.classes.unwrap_or(frame.is_some()));
     let grid = grid_over(scene, camera, picture);
     let (mut labels, mut line_labels) = (Vec::new(), Vec::new());
-    let lifted: Vec<SceneLabel> = scene.labels.iter().map(|label| nested.lifted_label(scene, label)).collect();
+    let lifted: Vec<SceneLabel> =
+        scene.labels.iter().map(|label| nested.lifted_label(scene, label)).collect();
     for label in &lifted {
         let at_place = project(label, camera, picture);
         match label.course {

@@ -7,13 +7,13 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use crate::print_ink::PrintInk;
 use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
+use sandtable_base::message::capitalized::capitalized;
 use sandtable_description::words::{Cover, StylePreset};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::print_pattern::PrintPattern;
-use sandtable_base::message::capitalized::capitalized;
-use crate::print_ink::PrintInk;
 use sandtable_render::picture::Rendering;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_scene::{FeatureKind, SceneModel};

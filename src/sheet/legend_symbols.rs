@@ -4,8 +4,8 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use sandtable_annotate::class_legend::{LegendEntry, LegendSwatch};
-use sandtable_description::words::StylePreset;
 use sandtable_base::message::capitalized::capitalized;
+use sandtable_description::words::StylePreset;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
 use sandtable_symbology::code::SymbolCode;

@@ -8,13 +8,13 @@
 use glam::Vec2;
 use rayon::prelude::*;
 
+use crate::legend::feature_inks;
+use crate::print_ink::PrintInk;
 use sandtable_description::words::StylePreset;
 use sandtable_draw::color::{Srgba, luminance, srgb_from_linear};
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::print_pattern::PrintPattern;
-use crate::legend::feature_inks;
-use crate::print_ink::PrintInk;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
 use sandtable_view::camera::Camera;

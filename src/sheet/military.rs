@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 
+use crate::line_labels::is_seen;
 use sandtable_annotate::annotation::{PictureSymbol, SymbolHeight};
 use sandtable_description::words::StylePreset;
-use crate::line_labels::is_seen;
+use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
 use sandtable_scene::military::{SceneSymbol, SymbolSize};
-use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_view::camera::Camera;
 
 /// The heights in pixels between which a symbol of a size on the ground stays: legible, and not in the way.

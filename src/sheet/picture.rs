@@ -1,19 +1,19 @@
 //! Renders a view of a scene to an annotated picture in memory.
 
+use crate::labels::{self, AnnotatedGround};
+use crate::look::{apply_look, night_ink};
 use sandtable_annotate::paint::{ComposedSheet, compose_sheet};
 use sandtable_annotate::report::AnnotationReport;
 use sandtable_annotate::sheet_frame::SheetFrame;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::words::StylePreset;
 use sandtable_draw::pixels::Pixels;
-use crate::labels::{self, AnnotatedGround};
-use crate::look::{apply_look, night_ink};
+use sandtable_picture::nested::build_nested_draw_list;
+use sandtable_picture::nested_ground::{NestedGround, NestedHeights, nested_grounds};
+use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_render::picture::Rendering;
 use sandtable_render::{RenderBackend, RenderError, render};
-use sandtable_picture::nested_ground::{NestedGround, NestedHeights, nested_grounds};
-use sandtable_picture::nested::build_nested_draw_list;
 use sandtable_scene::framing::shaped_page::page_size;
-use sandtable_picture::{ViewDraw, build_draw_list, camera};
 use sandtable_scene::{SceneModel, SceneView};
 use sandtable_view::camera::{Camera, CameraError};
 

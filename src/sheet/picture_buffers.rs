@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::{DAffine2, DMat2, DVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
+use crate::picture::{PictureError, PictureSize, framed_camera};
 use sandtable_annotate::sheet_frame::SheetFrame;
 use sandtable_dem::raster::{Raster, Samples};
 use sandtable_dem::tiff::write::write_described;
@@ -13,13 +14,12 @@ use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::FeatureId;
 use sandtable_draw::pixels::Pixels;
-use sandtable_files::png::encode_png;
 use sandtable_files::disk::{self, WriteFileError};
 use sandtable_files::output_files::OutputFiles;
-use crate::picture::{PictureError, PictureSize, framed_camera};
+use sandtable_files::png::encode_png;
+use sandtable_picture::build_shapes;
 use sandtable_render::cpu::render_buffers;
 use sandtable_render::picture::Rendering;
-use sandtable_picture::build_shapes;
 use sandtable_scene::{SceneModel, SceneView};
 use sandtable_view::camera::Camera;
 

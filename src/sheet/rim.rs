@@ -3,13 +3,13 @@
 
 use glam::{DVec2, Vec2, Vec3};
 
+use crate::grid::lines::{GroundGrid, GroundLine};
 use sandtable_annotate::figure::CoordinateFigure;
 use sandtable_annotate::nice::{Ticks, format_number, grouped};
 use sandtable_annotate::rim::RimMark;
-use crate::grid::lines::{GroundGrid, GroundLine};
-use sandtable_scene::SceneModel;
 use sandtable_picture::setting::PictureSetting;
 use sandtable_picture::shows_table;
+use sandtable_scene::SceneModel;
 use sandtable_scene::plinth::base_z;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;

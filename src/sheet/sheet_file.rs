@@ -4,10 +4,10 @@ use std::path::Path;
 
 use sandtable_annotate::paint::ComposedSheet;
 use sandtable_annotate::pdf::PdfError;
-use sandtable_files::png::{PngNotes, encode_png, encode_png_with};
-use sandtable_files::error::FileError;
 use sandtable_files::disk::WriteFileError;
+use sandtable_files::error::FileError;
 use sandtable_files::output_files::OutputFiles;
+use sandtable_files::png::{PngNotes, encode_png, encode_png_with};
 use sandtable_scene::{SceneModel, SceneView};
 
 /// Pixels per inch where a view has no print in mind.

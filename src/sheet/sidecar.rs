@@ -6,11 +6,11 @@ use std::path::Path;
 use glam::Vec3;
 use serde_json::{Value, json};
 
+use crate::picture::DrawnView;
+use crate::picture_buffers::{PictureBuffers, ShownFeature};
 use sandtable_annotate::report::{AnnotationReport, LabelMove, SheetBox};
 use sandtable_annotate::sheet_frame::SheetFrame;
 use sandtable_files::disk;
-use crate::picture::DrawnView;
-use crate::picture_buffers::{PictureBuffers, ShownFeature};
 use sandtable_scene::{SceneModel, SceneView};
 use sandtable_view::camera::{Camera, ViewProjection};
 

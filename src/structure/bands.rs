@@ -1,8 +1,8 @@
 //! The bands that scenes have: walls, hedges, the banks of earth beside trenches, the rails of fences.
 
+use crate::fence_band::{BandSection, FenceBand, Ruffle, SectionCorner};
 use sandtable_draw::color::Srgba;
 use sandtable_earthworks::alignment::Alignment;
-use crate::fence_band::{BandSection, FenceBand, Ruffle, SectionCorner};
 
 const STONE: Srgba = Srgba::opaque(172, 162, 148);
 const COPING: Srgba = Srgba::opaque(196, 188, 174);

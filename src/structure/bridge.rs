@@ -17,15 +17,15 @@
 
 use glam::{DVec2, FloatExt, Vec2, Vec3};
 
+use crate::deck::{self, DeckSection};
+use crate::deck_check::{self, OpenSurfaceError};
+use crate::faces::Faces;
+use crate::pier;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::offset::Continuations;
 use sandtable_geom::profile::Profile;
-use crate::deck::{self, DeckSection};
-use crate::deck_check::{self, OpenSurfaceError};
-use crate::faces::Faces;
-use crate::pier;
 use sandtable_terrain::query::deck::Deck;
 use sandtable_terrain::triangle_surface::SurfaceTriangle;
 
@@ -346,10 +346,10 @@ impl BridgeSolids {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::polyline::Polyline;
     use crate::deck_profile::ClearancePoint;
     use crate::deck_profile::clearing;
     use proptest::prelude::*;
+    use sandtable_geom::polyline::Polyline;
 
     fn options(length_m: f64) -> BridgeOptions {
         BridgeOptions {

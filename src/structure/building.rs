@@ -14,15 +14,15 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::DrawMesh;
-use sandtable_geom::polygon;
-use sandtable_mesh::sink::VertexId;
 use crate::building_footprint::BuildingFootprint;
 use crate::deck_check::{OpenSurfaceError, open_edges};
 use crate::faces::Faces;
 use crate::fence_band::{noise, shaded};
 use crate::roof::{UnitRoof, centroid};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawMesh;
+use sandtable_geom::polygon;
+use sandtable_mesh::sink::VertexId;
 
 /// The heights of a building in world Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,9 +242,9 @@ pub fn check(mesh: &DrawMesh) -> Result<Measures, BuildingSolidError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_description::words;
     use crate::roof::roof;
     use proptest::prelude::*;
+    use sandtable_description::words;
 
     const SHAPES: [words::RoofShape; 4] = [
         words::RoofShape::Flat,

@@ -5,10 +5,10 @@
 
 use glam::DVec2;
 
+use crate::faces::Faces;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
-use crate::faces::Faces;
 use sandtable_terrain::support_surface::ground_runs;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 

@@ -16,9 +16,9 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::bridge::{PARAPET_THICK_M, magnified};
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::offset::{self, Continuations, LineBend};
-use crate::bridge::{PARAPET_THICK_M, magnified};
 
 /// How far along a leg the inner corner of a miter may reach, as a part of it: two of them do not meet.
 const LONGEST_INNER: f64 = 0.45;
@@ -130,8 +130,8 @@ impl DeckSection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::polyline::Polyline;
     use proptest::prelude::*;
+    use sandtable_geom::polyline::Polyline;
 
     fn turned(points: &[(f64, f64)], quarter: u32) -> Polyline {
         let turn = |&(x, y): &(f64, f64)| (0..quarter).fold(DVec2::new(x, y), |at, _| at.perp());
@@ -143,8 +143,7 @@ mod tests {
         let quads = sections.windows(2).flat_map(|pair| {
             let [a, b] = [pair[0], pair[1]].map(|section| section.aside.map(|aside| section.at + aside));
             let quad = [a[0], a[1], b[1], b[0]];
-            let triangles =
-                crate::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
+            let triangles = crate::bridge::quad_corners(quad).map(|corners| corners.map(|at| quad[at]));
             triangles.map(|[p, q, r]| (q - p).perp_dot(r - p))
         });
         quads.collect()

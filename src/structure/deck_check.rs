@@ -68,9 +68,9 @@ fn unmatched(open: impl Iterator<Item = (Vec3, Vec3)>) -> Option<(Vec3, Vec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::Srgba;
     use crate::faces::Faces;
     use glam::DVec2;
+    use sandtable_draw::color::Srgba;
 
     #[test]
     fn a_box_is_closed_and_one_without_its_lid_is_not() {

@@ -1,12 +1,12 @@
 //! What stands on the ground and must be set anew wherever the ground is displayed otherwise.
 
-use sandtable_draw::list::DrawMesh;
 use crate::building_footing::WallFooting;
 use crate::faces::Faces;
 use crate::fence::Posts;
 use crate::fence_band::FenceBand;
 use crate::obstacle::Obstacles;
 use crate::power::PowerLine;
+use sandtable_draw::list::DrawMesh;
 use sandtable_terrain::support_surface::SupportSurface;
 
 /// Something upright.

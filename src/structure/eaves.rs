@@ -13,12 +13,12 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use sandtable_draw::list::DrawMesh;
-use sandtable_geom::polygon;
 use crate::building::{BuildingLevels, Paint};
 use crate::faces::Faces;
 use crate::fence_band::shaded;
 use crate::roof::UnitRoof;
+use sandtable_draw::list::DrawMesh;
+use sandtable_geom::polygon;
 
 /// How far a roof reaches out over the walls, meters.
 const OVERHANG_M: f64 = 0.45;
@@ -95,10 +95,10 @@ fn outward(edge: &[DVec3], index: usize) -> Option<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_description::words;
     use crate::building::check;
     use crate::building_footprint::BuildingFootprint;
     use crate::roof::roof;
+    use sandtable_description::words;
 
     fn built(ring: &[(f64, f64)], shape: words::RoofShape) -> Option<DrawMesh> {
         let ring: Vec<DVec2> = ring.iter().map(|&at| DVec2::from(at)).collect();

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_geom::polyline::Polyline;
 use crate::faces::Faces;
 use crate::power_beam::square;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::polyline::Polyline;
 use sandtable_terrain::support_surface::SupportSurface;
 
 const WOOD: Srgba = Srgba::opaque(150, 124, 92);

@@ -14,11 +14,11 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
+use crate::faces::Faces;
+use crate::fence_track::{self, Ends, TrackJoint, TrackStretch};
 use sandtable_draw::color::Srgba;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::profile::Profile;
-use crate::faces::Faces;
-use crate::fence_track::{self, Ends, TrackJoint, TrackStretch};
 use sandtable_terrain::support_surface;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 

@@ -9,11 +9,11 @@
 
 use glam::Vec3;
 
-use sandtable_draw::color::Srgba;
-use sandtable_earthworks::alignment::Alignment;
 use crate::faces::Faces;
 use crate::fence::{PostPosition, spans};
 use crate::power_beam::{beam, square};
+use sandtable_draw::color::Srgba;
+use sandtable_earthworks::alignment::Alignment;
 use sandtable_terrain::support_surface::SupportSurface;
 
 const CONCRETE: Srgba = Srgba::opaque(184, 180, 170);
@@ -105,8 +105,8 @@ pub fn belt(alignment: &Alignment, spacing_m: f64) -> Vec<(PostPosition, Obstacl
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::polyline::Polyline;
     use glam::DVec2;
+    use sandtable_geom::polyline::Polyline;
 
     #[test]
     fn rows_lie_across_the_width_and_every_other_is_moved_on() {

@@ -11,10 +11,10 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_draw::color::Srgba;
 use crate::bridge::{BridgeOptions, FOUNDED_M, GIRDER, GroundHeight, PARAPET_THICK_M, magnified};
 use crate::deck::DeckSection;
 use crate::faces::Faces;
+use sandtable_draw::color::Srgba;
 
 const CONCRETE: Srgba = Srgba::opaque(236, 231, 219);
 const WEATHERED: Srgba = Srgba::opaque(214, 207, 193);
@@ -95,12 +95,7 @@ pub(crate) fn abutment(
 }
 
 /// Adds the posts in which both parapets end.
-pub(crate) fn end_posts(
-    section: &DeckSection,
-    width_m: f64,
-    options: &BridgeOptions,
-    faces: &mut Faces,
-) {
+pub(crate) fn end_posts(section: &DeckSection, width_m: f64, options: &BridgeOptions, faces: &mut Faces) {
     let by = magnified(width_m);
     let half = 0.5 * by;
     for side in 0..2 {
@@ -143,9 +138,6 @@ impl PierFrame {
 }
 
 /// The lowest ground at the places; `None` where there is none at any.
-pub(crate) fn lowest(
-    ground: &GroundHeight<'_>,
-    places: impl IntoIterator<Item = DVec2>,
-) -> Option<f64> {
+pub(crate) fn lowest(ground: &GroundHeight<'_>, places: impl IntoIterator<Item = DVec2>) -> Option<f64> {
     places.into_iter().filter_map(ground).reduce(f64::min)
 }

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
+use crate::faces::Faces;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_geom::polygon;
-use crate::faces::Faces;
 
 /// Weathered concrete, and its lit top.
 const WALL: Srgba = Srgba::opaque(158, 154, 146);

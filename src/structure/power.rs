@@ -11,11 +11,11 @@
 
 use glam::DVec3;
 
-use sandtable_draw::color::Srgba;
-use sandtable_geom::profile::Profile;
 use crate::faces::Faces;
 use crate::fence::PostPosition;
 use crate::power_beam::beam;
+use sandtable_draw::color::Srgba;
+use sandtable_geom::profile::Profile;
 use sandtable_terrain::support_surface::{SupportSurface, ground_runs};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
@@ -264,9 +264,9 @@ pub fn check_wires(line: &PowerLine, under: SupportSurface<'_>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
     use sandtable_terrain::full_resolution::FullResolution;
     use sandtable_terrain::lattice::Lattice;
-    use glam::DVec2;
 
     /// A ridge of `height_m` across the middle of a kilometer of level ground.
     fn ridge(height_m: f32) -> Lattice {

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use sandtable_draw::color::Srgba;
 use crate::faces::Faces;
+use sandtable_draw::color::Srgba;
 
 /// Adds a bar with a square section from `from` to `to`, `half_m` from its axis to its sides at either end, closed at
 /// both; nothing where it has no length.

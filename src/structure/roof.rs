@@ -15,11 +15,11 @@
 
 use glam::{DVec2, DVec3};
 
-use sandtable_description::words;
-use sandtable_geom::polygon;
 use crate::building_footprint::BuildingFootprint;
 use crate::roof_hipped::hipped;
 use crate::straight_skeleton;
+use sandtable_description::words;
+use sandtable_geom::polygon;
 
 /// How much of its best-fitting rectangle a footprint must fill to be roofed like one.
 const RECTANGULAR: f64 = 0.82;

@@ -16,10 +16,10 @@
 
 use glam::{DVec2, DVec3};
 
-use sandtable_description::words;
-use sandtable_geom::polygon;
 use crate::building_footprint::BuildingFootprint;
 use crate::roof::{UnitRoof, level_edge};
+use sandtable_description::words;
+use sandtable_geom::polygon;
 
 /// The most walls under a hipped roof: rounder plans cost the cube of their vertices.
 const MOST_WALLS: usize = 64;

@@ -14,11 +14,11 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::DrawMesh;
 use crate::bridge::{FOUNDED_M, GroundHeight, magnified};
 use crate::faces::Faces;
 use crate::pier::lowest;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawMesh;
 
 /// The height of a mouth six meters wide, in meters: 4.5 m for traffic and the curve of the arch.
 const MOUTH_M: f64 = 6.0;

@@ -15,9 +15,12 @@ use std::fmt;
 
 use thiserror::Error;
 
-use sandtable_base::message::suggest::quoted;
-use crate::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
+use crate::fields::{
+    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
+    SymbolVersion,
+};
 use crate::letter_code;
+use sandtable_base::message::suggest::quoted;
 
 /// A symbol identification code, read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -9,7 +9,10 @@
 //! ```
 
 use crate::code::{CodePlaces, SymbolCode, SymbolCodeError};
-use crate::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
+use crate::fields::{
+    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
+    SymbolVersion,
+};
 
 /// Identities with their contexts.
 const IDENTITIES: [(u8, SymbolContext, SymbolIdentity, &str); 14] = [

@@ -20,12 +20,12 @@
 
 use glam::DVec2;
 
-use sandtable_base::limits::GROUND_POSTS;
-use sandtable_base::limits::GROUND_ROW_POSTS;
 use crate::cell_triangle::Diagonal;
 use crate::lattice::{Lattice, LatticeError, Post};
 use crate::query::Interpolation;
 use crate::query::cell::interpolate;
+use sandtable_base::limits::GROUND_POSTS;
+use sandtable_base::limits::GROUND_ROW_POSTS;
 
 /// The most halvings: a thirty-second of the measured spacing says nothing new about the ground.
 const MOST_DOUBLINGS: u32 = 5;

@@ -4,11 +4,11 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_geom::rect::Rect;
 use crate::cell_triangle::CellTriangle;
 use crate::lattice::{Lattice, Post};
 use crate::query::{Interpolation, ground_height};
 use crate::triangle_surface::{SurfaceTriangle, TriangleSurface};
+use sandtable_geom::rect::Rect;
 
 /// All triangles of a lattice, two a cell, those without data left out.
 #[derive(Clone, Copy, Debug)]
@@ -65,8 +65,8 @@ impl TriangleSurface for FullResolution<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::polygon;
     use crate::triangle_surface::{facet_contains, plane_z};
+    use sandtable_geom::polygon;
 
     fn lattice(hole: Option<usize>) -> Lattice {
         let mut heights: Vec<f32> = (0..63).map(|index| libm::sinf(index as f32 * 0.7) * 9.0).collect();

@@ -18,11 +18,11 @@
 
 use glam::{DVec2, Vec2, Vec3};
 
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_geom::rect::Rect;
-use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use crate::height_scan;
 use crate::post_rect::PostRect;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_geom::rect::Rect;
 
 /// Posts of a regular grid with their heights.
 ///

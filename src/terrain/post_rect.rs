@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use sandtable_geom::rect::Rect;
 use crate::lattice::{Lattice, Post};
+use sandtable_geom::rect::Rect;
 
 /// A rectangle of posts, ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,10 +10,10 @@
 
 use glam::DVec2;
 
+use crate::triangle_surface::{TriangleSurface, plan, plane_z};
 use sandtable_geom::convex;
 use sandtable_geom::profile::Profile;
 use sandtable_geom::rect::Rect;
-use crate::triangle_surface::{TriangleSurface, plan, plane_z};
 
 /// A position this far beside a triangle, in meters, still lies in it: more than rounding, so that no line falls between
 /// two triangles, and less than is ever visible.

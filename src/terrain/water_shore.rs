@@ -14,9 +14,9 @@
 
 use glam::DVec2;
 
-use sandtable_geom::distance_field::{RegionGrid, distances_m};
 use crate::lattice::Lattice;
 use crate::water_cover::WaterCover;
+use sandtable_geom::distance_field::{RegionGrid, distances_m};
 
 /// The weights of posts to either side in the smoothed cover, of 64: a standard deviation of 1.2 posts, which is what a
 /// step of one post needs. Wider ones would move headlands.

@@ -8,9 +8,9 @@ use std::iter;
 
 use glam::{DVec2, DVec3};
 
-use sandtable_geom::crs::Crs;
 use crate::error::VectorError;
 use crate::feature::{Feature, Geometry, Polygon, Properties, VectorLayer};
+use sandtable_geom::crs::Crs;
 
 /// The vertices of a line or a ring.
 pub(crate) type Vertices = Vec<DVec3>;

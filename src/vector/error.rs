@@ -5,9 +5,9 @@ use std::error::Error;
 use std::fmt::Display;
 
 use sandtable_base::archive::ArchiveError;
-use sandtable_geom::crs::CrsError;
 use sandtable_base::limits::{GEOJSON_BYTES, UNPACKED_VECTOR_BYTES};
 use sandtable_base::message::suggest::nearest;
+use sandtable_geom::crs::CrsError;
 
 /// Most names that a message lists.
 const MAX_LISTED: usize = 20;

@@ -83,8 +83,8 @@ impl Condition {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::crs::Crs;
     use crate::feature::Geometry;
+    use sandtable_geom::crs::Crs;
     use serde_json::json;
 
     fn layer(properties: &[Value]) -> VectorLayer {

@@ -12,12 +12,12 @@
 use flatgeobuf::{Column, ColumnType, Feature, Geometry, GeometryType, Header};
 use serde_json::{Number, Value};
 
-use sandtable_base::bytes::ByteCursor;
-use sandtable_geom::crs::Crs;
 use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::VectorError;
 use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
+use sandtable_base::bytes::ByteCursor;
+use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "FlatGeobuf file";
 /// Bytes of a node of the index.

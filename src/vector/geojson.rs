@@ -9,12 +9,12 @@ use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 use serde::Deserialize;
 use serde_json::Value;
 
-use sandtable_geom::crs::Crs;
-use sandtable_base::limits::GEOJSON_BYTES;
 use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::error::{VectorError, shorten};
 use crate::feature::VectorLayer;
 use crate::hints::VectorHints;
+use sandtable_base::limits::GEOJSON_BYTES;
+use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "GeoJSON";
 /// Precedes each text of a sequence (RFC 7464).

@@ -1,7 +1,7 @@
 //! Options for reading vector files.
 
-use sandtable_geom::crs::{Crs, CrsError};
 use crate::error::VectorError;
+use sandtable_geom::crs::{Crs, CrsError};
 
 /// Options for reading a vector file.
 #[derive(Clone, Copy)]

@@ -14,14 +14,14 @@
 
 use std::borrow::Cow;
 
-use sandtable_base::archive::{self, ArchiveError, ZipReader};
-use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 use crate::error::VectorError;
 use crate::feature::VectorLayer;
 #[cfg(feature = "vector-db")]
 use crate::geopackage;
 use crate::hints::VectorHints;
 use crate::{flatgeobuf, geojson, gpx, kml, osm, shapefile};
+use sandtable_base::archive::{self, ArchiveError, ZipReader};
+use sandtable_base::limits::UNPACKED_VECTOR_BYTES;
 
 /// Bytes at the start of a document in which its outermost element is searched.
 const XML_HEAD_BYTES: usize = 4096;
@@ -242,7 +242,7 @@ fn conversion(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_base::archive::tests::zipped;
+    use sandtable_base::archive::zip;
 
     const POINT: &[u8] = b"{\"type\":\"Point\",\"coordinates\":[1,2]}";
     const KML: &[u8] = b"<kml><Placemark><Point><coordinates>1,2</coordinates></Point></Placemark></kml>";
@@ -295,18 +295,16 @@ mod tests {
 
     #[test]
     fn packed_files_are_unpacked() {
-        let kmz = zipped(&[("doc.kml", KML), ("files/a.png", b"")]);
+        let kmz = zip(&[("doc.kml", KML), ("files/a.png", b"")]).expect("memory");
         assert_eq!(read("a.kmz", &kmz, &VectorHints::default()).expect("a KMZ").features.len(), 1);
-        let single = zipped(&[("layers/a.geojson", POINT)]);
+        let single = zip(&[("layers/a.geojson", POINT)]).expect("memory");
         assert_eq!(read("a.zip", &single, &VectorHints::default()).expect("zipped").features.len(), 1);
-        assert!(refusal("a.zip", &zipped(&[("readme.txt", b"")])).contains("without a .kml"));
+        assert!(refusal("a.zip", &zip(&[("readme.txt", b"")]).expect("memory")).contains("without a .kml"));
         let mut shapes = 9994u32.to_be_bytes().to_vec();
         shapes.resize(100, 0);
-        let zipped = zipped(&[
-            ("x/roads.shp", &shapes),
-            ("x/roads.prj", &b"EPSG:32616"[..]),
-            ("x/rivers.shp", &shapes),
-        ]);
+        let zipped =
+            zip(&[("x/roads.shp", &shapes), ("x/roads.prj", &b"EPSG:32616"[..]), ("x/rivers.shp", &shapes)])
+                .expect("memory");
         assert!(refusal("a.zip", &zipped).contains("2 layers; choose one with 'layer': roads, rivers"));
         let hints = VectorHints { layer: Some("roads"), ..VectorHints::default() };
         assert_eq!(read("a.zip", &zipped, &hints).expect("zipped").crs.epsg(), Some(32616));

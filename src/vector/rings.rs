@@ -6,10 +6,10 @@
 
 use glam::DVec2;
 
+use crate::builder::Vertices;
+use sandtable_base::limits::RING_STEPS;
 use sandtable_geom::polygon::{contains, doubled_area};
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::RING_STEPS;
-use crate::builder::Vertices;
 
 /// The rule by which a ring is a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,9 +13,9 @@ use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
 
-use sandtable_base::limits::XML_DEPTH;
 use crate::encoding::TextEncoding;
 use crate::error::{VectorError, shorten};
+use sandtable_base::limits::XML_DEPTH;
 
 /// Bytes of a document in which its declaration is searched.
 const DECLARATION_BYTES: usize = 200;

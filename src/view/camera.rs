@@ -8,8 +8,8 @@
 
 use glam::{Vec2, Vec3};
 
-use sandtable_geom::aabb::Aabb;
 use crate::axes::DirectionAxes;
+use sandtable_geom::aabb::Aabb;
 
 /// How rays reach the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

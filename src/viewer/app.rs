@@ -6,14 +6,6 @@ use std::path::{Path, PathBuf};
 use egui::{CentralPanel, Context, Frame, TextureId, Ui};
 use glam::{DVec2, Vec2};
 
-use sandtable_draw::list::FeatureId;
-use sandtable_editing::edit::{EditValue, SceneEdit};
-use sandtable_editing::editor::OnConflict;
-use sandtable_editing::tool::{DrawingTool, ToolKind};
-use sandtable_files::disk;
-use sandtable_editing::viewing::ViewerOptions;
-use sandtable_view::navigation::pose::{ViewPose, wrapped};
-use sandtable_view::navigation::{NavigationMode, TRANSITION_S};
 use crate::commands::{ViewCommand, pressed};
 use crate::disk_answers::DiskAnswers;
 use crate::drawing_job::DrawingJob;
@@ -37,6 +29,14 @@ use crate::session::EditingSession;
 use crate::tool_use::{ActiveTool, ToolPreview};
 use crate::view_area::ViewArea;
 use crate::viewsheds::ViewshedOverlay;
+use sandtable_draw::list::FeatureId;
+use sandtable_editing::edit::{EditValue, SceneEdit};
+use sandtable_editing::editor::OnConflict;
+use sandtable_editing::tool::{DrawingTool, ToolKind};
+use sandtable_editing::viewing::ViewerOptions;
+use sandtable_files::disk;
+use sandtable_view::navigation::pose::{ViewPose, wrapped};
+use sandtable_view::navigation::{NavigationMode, TRANSITION_S};
 
 /// What the window has to do for the app.
 #[derive(Clone, Debug, PartialEq)]

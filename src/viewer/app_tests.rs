@@ -8,10 +8,10 @@ use egui::{Key, Modifiers, PointerButton, Pos2, Ui, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use sandtable_editing::viewing::ViewerOptions;
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::ghost::DragTarget;
 use crate::recent::RecentFiles;
+use sandtable_editing::viewing::ViewerOptions;
 
 /// A place in the view, right of the panels.
 pub(super) const IN_VIEW: Pos2 = pos2(800.0, 520.0);

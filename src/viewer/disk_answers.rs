@@ -5,11 +5,6 @@ use std::sync::Arc;
 use egui::Context;
 use glam::Vec2;
 
-use sandtable_geom::rect::Rect;
-use sandtable_walk::disk_ground::DiskGroundError;
-use sandtable_walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
-use sandtable_terrain::sight::ground::SightGround;
-use sandtable_view::camera::Camera;
 use crate::app::ViewerApp;
 use crate::finer_ground::FinerGround;
 use crate::loading::opening_error;
@@ -19,6 +14,11 @@ use crate::paging::{DiskQuestions, PagedTerrain, PagingStage};
 use crate::place::PlaceText;
 use crate::tool_use::ActiveTool;
 use crate::worker::WorkerJob;
+use sandtable_geom::rect::Rect;
+use sandtable_terrain::sight::ground::SightGround;
+use sandtable_view::camera::Camera;
+use sandtable_walk::disk_ground::DiskGroundError;
+use sandtable_walk::pick::{PickedWorld, WalkPick, described, pixel_ray};
 
 /// What a click comes to; `None` where there is no ground after all.
 type PickJob = WorkerJob<Result<Option<WalkPick>, DiskGroundError>>;

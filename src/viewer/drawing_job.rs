@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::worker::WorkerJob;
 use sandtable_base::message::chain::error_text;
 use sandtable_editing::view_snapshot::ViewSnapshot;
-use crate::worker::WorkerJob;
 
 /// A picture that is being drawn.
 pub struct DrawingJob {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use sandtable_files::disk::ReadFileError;
 use crate::script::ScriptError;
+use sandtable_files::disk::ReadFileError;
 
 /// Why no window can be shown. Each message names the command that needs none.
 #[derive(Debug, thiserror::Error)]

@@ -9,17 +9,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::Context;
 use glam::Vec3;
 
-use sandtable_draw::ground::GroundMap;
-use sandtable_draw::ground_window::GroundWindow;
-use sandtable_base::message::chain::error_text;
-use sandtable_walk::paged_elevation::{ElevationWindows, ReadingWatch};
-use sandtable_walk::ground_windows::{GroundWindowLight, GroundWindowMaker, GroundWindowPlan, GroundWindowView};
-use sandtable_gpu::live::prepared::{LiveLoader, PreparedWindows};
-use sandtable_terrain::lattice::LatticeError;
-use sandtable_view::camera::Camera;
 use crate::opened::OpenedScene;
 use crate::scene_load::LoaderSlot;
 use crate::worker::{WorkerJob, drop_apart};
+use sandtable_base::message::chain::error_text;
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::ground_window::GroundWindow;
+use sandtable_gpu::live::prepared::{LiveLoader, PreparedWindows};
+use sandtable_terrain::lattice::LatticeError;
+use sandtable_view::camera::Camera;
+use sandtable_walk::ground_windows::{
+    GroundWindowLight, GroundWindowMaker, GroundWindowPlan, GroundWindowView,
+};
+use sandtable_walk::paged_elevation::{ElevationWindows, ReadingWatch};
 
 /// The eye is seen as no nearer to the ground than this, in meters.
 const LEAST_DISTANCE_M: f32 = 1.0;

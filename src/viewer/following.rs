@@ -5,9 +5,6 @@ use std::time::{Duration, Instant};
 
 use egui::Ui;
 
-use sandtable_draw::list::FeatureId;
-use sandtable_files::disk;
-use sandtable_files::fingerprint::fingerprint;
 use crate::app::{OpeningFailure, ViewerApp};
 use crate::lettering;
 use crate::loading::{LoadedFile, opening_error};
@@ -18,6 +15,9 @@ use crate::saving::Leaving;
 use crate::session::EditingSession;
 use crate::watch::{FileWatch, WatchState};
 use crate::worker::{WorkerJob, drop_apart};
+use sandtable_draw::list::FeatureId;
+use sandtable_files::disk;
+use sandtable_files::fingerprint::fingerprint;
 
 /// How often the share of a terrain that is measured is shown anew.
 const PROGRESS_EVERY: Duration = Duration::from_millis(500);

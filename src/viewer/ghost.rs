@@ -3,11 +3,11 @@
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 use glam::{DVec2, Vec3};
 
-use sandtable_picture::models::PlacementMove;
-use sandtable_view::camera::Camera;
 use crate::moving::{PickedPart, heading_deg};
 use crate::opened::OpenedScene;
 use crate::view_area::{GrabTarget, ViewArea};
+use sandtable_picture::models::PlacementMove;
+use sandtable_view::camera::Camera;
 
 /// Wide and dark below, narrow and light above, so that it shows on any ground.
 const STROKES: [(f32, Color32); 2] =

@@ -11,10 +11,10 @@ use egui::text::LayoutJob;
 use egui::{Align, Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec3;
 
+use crate::lettering::font;
 use sandtable_description::words::LabelKind;
 use sandtable_scene::SceneLabel;
 use sandtable_view::camera::Camera;
-use crate::lettering::font;
 
 /// A label that is shown comes as if its rank were lower by this: labels of one rank do not take turns.
 const SHOWN_BONUS: f64 = 0.5;

@@ -4,8 +4,6 @@ use egui::{
     Align2, CollapsingHeader, ComboBox, Context, Grid, Panel, RichText, ScrollArea, TextureId, Ui, Window,
 };
 
-use sandtable_files::disk;
-use sandtable_view::navigation::NavigationMode;
 use crate::app::{ViewerApp, ViewerStage};
 use crate::commands::{ViewCommand, key_text};
 use crate::panels::detail::detail_panel;
@@ -18,6 +16,8 @@ use crate::panels::tree::{TreeEvent, tree_panel};
 use crate::place::PlaceText;
 use crate::saving::Leaving;
 use crate::viewsheds::ViewshedOverlay;
+use sandtable_files::disk;
+use sandtable_view::navigation::NavigationMode;
 
 /// The width of the sections at the side, in points.
 const SIDE_WIDTH: f32 = 290.0;

@@ -5,10 +5,10 @@
 use egui::epaint::TextShape;
 use egui::{Color32, Painter, Pos2, Rect, Shape, vec2};
 
-use sandtable_annotate::fonts::is_joined;
-use sandtable_annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, LetterLimits, SetLetter};
 use crate::line_piece::{LinePicture, NamePoint, along_at, pieces, point_at};
 use crate::name_lines::{LineName, NameSide};
+use sandtable_annotate::fonts::is_joined;
+use sandtable_annotate::letter_course::{CourseLetter, LIMITS, LetterCourse, LetterLimits, SetLetter};
 
 /// The limits of a name that is shown: what is shown stays until it is bad for good.
 const HELD_LIMITS: LetterLimits = LetterLimits { most_turn: 0.65, most_bend: 2.4, most_lean: -0.4 };

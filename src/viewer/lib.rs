@@ -61,8 +61,8 @@ mod watch;
 mod window;
 mod worker;
 
-use sandtable_editing::viewing::ViewerOptions;
 use crate::error::ViewerError;
+use sandtable_editing::viewing::ViewerOptions;
 
 /// Opens a window on what `options` name; returns when it is closed.
 ///

@@ -13,13 +13,13 @@ use std::sync::Arc;
 
 use egui::Painter;
 
-use sandtable_view::camera::Camera;
 use crate::labels::ink;
 use crate::letter_run::{HeldPlace, LineLetter, letter_box, paint, place};
 use crate::lettering::font;
 use crate::line_piece::LinePicture;
 use crate::name_lines::{LabelLines, LineName, NameKey, graphic_names};
 use crate::opened::OpenedScene;
+use sandtable_view::camera::Camera;
 
 /// Names that are not shown are tried in turns of so many frames: trying takes longer than holding.
 const TURNS: u32 = 4;

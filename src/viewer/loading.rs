@@ -6,18 +6,18 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::Instant;
 
-use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
-use sandtable_base::limits::VIEWED_SAMPLES;
-use sandtable_base::message::chain::error_text;
-use sandtable_editing::editor::{SceneEditor, SceneSource};
-use sandtable_files::fingerprint::fingerprint;
-use sandtable_walk::paged_elevation::PagedElevation;
-use sandtable_editing::viewing::{is_scene_file, open_to_view};
 use crate::finer_ground::FinerGround;
 use crate::opened::{OpenedScene, OpeningView};
 use crate::paging::PagedTerrain;
 use crate::scene_load::LoaderSlot;
 use crate::worker::run_apart;
+use sandtable_base::limits::VIEWED_SAMPLES;
+use sandtable_base::message::chain::error_text;
+use sandtable_description::diagnostic::{Diagnostic, Diagnostics};
+use sandtable_editing::editor::{SceneEditor, SceneSource};
+use sandtable_editing::viewing::{is_scene_file, open_to_view};
+use sandtable_files::fingerprint::fingerprint;
+use sandtable_walk::paged_elevation::PagedElevation;
 
 /// A file that is being opened.
 pub struct SceneLoading {

@@ -3,10 +3,10 @@
 use glam::DVec2;
 
 use sandtable_query::viewshed::ViewshedSummary;
-use sandtable_walk::measure::MeasurableGround;
 use sandtable_terrain::profile::ProfileStation;
 use sandtable_terrain::sight::line::{Sight, SightEnd};
 use sandtable_terrain::sight::viewshed::ViewshedOptions;
+use sandtable_walk::measure::MeasurableGround;
 
 /// The height of observers and targets over ground, in meters.
 const EYE_M: f64 = 1.7;

@@ -6,10 +6,10 @@
 use egui::{DragValue, Ui};
 use glam::DVec2;
 
-use sandtable_draw::list::FeatureId;
-use sandtable_editing::edit::{EditPlace, EditValue, SceneEdit};
 use crate::app::ViewerApp;
 use crate::view_area::GrabTarget;
+use sandtable_draw::list::FeatureId;
+use sandtable_editing::edit::{EditPlace, EditValue, SceneEdit};
 
 /// The table that states what was picked.
 #[derive(Clone, Debug, PartialEq)]

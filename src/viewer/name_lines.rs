@@ -5,15 +5,15 @@ use std::sync::Arc;
 use egui::{Color32, FontId};
 use glam::{DVec2, Vec2, Vec3};
 
+use crate::lettering::font;
+use crate::line_piece::LinePicture;
+use crate::opened::OpenedScene;
 use sandtable_description::words::LabelKind;
 use sandtable_draw::color::Srgba;
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::axis::axis;
-use sandtable_scene::label_course::LabelCourse;
 use sandtable_picture::placed_text::{PlacedCourse, PlacedText};
-use crate::lettering::font;
-use crate::line_piece::LinePicture;
-use crate::opened::OpenedScene;
+use sandtable_scene::label_course::LabelCourse;
 
 /// Lines whose half is shorter than this take no name, in pixels.
 const LEAST_RADIUS_PX: f32 = 12.0;

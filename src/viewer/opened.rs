@@ -7,13 +7,16 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use crate::finer_ground::FinerGround;
+use crate::paging::PagedTerrain;
+use crate::reaching::Reaching;
+use crate::relisting::Relisting;
+use crate::scene_load::{LoaderSlot, SceneLoad};
+use crate::shadowing::{ShadowState, ShadowedView};
 use sandtable_draw::lighting::Lighting;
 use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_draw::patches::{GroundChanges, PatchId};
 use sandtable_geom::aabb::Aabb;
-use sandtable_walk::Walk;
-use sandtable_walk::frame::{ReachRenewal, WalkError, WalkOptions, WalkStatistics};
-use sandtable_walk::pick::{PickedWorld, StandingIndex, WalkPick, described, pixel_ray};
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::KeptPatches;
 use sandtable_gpu::live::prepared::{PreparedShadows, PreparedWindows};
@@ -23,12 +26,9 @@ use sandtable_terrain::sight::ray::Ray;
 use sandtable_view::camera::{Camera, CameraError, far_m};
 use sandtable_view::navigation::pose::{ViewPicture, ViewPose};
 use sandtable_view::navigation::{NavigatedSpace, NavigationSteps, Navigator, TRANSITION_S};
-use crate::finer_ground::FinerGround;
-use crate::paging::PagedTerrain;
-use crate::reaching::Reaching;
-use crate::relisting::Relisting;
-use crate::scene_load::{LoaderSlot, SceneLoad};
-use crate::shadowing::{ShadowState, ShadowedView};
+use sandtable_walk::Walk;
+use sandtable_walk::frame::{ReachRenewal, WalkError, WalkOptions, WalkStatistics};
+use sandtable_walk::pick::{PickedWorld, StandingIndex, WalkPick, described, pixel_ray};
 
 /// The size that cameras are fitted to before the window has one.
 pub const FIRST_SIZE: (u32, u32) = (1280, 720);

@@ -15,22 +15,22 @@ use std::thread;
 
 use glam::{DVec2, DVec3};
 
+use crate::worker::run_apart;
+use sandtable_base::message::chain::error_text;
 use sandtable_dem::answer::Answer;
 use sandtable_dem::windows::Windows;
 use sandtable_draw::patches::{GroundChanges, PatchId};
-use sandtable_base::message::chain::error_text;
-use sandtable_walk::paged_elevation::{ElevationWindows, ReadingWatch};
-use sandtable_walk::disk_ground::DiskGround;
-use sandtable_walk::frame::WalkStatistics;
-use sandtable_walk::page_heights::{PageHeights, page};
-use sandtable_walk::paged::{PagedWalk, PagedWalkOptions};
 use sandtable_roam::paging::ground::{PagingCounts, PagingOptions};
 use sandtable_roam::paging::region::PagedFrame;
 use sandtable_terrain::lattice::LatticeError;
 use sandtable_terrain::sight::ground::SightGround;
 use sandtable_terrain::sight::ray::Ray;
 use sandtable_view::camera::Camera;
-use crate::worker::run_apart;
+use sandtable_walk::disk_ground::DiskGround;
+use sandtable_walk::frame::WalkStatistics;
+use sandtable_walk::page_heights::{PageHeights, page};
+use sandtable_walk::paged::{PagedWalk, PagedWalkOptions};
+use sandtable_walk::paged_elevation::{ElevationWindows, ReadingWatch};
 
 /// Meters of distance per meter of error: one pixel of a picture 1080 pixels high that is opened 53°.
 const REACH: f32 = 1080.0;

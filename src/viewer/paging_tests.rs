@@ -8,15 +8,6 @@ use std::{env, fs, thread};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::{DVec2, DVec3, Vec2};
 
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
-use sandtable_dem::write;
-use sandtable_draw::patches::PatchId;
-use sandtable_geom::crs::Crs;
-use sandtable_walk::paged_elevation::PagedElevation;
-use sandtable_terrain::lattice::Lattice;
-use sandtable_terrain::query::{Interpolation, ground_height};
-use sandtable_view::navigation::pose::ViewPose;
 use crate::app_tests::{AppHarness, IN_VIEW, app, click, until, window};
 use crate::loading::load_paged;
 use crate::measuring::{MeasureKind, Measuring};
@@ -24,6 +15,15 @@ use crate::opened::{OpenedScene, OpeningView};
 use crate::paging::{MOST_PAGES, PagingStage};
 use crate::scene_load::LoaderSlot;
 use crate::tool_use::ActiveTool;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
+use sandtable_dem::write;
+use sandtable_draw::patches::PatchId;
+use sandtable_geom::crs::Crs;
+use sandtable_terrain::lattice::Lattice;
+use sandtable_terrain::query::{Interpolation, ground_height};
+use sandtable_view::navigation::pose::ViewPose;
+use sandtable_walk::paged_elevation::PagedElevation;
 
 /// A file of 1100 × 700 posts, ten meters apart, in a folder of its own.
 struct LargeFile {

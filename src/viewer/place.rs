@@ -2,8 +2,8 @@
 
 use sandtable_draw::list::FeatureId;
 use sandtable_query::positions::format_position;
-use sandtable_walk::pick::WalkPick;
 use sandtable_scene::SceneModel;
+use sandtable_walk::pick::WalkPick;
 
 /// What is known about a place; a text is empty where there is nothing to say.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -72,12 +72,12 @@ pub fn compass(degrees: f64) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DVec2, DVec3};
     use sandtable_editing::viewing::open_to_view;
-    use sandtable_walk::Walk;
-    use sandtable_walk::frame::WalkOptions;
     use sandtable_terrain::query::{Interpolation, Surface};
     use sandtable_terrain::sight::ray::Ray;
-    use glam::{DVec2, DVec3};
+    use sandtable_walk::Walk;
+    use sandtable_walk::frame::WalkOptions;
     use std::path::Path;
     use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 
 use egui::Context;
 
-use sandtable_walk::reach::ReachedGround;
 use crate::opened::OpenedScene;
 use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
+use sandtable_walk::reach::ReachedGround;
 
 /// The ground that is being made.
 pub type Reaching = WorkerJob<ReachedGround>;

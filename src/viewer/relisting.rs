@@ -6,18 +6,18 @@ use std::sync::Arc;
 use egui::Context;
 use glam::Vec3;
 
-use sandtable_draw::list::DrawList;
-use sandtable_draw::patches::GroundChanges;
-use sandtable_walk::pick::StandingIndex;
-use sandtable_walk::standing_task::StandingTask;
-use sandtable_gpu::error::GpuError;
-use sandtable_gpu::live::KeptPatches;
-use sandtable_gpu::live::prepared::PreparedScene;
-use sandtable_view::camera::Camera;
 use crate::opened::{FIRST_SIZE, OpenedScene};
 use crate::scene_load::{LoaderSlot, SceneLoad};
 use crate::shadowing::ShadowedView;
 use crate::worker::{WorkerFailure, WorkerJob, drop_apart};
+use sandtable_draw::list::DrawList;
+use sandtable_draw::patches::GroundChanges;
+use sandtable_gpu::error::GpuError;
+use sandtable_gpu::live::KeptPatches;
+use sandtable_gpu::live::prepared::PreparedScene;
+use sandtable_view::camera::Camera;
+use sandtable_walk::pick::StandingIndex;
+use sandtable_walk::standing_task::StandingTask;
 
 /// A list that is being made.
 pub struct Relisting {

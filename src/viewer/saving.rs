@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Context, Id, Modal};
 
-use sandtable_editing::editor::{OnConflict, SaveError};
-use sandtable_files::disk;
 use crate::app::{ViewerApp, WindowRequest};
 use crate::loading::opening_error;
+use sandtable_editing::editor::{OnConflict, SaveError};
+use sandtable_files::disk;
 
 /// What leaves the scene as it is edited.
 #[derive(Clone, Debug, PartialEq, Eq)]

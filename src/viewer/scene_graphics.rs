@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use egui::TextureId;
 
-use sandtable_gpu::adapter::Gpu;
-use sandtable_gpu::error::GpuError;
-use sandtable_gpu::live::prepared::LiveLoader;
-use sandtable_gpu::live::{LiveOptions, LiveRenderer};
 use crate::frame_times::{FrameLoad, FrameTime};
 use crate::graphics::WindowGraphics;
 use crate::opened::SceneFrame;
 use crate::scene_load::SceneLoad;
+use sandtable_gpu::adapter::Gpu;
+use sandtable_gpu::error::GpuError;
+use sandtable_gpu::live::prepared::LiveLoader;
+use sandtable_gpu::live::{LiveOptions, LiveRenderer};
 
 /// What the panels blend: colors as they are shown.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

@@ -2,12 +2,12 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use crate::shadowing::ShadowedView;
 use sandtable_draw::list::DrawList;
 use sandtable_draw::patches::GroundChanges;
 use sandtable_gpu::error::GpuError;
 use sandtable_gpu::live::KeptPatches;
 use sandtable_gpu::live::prepared::{LiveLoader, PreparedScene};
-use crate::shadowing::ShadowedView;
 
 /// A list that the renderer is to show.
 pub struct SceneLoad {

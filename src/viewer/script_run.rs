@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use sandtable_draw::list::FeatureId;
-use sandtable_editing::edit::{EarthworkDraft, SceneEdit};
-use sandtable_view::navigation::pose::ViewPose;
 use crate::app::{ViewerApp, ViewerStage, WindowRequest};
 use crate::commands::ViewCommand;
 use crate::frame_times::{FrameLoad, FrameTime, percentile};
 use crate::script::ScriptCommand;
+use sandtable_draw::list::FeatureId;
+use sandtable_editing::edit::{EarthworkDraft, SceneEdit};
+use sandtable_view::navigation::pose::ViewPose;
 
 /// The time that each frame of a script counts, in seconds: the same on every machine.
 pub const FRAME_S: f64 = 1.0 / 60.0;

@@ -3,16 +3,16 @@
 //! An edit that moves earth is seen in the next frame: it is done in the walk's own ground, and the scene is not built anew.
 //! What else changes the scene builds it anew, on a thread.
 
+use crate::loading::opening_error;
+use crate::opened::OpenedScene;
 use sandtable_earthworks::earthwork::dig;
 use sandtable_editing::edit::SceneEdit;
 use sandtable_editing::editor::SceneEditor;
 use sandtable_editing::effect::{EditEffect, MovedModel};
 use sandtable_editing::tool::ToolSettings;
-use sandtable_walk::edit::WalkEdit;
 use sandtable_picture::models::PlacementMove;
 use sandtable_terrain::volumes::Volumes;
-use crate::loading::opening_error;
-use crate::opened::OpenedScene;
+use sandtable_walk::edit::WalkEdit;
 
 /// What an edit leaves to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,16 +8,16 @@ use std::time::{Duration, Instant};
 use egui::Context;
 use glam::Vec3;
 
-use sandtable_draw::list::DrawList;
-use sandtable_walk::shown_ground::ShownGround;
-use sandtable_gpu::error::GpuError;
-use sandtable_gpu::live::LiveShadows;
-use sandtable_gpu::live::prepared::PreparedShadows;
-use sandtable_view::camera::Camera;
 use crate::opened::OpenedScene;
 use crate::relisting::RelistingError;
 use crate::scene_load::LoaderSlot;
 use crate::worker::WorkerJob;
+use sandtable_draw::list::DrawList;
+use sandtable_gpu::error::GpuError;
+use sandtable_gpu::live::LiveShadows;
+use sandtable_gpu::live::prepared::PreparedShadows;
+use sandtable_view::camera::Camera;
+use sandtable_walk::shown_ground::ShownGround;
 
 /// How long the camera rests before shadows are made for it: shorter makes them during a flight with pauses.
 const REST: Duration = Duration::from_millis(200);

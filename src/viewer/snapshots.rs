@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
-use sandtable_editing::edit::SceneEdit;
-use sandtable_sheet::picture::PictureSize;
-use sandtable_editing::view_snapshot::{self, ViewSnapshot, ViewedCamera};
 use crate::app::ViewerApp;
 use crate::drawing_job::DrawingJob;
 use crate::loading::opening_error;
+use sandtable_editing::edit::SceneEdit;
+use sandtable_editing::view_snapshot::{self, ViewSnapshot, ViewedCamera};
+use sandtable_sheet::picture::PictureSize;
 
 impl ViewerApp {
     /// Says where a picture is that was drawn meanwhile.

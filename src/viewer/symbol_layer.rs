@@ -5,6 +5,7 @@
 use egui::{Color32, ColorImage, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
 use glam::{UVec2, Vec2};
 
+use crate::opened::OpenedScene;
 use sandtable_annotate::annotation::{Annotations, PictureSymbol, SymbolHeight};
 use sandtable_annotate::paint::annotate;
 use sandtable_draw::color::Srgba;
@@ -13,7 +14,6 @@ use sandtable_draw::pixels::Pixels;
 use sandtable_scene::SceneModel;
 use sandtable_scene::military::SceneSymbol;
 use sandtable_view::camera::Camera;
-use crate::opened::OpenedScene;
 
 /// The height of the frame of a friendly unit, in points.
 const FRAME_HEIGHT: f32 = 30.0;

@@ -5,10 +5,6 @@ use std::time::{Duration, Instant};
 use egui::{CollapsingHeader, Color32, Painter, Pos2, Rect, RichText, Stroke, Ui, vec2};
 use glam::{DVec2, Vec2};
 
-use sandtable_editing::edit::SceneEdit;
-use sandtable_editing::effect::EditPreview;
-use sandtable_editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
-use sandtable_view::camera::Camera;
 use crate::app::ViewerApp;
 use crate::ghost::show_ghost;
 use crate::measuring::{MeasureKind, Measuring, volume_text};
@@ -17,6 +13,10 @@ use crate::paging::PagedTerrain;
 use crate::panels::tools::{ToolEvent, ToolsPanel, tools_panel};
 use crate::session::EditOutcome;
 use crate::view_area::ViewEvent;
+use sandtable_editing::edit::SceneEdit;
+use sandtable_editing::effect::EditPreview;
+use sandtable_editing::tool::{DrawingTool, ToolKind, ToolSettings, ToolShape};
+use sandtable_view::camera::Camera;
 
 /// How often the earth of an edit that is being drawn is computed anew while the pointer moves.
 const PREVIEW_EVERY: Duration = Duration::from_millis(150);

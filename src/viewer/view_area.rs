@@ -6,11 +6,6 @@ use egui::{
 };
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use sandtable_draw::list::FeatureId;
-use sandtable_walk::pick::WalkPick;
-use sandtable_scene::SceneLabel;
-use sandtable_view::camera::Camera;
-use sandtable_view::navigation::{NavigationMode, NavigationSteps};
 use crate::commands::{HeldMotion, held};
 use crate::ghost::DragTarget;
 use crate::labels::{self, LabelLayer, LabelPicture, PlacedLabel};
@@ -19,6 +14,11 @@ use crate::line_names::LineNames;
 use crate::line_piece::LinePicture;
 use crate::opened::OpenedScene;
 use crate::symbol_layer::SymbolLayer;
+use sandtable_draw::list::FeatureId;
+use sandtable_scene::SceneLabel;
+use sandtable_view::camera::Camera;
+use sandtable_view::navigation::{NavigationMode, NavigationSteps};
+use sandtable_walk::pick::WalkPick;
 
 /// Degrees that dragging over the height of the picture turns.
 const DEG_PER_PICTURE: f64 = 110.0;

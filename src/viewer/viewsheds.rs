@@ -3,12 +3,12 @@
 
 use glam::DVec2;
 
-use sandtable_query::viewshed::ViewshedSummary;
-use sandtable_picture::recut::SeenTint;
 use crate::app::ViewerApp;
 use crate::measuring::{MeasureKind, seen_facts, viewshed_from};
 use crate::tool_use::ActiveTool;
 use crate::worker::WorkerJob;
+use sandtable_picture::recut::SeenTint;
+use sandtable_query::viewshed::ViewshedSummary;
 
 /// The viewshed that is shown, or will be.
 pub struct ViewshedOverlay {

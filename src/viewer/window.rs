@@ -16,10 +16,6 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
-use sandtable_base::message::chain::error_text;
-use sandtable_files::disk;
-use sandtable_editing::viewing::ViewerOptions;
-use sandtable_gpu::live::LiveOptions;
 use crate::app::{ViewerApp, WindowRequest};
 use crate::error::ViewerError;
 use crate::frame_times::{FrameLoad, FrameTime};
@@ -28,6 +24,10 @@ use crate::opened::SceneFrame;
 use crate::scene_graphics::{SceneGraphics, milliseconds};
 use crate::script::parse_script;
 use crate::script_run::{FRAME_S, ScriptRun};
+use sandtable_base::message::chain::error_text;
+use sandtable_editing::viewing::ViewerOptions;
+use sandtable_files::disk;
+use sandtable_gpu::live::LiveOptions;
 
 /// The window's first size, in points; what fits on small screens.
 const FIRST_SIZE: LogicalSize<f64> = LogicalSize::new(1280.0, 800.0);

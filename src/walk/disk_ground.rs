@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use sandtable_base::limits::QUERIED_SAMPLES;
 use sandtable_dem::windows::Windows;
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::QUERIED_SAMPLES;
 use sandtable_roam::block::BlockFault;
 use sandtable_roam::paging::region::read_part;
 use sandtable_terrain::lattice::{Lattice, LatticeError, Post};

@@ -1,10 +1,10 @@
 //! Edits of the ground while it is shown: what depends on it is mended, not made anew.
 
+use crate::Walk;
+use crate::frame::WalkError;
 use sandtable_draw::patches::PatchId;
 use sandtable_earthworks::brush::{BrushChanges, Change, set_heights};
 use sandtable_geom::rect::Rect;
-use crate::Walk;
-use crate::frame::WalkError;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::ground::SightGround;

@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use sandtable_draw::pixels::Pixels;
 use sandtable_files::disk::{self, ReadFileError, WriteFileError};
 use sandtable_files::fingerprint::fingerprint;
-use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
 use sandtable_scene::flights::SceneFlight;
+use sandtable_sheet::picture::{PictureError, PictureSize, render_view};
 
 /// The note beside the frames.
 const NOTE: &str = "frames.json";

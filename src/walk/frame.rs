@@ -1,9 +1,9 @@
 //! The options of a walk, and what an update of it returns.
 
+use glam::Vec3;
 use sandtable_draw::patches::GroundChanges;
 use sandtable_roam::block::{BlockError, BlockSource};
 use sandtable_roam::refine::deferred::Deferred;
-use glam::Vec3;
 
 /// The parameters of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -187,8 +187,9 @@ mod tests {
         let mut lit = 0;
         for (index, post) in window.posts.iter().enumerate() {
             let own = &map.posts[(5 + index / 38) * map.columns as usize + 3 + index % 38];
-            let surface =
-                |post: &sandtable_draw::ground::GroundPost| (post.height_m, post.slope_east, post.slope_north);
+            let surface = |post: &sandtable_draw::ground::GroundPost| {
+                (post.height_m, post.slope_east, post.slope_north)
+            };
             assert_eq!(surface(post), surface(own));
             assert!(post.sun_visibility <= own.sun_visibility && post.sky_visibility <= own.sky_visibility);
             lit += usize::from(post.sun_visibility > 0.5);

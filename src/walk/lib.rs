@@ -35,21 +35,21 @@ use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
-use sandtable_draw::lighting::Lighting;
-use sandtable_draw::list::DrawList;
-use sandtable_geom::aabb::Aabb;
 use crate::frame::{ReachRenewal, WalkError, WalkFrame, WalkOptions, WalkStatistics};
 use crate::laid::LaidGround;
 use crate::relief_map::ReliefMap;
 use crate::shown::{ShownPatches, positions};
-use sandtable_roam::culling::{Culling, InView};
-use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
-use sandtable_roam::refine::deferred::Deferred;
-use sandtable_roam::spheres;
+use sandtable_draw::lighting::Lighting;
+use sandtable_draw::list::DrawList;
+use sandtable_geom::aabb::Aabb;
 use sandtable_picture::models::{PlacementMove, PlacementMoves, moved_box};
 use sandtable_picture::placed_text::PlacedText;
 use sandtable_picture::recut::SeenTint;
 use sandtable_picture::standing;
+use sandtable_roam::culling::{Culling, InView};
+use sandtable_roam::dynamic::{DynamicOptions, DynamicTerrain, ErrorMeasure, Radius};
+use sandtable_roam::refine::deferred::Deferred;
+use sandtable_roam::spheres;
 use sandtable_scene::{Placement, SceneModel};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::sight::ground::SightGround;

@@ -92,10 +92,10 @@ impl PageHeights {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use sandtable_dem::raster::{Raster, Samples, north_up_nodes};
     use sandtable_roam::block::BlockSource;
     use sandtable_roam::paging::ground::{PagedGround, PagingOptions, exact_spheres};
-    use glam::DVec3;
 
     /// 45 × 45 posts, so that patches of 16 cells reach beyond the border.
     fn raster() -> Raster {

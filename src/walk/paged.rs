@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use sandtable_dem::windows::Windows;
-use sandtable_draw::patches::{GroundChanges, PatchId, PatchTriangles, PatchVertices};
 use crate::far_block::{FarBlock, backdrop, far_blocks};
 use crate::frame::{WalkError, WalkFrame, WalkStatistics};
 use crate::shown::ShownPatches;
+use sandtable_dem::windows::Windows;
+use sandtable_draw::patches::{GroundChanges, PatchId, PatchTriangles, PatchVertices};
 use sandtable_roam::block::{BlockSource, PatchBlock};
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::paging::ground::{PagedGround, PagingCounts, PagingError, PagingOptions, exact_spheres};

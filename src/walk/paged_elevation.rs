@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_dem::error::DemErrorKind;
 use sandtable_dem::raster::{Raster, Samples};
 use sandtable_dem::read::DemHints;
@@ -13,9 +14,8 @@ use sandtable_dem::reduced::reduced_by_overview;
 use sandtable_dem::tiff::windows::GeoTiffWindows;
 use sandtable_dem::warp;
 use sandtable_dem::windows::{RasterWindow, Windows};
-use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_files::error::FileError;
 use sandtable_files::disk;
+use sandtable_files::error::FileError;
 use sandtable_roam::layout::DEFAULT_PATCH;
 use sandtable_roam::paging::ground::{PagingError, finest_that_fits};
 use sandtable_terrain::lattice::Lattice;

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
+use crate::Walk;
 use sandtable_draw::list::{DrawItem, DrawList, FeatureId};
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::mgrs;
-use sandtable_sheet::picture_buffers::PickedPlace;
-use crate::Walk;
 use sandtable_scene::{SceneFeature, SceneModel};
+use sandtable_sheet::picture_buffers::PickedPlace;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::gradient::{GradientSurface, ground_gradient};
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -228,10 +228,10 @@ pub fn described(scene: &SceneModel, elevations: Option<&Lattice>, picked: Picke
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Mat4;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DepthLayer, DrawMesh, DrawVertex, MaterialId};
     use sandtable_mesh::sink::MeshSink;
-    use glam::Mat4;
 
     #[test]
     fn the_nearest_item_is_picked_wherever_it_is_placed() {

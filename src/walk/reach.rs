@@ -4,12 +4,12 @@
 use glam::{DVec2, Vec3};
 
 use crate::Walk;
+use sandtable_picture::sheet_cuts::{SheetCuts, SheetParts};
 use sandtable_roam::block::BlockSource;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::refine::deferred::Deferred;
 use sandtable_roam::refine::deferred::surface::DeferredSurface;
 use sandtable_roam::sphere_task::{SphereTask, TaskGround};
-use sandtable_picture::sheet_cuts::{SheetCuts, SheetParts};
 use sandtable_view::camera::Camera;
 
 /// Spheres that reach farther than a picture needs, by up to this factor, are kept: they show more triangles, and making
@@ -87,10 +87,10 @@ mod tests {
 
     use glam::DVec2;
 
-    use sandtable_earthworks::brush::set_heights;
-    use sandtable_editing::viewing::open_to_view;
     use crate::Walk;
     use crate::frame::{ReachRenewal, WalkOptions};
+    use sandtable_earthworks::brush::set_heights;
+    use sandtable_editing::viewing::open_to_view;
     use sandtable_picture as picture;
     use sandtable_terrain::lattice::Post;
     use sandtable_terrain::post_rect::PostRect;

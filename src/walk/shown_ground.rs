@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
+use crate::Walk;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::Walk;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::layout::PatchLayout;
 use sandtable_roam::patched_ground::PatchedGround;

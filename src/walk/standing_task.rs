@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use sandtable_draw::list::DrawList;
 use crate::Walk;
 use crate::relief_map::ReliefEdits;
-use sandtable_scene::SceneModel;
+use sandtable_draw::list::DrawList;
 use sandtable_picture::models::PlacementMoves;
 use sandtable_picture::standing::{self, WalkedGround};
+use sandtable_scene::SceneModel;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_view::camera::Camera;
 
@@ -79,8 +79,8 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use sandtable_editing::viewing::open_to_view;
     use crate::frame::WalkOptions;
+    use sandtable_editing::viewing::open_to_view;
     use sandtable_picture as picture;
     use sandtable_terrain::sight::line::SightEnd;
     use sandtable_terrain::sight::viewshed::ViewshedOptions;

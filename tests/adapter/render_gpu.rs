@@ -2,7 +2,6 @@
 //!
 //! Without one the tests say so; with `SANDTABLE_REQUIRE_GPU` set they fail instead.
 
-
 use crate::adapters::gpus;
 use crate::common::synthetic::{
     BOARD_HEIGHT_M, BOARD_WIDTH_M, BOX, FENCE, FENCE_COLOR, HOUSE, LAKE, LAKE_COLOR, LAKE_Y, MASKED, PANE,

@@ -2,18 +2,19 @@
 //!
 //! Without an adapter the tests say so; with `SANDTABLE_REQUIRE_GPU` set they fail instead.
 
-
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use sandtable_draw::ground_levels::coarser_levels;
 use sandtable_draw::ground_window::GroundWindow;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId};
-use sandtable_draw::patches::{DrapedPiece, GroundChanges, GroundMapPatch, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
-use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_draw::patches::{
+    DrapedPiece, GroundChanges, GroundMapPatch, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
+};
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::live::{KeptPatches, LiveOptions, LiveQuality, LiveRenderer, LiveShadows, UploadedBytes};
 use sandtable_gpu::render_on;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_view::camera::Camera;
 
 use crate::adapters::gpus;

@@ -5,7 +5,6 @@
 //! a pixel only where there is one; so features and depths are held against one sample, colors against the
 //! four that the GPU takes too.
 
-
 use crate::adapters::gpus;
 use crate::common::forest::{forest, overlook};
 use crate::common::synthetic::{HOUSE, camera, material_of, scene, scene_with_contours};
@@ -20,12 +19,12 @@ use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::{DrawList, FeatureId};
 use sandtable_draw::material::{Albedo, AlphaMode};
 use sandtable_draw::pixels::Pixels;
-use sandtable_scene::scene_file::open_scene;
-use sandtable_render::cpu::{RenderQuality, SampleCount, render};
 use sandtable_gpu::adapter::Gpu;
 use sandtable_gpu::render_on;
-use sandtable_render::picture::Rendering;
 use sandtable_picture::{build_draw_list, camera as scene_camera};
+use sandtable_render::cpu::{RenderQuality, SampleCount, render};
+use sandtable_render::picture::Rendering;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_view::axes::DirectionAxes;
 use sandtable_view::camera::{Camera, ParallelFrame};
 
@@ -218,7 +217,7 @@ fn every_scene_is_the_same_picture_on_both() {
 }
 
 fn scene_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("scenes");
     let entries = std::fs::read_dir(folder).expect("the scenes are there");
     let paths = entries.map(|entry| entry.expect("readable").path());
     let mut files: Vec<PathBuf> =

@@ -13,11 +13,11 @@ use std::path::Path;
 
 use sandtable_draw::list::{DepthLayer, DrawItem};
 use sandtable_files::png::encode_png;
-use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
-use sandtable_scene::scene_file::open_scene;
-use sandtable_render::RenderBackend;
 use sandtable_picture::ViewDraw;
+use sandtable_render::RenderBackend;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{SceneModel, SceneView};
+use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
 
 use crate::steps::{Step, Steps};
 
@@ -50,7 +50,7 @@ struct Run {
 
 fn run_once() -> Run {
     let steps = Steps::default();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/jacksboro.toml");
     let scene = open_scene(&path, &[], &|step| steps.begin(step)).expect("the demonstration is sound");
     let view = scene.view(None).expect("a scene has a camera").clone();
     let finished = picture(&scene, &view, &steps);

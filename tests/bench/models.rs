@@ -23,9 +23,9 @@ use sandtable_model::error::CompanionError;
 use sandtable_model::read::read;
 use sandtable_model::simplify::levels;
 use sandtable_model::{Companions, Model};
+use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_scene::SceneModel;
-use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_view::camera::Camera;
 
 use crate::steps::{Step, Steps};
@@ -84,7 +84,7 @@ struct Assets;
 
 impl Companions for Assets {
     fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
+        let folder = Path::new(env!("SANDTABLE_ROOT")).join("assets/models");
         Ok(fs::read(folder.join(name))?)
     }
 }

@@ -21,11 +21,11 @@ use sandtable_dem::formats::DemFormat;
 use sandtable_dem::raster::{Raster, Samples};
 use sandtable_earthworks::brush::Crater;
 use sandtable_files::raster_file;
+use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_view::camera::Camera;
 use sandtable_walk::Walk;
 use sandtable_walk::frame::{WalkOptions, WalkStatistics};
-use sandtable_scene::SceneModel;
-use sandtable_view::camera::Camera;
 
 use crate::rounds::{median, quantile, time_ms};
 
@@ -180,7 +180,7 @@ fn crater() {
 
 /// The demonstration: ground and all that lies on it, along the way from its first view to its last.
 fn demo() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/jacksboro.toml");
     let scene = Arc::new(open_scene(&path, &[], &|_| {}).expect("the demonstration is sound"));
     let placed = |at: usize| {
         sandtable_picture::camera(&scene, &scene.cameras[at], (1280, 720)).expect("a sound camera")

@@ -18,7 +18,7 @@ fn open(api: GpuApi) -> Option<Gpu> {
         Ok(gpu) => Some(gpu),
         Err(error) => {
             assert!(std::env::var_os("SANDTABLE_REQUIRE_GPU").is_none(), "{error}");
-            super::skip::skipped(&format!("no GPU adapter: {error}"));
+            crate::common::skip::skipped(&format!("no GPU adapter: {error}"));
             None
         }
     }

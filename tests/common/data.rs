@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// # Panics
 /// Where it is not there and `SANDTABLE_REQUIRE_DATA` is set.
 pub fn data(path: &str) -> Option<PathBuf> {
-    let at = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")).join(path);
+    let at = Path::new(concat!(env!("SANDTABLE_ROOT"), "../shared/data")).join(path);
     if at.exists() {
         return Some(at.canonicalize().expect("it is there"));
     }

@@ -6,9 +6,9 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 use sandtable_description::parse::parse_bytes;
 use sandtable_description::words::Clamp;
+use sandtable_picture as picture;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture as picture;
 use sandtable_scene::{GroundFit, Placement, SceneModel};
 use sandtable_view::camera::Camera;
 
@@ -24,7 +24,7 @@ pub const SIDE_M: f32 = (POSTS - 1) as f32 * 10.0;
 pub fn forest(count: usize, models: &[&str]) -> SceneModel {
     let scratch = Scratch::new();
     scratch.write("hills.asc", hills());
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models");
+    let assets = Path::new(env!("SANDTABLE_ROOT")).join("assets/models");
     for entry in fs::read_dir(assets).expect("the assets are there") {
         let path = entry.expect("it can be read").path();
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();

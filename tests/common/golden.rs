@@ -24,7 +24,7 @@ const SCALE: u32 = 2;
 
 /// Where the golden pictures are.
 pub fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"))
+    PathBuf::from(concat!(env!("SANDTABLE_ROOT"), "tests/golden"))
 }
 
 /// The golden pictures there are, in order of their names.

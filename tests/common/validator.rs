@@ -19,7 +19,7 @@ pub fn validate(file: &Path) -> Option<Value> {
         );
         return None;
     };
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/validate_gltf.js");
+    let script = concat!(env!("SANDTABLE_ROOT"), "tests/tools/validate_gltf.js");
     let modules = Path::new(&folder).join("node_modules");
     let ran =
         Command::new("node").env("NODE_PATH", modules).arg(script).arg(file).output().expect("node runs");

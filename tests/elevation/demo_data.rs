@@ -13,7 +13,7 @@ use jacksboro::{lakes, line, network, samples};
 mod jacksboro;
 
 fn folder(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+    Path::new(env!("SANDTABLE_ROOT")).join(path)
 }
 
 fn text(path: &str) -> String {

@@ -1,13 +1,13 @@
 //! Virtual rasters, as `gdalbuildvrt` writes them, are their tiles joined: in memory, in windows, in scenes.
 
 use glam::{DAffine2, DMat2, DVec2};
+use sandtable_base::message::chain::error_text;
 use sandtable_dem::formats::DemFormat;
 use sandtable_dem::raster::{Raster, Samples};
 use sandtable_dem::read::DemOptions;
 use sandtable_dem::windows::{RasterWindow, Windows};
 use sandtable_dem::write::write;
 use sandtable_geom::crs::Crs;
-use sandtable_base::message::chain::error_text;
 use sandtable_query::dem::{OpenedDem, open, open_either};
 use sandtable_scene::scene_file::build_scene_text;
 

@@ -5,12 +5,12 @@ use sandtable_description::parse::parse_bytes;
 use sandtable_description::words::Cover;
 use sandtable_draw::list::DepthLayer;
 use sandtable_draw::material::AlphaMode;
+use sandtable_picture::{build_draw_list, camera};
 use sandtable_ribbon::partition::overlap_m2;
 use sandtable_ribbon::texture::RibbonSurface;
 use sandtable_ribbon::texture::cover::cover_length_m;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{build_draw_list, camera};
 use sandtable_scene::{FeatureKind, SceneModel};
 
 use crate::common::scratch::Scratch;

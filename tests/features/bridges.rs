@@ -8,9 +8,9 @@ use crate::common::scratch::Scratch;
 use glam::{DVec2, Vec3};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, FeatureId};
-use sandtable_scene::scene_file::open_scene;
-use sandtable_render::cpu;
 use sandtable_picture::build_draw_list;
+use sandtable_render::cpu;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{Coat, FeatureKind, SceneModel};
 use sandtable_structure::deck_check::closed;
 use sandtable_terrain::query::{Interpolation, Surface, ground_height};
@@ -21,7 +21,7 @@ fn scene(path: &Path, allow: Vec<PathBuf>) -> SceneModel {
 }
 
 fn crossing() -> SceneModel {
-    scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/bridge.toml"), Vec::new())
+    scene(&Path::new(env!("SANDTABLE_ROOT")).join("scenes/bridge.toml"), Vec::new())
 }
 
 /// Every bridge's solids, by feature.
@@ -69,7 +69,7 @@ fn mouths(scene: &SceneModel) -> Vec<(Vec<Vec3>, Vec3)> {
 #[test]
 fn no_ground_is_seen_in_the_mouth_of_a_tunnel() {
     for name in ["bridge.toml", "earthworks.toml"] {
-        let scene = scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), Vec::new());
+        let scene = scene(&Path::new(env!("SANDTABLE_ROOT")).join("scenes").join(name), Vec::new());
         let mouths = mouths(&scene);
         assert!(mouths.len() > 1, "{name}");
         for (corners, outward) in mouths {
@@ -105,7 +105,7 @@ fn no_ground_is_seen_in_the_mouth_of_a_tunnel() {
 #[test]
 fn no_ground_stands_over_a_deck() {
     for (name, scale) in [("bridge.toml", 1.5), ("earthworks.toml", 1.0)] {
-        let scene = scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name), Vec::new());
+        let scene = scene(&Path::new(env!("SANDTABLE_ROOT")).join("scenes").join(name), Vec::new());
         let is_bridge =
             |feature: FeatureId| scene.features[feature.0 as usize - 2].kind == FeatureKind::Bridge;
         let decks = scene
@@ -175,7 +175,7 @@ fn every_bridge_is_closed_and_stands_on_the_ground() {
 #[test]
 fn too_many_piers_are_refused_at_the_bridge_that_asks_for_most() {
     let scratch = Scratch::new();
-    let dem = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/jacksboro/valley.asc");
+    let dem = Path::new(env!("SANDTABLE_ROOT")).join("assets/jacksboro/valley.asc");
     scratch.write("valley.asc", std::fs::read(dem).expect("readable"));
     let zigzag: Vec<String> =
         (0..100).map(|at| format!("[{}, {}]", 746_100 + at * 80, 4_015_200 + at % 2 * 8000)).collect();

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use glam::{DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable_draw::list::{DrawMesh, FeatureId};
-use sandtable_scene::scene_file::open_scene;
 use sandtable_picture::display;
 use sandtable_scene::report::BuildingPadRow;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{FeatureKind, SceneModel};
 use sandtable_structure::building::{self, Measures};
 use sandtable_structure::draped_solid::DrapedSolid;
@@ -20,7 +20,7 @@ use sandtable_view::camera::Camera;
 use crate::common::data::data;
 use crate::common::scratch::Scratch;
 
-const HILLS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/jacksboro/hills.png");
+const HILLS: &str = concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/hills.png");
 
 /// A scene of the hills with `tables`.
 fn scene(tables: &str) -> SceneModel {
@@ -35,7 +35,7 @@ fn load_scene(path: &Path, allow: &[PathBuf]) -> SceneModel {
 }
 
 fn demo() -> SceneModel {
-    load_scene(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/buildings.toml"), &[])
+    load_scene(&Path::new(env!("SANDTABLE_ROOT")).join("scenes/buildings.toml"), &[])
 }
 
 fn measured(scene: &SceneModel) -> Vec<(FeatureId, Measures)> {

@@ -145,7 +145,7 @@ fn of_files() -> Vec<Seed> {
 /// Coordinates that are in another system than stated.
 fn of_systems() -> Vec<Seed> {
     let file = "[[road]]\nfile = \"road.geojson\"\n";
-    let zone = |code| sandtable::Crs::from_epsg(code).expect("a system");
+    let zone = |code| sandtable_geom::crs::Crs::from_epsg(code).expect("a system");
     let at = |to: u32| {
         let place = zone(32616).transform(&zone(to), [750_200.0, 4_018_200.0].into()).expect("on Earth");
         (place.x, place.y)
@@ -185,7 +185,8 @@ fn in_nad27() -> &'static str {
 
 /// A GeoJSON file of a road on the hill and one beside it.
 fn half_off() -> String {
-    let (from, to) = (sandtable::Crs::from_epsg(32616).expect("a zone"), sandtable::Crs::wgs84());
+    let (from, to) =
+        (sandtable_geom::crs::Crs::from_epsg(32616).expect("a zone"), sandtable_geom::crs::Crs::wgs84());
     let line = |east: f64| {
         let points = [[east, 4_018_100.0], [east + 100.0, 4_018_150.0]];
         line_file(&points.map(|at| from.transform(&to, at.into()).expect("on Earth").into()))
@@ -235,7 +236,7 @@ fn tile(datum: Option<&str>, east_m: f64, height: impl Fn(f64, f64) -> f64) -> V
     let height = |index: u32| height(f64::from(index % 20), f64::from(index / 20)) as f32;
     let corner = DVec2::new(ORIGIN[0] + east_m, ORIGIN[1] + 400.0);
     let raster = Raster {
-        crs: Some(sandtable::Crs::from_epsg(32616).expect("a zone")),
+        crs: Some(sandtable_geom::crs::Crs::from_epsg(32616).expect("a zone")),
         map_from_grid: DAffine2::from_cols(DVec2::new(CELL_M, 0.0), DVec2::new(0.0, -CELL_M), corner),
         georeferenced: true,
         vertical_datum: datum.map(str::to_owned),
@@ -281,7 +282,8 @@ fn a_picture_of_few_pixels_is_found_where_it_is_stretched() {
 /// A GeoJSON line over the hill, with heights that follow from the ground's.
 fn track(height: fn(f64) -> f64) -> String {
     let [x, y] = ORIGIN;
-    let (from, to) = (sandtable::Crs::from_epsg(32616).expect("a zone"), sandtable::Crs::wgs84());
+    let (from, to) =
+        (sandtable_geom::crs::Crs::from_epsg(32616).expect("a zone"), sandtable_geom::crs::Crs::wgs84());
     let points = (0..30).map(|at| {
         let (east, north) = (60.0 + 9.0 * f64::from(at), 80.0 + 5.0 * f64::from(at));
         let place = from.transform(&to, [x + east, y + north].into()).expect("on Earth");

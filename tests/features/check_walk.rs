@@ -129,7 +129,7 @@ fn gallery_differences(scene: &str, all: &[Finding]) -> Vec<String> {
 
 #[test]
 fn scenes_of_the_gallery_have_no_mistakes_but_those_they_show() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("scenes");
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .expect("the gallery")
         .map(|entry| entry.expect("readable").file_name().to_string_lossy().into_owned())

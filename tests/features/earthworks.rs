@@ -4,14 +4,14 @@ use std::path::Path;
 
 use glam::DVec2;
 use sandtable_base::message::chain::error_text;
-use sandtable_scene::scene_file::{open_scene, open_scene_ground};
 use sandtable_scene::SceneModel;
+use sandtable_scene::scene_file::{open_scene, open_scene_ground};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::water_cover::water_cover;
 
 use crate::common::scratch::Scratch;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("SANDTABLE_ROOT");
 
 /// The scene of the hills, 10 m between posts, with `tables`, or the message about it.
 fn built(tables: &str) -> Result<SceneModel, String> {

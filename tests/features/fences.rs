@@ -7,10 +7,10 @@ use glam::{DVec2, Vec3};
 use proptest::prelude::*;
 use sandtable_earthworks::alignment::Alignment;
 use sandtable_geom::polyline::Polyline;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_picture::display;
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_scene::SceneModel;
-use sandtable_picture::display;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_structure::bands::{BandSize, hedge, parapets, rails, wall};
 use sandtable_structure::draped_solid::DrapedSolid;
 use sandtable_structure::fence::stands;
@@ -22,7 +22,7 @@ use sandtable_view::camera::Camera;
 
 use crate::common::scratch::Scratch;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("SANDTABLE_ROOT");
 
 /// The gallery's scene of lines at several tolerances.
 static SCENES: LazyLock<Vec<SceneModel>> = LazyLock::new(|| {

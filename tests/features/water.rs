@@ -12,10 +12,10 @@ use sandtable_earthworks::channel::flow::Flow;
 use sandtable_earthworks::channel::{Channel, check_rise};
 use sandtable_earthworks::shore::{self, LakeBasin};
 use sandtable_geom::polyline::Polyline;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_picture::{build_draw_list, camera};
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{build_draw_list, camera};
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{FeatureKind, SceneModel};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::query::{Interpolation, ground_height};
@@ -233,7 +233,7 @@ fn a_bed_of_more_posts_than_there_is_time_for_is_refused() {
 }
 
 fn gallery(name: &str) -> SceneModel {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let path = std::path::Path::new(env!("SANDTABLE_ROOT")).join("scenes").join(name);
     open_scene(&path, &[], &|_| {}).unwrap_or_else(|failure| panic!("{failure:?}"))
 }
 

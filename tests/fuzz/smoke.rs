@@ -68,8 +68,7 @@ fn mutant(seed: &[u8], numbers: &mut Numbers) -> Vec<u8> {
 /// The start of a file of the project, after the byte that picks its name.
 fn file(name: u8, path: &str) -> Vec<u8> {
     const MOST: usize = 6000;
-    let bytes =
-        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).expect("a file of the project");
+    let bytes = std::fs::read(Path::new(env!("SANDTABLE_ROOT")).join(path)).expect("a file of the project");
     [&[name], &bytes[..bytes.len().min(MOST)]].concat()
 }
 

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 use sandtable_earthworks::brush::Crater;
+use sandtable_view::camera::Camera;
 use sandtable_walk::Walk;
 use sandtable_walk::frame::WalkOptions;
-use sandtable_view::camera::Camera;
 
 use super::byte_source::ByteSource;
 use super::shapes::{SIDE_M, built};

@@ -12,7 +12,7 @@ const ROUNDING_M: f64 = 1e-8;
 
 #[test]
 fn cubic_heights_of_a_raster_are_gdal_s() {
-    let bytes = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/jacksboro/dem.tif"));
+    let bytes = std::fs::read(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/dem.tif"));
     let raster =
         read("dem.tif", &bytes.expect("a file of the project"), &DemHints::default()).expect("sound");
     let mut count = 0;

@@ -9,7 +9,9 @@ use sandtable_dem::read::{self, DemHints};
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::{Sight, SightEnd, line_of_sight};
-use sandtable_terrain::sight::viewshed::{PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines};
+use sandtable_terrain::sight::viewshed::{
+    PostVisibility, Sector, Viewshed, ViewshedOptions, viewshed, viewshed_by_lines,
+};
 
 use crate::common::data::data;
 
@@ -192,7 +194,7 @@ fn holds_on(name: &str, lattice: &Lattice) {
 
 #[test]
 fn on_the_jacksboro_ground_it_is_exact() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/jacksboro/dem.tif");
+    let path = concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/dem.tif");
     let bytes = fs::read(path).expect("the demo's ground");
     holds_on("jacksboro", &real("dem.tif", &bytes, Post { column: 0, row: 0 }, 400));
 }

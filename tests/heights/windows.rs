@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::{DAffine2, DMat2, DVec2};
+use sandtable_base::message::chain::error_text;
 use sandtable_dem::formats::DemFormat;
 use sandtable_dem::raster::{Raster, Samples};
 use sandtable_dem::read::DemOptions;
@@ -10,7 +11,6 @@ use sandtable_dem::stats::Stats;
 use sandtable_dem::void_counts::VoidCounts;
 use sandtable_dem::write;
 use sandtable_geom::crs::Crs;
-use sandtable_base::message::chain::error_text;
 use sandtable_query::dataset::{Dataset, DatasetOptions};
 use sandtable_query::dem::{OpenedDem, open_either};
 use sandtable_query::ground::QueriedGround;

@@ -13,12 +13,12 @@ use std::sync::LazyLock;
 use sandtable_draw::list::{DepthLayer, DrawItem};
 use sandtable_mesh::check;
 use sandtable_mesh::trimesh::TriMesh;
-use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
-use sandtable_scene::scene_file::open_scene;
+use sandtable_picture::ViewDraw;
 use sandtable_render::RenderBackend;
 use sandtable_ribbon::drape::check_clearance;
-use sandtable_picture::ViewDraw;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{SceneModel, SceneView};
+use sandtable_sheet::picture::{PictureSize, RenderedView, render_view};
 
 /// Small enough to be quick and to be kept, large enough for annotations.
 const SIZE: PictureSize = PictureSize { width: 480, height: 270 };
@@ -42,7 +42,7 @@ struct Shown {
 }
 
 fn scene_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("scenes");
     let entries =
         fs::read_dir(folder).expect("the scenes are there").map(|entry| entry.expect("readable").path());
     let mut files: Vec<PathBuf> =

@@ -5,14 +5,14 @@ use std::path::Path;
 use glam::Vec2;
 use sandtable_annotate::figure::CoordinateFigure;
 use sandtable_annotate::grid::{GridAxis, GridLine, PictureGrid};
-use sandtable_sheet::grid::{grid_over, picture_grid};
-use sandtable_sheet::picture::{DrawnView, PictureSize, draw_view};
-use sandtable_scene::scene_file::open_scene;
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_sheet::grid::{grid_over, picture_grid};
+use sandtable_sheet::picture::{DrawnView, PictureSize, draw_view};
 
 fn scene() -> SceneModel {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/grid.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/grid.toml");
     open_scene(&path, &[], &|_| ()).expect("a scene of the gallery")
 }
 

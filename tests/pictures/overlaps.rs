@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sandtable_annotate::report::{AnnotationReport, SheetBox};
-use sandtable_sheet::picture::{PictureSize, render_view};
-use sandtable_scene::scene_file::open_scene;
 use sandtable_render::RenderBackend;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{SceneView, ViewAim};
+use sandtable_sheet::picture::{PictureSize, render_view};
 
 /// The pairs of boxes that overlap and are not of one name, by their texts.
 pub fn overlaps(report: &AnnotationReport) -> Vec<(String, String)> {
@@ -28,7 +28,7 @@ pub fn overlaps(report: &AnnotationReport) -> Vec<(String, String)> {
 
 /// Names along streams and roads, spot heights and contour numbers round Caryville.
 fn crowded_scene() -> PathBuf {
-    let assets = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("assets/jacksboro");
+    let assets = PathBuf::from(env!("SANDTABLE_ROOT")).join("assets/jacksboro");
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("overlaps");
     fs::create_dir_all(&folder).expect("a folder");
     for file in ["valley.asc", "streams.geojson", "roads.geojson", "lake.geojson"] {

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use sandtable_draw::list::FeatureId;
-use sandtable_sheet::picture::{PictureSize, draw_view};
-use sandtable_scene::scene_file::open_scene;
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_sheet::picture::{PictureSize, draw_view};
 
 const SIZE: PictureSize = PictureSize { width: 960, height: 540 };
 
@@ -34,7 +34,7 @@ fn copied(scene: &SceneModel) -> BTreeMap<FeatureId, CopiedPixels> {
 
 #[test]
 fn a_copier_keeps_the_contours_and_every_feature_of_a_print() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/preset-print.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/preset-print.toml");
     let mut scene = open_scene(&path, &[], &|_| ()).expect("a sound scene");
     let pixels = copied(&scene);
     let ground = pixels[&FeatureId::GROUND];

@@ -98,7 +98,7 @@ fn run_in<A: AsRef<std::ffi::OsStr>>(folder: &Path, arguments: &[A]) -> Ran {
 
 /// Runs the program in the project's folder.
 fn run<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Ran {
-    run_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)
+    run_in(Path::new(env!("SANDTABLE_ROOT")), arguments)
 }
 
 /// Runs the program in `folder` with something to read on standard input.
@@ -123,7 +123,7 @@ fn ran(output: std::process::Output) -> Ran {
 
 /// A file of the project.
 fn project(path: &str) -> String {
-    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/{path}", env!("SANDTABLE_ROOT"))
 }
 
 /// The bytes of a file of the project.

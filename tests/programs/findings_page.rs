@@ -45,7 +45,7 @@ fn page() -> String {
 
 #[test]
 fn the_page_of_findings_lists_the_codes_as_they_are_declared() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/FINDINGS.md");
+    let file = Path::new(env!("SANDTABLE_ROOT")).join("scenes/FINDINGS.md");
     if std::env::var_os("SANDTABLE_BLESS").is_some() {
         std::fs::write(&file, page()).expect("writable");
     }

@@ -19,7 +19,7 @@ use crate::readme::command::{Command, Line};
 use crate::readme::sandbox::Sandbox;
 use crate::serve::client::Server;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("SANDTABLE_ROOT");
 
 /// The pages whose links are followed.
 const PAGES: [&str; 10] = [

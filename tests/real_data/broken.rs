@@ -48,7 +48,7 @@ fn no_broken_file_breaks_a_scene_whose_ground_it_is() {
 #[test]
 fn no_broken_file_breaks_a_scene_whose_road_or_lake_it_is() {
     let scratch = Scratch::new();
-    let dem = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/jacksboro/valley.asc"));
+    let dem = std::fs::read(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc"));
     scratch.write("data/valley.asc", dem.expect("a file of the project"));
     for table in ["road", "lake"] {
         every_broken_file(|folder, path| {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use sandtable_draw::color::{Srgba, luminance};
 use sandtable_draw::pixels::Pixels;
 use sandtable_new::{self as new_scene, NewSceneOptions};
+use sandtable_render::RenderBackend;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_sheet::picture::{PictureSize, annotate_view, draw_view};
 use sandtable_sheet::picture_statistics::PictureStatistics;
-use sandtable_scene::scene_file::open_scene;
-use sandtable_render::RenderBackend;
 
 use crate::common::data::data;
 use crate::common::scratch::Scratch;

@@ -25,7 +25,7 @@ fn place(name: &str) -> Option<(PathBuf, Scratch)> {
 
 /// Builds `text`, with `PLACE` replaced by the folder of the place and `PROJECT` by the project's.
 fn built(scratch: &Scratch, place: &Path, text: &str) -> SceneModel {
-    let project = env!("CARGO_MANIFEST_DIR");
+    let project = env!("SANDTABLE_ROOT");
     let text = text.replace("PLACE", &place.to_string_lossy()).replace("PROJECT", project);
     let allowed = [place.to_path_buf(), Path::new(project).join("assets")];
     let scene = crate::scene(scratch, &text, &allowed).unwrap_or_else(|error| panic!("{error}"));

@@ -6,15 +6,15 @@ use glam::DVec2;
 use sandtable_dem::answer::Answer;
 use sandtable_dem::read::DemOptions;
 use sandtable_draw::list::FeatureId;
-use sandtable_query::dem;
 use sandtable_files::output_files::OutputFiles;
-use sandtable_sheet::picture::{PictureSize, draw_view};
-use sandtable_sheet::picture_buffers::{PictureBuffers, pick};
-use sandtable_scene::scene_file::open_scene;
+use sandtable_picture::{build_shapes, camera};
+use sandtable_query::dem;
 use sandtable_render::RenderBackend;
 use sandtable_render::cpu::render_buffers;
-use sandtable_picture::{build_shapes, camera};
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{ParallelView, SceneModel, SceneView, ViewAim};
+use sandtable_sheet::picture::{PictureSize, draw_view};
+use sandtable_sheet::picture_buffers::{PictureBuffers, pick};
 use sandtable_terrain::query::{Interpolation, Surface};
 
 use crate::common::scratch::Scratch;
@@ -22,7 +22,7 @@ use crate::common::scratch::Scratch;
 const SIZE: PictureSize = PictureSize { width: 320, height: 180 };
 
 fn open(name: &str) -> SceneModel {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes").join(name);
     open_scene(&path, &[], &|_| ()).unwrap_or_else(|error| panic!("{name}: {error:?}"))
 }
 

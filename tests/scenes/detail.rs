@@ -11,10 +11,10 @@ use sandtable_model::error::CompanionError;
 use sandtable_model::read::read;
 use sandtable_model::simplify::levels;
 use sandtable_model::{Companions, Model, ModelPart};
+use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
-use sandtable_picture::{build_draw_list, display, draw_list};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;
 
@@ -22,7 +22,7 @@ struct Assets;
 
 impl Companions for Assets {
     fn load(&self, name: &str) -> Result<Vec<u8>, CompanionError> {
-        let folder: PathBuf = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into();
+        let folder: PathBuf = concat!(env!("SANDTABLE_ROOT"), "assets/models").into();
         Ok(std::fs::read(folder.join(name))?)
     }
 }

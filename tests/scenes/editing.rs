@@ -11,15 +11,15 @@ use sandtable_editing::edit::{EarthworkDraft, EditPlace, EditValue, NewTable, Sc
 use sandtable_editing::editor::{EditError, OnConflict, SaveError, SceneEditor};
 use sandtable_editing::effect::EditEffect;
 use sandtable_editing::reload::{ReloadedScene, WatchedScene};
+use sandtable_scene::SceneModel;
 use sandtable_scene::scene_file::open_scene;
+use sandtable_terrain::lattice::Lattice;
 use sandtable_walk::Walk;
 use sandtable_walk::frame::WalkOptions;
-use sandtable_scene::SceneModel;
-use sandtable_terrain::lattice::Lattice;
 
 use crate::common::scratch::Scratch;
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = env!("SANDTABLE_ROOT");
 
 /// The hills, 10 m between posts, with all that earthworks may meet.
 const SCENE: &str = r#"# The hills, to be edited.

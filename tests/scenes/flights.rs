@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use glam::Vec3;
-use sandtable_walk::flown_scene::open_scene_with_flight;
 use sandtable_scene::ViewAim;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
+use sandtable_walk::flown_scene::open_scene_with_flight;
 
 #[test]
 fn the_eye_stays_above_the_ground_and_neither_jumps_nor_jerks() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/river.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/river.toml");
     let (scene, flight) = open_scene_with_flight(&path, &[], None, &|_| ()).expect("sound");
     let ground = FullResolution { lattice: scene.ground().lattice() };
     let poses: Vec<(Vec3, Vec3)> = (0..=500)

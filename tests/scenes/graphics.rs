@@ -6,11 +6,11 @@ use std::path::Path;
 use glam::{DVec2, Vec3};
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_picture::{ViewDraw, build_draw_list};
 use sandtable_ribbon::drape::check_clearance;
 use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{ViewDraw, build_draw_list};
 use sandtable_symbology::graphic::kind::{GRAPHIC_KINDS, GraphicKind, GraphicShape, MOST_POINTS};
 use sandtable_terrain::sight::viewshed::{PostVisibility, viewshed};
 
@@ -236,7 +236,7 @@ fn graphics_page() -> String {
 
 #[test]
 fn the_page_of_symbols_lists_every_graphic() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/SYMBOLS.md");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/SYMBOLS.md");
     let page = std::fs::read_to_string(&path).unwrap_or_else(|_| "# Symbols and graphics\n\n".to_owned());
     let wanted = graphics_page();
     let (head, rest) = page.split_once("<!-- graphics -->").unwrap_or((&page, ""));

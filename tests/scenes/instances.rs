@@ -2,8 +2,8 @@
 
 use crate::common::forest::{forest, overlook, seen_from};
 use glam::Vec3;
-use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_picture::{build_draw_list, display, draw_list};
+use sandtable_render::cpu::{RenderQuality, render};
 
 #[test]
 fn leaving_out_what_is_beside_the_picture_changes_no_pixel() {

@@ -7,6 +7,7 @@ mod assets;
 mod buffers;
 mod clearance;
 mod detail;
+mod dtm;
 mod editing;
 mod flights;
 mod graphics;

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use sandtable_geom::aabb::Aabb;
 use sandtable_base::message::chain::error_text;
+use sandtable_geom::aabb::Aabb;
 use sandtable_model::error::{CompanionError, ModelError};
 use sandtable_model::read::read;
 use sandtable_model::{Companions, Model};
@@ -347,7 +347,7 @@ impl ObjGeometry {
 fn obj_files_have_the_triangles_and_positions_that_tobj_reads() {
     let Some(data) = data() else { return };
     let models = data.join("models/obj");
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let assets = Path::new(env!("SANDTABLE_ROOT")).join("assets");
     let mut wrong = Vec::new();
     let mut compared = 0;
     for path in [models, assets].iter().flat_map(|folder| files_below(folder, &["obj"])) {

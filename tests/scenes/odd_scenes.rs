@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use sandtable_description::parse::parse_bytes;
+use sandtable_picture::{build_draw_list, camera};
 use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{build_draw_list, camera};
 use sandtable_scene::plinth::base_z;
 
 /// A folder of its own for one test, with `hill.asc` in it: `columns` × `rows` posts 10 m apart from (5, 5).

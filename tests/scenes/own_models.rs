@@ -12,7 +12,7 @@ use sandtable_model::read::read;
 use sandtable_model::{Census, Companions, Model};
 
 fn folder() -> PathBuf {
-    concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models").into()
+    concat!(env!("SANDTABLE_ROOT"), "assets/models").into()
 }
 
 struct Assets;
@@ -106,8 +106,7 @@ fn surfaces_face_outward() {
     for name in ["watchtower.3ds", "farmhouse.obj", "bridge.glb", "firtree.obj", "truck.3ds"] {
         let mut volume = 0.0;
         for part in asset(name).parts {
-            let at =
-                |id: sandtable_mesh::sink::VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
+            let at = |id: sandtable_mesh::sink::VertexId| Vec3::from(part.mesh.vertices[id.index()].position);
             let corners = part.mesh.triangles.iter().map(|triangle| triangle.map(at));
             volume += corners.map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum::<f32>();
         }

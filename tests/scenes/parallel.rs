@@ -2,12 +2,12 @@
 
 use glam::{DVec2, Vec2, Vec3};
 use sandtable_description::parse::parse_bytes;
-use sandtable_sheet::picture::{PictureSize, render_view};
+use sandtable_picture::{build_draw_list, camera, display};
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{build_draw_list, camera, display};
+use sandtable_sheet::picture::{PictureSize, render_view};
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::triangle_surface::TriangleSurface;
 use sandtable_view::camera::Camera;

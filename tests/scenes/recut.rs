@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use sandtable_draw::list::DrawMesh;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_picture::{camera, recut};
 use sandtable_ribbon::drape::drape;
 use sandtable_ribbon::patches::{Drapes, StalePatch};
 use sandtable_roam::displayed::DisplayedTerrain;
 use sandtable_roam::graph::Vertex;
 use sandtable_roam::refine::coherent::Coherent;
-use sandtable_picture::{camera, recut};
+use sandtable_scene::scene_file::open_scene;
 use sandtable_scene::{SceneModel, SceneView, ViewAim};
 use sandtable_view::camera::Camera;
 
@@ -58,7 +58,7 @@ fn plan_area(mesh: &DrawMesh) -> f64 {
 
 #[test]
 fn after_every_frame_of_a_flight_the_drapes_are_what_cutting_all_anew_would_give() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/jacksboro.toml");
     let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut walk = Walk {
         scene: &scene,

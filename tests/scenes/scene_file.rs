@@ -6,6 +6,7 @@ mod schema;
 mod symbols_page;
 
 use proptest::prelude::{ProptestConfig, any};
+use sandtable_base::limits::SCENE_BYTES;
 use sandtable_description::color::{Color, RampChoice};
 use sandtable_description::diagnostic::Diagnostics;
 use sandtable_description::document::Document;
@@ -15,7 +16,6 @@ use sandtable_description::scalar::Scalar;
 use sandtable_description::selection::Selection;
 use sandtable_description::words::{Clamp, LabelKind, RampName, RoadSurface};
 use sandtable_geom::crs::Crs;
-use sandtable_base::limits::SCENE_BYTES;
 
 /// Every key that there is.
 const COMPLETE: &str = r##"title = "Tal 山谷"

@@ -4,11 +4,11 @@ use glam::{DVec2, Vec2, Vec3};
 use sandtable_description::parse::parse_bytes;
 use sandtable_draw::list::FeatureId;
 use sandtable_geom::polyline::Polyline;
+use sandtable_picture::{build_draw_list, draw_list};
 use sandtable_render::cpu::{RenderQuality, render};
 use sandtable_render::picture::Rendering;
 use sandtable_scene::assets::Assets;
 use sandtable_scene::build::build;
-use sandtable_picture::{build_draw_list, draw_list};
 use sandtable_scene::{FeatureKind, SceneModel};
 use sandtable_view::camera::Camera;
 

@@ -10,16 +10,16 @@ use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex,
 use sandtable_draw::patches::{DrapedPiece, GroundChanges, PatchId};
 use sandtable_earthworks::brush::{Crater, Trench};
 use sandtable_mesh::sink::{MeshSink, VertexId};
+use sandtable_picture::{build_draw_list, camera};
+use sandtable_render::{RenderBackend, render};
+use sandtable_scene::SceneModel;
+use sandtable_scene::scene_file::open_scene;
 use sandtable_sheet::picture::PictureSize;
 use sandtable_sheet::picture_buffers::pick;
-use sandtable_scene::scene_file::open_scene;
+use sandtable_view::camera::Camera;
 use sandtable_walk::Walk;
 use sandtable_walk::frame::WalkOptions;
 use sandtable_walk::pick::{StandingIndex, pixel_ray};
-use sandtable_render::{RenderBackend, render};
-use sandtable_scene::SceneModel;
-use sandtable_picture::{build_draw_list, camera};
-use sandtable_view::camera::Camera;
 
 /// What a renderer keeps of the changes it was handed.
 #[derive(Default)]
@@ -82,7 +82,7 @@ fn add(list: &mut DrawList, mesh: DrawMesh, material: MaterialId, layer: DepthLa
 }
 
 fn scene(name: &str) -> Arc<SceneModel> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes").join(name);
     Arc::new(open_scene(&path, &[], &|_| {}).expect("the demonstration is sound"))
 }
 

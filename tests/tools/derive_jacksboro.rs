@@ -13,7 +13,7 @@ use jacksboro::samples;
 mod jacksboro;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/jacksboro");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("assets/jacksboro");
     let derived = jacksboro::derive(&Ground::read(&std::fs::read(folder.join("dem.tif"))?));
     std::fs::write(folder.join("streams.geojson"), derived.streams)?;
     std::fs::write(folder.join("lake.geojson"), derived.lakes)?;

@@ -4,7 +4,7 @@
 mod models;
 
 fn main() -> std::io::Result<()> {
-    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/models"));
+    let folder = std::path::Path::new(concat!(env!("SANDTABLE_ROOT"), "assets/models"));
     std::fs::create_dir_all(folder)?;
     for (name, bytes) in models::files() {
         std::fs::write(folder.join(name), &bytes)?;

@@ -23,7 +23,6 @@
 
 use glam::DVec2;
 
-use sandtable_base::bytes::{ByteFields, ByteOrder};
 use crate::error::DemErrorKind;
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
@@ -35,6 +34,7 @@ use crate::sample_type::SampleType;
 use crate::stored::StoredSamples;
 use crate::units::{FOOT_M, US_SURVEY_FOOT_M};
 use crate::write::{WriteError, WrittenDem};
+use sandtable_base::bytes::{ByteFields, ByteOrder};
 use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {

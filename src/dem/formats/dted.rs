@@ -15,12 +15,12 @@
 
 use glam::DVec2;
 
-use sandtable_base::bytes::ByteFields;
 use crate::error::DemErrorKind;
 use crate::formats::{DemFormat, Recognition, any_size};
 use crate::limits::SizeClaim;
 use crate::raster::{Raster, Samples, north_up_nodes};
 use crate::read::DemFile;
+use sandtable_base::bytes::ByteFields;
 use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {

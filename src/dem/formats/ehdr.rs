@@ -7,7 +7,6 @@
 
 use glam::{DAffine2, DVec2};
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::formats::header::HeaderFields;
 use crate::formats::plain_raster::{self, PlainRaster};
@@ -17,6 +16,7 @@ use crate::georef;
 use crate::raster::{Raster, north_up, north_up_nodes};
 use crate::read::DemFile;
 use crate::sample_type::{NumberKind, SampleType};
+use sandtable_base::bytes::ByteOrder;
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "ESRI binary grid",

@@ -6,7 +6,6 @@
 
 use glam::{DAffine2, DVec2};
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::formats::header::HeaderFields;
 use crate::formats::plain_raster::{self, PlainRaster};
@@ -16,6 +15,7 @@ use crate::georef::{self, utm_code};
 use crate::raster::{Raster, north_up};
 use crate::read::DemFile;
 use crate::sample_type::SampleType;
+use sandtable_base::bytes::ByteOrder;
 use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {

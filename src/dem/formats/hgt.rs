@@ -5,7 +5,6 @@
 
 use glam::DVec2;
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
@@ -14,6 +13,7 @@ use crate::raster::{Raster, north_up_nodes};
 use crate::read::DemFile;
 use crate::sample_type::SampleType;
 use crate::write::{WriteError, WrittenDem};
+use sandtable_base::bytes::ByteOrder;
 use sandtable_geom::crs::Crs;
 
 pub(super) static FORMAT: DemFormat = DemFormat {

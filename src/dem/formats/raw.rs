@@ -6,7 +6,6 @@
 use std::fmt;
 use std::str::FromStr;
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::formats::plain_raster::{self, PlainRaster};
 use crate::formats::sample_layout::{FileSize, NoData, SampleLayout};
@@ -15,6 +14,7 @@ use crate::georef;
 use crate::raster::Raster;
 use crate::read::DemFile;
 use crate::sample_type::{NumberKind, SampleType};
+use sandtable_base::bytes::ByteOrder;
 
 pub(crate) static FORMAT: DemFormat = DemFormat {
     name: "RAW with a stated size",

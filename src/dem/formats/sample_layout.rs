@@ -7,12 +7,12 @@
 
 use std::ops::Range;
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::limits::SizeClaim;
 use crate::raster::{Raster, SampleFloat, Samples};
 use crate::sample_type::SampleType;
 use crate::windows::RasterWindow;
+use sandtable_base::bytes::ByteOrder;
 use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_base::limits::work_limit::WorkLimit;
 

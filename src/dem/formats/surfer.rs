@@ -14,7 +14,6 @@
 
 use glam::DVec2;
 
-use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::error::DemErrorKind;
 use crate::formats::sample_layout::{NoData, SampleLayout};
 use crate::formats::text::{TextWords, number};
@@ -23,6 +22,7 @@ use crate::limits::SizeClaim;
 use crate::raster::{Raster, Samples, north_up_nodes};
 use crate::read::DemFile;
 use crate::sample_type::SampleType;
+use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Surfer grid",

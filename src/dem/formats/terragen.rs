@@ -12,13 +12,13 @@
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
 use crate::error::DemErrorKind;
 use crate::formats::sample_layout::{NoData, SampleLayout};
 use crate::formats::{DemFormat, Recognition, any_size};
 use crate::raster::Raster;
 use crate::read::DemFile;
 use crate::sample_type::SampleType;
+use sandtable_base::bytes::{ByteFields, ByteOrder, bytes_at};
 
 pub(super) static FORMAT: DemFormat = DemFormat {
     name: "Terragen terrain",

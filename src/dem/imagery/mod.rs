@@ -19,8 +19,8 @@ use crate::imagery::tiff_colors::TiffColors;
 use crate::read::{DemFile, DemHints};
 use crate::tiff::geotiff;
 use crate::windows::RasterWindow;
-use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_base::limits::IMAGERY_PIXELS;
+use sandtable_geom::crs::{Crs, CrsError};
 
 /// Why a picture of the ground was not read.
 #[derive(Debug, thiserror::Error)]

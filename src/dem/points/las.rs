@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use sandtable_base::bytes::ByteFields;
 use crate::points::las_crs::LasCrs;
 use crate::points::las_header::LasHeader;
 use crate::points::{PointCloud, PointHints, PointsError, laz};
+use sandtable_base::bytes::ByteFields;
 
 /// The class of the ground.
 pub const GROUND: u8 = 2;

@@ -6,9 +6,9 @@
 use glam::DVec3;
 use las::raw::header::Header;
 
-use sandtable_base::bytes::ByteFields;
 use crate::error::DemErrorKind;
 use crate::points::PointsError;
+use sandtable_base::bytes::ByteFields;
 use sandtable_base::limits::GRID_POINTS;
 
 /// Set in the format of a compressed file.

@@ -16,8 +16,8 @@ pub mod table;
 use glam::DVec3;
 
 use crate::error::DemErrorKind;
-use sandtable_geom::crs::Crs;
 use sandtable_base::limits::GRID_POINTS;
+use sandtable_geom::crs::Crs;
 
 /// Points and breaklines in one coordinate system.
 #[derive(Clone, Debug)]

@@ -16,12 +16,12 @@ use tiff::TiffError;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
-use sandtable_base::bytes::ByteOrder;
 use crate::error::DemErrorKind;
 use crate::limits::SizeClaim;
 use crate::sample_type::{NumberKind, SampleType};
 use crate::tiff::geotiff::FORMAT;
 use crate::windows::RasterWindow;
+use sandtable_base::bytes::ByteOrder;
 use sandtable_base::limits::TIFF_TAG_BYTES;
 use sandtable_base::limits::work_limit::WorkLimit;
 

@@ -19,9 +19,9 @@ use crate::warp::crs_transform::CrsTransform;
 use crate::warp::data_extent::data_extent;
 use crate::warp::metric_crs::metric_crs;
 use crate::warp::resample::Resampler;
+use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::RASTER_SAMPLES;
 
 /// Why a raster cannot be warped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -16,9 +16,9 @@ use crate::warp::WarpError;
 use crate::warp::crs_transform::CrsTransform;
 use crate::warp::data_extent::{data_extent, outline};
 use crate::warp::row_positions::{positions, positions_within};
+use sandtable_base::limits::RASTER_SAMPLES;
 use sandtable_geom::crs::{Crs, CrsError};
 use sandtable_geom::rect::Rect;
-use sandtable_base::limits::RASTER_SAMPLES;
 
 /// Without a stated cell, the samples of the output per sample of the source: a raster turned by 45° needs 2.
 const GROWTH: u64 = 8;

@@ -3,12 +3,12 @@
 use crate::channel::carve::CenterlinePiece;
 use crate::channel::course::{ChannelCourse, CourseStation};
 use crate::channel::{ChannelError, Cut};
-use sandtable_geom::segment;
+use glam::DVec2;
 use sandtable_base::limits::RIVER_POSTS;
+use sandtable_geom::segment;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::volumes::Volumes;
-use glam::DVec2;
 
 /// Posts by where the lattice stores them, rising, each with what it is to become.
 pub(super) struct ChannelBed {

@@ -18,9 +18,9 @@
 
 use crate::channel::bed::ChannelBed;
 use crate::channel::course::{ChannelCourse, CourseStation};
+use glam::DVec2;
 use sandtable_terrain::cell_triangle::Diagonal;
 use sandtable_terrain::lattice::Lattice;
-use glam::DVec2;
 
 /// What a stretch may rise by rounding, in meters: a thousand of them come to a thousandth of a millimeter.
 const ROUNDING_M: f64 = 1e-9;

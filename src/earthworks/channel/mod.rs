@@ -29,8 +29,8 @@ use crate::alignment::Alignment;
 use crate::channel::bed::ChannelBed;
 use crate::channel::carve::CenterlinePiece;
 use crate::channel::course::ChannelCourse;
-use sandtable_geom::polyline::Polyline;
 use sandtable_base::limits::RIVER_POSTS;
+use sandtable_geom::polyline::Polyline;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::volumes::Volumes;
 

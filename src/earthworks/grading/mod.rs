@@ -75,12 +75,12 @@ mod tests {
     use crate::alignment::spans::EarthworkLimits;
     use crate::grading::strip::StripEnd;
     use crate::grading::strip::tests::{FLAT, strip};
+    use glam::DVec2;
+    use proptest::prelude::*;
     use sandtable_geom::profile::Profile;
     use sandtable_terrain::densify::densify;
     use sandtable_terrain::profile::profile;
     use sandtable_terrain::query::{Interpolation, ground_height};
-    use glam::DVec2;
-    use proptest::prelude::*;
 
     const SIDE: u32 = 301;
 

@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
+use crate::page::container::PageSections;
 use sandtable_draw::list::{DepthLayer, DrawItem, DrawList, DrawMesh, DrawVertex, FeatureId, MaterialId};
 use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use crate::page::container::PageSections;
 use sandtable_mesh::sink::VertexId;
 
 /// When something is shown.
@@ -223,8 +223,8 @@ pub fn material(material: &Material) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::Srgba;
     use crate::page::container::tests::words;
+    use sandtable_draw::color::Srgba;
     use sandtable_mesh::sink::MeshSink;
 
     fn triangle(x: f32) -> DrawMesh {

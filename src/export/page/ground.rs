@@ -3,10 +3,10 @@
 use glam::Vec3;
 use serde_json::{Value, json};
 
+use crate::page::container::PageSections;
 use sandtable_draw::color::srgb_from_linear;
 use sandtable_draw::ground::{ColorRamp, GroundMap, GroundPost};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, level};
-use crate::page::container::PageSections;
 use sandtable_terrain::lattice::{Lattice, Post};
 
 /// The most posts whose heights a page holds: 32 MB before packing. Of larger ground it holds every second post, or

@@ -20,6 +20,8 @@ use base64::engine::general_purpose::STANDARD;
 use glam::{DVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 
+use crate::page::batches::ShowRange;
+use crate::page::container::PageSections;
 use sandtable_draw::backdrop::Backdrop;
 use sandtable_draw::bathymetry::bathymetry;
 use sandtable_draw::color::Srgba;
@@ -29,8 +31,6 @@ use sandtable_draw::list::DrawList;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::undergrowth::Undergrowth;
 use sandtable_draw::water::WaterColor;
-use crate::page::batches::ShowRange;
-use crate::page::container::PageSections;
 use sandtable_geom::chebyshev::ChebyshevTable;
 use sandtable_terrain::lattice::Lattice;
 

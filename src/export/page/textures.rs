@@ -5,10 +5,10 @@ use image::ImageEncoder;
 use image::codecs::jpeg::JpegEncoder;
 use serde_json::{Value, json};
 
+use crate::page::container::PageSections;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_files::png::encode_png;
-use crate::page::container::PageSections;
 
 /// The side from which an opaque picture is stored as JPEG: below it PNG is as small, and exact.
 const JPEG_FROM_PX: u32 = 512;

@@ -6,13 +6,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::adapter::Gpu;
+use crate::error::GpuError;
+use crate::ground::{GroundTextures, PlacedLevel, levels};
 use sandtable_draw::ground::{GroundMap, GroundMapError, GroundPost};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, coarser_levels, coarser_post};
 use sandtable_draw::list::DrawListError;
 use sandtable_draw::patches::GroundMapPatch;
-use crate::adapter::Gpu;
-use crate::error::GpuError;
-use crate::ground::{GroundTextures, PlacedLevel, levels};
 
 /// A map and what was changed of it.
 ///

@@ -36,10 +36,6 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use sandtable_draw::ground::GroundMap;
-use sandtable_draw::lighting::Lighting;
-use sandtable_draw::list::{DrawList, DrawListError};
-use sandtable_draw::patches::{GroundChanges, PatchId};
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
@@ -59,6 +55,10 @@ use crate::plan::{DrawCall, PipelineKey, Plan};
 use crate::shadow::ShadowView;
 use crate::uniforms::{FrameScene, FrameUniforms};
 use crate::windows::WindowTexture;
+use sandtable_draw::ground::GroundMap;
+use sandtable_draw::lighting::Lighting;
+use sandtable_draw::list::{DrawList, DrawListError};
+use sandtable_draw::patches::{GroundChanges, PatchId};
 use sandtable_render::shadow::Shadows;
 use sandtable_view::camera::Camera;
 

@@ -10,9 +10,6 @@ use std::sync::Arc;
 use bytemuck::cast_slice;
 use glam::{Mat4, Vec3};
 
-use sandtable_draw::list::{DrawList, DrawListError, MaterialId};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable_draw::patches::{DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices};
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::geometry::{CornerUv, MergedTriangles, SurfaceOwner};
@@ -24,6 +21,11 @@ use crate::parts::ShaderParts;
 use crate::passes::ScenePass;
 use crate::pipelines::GpuPass;
 use crate::plan::{DepthRule, PipelineKey, VertexSource};
+use sandtable_draw::list::{DrawList, DrawListError, MaterialId};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::patches::{
+    DrapedPiece, GroundChanges, PatchDrapes, PatchId, PatchTriangles, PatchVertices,
+};
 use sandtable_view::camera::Camera;
 
 /// All patches.

@@ -2,12 +2,12 @@
 
 use glam::Vec2;
 
-use sandtable_draw::list::FeatureId;
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::memory::{Loader, view};
 use crate::passes::{PassStage, PassViews};
 use crate::readback::{Targets, TextureCopy, feature_and_depth, wait};
+use sandtable_draw::list::FeatureId;
 
 /// What a pixel shows at its center.
 #[derive(Clone, Copy, Debug, PartialEq)]

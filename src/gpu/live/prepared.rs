@@ -5,9 +5,6 @@
 
 use std::sync::Arc;
 
-use sandtable_draw::ground_window::GroundWindow;
-use sandtable_draw::list::{DepthLayer, DrawList};
-use sandtable_draw::patches::GroundChanges;
 use crate::adapter::Gpu;
 use crate::error::GpuError;
 use crate::frame::{FrameGroup, FrameTextures};
@@ -24,6 +21,9 @@ use crate::pipelines::{Layouts, Pipelines};
 use crate::plan::Plan;
 use crate::shadow::{ShadowTextures, ShadowView};
 use crate::windows::WindowTexture;
+use sandtable_draw::ground_window::GroundWindow;
+use sandtable_draw::list::{DepthLayer, DrawList};
+use sandtable_draw::patches::GroundChanges;
 
 /// Prepares scenes for a renderer, on any thread.
 #[derive(Clone, Debug)]

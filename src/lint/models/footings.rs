@@ -1,11 +1,11 @@
 //! Models that float, and models that are buried: the gap between each corner of the foot and the ground under it.
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::words::{Clamp, Footing};
 use crate::context::LintContext;
 use crate::models::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::{Clamp, Footing};
 use sandtable_terrain::triangle_surface::TriangleSurface;
 
 /// A corner that floats higher shows a gap under the model, meters: a step.

@@ -7,10 +7,10 @@ mod textures;
 
 use glam::{DVec2, Vec3};
 
-use sandtable_geom::aabb::Aabb;
-use sandtable_model::{Model, built_in};
 use crate::context::LintContext;
 use crate::sink::FindingSink;
+use sandtable_geom::aabb::Aabb;
+use sandtable_model::{Model, built_in};
 use sandtable_scene::footprint::ModelFootprint;
 use sandtable_scene::placement::stand;
 use sandtable_scene::{FeatureKind, Placement, SceneModel};

@@ -4,6 +4,10 @@
 
 use glam::{DVec2, Vec3};
 
+use crate::context::LintContext;
+use crate::models::StandingModel;
+use crate::sink::FindingSink;
+use crate::worst::WorstOfTables;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_draw::list::{DrawMesh, FeatureId};
 use sandtable_geom::convex;
@@ -12,10 +16,6 @@ use sandtable_geom::polygon;
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
-use crate::context::LintContext;
-use crate::models::StandingModel;
-use crate::sink::FindingSink;
-use crate::worst::WorstOfTables;
 use sandtable_scene::symbols::LineSymbol;
 use sandtable_scene::{FeatureKind, Solid};
 

@@ -12,12 +12,12 @@
 
 use glam::Vec3;
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_geom::aabb::Aabb;
 use crate::context::LintContext;
 use crate::models::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_geom::aabb::Aabb;
 
 /// The largest side of a model, meters: the highest building of the world has 828.
 const LARGEST_M: f32 = 1000.0;

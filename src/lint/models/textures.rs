@@ -17,13 +17,13 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-use sandtable_description::finding_code::FindingCode;
-use sandtable_draw::pixels::Pixels;
-use sandtable_model::Model;
 use crate::context::LintContext;
 use crate::models::StandingModel;
 use crate::sink::FindingSink;
 use crate::worst::WorstOfTables;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_draw::pixels::Pixels;
+use sandtable_model::Model;
 
 /// Pixels are smeared where one is so many times as long as wide: unwrapped models have up to 4.
 const SMEARED: f32 = 10.0;

@@ -17,9 +17,9 @@ use bytemuck::Pod;
 use glam::{Mat4, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
-use sandtable_geom::aabb::Aabb;
 use crate::sink::VertexId;
 use crate::write::{Remarks, count_u32, little_endian};
+use sandtable_geom::aabb::Aabb;
 
 /// From X east, Y north, Z up to glTF's axes, column by column.
 pub(in crate::write) const GLTF_FROM_WORLD: [f32; 16] =

@@ -5,7 +5,9 @@ use std::io::{self, Write};
 use serde_json::json;
 
 use crate::source::{MeshSize, MeshSource};
-use crate::write::glb::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT, write_chunks};
+use crate::write::glb::{
+    ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER, FLOAT, GLTF_FROM_WORLD, UNSIGNED_INT, write_chunks,
+};
 use crate::write::{MeshWriteError, Remarks, little_endian};
 
 /// Bytes of a vertex and of a triangle: three numbers of 32 bits.

@@ -5,9 +5,9 @@ use std::io;
 
 use glam::Vec3;
 
-use sandtable_base::archive;
 use crate::trimesh::TriMesh;
 use crate::write::Remarks;
+use sandtable_base::archive;
 use sandtable_base::message::xml::escaped;
 
 /// A solid and its place on the printer's bed.
@@ -81,8 +81,8 @@ fn add_object(text: &mut String, number: u32, solid: &PlacedSolid) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_base::archive::ZipReader;
     use crate::write::samples::{remarks, square};
+    use sandtable_base::archive::ZipReader;
 
     #[test]
     fn the_package_names_its_parts_and_holds_every_vertex_and_triangle() {

@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
+use crate::built_in::colored_vertex;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex};
 use sandtable_mesh::numbering::Numbering;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::built_in::colored_vertex;
 
 /// An uneven ellipsoid of leaves: its center and half its size, in meters.
 pub(super) struct Lump {

@@ -13,11 +13,11 @@
 
 use glam::Vec3;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::DrawMesh;
 use crate::built_in::colored_vertex;
 use crate::built_in::lump::{Lump, UnitSphere, mix, waves};
 use crate::built_in::trunk::Trunk;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::DrawMesh;
 
 /// By how much of its size a lump of leaves is uneven.
 const UNEVEN: f32 = 0.12;

@@ -24,10 +24,10 @@ mod trunk;
 
 use glam::Vec3;
 
+use crate::{Census, Model, ModelPart};
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::{DrawMesh, DrawVertex, MaterialId};
 use sandtable_draw::material::Material;
-use crate::{Census, Model, ModelPart};
 
 /// The names of all built-in models.
 pub const NAMES: [&str; 8] = ["conifer", "broadleaf", "shrub", "rock", "walnut", "beech", "poplar", "pine"];

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
+use crate::built_in::colored_vertex;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::list::DrawMesh;
 use sandtable_mesh::sink::{MeshSink, VertexId};
-use crate::built_in::colored_vertex;
 
 /// The depth of a trunk below the ground, in meters.
 const ROOT_M: f32 = 0.6;

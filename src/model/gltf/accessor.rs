@@ -6,8 +6,8 @@ use std::cell::Cell;
 use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType};
 
-use sandtable_base::limits::MODEL_ELEMENTS;
 use crate::error::ModelError;
+use sandtable_base::limits::MODEL_ELEMENTS;
 
 use super::data::{BufferView, GltfBuffers};
 

@@ -5,10 +5,10 @@ use ::gltf::texture::Info;
 use ::gltf::{Document, Image};
 use glam::{Mat2, Vec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::material::{AlphaMode, Material, TextureId};
 use crate::error::{CompanionError, GltfDataError};
 use crate::texture::Textures;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::material::{AlphaMode, Material, TextureId};
 
 use super::data::{GltfBuffers, decode_data_uri, file_name};
 

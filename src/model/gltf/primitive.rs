@@ -4,12 +4,12 @@ use ::gltf::mesh::{Mode, Primitive, Semantic};
 use ::gltf::{Accessor, Mesh};
 use glam::{Mat3, Mat4, Vec2, Vec3};
 
-use sandtable_draw::color::{Srgba, srgb_from_linear};
-use sandtable_draw::list::MaterialId;
 use crate::Census;
 use crate::error::ModelError;
 use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
+use sandtable_draw::color::{Srgba, srgb_from_linear};
+use sandtable_draw::list::MaterialId;
 
 use super::accessor::AccessorReader;
 use super::material::{GltfMaterial, GltfUvTransform};

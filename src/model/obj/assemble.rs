@@ -4,8 +4,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
-use sandtable_draw::list::MaterialId;
-use sandtable_base::message::chain::error_text;
 use crate::error::{CompanionError, ModelError};
 use crate::material::{MappedMaterial, unnamed_material};
 use crate::normals::{CREASE_COS, Smoothing, corner_normals};
@@ -13,6 +11,8 @@ use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::{Textures, load_any};
 use crate::triangulate::triangulate;
 use crate::{Census, Companions, Model};
+use sandtable_base::message::chain::error_text;
+use sandtable_draw::list::MaterialId;
 
 use super::mtl;
 use super::parse::{FaceGroup, ObjCorner, ObjFace, ObjFile};
@@ -190,9 +190,9 @@ fn downward(uv: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::obj::read;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::material::AlphaMode;
-    use crate::obj::read;
 
     struct Library(&'static str);
 

@@ -1,7 +1,7 @@
 //! Material libraries: names, diffuse colors, opacities and the maps of both.
 
-use sandtable_draw::color::Srgba;
 use crate::material::MappedMaterial;
+use sandtable_draw::color::Srgba;
 
 use super::parse::color_from_channels;
 use super::text::{logical_lines, number, split_keyword};

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_base::limits::MODEL_TRIANGLES;
-use sandtable_mesh::numbering::Numbering;
 use crate::error::ModelError;
+use sandtable_base::limits::MODEL_TRIANGLES;
+use sandtable_draw::color::Srgba;
+use sandtable_mesh::numbering::Numbering;
 
 use super::text::{logical_lines, number, split_keyword};
 

@@ -8,15 +8,15 @@ use std::collections::BTreeMap;
 
 use glam::{Mat4, Vec2, Vec3};
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::MaterialId;
-use sandtable_draw::material::Material;
 use crate::error::ModelError;
 use crate::material::{MappedMaterial, unnamed_material};
 use crate::normals::{Smoothing, corner_normals};
 use crate::part::{ModelCorner, PartBuilder, TriangleBudget};
 use crate::texture::Textures;
 use crate::{Census, Companions, Model};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::MaterialId;
+use sandtable_draw::material::Material;
 
 use super::ThreeDsFile;
 use super::keyframer::world_from_nodes;

@@ -2,8 +2,8 @@
 
 use glam::Vec2;
 
-use sandtable_draw::color::Srgba;
 use crate::error::ModelError;
+use sandtable_draw::color::Srgba;
 
 use super::chunk::Chunk;
 

@@ -169,8 +169,8 @@ pub fn neighbors(coordinate: f32, size: u32) -> (usize, usize, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_draw::color::Srgba;
     use crate::mip_levels::smaller_levels;
+    use sandtable_draw::color::Srgba;
 
     /// A square whose left half is a hole.
     fn half(side: u32) -> AlphaMask {

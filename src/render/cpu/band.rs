@@ -6,12 +6,12 @@
 
 use rayon::prelude::*;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::FeatureId;
 use crate::cpu::geometry::FacePiece;
 use crate::cpu::raster::PixelWindow;
 use crate::cpu::tile::{TileContext, TileScratch, draw_tile};
 use crate::cpu::visibility::TILE;
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::FeatureId;
 
 #[derive(Debug)]
 pub struct BandRows<'a> {

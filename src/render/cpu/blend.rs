@@ -6,13 +6,13 @@
 
 use glam::Vec3;
 
-use sandtable_draw::list::DepthLayer;
 use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace};
 use crate::cpu::pattern::SampleMask;
 use crate::cpu::raster::{PixelWindow, cover};
 use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::{SampleDepths, TILE, Visibility};
 use crate::picture::LEAST_VISIBLE_ALPHA;
+use sandtable_draw::list::DepthLayer;
 
 /// Transparent fragments that a pixel keeps; of more, the farthest is dropped. Bounds memory to 2 MiB per tile.
 const MOST_LAYERS: usize = 32;

@@ -97,8 +97,8 @@ pub fn clipped(corners: [DVec3; 3], screen: &Screen) -> Option<Outline> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_view::camera::Camera;
     use glam::Vec3;
+    use sandtable_view::camera::Camera;
 
     fn screen() -> Screen {
         Screen::new(&Camera::new(Vec3::ZERO, Vec3::Y, 1.0, (100, 100), (1.0, 1000.0)).expect("sound"))

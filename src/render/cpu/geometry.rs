@@ -10,12 +10,12 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use sandtable_draw::list::{DRAPE_TOLERANCE, DepthLayer, DrawItem, DrawList, DrawMesh};
-use sandtable_draw::material::AlphaMode;
 use crate::cpu::clip::{Outline, clipped};
 use crate::cpu::plane::TrianglePlanes;
 use crate::cpu::raster::{PixelWindow, SubpixelPoint, doubled_area, snapped};
 use crate::cpu::screen::{Projection, Screen};
+use sandtable_draw::list::{DRAPE_TOLERANCE, DepthLayer, DrawItem, DrawList, DrawMesh};
+use sandtable_draw::material::AlphaMode;
 
 /// Triangles per chunk; a power of two, so that a face's id splits into chunk and index.
 const CHUNK: u64 = 2048;

@@ -5,6 +5,8 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::cpu::hit::FacePoint;
+use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 use sandtable_draw::ground::{GroundDetail, GroundMap, GroundPost, PixelChange};
 use sandtable_draw::ground_cover::cover_noise;
 use sandtable_draw::ground_grain::ground_grain;
@@ -12,8 +14,6 @@ use sandtable_draw::ground_imagery::{DrapedColor, GroundImagery};
 use sandtable_draw::ground_levels::{GroundLevel, PostCount, add_weighted, coarser_levels};
 use sandtable_draw::lighting::{ReceivedLight, ReliefPoint, ReliefShading};
 use sandtable_draw::water::ShorePixel;
-use crate::cpu::hit::FacePoint;
-use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 
 #[derive(Debug)]
 pub struct GroundShader<'a> {

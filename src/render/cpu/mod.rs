@@ -49,10 +49,6 @@ mod visibility;
 
 use rayon::prelude::*;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DrawList, DrawListError, FeatureId};
-use sandtable_draw::pixels::Pixels;
-use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use crate::cpu::band::{BandRows, draw_band};
 use crate::cpu::geometry::ScreenGeometry;
 use crate::cpu::pattern::{EIGHT, FOUR, ONE, SamplePattern};
@@ -62,6 +58,10 @@ use crate::cpu::tile::TileContext;
 use crate::cpu::visibility::TILE;
 use crate::picture::Rendering;
 use crate::shadow::Shadows;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DrawList, DrawListError, FeatureId};
+use sandtable_draw::pixels::Pixels;
 use sandtable_view::camera::Camera;
 
 /// Samples and filter of a picture.

@@ -150,9 +150,9 @@ impl Projection<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec2;
     use sandtable_view::axes::DirectionAxes;
     use sandtable_view::camera::ParallelFrame;
-    use glam::Vec2;
 
     #[test]
     fn the_screen_agrees_with_the_camera_on_pixels_depths_and_rays() {

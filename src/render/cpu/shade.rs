@@ -5,13 +5,6 @@ use std::cell::LazyCell;
 use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use sandtable_draw::ground_inset::GroundInset;
-use sandtable_draw::hatching::hatching_cover;
-use sandtable_draw::lighting::ReceivedLight;
-use sandtable_draw::list::{DrawItem, DrawList, DrawVertex};
-use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
-use sandtable_draw::water::{WaterMirror, ripples};
-use sandtable_draw::wireframe::{self, edge_cover};
 use crate::cpu::cutout::Cutout;
 use crate::cpu::geometry::ScreenFace;
 use crate::cpu::ground_shade::GroundShader;
@@ -20,6 +13,13 @@ use crate::cpu::screen::Screen;
 use crate::cpu::texture::{Texel, TexelFootprint, Texture, Weighting};
 use crate::shadow::Shadows;
 use crate::shadow::filter::ShadowReceiver;
+use sandtable_draw::ground_inset::GroundInset;
+use sandtable_draw::hatching::hatching_cover;
+use sandtable_draw::lighting::ReceivedLight;
+use sandtable_draw::list::{DrawItem, DrawList, DrawVertex};
+use sandtable_draw::material::{Albedo, AlphaMode, Material, NormalSource};
+use sandtable_draw::water::{WaterMirror, ripples};
+use sandtable_draw::wireframe::{self, edge_cover};
 
 #[derive(Debug)]
 pub struct Shader<'a> {

@@ -5,10 +5,10 @@
 
 use glam::{Vec2, Vec3};
 
-use sandtable_draw::color::{Srgba, linear_from_srgb};
-use sandtable_draw::pixels::Pixels;
 use crate::cpu::alpha::{AlphaMask, neighbors};
 use crate::mip_levels::smaller_levels;
+use sandtable_draw::color::{Srgba, linear_from_srgb};
+use sandtable_draw::pixels::Pixels;
 
 #[derive(Debug)]
 pub struct Texture<'a> {

@@ -2,9 +2,6 @@
 
 use glam::Vec3;
 
-use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DepthLayer, FeatureId};
-use sandtable_draw::material::AlphaMode;
 use crate::cpu::blend::Blend;
 use crate::cpu::geometry::{FaceId, FacePiece, ScreenFace, ScreenGeometry};
 use crate::cpu::pattern::{SampleMask, SamplePattern};
@@ -12,6 +9,9 @@ use crate::cpu::raster::PixelWindow;
 use crate::cpu::screen::Screen;
 use crate::cpu::shade::Shader;
 use crate::cpu::visibility::{Visibility, samples_of};
+use sandtable_draw::color::Srgba;
+use sandtable_draw::list::{DepthLayer, FeatureId};
+use sandtable_draw::material::AlphaMode;
 
 #[derive(Debug)]
 pub struct TileContext<'a, const N: usize> {

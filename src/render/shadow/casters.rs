@@ -6,12 +6,12 @@ use std::ops::Range;
 use glam::{DMat4, Vec2, Vec3};
 use rayon::prelude::*;
 
-use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
-use sandtable_draw::material::AlphaMode;
-use sandtable_mesh::sink::VertexId;
 use crate::cpu::alpha::AlphaMask;
 use crate::mip_levels::smaller_levels;
 use crate::shadow::LightAxes;
+use sandtable_draw::list::{DepthLayer, DrawItem, DrawList};
+use sandtable_draw::material::AlphaMode;
+use sandtable_mesh::sink::VertexId;
 use sandtable_view::camera::Camera;
 
 /// How far outside the picture a corner still counts as seen, as a share of its half.

@@ -6,13 +6,13 @@
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use rayon::prelude::*;
 
-use sandtable_draw::material::AlphaMode;
 use crate::cpu::alpha::AlphaMask;
 use crate::cpu::raster::{PixelWindow, doubled_area, snapped};
 use crate::shadow::casters::{CasterTriangle, LightTriangles};
 use crate::shadow::coverage::cover_centers;
 use crate::shadow::levels::{KeptPages, MapSource, PageRange};
 use crate::shadow::{NOTHING, PAGE, ShadowLevel, ShadowPage, ShadowPurpose, ShadowTexel};
+use sandtable_draw::material::AlphaMode;
 
 /// How far outside a level corners may lie, in texels; triangles that reach farther are cut.
 const GUARD_TEXELS: f32 = 8192.0;

@@ -4,11 +4,14 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use sandtable_draw::list::DrawList;
-use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use crate::shadow::casters::{LightBox, LightTriangles, ListTriangles};
 use crate::shadow::fill::Filling;
-use crate::shadow::{LevelScale, LightAxes, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage, ShadowPurpose, ShadowTexel};
+use crate::shadow::{
+    LevelScale, LightAxes, MOST_LEVELS, MOST_PAGES, MOST_RADIUS, PAGE, ShadowLevel, ShadowMap, ShadowPage,
+    ShadowPurpose, ShadowTexel,
+};
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
 
 /// The most pages along a side of a level: its texels fit the rasterizer's sub-pixel coordinates.

@@ -42,10 +42,10 @@ mod levels;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use sandtable_draw::list::DrawList;
-use sandtable_base::limits::memory::{MemoryRefused, check_memory};
 use crate::shadow::casters::ListTriangles;
 use crate::shadow::levels::MapSource;
+use sandtable_base::limits::memory::{MemoryRefused, check_memory};
+use sandtable_draw::list::DrawList;
 use sandtable_view::camera::Camera;
 
 /// Texels along the side of a page: smaller pages fit solids closer, larger ones have fewer borders to look across.
@@ -206,11 +206,11 @@ mod tests {
     use glam::{Mat4, Vec2};
 
     use super::*;
+    use crate::shadow::filter::ShadowReceiver;
     use sandtable_draw::color::Srgba;
     use sandtable_draw::list::{DepthLayer, DrawItem, DrawMesh, DrawVertex, FeatureId};
     use sandtable_draw::material::Material;
     use sandtable_mesh::sink::MeshSink;
-    use crate::shadow::filter::ShadowReceiver;
 
     fn rectangle(low: Vec2, high: Vec2, z: f32) -> DrawMesh {
         let mut mesh = DrawMesh::default();

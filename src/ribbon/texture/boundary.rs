@@ -1,7 +1,7 @@
 //! Boundaries and the floors of trenches.
 
-use sandtable_draw::color::Srgba;
 use crate::texture::shade;
+use sandtable_draw::color::Srgba;
 
 /// A dash of a boundary: the violet that maps keep for what cannot be seen on the ground.
 pub(super) fn boundary(u: f32, grain: f32) -> Srgba {

@@ -5,9 +5,9 @@
 
 use glam::FloatExt;
 
+use crate::texture::{grain, shade};
 use sandtable_description::words::Cover;
 use sandtable_draw::color::Srgba;
-use crate::texture::{grain, shade};
 
 /// Meters in one repeat of a cover's texture. Figures have the size of what they stand for: crowns of five meters, rows
 /// of two and a half, houses of twelve.
@@ -245,8 +245,8 @@ fn hashed(column: u32, row: u32, seed: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_base::message::choice::Choice;
     use crate::texture::{RibbonSurface, texture};
+    use sandtable_base::message::choice::Choice;
 
     fn covers() -> impl Iterator<Item = Cover> {
         Cover::CHOICES.iter().map(|choice| choice.value)

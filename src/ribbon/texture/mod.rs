@@ -5,11 +5,11 @@ pub mod cover;
 mod road;
 mod water;
 
+use crate::texture::road::{Center, RoadMarkings};
 use sandtable_description::words::Cover;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_draw::water::WaterColor;
-use crate::texture::road::{Center, RoadMarkings};
 
 /// What a ribbon is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

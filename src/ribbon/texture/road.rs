@@ -1,7 +1,7 @@
 //! Roads.
 
-use sandtable_draw::color::Srgba;
 use crate::texture::shade;
+use sandtable_draw::color::Srgba;
 
 /// A carriageway.
 pub(super) const ASPHALT: [u8; 3] = [126, 116, 110];

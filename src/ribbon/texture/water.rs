@@ -1,7 +1,7 @@
 //! Running water.
 
-use sandtable_draw::color::Srgba;
 use crate::texture::shade;
+use sandtable_draw::color::Srgba;
 
 pub(super) fn river(u: f32, grain: f32) -> Srgba {
     let depth = 1.0 - (2.0 * u - 1.0).abs();

@@ -110,7 +110,6 @@ impl VertexBlock {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
     use crate::criterion::flat::Flat;
     use crate::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, shares_edge};
     use crate::emit::quadtree;
@@ -118,6 +117,7 @@ mod tests {
     use crate::errors::ErrorMap;
     use crate::refine::rebuild::rebuild;
     use proptest::prelude::*;
+    use sandtable_mesh::check;
 
     /// The leaves by splitting triangles, the plain way.
     fn plain(active: &ActiveSet, corner: Vertex) -> Vec<[Vertex; 3]> {

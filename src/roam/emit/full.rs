@@ -25,11 +25,11 @@ pub fn triangles(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
     use crate::active::ActiveSet;
     use crate::emit::bintree;
     use crate::emit::examples::{lattice, mesh_of, sorted};
     use proptest::prelude::*;
+    use sandtable_mesh::check;
 
     proptest! {
         #[test]

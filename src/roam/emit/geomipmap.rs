@@ -260,10 +260,10 @@ fn level_error(lattice: &Lattice, layout: &PatchLayout, corner: Vertex, step: i3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
     use crate::emit::examples::{full_area_m2, lattice, mesh_of, sorted};
     use crate::emit::full;
     use proptest::prelude::*;
+    use sandtable_mesh::check;
 
     fn layout(columns: u32, rows: u32) -> PatchLayout {
         PatchLayout::new(columns, rows, 16).expect("sound")

@@ -30,12 +30,12 @@ mod examples {
     use glam::DVec2;
     use proptest::prelude::Strategy;
 
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::active::ActiveSet;
     use crate::emit::{full, world};
     use crate::graph::Vertex;
     use crate::layout::PatchLayout;
     use crate::patched_ground::PatchedGround;
+    use sandtable_mesh::trimesh::TriMesh;
     use sandtable_terrain::lattice::Lattice;
 
     /// Columns, rows and vertices to activate, some of them beyond the borders.

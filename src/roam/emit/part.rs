@@ -5,12 +5,12 @@
 
 use std::ops::ControlFlow;
 
-use sandtable_mesh::sink::VertexId;
 use crate::active::ActiveSet;
 use crate::emit::bintree;
 use crate::emit::world::doubled_area;
 use crate::graph::Vertex;
 use crate::parts::{BorderCarry, PartPlan};
+use sandtable_mesh::sink::VertexId;
 use sandtable_terrain::lattice::Post;
 
 /// A triangle with the numbers of its vertices.
@@ -112,10 +112,10 @@ pub fn drawn<B>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::sink::MeshSink;
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::emit::examples::{activations, active_set, lattice, mesh_of};
     use proptest::prelude::*;
+    use sandtable_mesh::sink::MeshSink;
+    use sandtable_mesh::trimesh::TriMesh;
 
     proptest! {
         #[test]

@@ -248,10 +248,10 @@ fn rims_in_runs(around: &NodeRing, mut visit: impl FnMut(&[Rim])) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
     use crate::emit::bintree;
     use crate::emit::examples::{activations, active_set, lattice, mesh_of, sorted, turned};
     use proptest::prelude::*;
+    use sandtable_mesh::check;
 
     proptest! {
         #[test]

@@ -174,12 +174,12 @@ pub fn unstrip(strip: &[Vertex], mut emit: impl FnMut([Vertex; 3])) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::check;
     use crate::emit::examples::{activations, active_set, full_area_m2, lattice, mesh_of, sorted};
     use crate::emit::{quadtree, world};
     use crate::layout::PatchLayout;
     use crate::patched_ground::PatchedGround;
     use proptest::prelude::*;
+    use sandtable_mesh::check;
 
     fn unstripped(strips: &Strips, emit: &mut dyn FnMut([Vertex; 3])) {
         strips.iter().for_each(|strip| unstrip(strip, &mut *emit));

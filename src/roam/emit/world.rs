@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use sandtable_mesh::sink::{MeshSink, VertexId};
 use crate::graph::Vertex;
 use crate::patched_ground::PatchedGround;
+use sandtable_mesh::sink::{MeshSink, VertexId};
 use sandtable_terrain::lattice::Post;
 
 /// The posts of a triangle of vertices of the layout; `None` where it is not drawn: it has no area, as beyond the border, or
@@ -48,10 +48,10 @@ pub fn placing<'a>(ground: PatchedGround<'a>, sink: &'a mut impl MeshSink<Vec3>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::layout::PatchLayout;
-    use sandtable_terrain::lattice::Lattice;
     use glam::DVec2;
+    use sandtable_mesh::trimesh::TriMesh;
+    use sandtable_terrain::lattice::Lattice;
 
     #[test]
     fn only_triangles_with_area_and_data_are_placed_and_share_their_vertices() {

@@ -67,8 +67,8 @@ pub fn is_plain(heights: &[f32], pinned: &[bool]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_terrain::lattice::Post;
     use glam::DVec2;
+    use sandtable_terrain::lattice::Post;
 
     #[test]
     fn holes_and_pins_spoil_their_own_tiles_only() {

@@ -357,13 +357,13 @@ fn rank(before: u32, word: u64, bit: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_mesh::trimesh::TriMesh;
     use crate::criterion::flat::Flat;
     use crate::displayed::DisplayedTerrain;
     use crate::refine::rebuild::rebuild;
-    use sandtable_terrain::lattice::Lattice;
     use glam::DVec2;
     use proptest::prelude::*;
+    use sandtable_mesh::trimesh::TriMesh;
+    use sandtable_terrain::lattice::Lattice;
     use std::sync::Arc;
 
     fn rough(columns: u32, rows: u32, holes: &[usize]) -> Arc<Lattice> {

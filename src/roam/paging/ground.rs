@@ -5,12 +5,6 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
 
-use sandtable_dem::cache::LruCache;
-use sandtable_dem::error::DemError;
-use sandtable_dem::formats::FileContent;
-use sandtable_dem::tiff::windows::GeoTiffWindows;
-use sandtable_dem::warp::{self, WarpError};
-use sandtable_dem::windows::Windows;
 use crate::block::{BlockError, BlockSource, PatchBlock, RootSphere};
 use crate::errors::ErrorMap;
 use crate::graph::Vertex;
@@ -19,6 +13,12 @@ use crate::paging::region::{PagedFrame, PagedRegion, Patches};
 use crate::paging::summary::{self, PatchSummary};
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
+use sandtable_dem::cache::LruCache;
+use sandtable_dem::error::DemError;
+use sandtable_dem::formats::FileContent;
+use sandtable_dem::tiff::windows::GeoTiffWindows;
+use sandtable_dem::warp::{self, WarpError};
+use sandtable_dem::windows::Windows;
 use sandtable_terrain::lattice::{Lattice, LatticeError};
 
 /// The parameters of paging.

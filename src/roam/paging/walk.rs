@@ -6,7 +6,6 @@
 
 use glam::{Vec2, Vec3};
 
-use sandtable_dem::windows::Windows;
 use crate::bintree::Triangle;
 use crate::block::{BlockError, BlockSource, PatchBlock};
 use crate::criterion::spheres::distance;
@@ -14,6 +13,7 @@ use crate::graph::Vertex;
 use crate::paging::ground::PagedGround;
 use crate::patched_ground::PatchedGround;
 use crate::spheres::SphereMap;
+use sandtable_dem::windows::Windows;
 
 /// Calls `visit` with the triangles of a patch for an eye in world space. `corner` is the patch's south-west corner, `side`
 /// the cells along its side.

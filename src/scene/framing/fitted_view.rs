@@ -4,12 +4,12 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use sandtable_geom::convex::hull;
-use sandtable_geom::polygon::doubled_area;
-use sandtable_geom::rect::Rect;
 use crate::framing::fit::{FitFrame, fitted_eye, projected};
 use crate::plinth::base_z;
 use crate::{FittedView, SceneModel};
+use sandtable_geom::convex::hull;
+use sandtable_geom::polygon::doubled_area;
+use sandtable_geom::rect::Rect;
 use sandtable_terrain::lattice::Post;
 use sandtable_view::axes::DirectionAxes;
 
@@ -32,12 +32,7 @@ const LEAST_FILLED: f64 = 0.6;
 const TURN_GAIN: f64 = 1.15;
 
 /// The eye and the target of a fitted view on a picture of `size` pixels.
-pub fn fitted_aim(
-    scene: &SceneModel,
-    view: &FittedView,
-    fov_y_rad: f32,
-    size: (u32, u32),
-) -> (Vec3, Vec3) {
+pub fn fitted_aim(scene: &SceneModel, view: &FittedView, fov_y_rad: f32, size: (u32, u32)) -> (Vec3, Vec3) {
     let points = silhouette(scene, view.shown);
     let half = half_picture(fov_y_rad, size);
     let frame = free_frame(half);

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, Vec2};
 
-use sandtable_geom::aabb::Aabb;
 use crate::framing::fit::ParallelSpan;
 use crate::framing::fitted_view::{ABOVE, BELOW, LEFT_RIGHT, silhouette};
 use crate::plinth::base_z;
 use crate::{ParallelView, SceneModel};
+use sandtable_geom::aabb::Aabb;
 use sandtable_view::axes::DirectionAxes;
 use sandtable_view::camera::{Camera, CameraError, INCH_M, ParallelFrame};
 

@@ -13,10 +13,10 @@
 //!                             └───────┘
 //! ```
 
-use crate::paper_sheet::SCREEN_PX;
 use crate::framing::fit::ParallelSpan;
 use crate::framing::fitted_view::silhouette;
 use crate::framing::parallel_view::fitted_px_per_m;
+use crate::paper_sheet::SCREEN_PX;
 use crate::{ParallelView, SceneModel, SceneView, ViewAim};
 use sandtable_view::axes::DirectionAxes;
 

@@ -19,20 +19,20 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::{DVec2, Vec2, Vec3};
 
+use crate::framing::fit::{ParallelSpan, fitted_eye};
+use crate::framing::fitted_view::{PITCHES, free_frame, half_picture};
+use crate::framing::parallel_view::pixels_per_meter;
+use crate::framing::shaped_page::pages;
+use crate::paper_sheet::{PaperSheet, SCREEN_PX};
+use crate::planned_pictures::{PlannedCameras, PlannedPictures};
+use crate::views;
+use crate::world_frame::WorldFrame;
+use crate::{FittedView, ParallelView, ViewAim};
 use sandtable_dem::raster::Raster;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::{CameraTable, Document};
 use sandtable_geom::crs::Crs;
 use sandtable_geom::rect::Rect;
-use crate::paper_sheet::{PaperSheet, SCREEN_PX};
-use crate::framing::fit::{ParallelSpan, fitted_eye};
-use crate::framing::fitted_view::{PITCHES, free_frame, half_picture};
-use crate::framing::parallel_view::pixels_per_meter;
-use crate::framing::shaped_page::pages;
-use crate::planned_pictures::{PlannedCameras, PlannedPictures};
-use crate::views;
-use crate::world_frame::WorldFrame;
-use crate::{FittedView, ParallelView, ViewAim};
 use sandtable_view::axes::DirectionAxes;
 
 /// The width of a square of samples, in pixels of level ground.
@@ -56,11 +56,7 @@ pub(crate) struct UnreadGround<'a> {
 
 /// The greatest power of two so that squares of as many by as many samples are no wider than [`SQUARE_PX`] in all of
 /// `pictures` of `document`; 1 where a camera may come near the ground.
-pub(crate) fn shown_step(
-    pictures: &PlannedPictures,
-    document: &Document,
-    ground: &UnreadGround<'_>,
-) -> u32 {
+pub(crate) fn shown_step(pictures: &PlannedPictures, document: &Document, ground: &UnreadGround<'_>) -> u32 {
     let widest = widest_square(pictures, document, ground);
     let most = ground.whole.width.min(ground.whole.height) / LEAST_SIDE;
     let step = widest.unwrap_or(1.0).clamp(1.0, f64::from(most.max(1)));

@@ -2,6 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use crate::footprint::ModelFootprint;
+use crate::models::PlacedModels;
+use crate::placement::{outline, stand};
+use crate::vertical_scale::VerticalScale;
+use crate::world_frame::WorldFrame;
+use crate::{GroundFit, Placement};
+use sandtable_base::limits::LEVELED_CELLS;
+use sandtable_base::limits::LEVELED_PADS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::ModelPlacement;
@@ -9,14 +17,6 @@ use sandtable_description::words::{Clamp, Footing};
 use sandtable_earthworks::pad;
 use sandtable_earthworks::pad::Batters;
 use sandtable_geom::polygon;
-use sandtable_base::limits::LEVELED_CELLS;
-use sandtable_base::limits::LEVELED_PADS;
-use crate::footprint::ModelFootprint;
-use crate::models::PlacedModels;
-use crate::placement::{outline, stand};
-use crate::vertical_scale::VerticalScale;
-use crate::world_frame::WorldFrame;
-use crate::{GroundFit, Placement};
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::lattice::{HIGHEST_M, Lattice};
 use sandtable_terrain::support_surface::SupportSurface;

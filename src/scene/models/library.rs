@@ -7,15 +7,15 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::ops::Range;
 
+use crate::assets::Assets;
+use crate::builder::SceneBuilder;
+use crate::footprint::ModelFootprint;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
 use sandtable_description::words::Clamp;
 use sandtable_model::Model;
 use sandtable_model::{built_in, read};
-use crate::assets::Assets;
-use crate::builder::SceneBuilder;
-use crate::footprint::ModelFootprint;
 
 /// The origin of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,9 +7,6 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use sandtable_description::features::FeatureSource;
-use sandtable_description::finding_code::FindingCode;
-use sandtable_description::words::Clamp;
 use crate::Placement;
 use crate::builder::SceneBuilder;
 use crate::footprint::ModelFootprint;
@@ -19,6 +16,9 @@ use crate::report::{InstancesRow, ModelRow};
 use crate::scene_findings::SceneFindings;
 use crate::vertical_scale::DrawnGround;
 use crate::world_frame::WorldFrame;
+use sandtable_description::features::FeatureSource;
+use sandtable_description::finding_code::FindingCode;
+use sandtable_description::words::Clamp;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::support_surface::SupportSurface;
 use sandtable_terrain::triangle_surface::TriangleSurface;

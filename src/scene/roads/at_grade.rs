@@ -1,10 +1,10 @@
 //! Where centerlines of one level cross, whether or not they have a vertex there.
 
-use sandtable_geom::leg_tree::{LegTree, LineLeg};
-use sandtable_geom::segment;
+use crate::roads::centerline::Centerline;
 use sandtable_base::limits::ROAD_CROSSINGS;
 use sandtable_base::limits::ROAD_PAIRS;
-use crate::roads::centerline::Centerline;
+use sandtable_geom::leg_tree::{LegTree, LineLeg};
+use sandtable_geom::segment;
 
 /// Legs whose angle has a smaller sine are parallel.
 const PARALLEL: f64 = 1e-9;
@@ -51,8 +51,8 @@ fn crossing(one: &LineLeg, other: &LineLeg) -> Option<[RoadStation; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_earthworks::alignment::Support;
     use crate::roads::centerline::tests::road;
+    use sandtable_earthworks::alignment::Support;
 
     #[test]
     fn every_pair_of_a_dense_web_is_found_once() {

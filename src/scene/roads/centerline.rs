@@ -1,5 +1,11 @@
 //! The document's roads as centerlines, each with what it is to become.
 
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::near;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RoadTable;
@@ -12,12 +18,6 @@ use sandtable_geom::rect::Rect;
 use sandtable_ribbon::junction::Street;
 use sandtable_ribbon::stroke::StrokeOptions;
 use sandtable_ribbon::texture::{RibbonSurface, texture_length_m};
-use crate::FeatureKind;
-use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::near;
-use crate::scene_findings::FeatureTable;
-use crate::sources::Sources;
 
 /// How far from the ground a centerline may run whose road still reaches it, in meters.
 const REACH_M: f64 = 1000.0;
@@ -150,8 +150,8 @@ fn level(road: &RoadTable, attributes: &Attributes, support: Support) -> i32 {
 #[cfg(test)]
 pub(in crate::roads) mod tests {
     use super::*;
-    use sandtable_description::parse::parse;
     use glam::DVec2;
+    use sandtable_description::parse::parse;
 
     /// A road along these points, six meters wide, from the document's first table.
     pub fn road(points: &[(f64, f64)], support: Support, level: i32) -> Centerline {

@@ -12,11 +12,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
+use crate::roads::centerline::Centerline;
+use crate::roads::spans::RoadSpan;
 use sandtable_earthworks::alignment::Support;
 use sandtable_earthworks::alignment::chain::{self, ChainLink, LineEnd};
 use sandtable_geom::polyline::{VertexKey, vertex_key};
-use crate::roads::centerline::Centerline;
-use crate::roads::spans::RoadSpan;
 
 /// Spans in a row, each from where the one before ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,10 +127,10 @@ impl<'a> SpanMeetings<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::offset::Continuations;
     use crate::feature_origin::FeatureOrigin;
     use crate::roads::centerline;
     use crate::roads::spans::SpanOrigin;
+    use sandtable_geom::offset::Continuations;
 
     fn span(support: Support, points: &[(f64, f64)]) -> RoadSpan {
         RoadSpan {

@@ -81,10 +81,10 @@ fn is_end(line: &Polyline, station_m: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use sandtable_earthworks::alignment::Alignment;
     use sandtable_ribbon::stroke::StrokeOptions;
     use sandtable_ribbon::texture::RibbonSurface;
-    use proptest::prelude::*;
 
     fn line(points: &[(f64, f64)]) -> Polyline {
         Polyline::new(points.iter().map(|&(x, y)| DVec2::new(x, y)), 0.0).expect("a line")

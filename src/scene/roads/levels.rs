@@ -8,15 +8,15 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use sandtable_earthworks::alignment::Support;
-use sandtable_geom::polyline::{VertexKey, vertex_key};
-use sandtable_geom::profile::Profile;
-use sandtable_ribbon::junction::Street;
 use crate::roads::centerline::Centerline;
 use crate::roads::chains::{ChainEnd, SpanChain};
 use crate::roads::crossings::{self, Overpass};
 use crate::roads::spans::RoadSpan;
 use crate::vertical_scale::VerticalScale;
+use sandtable_earthworks::alignment::Support;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
+use sandtable_geom::profile::Profile;
+use sandtable_ribbon::junction::Street;
 use sandtable_structure::bridge::depth_m;
 use sandtable_structure::deck_profile::{ClearancePoint, clearing};
 use sandtable_terrain::lattice::Lattice;

@@ -6,10 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use sandtable_earthworks::alignment::network::NodeId;
-use sandtable_geom::polyline::{VertexKey, vertex_key};
 use crate::roads::at_grade::crossings;
 use crate::roads::centerline::Centerline;
+use sandtable_earthworks::alignment::network::NodeId;
+use sandtable_geom::polyline::{VertexKey, vertex_key};
 
 /// A crossing this near to a vertex is at that vertex, in meters.
 const SAME_M: f64 = 0.01;
@@ -118,8 +118,8 @@ impl RoadMeetings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_earthworks::alignment::Support;
     use crate::roads::centerline::tests::road;
+    use sandtable_earthworks::alignment::Support;
 
     #[test]
     fn ends_meet_whatever_is_there_and_through_roads_only_their_own_level() {

@@ -9,6 +9,10 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use crate::builder::SceneBuilder;
+use crate::near::Clipped;
+use crate::roads::centerline::Centerline;
+use crate::symbols::LineSymbol;
 use sandtable_earthworks::alignment::chain::ChainLink;
 use sandtable_geom::offset::Continuations;
 use sandtable_geom::polygon;
@@ -20,10 +24,6 @@ use sandtable_ribbon::junction::{self, Street, StreetNetwork};
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::stroke::{StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
-use crate::builder::SceneBuilder;
-use crate::near::Clipped;
-use crate::roads::centerline::Centerline;
-use crate::symbols::LineSymbol;
 
 /// Meters in one repeat of a junction's surface.
 const JUNCTION_TEXTURE_M: f64 = 15.0;

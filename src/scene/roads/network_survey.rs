@@ -2,6 +2,11 @@
 
 use std::ops::Range;
 
+use crate::attributes::DefaultCounts;
+use crate::roads::centerline::Centerline;
+use crate::roads::meetings::{RoadMeetings, RoadStop};
+use crate::roads::route::Route;
+use sandtable_base::limits::ROAD_STATIONS;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RoadTable;
@@ -13,11 +18,6 @@ use sandtable_earthworks::alignment::network::{RoadSection, SectionNetwork};
 use sandtable_earthworks::alignment::spans::EarthworkLimits;
 use sandtable_earthworks::grading::strip;
 use sandtable_geom::profile::Profile;
-use sandtable_base::limits::ROAD_STATIONS;
-use crate::attributes::DefaultCounts;
-use crate::roads::centerline::Centerline;
-use crate::roads::meetings::{RoadMeetings, RoadStop};
-use crate::roads::route::Route;
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::profile::profile;
 

@@ -1,10 +1,10 @@
 //! A road with its design: its longitudinal profile, and the road cut where bridges and tunnels begin.
 
+use crate::roads::centerline::Centerline;
 use sandtable_earthworks::alignment::{Alignment, Support, SupportSpan};
 use sandtable_geom::polyline::Polyline;
 use sandtable_geom::profile::Profile;
 use sandtable_ribbon::junction::Street;
-use crate::roads::centerline::Centerline;
 
 /// Spans shorter than this are part of their neighbors, in meters.
 const SHORTEST_M: f64 = 0.05;

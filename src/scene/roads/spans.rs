@@ -2,6 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use crate::FeatureKind;
+use crate::builder::SceneBuilder;
+use crate::feature_origin::FeatureOrigin;
+use crate::near;
+use crate::roads::centerline::{self, Centerline};
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::words::Markings;
@@ -12,13 +19,6 @@ use sandtable_geom::profile::Profile;
 use sandtable_geom::rect::Rect;
 use sandtable_ribbon::junction::{self, Street};
 use sandtable_ribbon::stroke::StrokeOptions;
-use crate::FeatureKind;
-use crate::builder::SceneBuilder;
-use crate::feature_origin::FeatureOrigin;
-use crate::near;
-use crate::roads::centerline::{self, Centerline};
-use crate::scene_findings::FeatureTable;
-use crate::sources::Sources;
 
 /// How far from the ground a bridge may run that still reaches it, in meters.
 const REACH_M: f64 = 1000.0;

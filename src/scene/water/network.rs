@@ -2,6 +2,13 @@
 
 use glam::DVec2;
 
+use crate::FeatureKind;
+use crate::attributes::Attributes;
+use crate::builder::SceneBuilder;
+use crate::near;
+use crate::scene_findings::FeatureTable;
+use crate::sources::Sources;
+use crate::water::order::{self, RiverSurroundings};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::features::RiverTable;
@@ -17,13 +24,6 @@ use sandtable_geom::rect_tree::RectTree;
 use sandtable_ribbon::junction::Street;
 use sandtable_ribbon::stroke::StrokeOptions;
 use sandtable_ribbon::texture::RibbonSurface;
-use crate::FeatureKind;
-use crate::attributes::Attributes;
-use crate::builder::SceneBuilder;
-use crate::near;
-use crate::scene_findings::FeatureTable;
-use crate::sources::Sources;
-use crate::water::order::{self, RiverSurroundings};
 use sandtable_terrain::lattice::Lattice;
 
 /// How far from the ground a centerline may run whose water still reaches it, in meters.

@@ -11,6 +11,12 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use crate::builder::SceneBuilder;
+use crate::near::Clipped;
+use crate::report::RiverRow;
+use crate::sources::Sources;
+use crate::symbols::LineSymbol;
+use crate::water::network::{self, Stream};
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;
 use sandtable_description::finding_code::FindingCode;
@@ -25,12 +31,6 @@ use sandtable_ribbon::junction::{self, Street};
 use sandtable_ribbon::plan::{PlanMesh, PlanVertex};
 use sandtable_ribbon::stroke::{StrokePath, stroke};
 use sandtable_ribbon::texture::RibbonSurface;
-use crate::builder::SceneBuilder;
-use crate::near::Clipped;
-use crate::report::RiverRow;
-use crate::sources::Sources;
-use crate::symbols::LineSymbol;
-use crate::water::network::{self, Stream};
 use sandtable_terrain::lattice::Lattice;
 
 /// The corners of a confluence's disc: its rim lies within a thirteenth of its radius of the circle.

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::ShardError;
+use crate::planned_dataset::PlannedWord;
 use sandtable_description::document::paper_mm;
 use sandtable_description::words::PaperName;
 use sandtable_geom::rect::Rect;
-use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
-use crate::error::ShardError;
-use crate::planned_dataset::PlannedWord;
 use sandtable_scene::paper_sheet::PaperSheet;
 use sandtable_scene::planned_pictures::{ElevationNeed, NearGround, PlannedCameras, PlannedPictures};
+use sandtable_scene::scene_file::{OpenSceneError, open_scene_for};
 use sandtable_scene::{ParallelView, SceneModel, SceneView, ViewAim};
 use sandtable_view::camera::INCH_M;
 

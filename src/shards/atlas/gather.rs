@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use sandtable_files::disk;
-use sandtable_files::output_files::OutputFiles;
 use crate::atlas::arguments::AtlasArguments;
 use crate::atlas::index::{IndexedSheet, page};
 use crate::atlas::items::items;
@@ -12,6 +10,8 @@ use crate::error::ShardError;
 use crate::plan::ShardPlan;
 use crate::plan_path::relative;
 use crate::record::{ShardState, result_path};
+use sandtable_files::disk;
+use sandtable_files::output_files::OutputFiles;
 
 /// Writes the page and the items of an atlas whose sheets are in these states.
 ///

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use sandtable_base::message::xml::escaped;
 use crate::record::ShardState;
 use crate::shard::{Shard, SheetNeighbors};
+use sandtable_base::message::xml::escaped;
 
 /// A sheet of the page.
 pub struct IndexedSheet {

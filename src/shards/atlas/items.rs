@@ -3,12 +3,12 @@
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use sandtable_geom::crs::Crs;
-use sandtable_geom::rect::Rect;
 use crate::atlas::index::IndexedSheet;
 use crate::atlas::plan::sheet_rect;
 use crate::record::ShardState;
 use crate::shard::SheetNeighbors;
+use sandtable_geom::crs::Crs;
+use sandtable_geom::rect::Rect;
 
 /// The sheets as a GeoJSON collection of items; `crs` is the system of the scene.
 pub fn items(title: &str, scale: f64, crs: &Crs, sheets: &[IndexedSheet]) -> Value {

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
-use sandtable_geom::rect::Rect;
-use sandtable_base::limits::PLAN_SHARDS;
 use crate::atlas::arguments::AtlasArguments;
 use crate::atlas::sheet_grid::{SheetGrid, posts_in, sheet_name};
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{self, PlannedProduct};
 use crate::planned_dataset::scene_inputs;
 use crate::shard::{Shard, ShardWindow, SheetNeighbors};
+use sandtable_base::limits::PLAN_SHARDS;
+use sandtable_geom::rect::Rect;
 use sandtable_scene::SceneModel;
 
 /// Plans the atlas of a scene; writes the plan to `folder`, which is there, and returns the number of its sheets.

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::rect::Rect;
-use sandtable_sheet::picture::{PictureSize, page_frame};
 use crate::atlas::arguments::{AtlasArguments, pixel_m};
+use sandtable_geom::rect::Rect;
 use sandtable_scene::SceneModel;
+use sandtable_sheet::picture::{PictureSize, page_frame};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::post_rect::PostRect;
 

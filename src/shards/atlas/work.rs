@@ -1,16 +1,16 @@
 //! One sheet of an atlas.
 
-use sandtable_description::document::FurnitureTable;
-use sandtable_geom::rect::Rect;
-use sandtable_sheet::picture::{PictureSize, compose_view, draw_view};
 use crate::atlas::arguments::AtlasArguments;
 use crate::atlas::plan::sheet_rect;
 use crate::error::ShardError;
 use crate::plan::ShardPlan;
 use crate::shard::{Shard, SheetNeighbors};
-use sandtable_sheet::sheet_file::{picture_description, sheet_png};
+use sandtable_description::document::FurnitureTable;
+use sandtable_geom::rect::Rect;
 use sandtable_render::RenderBackend;
 use sandtable_scene::SceneModel;
+use sandtable_sheet::picture::{PictureSize, compose_view, draw_view};
+use sandtable_sheet::sheet_file::{picture_description, sheet_png};
 
 /// The extension of a shard's results.
 pub const EXTENSION: &str = "png";

@@ -8,10 +8,6 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use sandtable_dem::answer::Answer;
-use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
-use sandtable_files::output_files::OutputFiles;
-use sandtable_query::positions::WrittenPosition;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::heights::arguments::HeightsArguments;
 use crate::heights::csv::{HEADER, write_row};
@@ -19,6 +15,10 @@ use crate::heights::work::{ANSWER_BYTES, EXTENSION, answer_of};
 use crate::plan::ShardPlan;
 use crate::point_stream::PointStream;
 use crate::record::result_path;
+use sandtable_dem::answer::Answer;
+use sandtable_files::disk::{self, ReadFileError, SystemError, WriteFileError};
+use sandtable_files::output_files::OutputFiles;
+use sandtable_query::positions::WrittenPosition;
 
 /// Rows that one thread writes.
 const PIECE: usize = 4096;

@@ -4,16 +4,16 @@ use std::io::{Read, Seek, SeekFrom};
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
-use sandtable_base::limits::PLAN_POINTS;
-use sandtable_files::disk::{self, ReadFileError, SystemError};
-use sandtable_files::fingerprint::content_hash;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::heights::arguments::HeightsArguments;
 use crate::heights::plan::{MOST_POINTS, POINT_BYTES};
 use crate::plan::ShardPlan;
 use crate::planned_dataset::QueriedDataset;
 use crate::shard::{PointRange, Shard};
+use sandtable_base::limits::PLAN_POINTS;
+use sandtable_dem::answer::Answer;
+use sandtable_files::disk::{self, ReadFileError, SystemError};
+use sandtable_files::fingerprint::content_hash;
 
 /// The extension of a shard's results.
 pub const EXTENSION: &str = "heights";

@@ -1,7 +1,7 @@
 //! How tiles state heights.
 
-use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
+use sandtable_dem::formats::height_encoding::HeightEncoding;
 
 /// How tiles state heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

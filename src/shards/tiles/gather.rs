@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use sandtable_files::disk;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
 use crate::tiles::arguments::{TilePyramid, TilesArguments};
 use crate::tiles::{colors, meshes};
+use sandtable_files::disk;
 
 /// Writes the description of tiles that are all there, and what belongs to several shards; returns the description's place,
 /// which is in the folder of the tiles: `out` is refused.

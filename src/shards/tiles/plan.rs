@@ -2,9 +2,6 @@
 
 use std::path::Path;
 
-use sandtable_dem::formats::height_encoding::HeightEncoding;
-use sandtable_geom::rect::Rect;
-use sandtable_base::limits::PLAN_SHARDS;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{self, PlannedProduct};
 use crate::planned_dataset::{PlannedDataset, QueriedDataset};
@@ -14,6 +11,9 @@ use crate::tiles::degree_bounds::degree_bounds;
 use crate::tiles::encoding::TileEncoding;
 use crate::tiles::tiling::{TileAddress, TileScheme};
 use crate::tiles::{colors, meshes};
+use sandtable_base::limits::PLAN_SHARDS;
+use sandtable_dem::formats::height_encoding::HeightEncoding;
+use sandtable_geom::rect::Rect;
 
 /// Meters of a degree along a meridian, about.
 const DEGREE_M: f64 = 111_320.0;

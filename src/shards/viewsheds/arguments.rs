@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use sandtable_query::dataset::transform;
-use sandtable_query::ground::QueriedGround;
 use crate::error::ShardError;
 use crate::planned_dataset::{PlannedDataset, QueriedDataset};
+use sandtable_query::dataset::transform;
+use sandtable_query::ground::QueriedGround;
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_terrain::sight::Curvature;
 use sandtable_terrain::sight::line::SightEnd;

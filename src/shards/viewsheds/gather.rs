@@ -2,11 +2,6 @@
 
 use std::path::Path;
 
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::read::DemOptions;
-use sandtable_base::limits::RASTER_SAMPLES;
-use sandtable_query::dem;
-use sandtable_files::raster_file;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
 use crate::planned_dataset::PlannedDataset;
@@ -15,6 +10,11 @@ use crate::viewsheds::arguments::ViewshedsArguments;
 use crate::viewsheds::counts::SightCounts;
 use crate::viewsheds::plan::frame;
 use crate::viewsheds::work::{EXTENSION, observers, posts};
+use sandtable_base::limits::RASTER_SAMPLES;
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::read::DemOptions;
+use sandtable_files::raster_file;
+use sandtable_query::dem;
 use sandtable_terrain::post_rect::PostRect;
 
 /// Writes the counts of a plan whose shards are all done, over the posts that any observer may look at.

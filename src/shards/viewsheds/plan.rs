@@ -4,17 +4,17 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use sandtable_geom::morton;
-use sandtable_geom::rect::Rect;
-use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
-use sandtable_query::dataset::{QueryError, transform};
-use sandtable_query::ground::QueriedGround;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::{self, PlannedProduct};
 use crate::planned_dataset::QueriedDataset;
 use crate::point_stream::PointStream;
 use crate::shard::{Shard, ShardWindow};
 use crate::viewsheds::arguments::ViewshedsArguments;
+use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
+use sandtable_geom::morton;
+use sandtable_geom::rect::Rect;
+use sandtable_query::dataset::{QueryError, transform};
+use sandtable_query::ground::QueriedGround;
 use sandtable_query::windowed_elevation::GroundReach;
 use sandtable_terrain::lattice::{Lattice, Post};
 use sandtable_terrain::post_rect::PostRect;

@@ -2,12 +2,6 @@
 
 use glam::DVec2;
 
-use sandtable_dem::formats::DemFormat;
-use sandtable_dem::write::{self, WriteError};
-use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
-use sandtable_query::dataset::QueryError;
-use sandtable_files::error::FileError;
-use sandtable_files::raster_file::WriteRasterError;
 use crate::error::ShardError;
 use crate::plan::ShardPlan;
 use crate::planned_dataset::QueriedDataset;
@@ -16,6 +10,12 @@ use crate::shard::{Shard, ShardWindow};
 use crate::viewsheds::arguments::ViewshedsArguments;
 use crate::viewsheds::counts::SightCounts;
 use crate::viewsheds::plan::frame;
+use sandtable_base::limits::{PLAN_OBSERVERS, RASTER_SAMPLES};
+use sandtable_dem::formats::DemFormat;
+use sandtable_dem::write::{self, WriteError};
+use sandtable_files::error::FileError;
+use sandtable_files::raster_file::WriteRasterError;
+use sandtable_query::dataset::QueryError;
 use sandtable_terrain::lattice::Post;
 use sandtable_terrain::post_rect::PostRect;
 use sandtable_terrain::sight::viewshed::viewshed;

@@ -7,13 +7,13 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 
+use crate::grid::system::{GridInterval, figures};
 use sandtable_annotate::figure::CoordinateFigure;
 use sandtable_annotate::grid::GridAxis;
 use sandtable_description::words::GridName;
 use sandtable_geom::crs::Crs;
 use sandtable_geom::mgrs::{GridSquare, GridZone};
 use sandtable_geom::rect::Rect;
-use crate::grid::system::{GridInterval, figures};
 use sandtable_scene::SceneModel;
 
 /// Points at which a line is transformed: a line of 100 km is off by less than a meter between them.

@@ -15,14 +15,14 @@ mod trace;
 
 use rayon::prelude::*;
 
-use sandtable_annotate::grid::{GridLine, PictureGrid};
-use sandtable_description::words::GridName;
 use crate::grid::lines::{GroundGrid, ground_grid};
 use crate::grid::squares::square_names;
 use crate::grid::trace::LineTracer;
+use sandtable_annotate::grid::{GridLine, PictureGrid};
+use sandtable_description::words::GridName;
+use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
-use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_view::camera::Camera;
 
 /// How far apart lines are in the middle of a picture 1080 pixels high where no interval is stated, in pixels: nearer

@@ -6,12 +6,12 @@
 
 use glam::{DVec2, Vec2};
 
+use crate::grid::lines::{GroundGrid, GroundLine};
 use sandtable_geom::rect::Rect;
 use sandtable_geom::simplify::simplified;
-use crate::grid::lines::{GroundGrid, GroundLine};
+use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_render::picture::Rendering;
 use sandtable_scene::SceneModel;
-use sandtable_picture::nested_ground::NestedHeights;
 use sandtable_view::camera::{Camera, Projected};
 
 /// The length of a piece on the picture in pixels: shorter ones cost more and show no more of the ground's shape.

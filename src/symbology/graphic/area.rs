@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polygon::{bounds, inner_point};
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{closed, gapped, text_m};
+use sandtable_geom::polygon::{bounds, inner_point};
+use sandtable_geom::polyline::Polyline;
 
 /// A closed line with its name inside (AREA1).
 pub fn area(kind: &GraphicKind, input: &GraphicInput<'_>, drawing: &mut GraphicDrawing) {

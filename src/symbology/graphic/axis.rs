@@ -6,10 +6,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{direction, offset, turned};
+use sandtable_geom::polyline::Polyline;
 
 /// The half width of the shaft, as a share of that of the head.
 const SHAFT: f64 = 0.5;

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::segment::crossing;
 use crate::graphic::axis::{center_line, head_m};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::{GraphicKind, GraphicShape, MOST_POINTS};
+use sandtable_geom::segment::crossing;
 
 /// A graphic shorter than this cannot be told from a point, in meters.
 pub const SHORTEST_M: f64 = 1.0;

@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{direction, text_m};
+use sandtable_geom::polyline::Polyline;
 
 /// Flanges at the ends of a bridge, in text heights.
 const FLANGE_EM: f64 = 1.25;

@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput, TextCourse};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arrowhead, direction, gapped, text_m};
+use sandtable_geom::polyline::Polyline;
 
 /// From arrow to arrow of traffic, in widths of the route's name.
 const ARROW_EVERY: f64 = 6.0;

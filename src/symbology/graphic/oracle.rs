@@ -3,10 +3,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::segment;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::fields::GraphicFields;
 use crate::graphic::kind::GraphicKind;
+use sandtable_geom::segment;
 
 const TABLE: &str = include_str!("../../../tests/symbology/graphics.txt");
 

@@ -4,10 +4,10 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{arc, arrowhead, bulge, circle, direction, gapped, text_m, turned};
+use sandtable_geom::polyline::Polyline;
 
 /// Length and half width of an open arrowhead, in text heights.
 const HEAD_EM: [f64; 2] = [1.5, 0.9];

@@ -6,13 +6,13 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polygon::doubled_area;
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::area::label_area;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::lines::label_ends;
 use crate::graphic::plane::{bulge, circle, closed};
+use sandtable_geom::polygon::doubled_area;
+use sandtable_geom::polyline::Polyline;
 
 /// The most teeth of a line; they grow with a longer one.
 const MOST_TEETH: f64 = 2000.0;

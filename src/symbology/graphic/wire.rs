@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use sandtable_geom::polyline::Polyline;
 use crate::graphic::drawing::{GraphicDrawing, GraphicInput};
 use crate::graphic::kind::GraphicKind;
 use crate::graphic::plane::{offset, turned};
+use sandtable_geom::polyline::Polyline;
 
 /// From cross to cross in text heights.
 const PITCH_EM: f64 = 1.667;

@@ -25,14 +25,14 @@
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
-use sandtable_dem::answer::{Answer, Status};
-use sandtable_dem::raster::{Raster, Samples};
-use sandtable_dem::sample::ON_CENTER;
 use crate::lattice::Lattice;
 use crate::query::source::raster_height;
 use crate::query::tiles::{HeightTiles, TileSlot};
 use crate::query::{Interpolation, ground_height};
 use crate::vectorized::vectorized;
+use sandtable_dem::answer::{Answer, Status};
+use sandtable_dem::raster::{Raster, Samples};
+use sandtable_dem::sample::ON_CENTER;
 
 /// Positions per chunk: its arrays take 6 KiB and stay in the first cache. Below 32 the passes cost more than their work,
 /// above 512 the arrays leave the cache.
@@ -82,10 +82,7 @@ impl HeightSlices<'_> {
     }
 
     /// In chunks of `size`, the last one shorter where `size` does not divide the length.
-    pub(in crate::query) fn chunks_mut(
-        &mut self,
-        size: usize,
-    ) -> impl Iterator<Item = HeightSlices<'_>> {
+    pub(in crate::query) fn chunks_mut(&mut self, size: usize) -> impl Iterator<Item = HeightSlices<'_>> {
         let chunks = self.heights_m.chunks_mut(size).zip(self.statuses.chunks_mut(size));
         chunks.map(|(heights_m, statuses)| HeightSlices { heights_m, statuses })
     }

@@ -62,9 +62,7 @@ pub fn ground_change(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_earthworks::brush::set_heights;
     use crate::lattice::Post;
-    use crate::post_rect::PostRect;
     use glam::DVec2;
 
     fn ground() -> Lattice {
@@ -73,10 +71,9 @@ mod tests {
     }
 
     fn raised(lattice: &Lattice, post: Post, by_m: f32) -> Lattice {
-        let mut after = lattice.clone();
-        let height = after.height(post) + by_m;
-        set_heights(&mut after, PostRect { first: post, last: post }, &[height]);
-        after
+        let mut heights = lattice.heights().to_vec();
+        heights[lattice.index(post)] += by_m;
+        Lattice::new(lattice.origin(), lattice.cell(), lattice.columns(), heights).expect("sound")
     }
 
     #[test]

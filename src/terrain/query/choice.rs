@@ -2,9 +2,9 @@
 
 use std::str::FromStr;
 
+use crate::query::{Interpolation, Surface};
 use sandtable_base::message::choice::{Choice, ChoiceWord, word};
 use sandtable_base::message::suggest::{quoted, remedy};
-use crate::query::{Interpolation, Surface};
 
 impl Choice for Interpolation {
     const CHOICES: &'static [ChoiceWord<Self>] = &[

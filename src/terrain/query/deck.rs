@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
+use crate::triangle_surface::{SurfaceTriangle, facet_contains, plan, plane_z};
 use sandtable_geom::polygon;
 use sandtable_geom::rect::Rect;
 use sandtable_geom::rect_tree::RectTree;
-use crate::triangle_surface::{SurfaceTriangle, facet_contains, plan, plane_z};
 
 /// Triangles over the ground; Z is the height in meters.
 #[derive(Clone, Debug)]

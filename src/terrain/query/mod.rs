@@ -67,11 +67,11 @@ pub mod zone;
 
 use glam::{DVec2, UVec2};
 
-use sandtable_dem::answer::Answer;
 use crate::cell_triangle::Diagonal;
 use crate::lattice::{Lattice, Post};
 use crate::query::cell::interpolate;
 use crate::query::cubic::cubic;
+use sandtable_dem::answer::Answer;
 
 /// The surface of a height query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

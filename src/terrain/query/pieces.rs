@@ -23,9 +23,9 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use sandtable_geom::polygon;
 use crate::cell_triangle::CellTriangle;
 use crate::lattice::{Lattice, Post};
+use sandtable_geom::polygon;
 
 /// Rows of cells that one thread takes at a time; fixed, so that sums are the same for any number of threads.
 const BAND: u32 = 64;

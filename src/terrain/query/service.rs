@@ -8,9 +8,6 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::Raster;
-use sandtable_geom::crs::Crs;
 use crate::lattice::Lattice;
 use crate::query::batch::{self, HeightSlices};
 use crate::query::deck::Deck;
@@ -18,6 +15,9 @@ use crate::query::source::{source_height, source_task};
 use crate::query::tiles::LazyTiles;
 use crate::query::{Interpolation, Surface, ground_height};
 use crate::triangle_surface::TriangleSurface;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::raster::Raster;
+use sandtable_geom::crs::Crs;
 
 /// Positions between two checks whether tiles should be made, so that a single long batch gets them too.
 const STRETCH: usize = 1 << 20;

@@ -6,16 +6,16 @@
 
 use glam::{DVec2, UVec2};
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::raster::Raster;
-use sandtable_dem::sample::{self, SampleGrid};
-use sandtable_geom::crs::Crs;
 use crate::cell_triangle::Diagonal;
 use crate::lattice::Post;
 use crate::query::Interpolation;
 use crate::query::batch::{self, HeightSlices};
 use crate::query::cell::interpolate;
 use crate::query::cubic::cubic;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::raster::Raster;
+use sandtable_dem::sample::{self, SampleGrid};
+use sandtable_geom::crs::Crs;
 
 /// Positions that are transformed to the raster's system at a time, on the stack.
 const TRANSFORMED: usize = 512;

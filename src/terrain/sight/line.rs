@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec2;
 
-use sandtable_dem::answer::Answer;
 use crate::lattice::Lattice;
 use crate::query::{Interpolation, ground_height};
 use crate::sight::Curvature;
 use crate::sight::crossings::{LineCrossing, LinePart, crossings};
+use sandtable_dem::answer::Answer;
 
 /// One end of a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]

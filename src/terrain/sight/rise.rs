@@ -14,12 +14,12 @@
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-use sandtable_dem::answer::Answer;
 use crate::lattice::Lattice;
 use crate::sight::Curvature;
 use crate::sight::crossings::{LineCrossing, LinePart, crossings};
 use crate::sight::descent::Probe;
 use crate::sight::line::{Blocker, GroundedSight, SightEnd};
+use sandtable_dem::answer::Answer;
 
 /// The end of a line of sight that is raised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,13 +22,13 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, Row};
 use serde_json::{Number, Value};
 
-use sandtable_base::bytes::ByteCursor;
-use sandtable_geom::crs::Crs;
 use crate::builder::{FeatureParts, LayerBuilder};
 use crate::error::{VectorError, shorten};
 use crate::feature::{Properties, VectorLayer};
 use crate::geopackage::wkb::WkbError;
 use crate::hints::VectorHints;
+use sandtable_base::bytes::ByteCursor;
+use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "GeoPackage";
 /// Steps of SQLite's virtual machine between two looks at their number.

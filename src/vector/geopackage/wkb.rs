@@ -11,9 +11,9 @@
 //! `geozero` 0.15 overflows the stack on nested collections and reads either ISO's types or EWKB's flags. They build
 //! seven and four more crates to save some 60 lines.
 
+use crate::builder::{FeatureParts, Vertices, position};
 use sandtable_base::bytes::{ByteCursor, ByteOrder};
 use sandtable_base::limits::GEOMETRY_DEPTH;
-use crate::builder::{FeatureParts, Vertices, position};
 
 /// EWKB's flags in the type.
 const HAS_Z: u32 = 0x8000_0000;
@@ -146,10 +146,10 @@ fn read_positions(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sandtable_geom::crs::Crs;
     use crate::builder::LayerBuilder;
     use crate::feature::{Feature, Geometry, Properties};
     use glam::DVec2;
+    use sandtable_geom::crs::Crs;
 
     fn features(bytes: &[u8]) -> Result<Vec<Feature>, WkbError> {
         let mut parts = FeatureParts::default();

@@ -5,12 +5,12 @@
 use std::collections::BTreeMap;
 use std::error::Error;
 
-use sandtable_base::limits::OSM_AREA_VERTICES;
 use crate::builder::Vertices;
 use crate::error::VectorError;
 use crate::osm::data::{OsmData, OsmRelation, OsmTags, OsmWay};
 use crate::osm::significant_tags;
 use crate::rings::{HoleRule, RingSorter};
+use sandtable_base::limits::OSM_AREA_VERTICES;
 
 /// Assembles areas, and tracks the ways that they replace.
 pub(super) struct AreaAssembler<'a> {

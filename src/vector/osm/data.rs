@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use sandtable_base::limits::OSM_BYTES;
 use crate::builder::{Vertices, position};
+use sandtable_base::limits::OSM_BYTES;
 
 /// Bytes that an allocation takes beyond its content.
 const ALLOCATION_BYTES: usize = 16;

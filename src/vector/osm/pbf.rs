@@ -11,11 +11,15 @@
 //! Written by hand. `osmpbf` 0.3 makes a structure of every message before it can be counted: a file of 31 kB took 2 GB
 //! and 20 s. It also generates code with `protobuf-codegen` and `regex`, nineteen crates and 50 s of processor time.
 
+use crate::error::{VectorError, shorten};
+use crate::osm::data::{
+    OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, TextId,
+};
+use crate::osm::protobuf::{
+    FieldValue, MalformedMessage, delta_sums, fields, last_values, next, varints, zigzag,
+};
 use sandtable_base::archive;
 use sandtable_base::bytes::ByteCursor;
-use crate::error::{VectorError, shorten};
-use crate::osm::data::{OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, TextId};
-use crate::osm::protobuf::{FieldValue, MalformedMessage, delta_sums, fields, last_values, next, varints, zigzag};
 
 const FORMAT: &str = "OpenStreetMap extract (PBF)";
 const MAX_HEADER_BYTES: usize = 64 << 10;

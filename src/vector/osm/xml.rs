@@ -1,7 +1,9 @@
 //! Extracts as XML, version 0.6: `node`, `way` and `relation` elements with `tag`, `nd` and `member` in them.
 
 use crate::error::{VectorError, shorten};
-use crate::osm::data::{OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE};
+use crate::osm::data::{
+    OsmData, OsmMember, OsmMemoryExceeded, OsmNode, OsmRelation, OsmTags, OsmWay, UNITS_PER_DEGREE,
+};
 use crate::xml::{self, XmlElement, XmlReader};
 
 const FORMAT: &str = "OpenStreetMap XML";

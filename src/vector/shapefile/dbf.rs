@@ -13,10 +13,10 @@ use std::slice::ChunksExact;
 
 use serde_json::{Number, Value};
 
-use sandtable_base::bytes::ByteCursor;
 use crate::encoding::TextEncoding;
 use crate::error::VectorError;
 use crate::feature::Properties;
+use sandtable_base::bytes::ByteCursor;
 
 const FORMAT: &str = "dBASE table (.dbf)";
 

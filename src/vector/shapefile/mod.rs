@@ -20,8 +20,6 @@ mod dbf;
 
 use glam::DVec3;
 
-use sandtable_base::bytes::ByteCursor;
-use sandtable_geom::crs::Crs;
 use crate::builder::{FeatureParts, LayerBuilder, Vertices, position};
 use crate::encoding::TextEncoding;
 use crate::error::{VectorError, shorten};
@@ -29,6 +27,8 @@ use crate::feature::{Properties, VectorLayer};
 use crate::hints::VectorHints;
 use crate::rings::{HoleRule, RingSorter};
 use crate::shapefile::dbf::{DbfRow, DbfTable};
+use sandtable_base::bytes::ByteCursor;
+use sandtable_geom::crs::Crs;
 
 const FORMAT: &str = "ESRI shapefile";
 const HEADER_BYTES: usize = 100;

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use egui::{Key, RichText, ScrollArea, TextEdit, Ui};
 
+use crate::recent::RecentFiles;
 use sandtable_dem::formats::FORMATS;
 use sandtable_editing::viewing::is_scene_file;
-use crate::recent::RecentFiles;
 
 /// The most names of a folder that are listed: a longer list is not read to its end.
 const MOST_NAMES: usize = 2_000;

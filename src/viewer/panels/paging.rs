@@ -32,9 +32,9 @@ pub fn paging_panel(ui: &mut Ui, size: (u32, u32), stage: &PagingStage, kept: &P
 #[cfg(all(test, feature = "viewer-tests"))]
 mod tests {
     use super::*;
-    use sandtable_roam::paging::ground::PagingCounts;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use sandtable_roam::paging::ground::PagingCounts;
 
     #[test]
     fn pages_are_counted_and_those_that_wait_are_named() {

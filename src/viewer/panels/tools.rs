@@ -2,13 +2,13 @@
 
 use egui::{DragValue, Grid, Rect, Sense, Stroke, TextEdit, Ui, WidgetInfo, pos2, vec2};
 
-use sandtable_dem::answer::Answer;
+use crate::commands::{ViewCommand, key_text};
+use crate::measuring::{MeasureKind, Measuring, area_text, volume_text};
 use sandtable_base::message::choice::Choice;
+use sandtable_dem::answer::Answer;
 use sandtable_editing::effect::EditPreview;
 use sandtable_editing::tool::{ToolKind, ToolSettings};
 use sandtable_terrain::profile::ProfileStation;
-use crate::commands::{ViewCommand, key_text};
-use crate::measuring::{MeasureKind, Measuring, area_text, volume_text};
 
 /// The height of a profile, in points.
 const PROFILE_HEIGHT: f32 = 90.0;

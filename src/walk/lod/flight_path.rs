@@ -7,10 +7,10 @@ use std::str::FromStr;
 
 use glam::{DVec2, Vec2};
 
+use crate::lod::station_file::{self, StationFileError};
+use sandtable_files::disk::{self, ReadFileError};
 use sandtable_geom::aabb::Aabb;
 use sandtable_geom::rect::Rect;
-use sandtable_files::disk::{self, ReadFileError};
-use crate::lod::station_file::{self, StationFileError};
 use sandtable_terrain::lattice::Lattice;
 use sandtable_terrain::query::{Interpolation, ground_height};
 use sandtable_view::camera::{Camera, CameraError, far_m};

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 
 /// A folder for the files that peers read, below the target directory; made where it is not there.
 pub fn folder() -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("target/peers");
     std::fs::create_dir_all(&folder).expect("the target directory can be written");
     folder
 }
@@ -37,7 +37,7 @@ pub fn python() -> Option<String> {
 
 /// Runs a script of `tests/bench/peers` and returns the numbers that it prints, one a line.
 pub fn script(python: &str, name: &str, arguments: &[&str]) -> Vec<f64> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bench/peers").join(name);
+    let script = Path::new(env!("SANDTABLE_ROOT")).join("tests/bench/peers").join(name);
     let ran = Command::new(python).arg(&script).args(arguments).output().expect("the Python starts");
     assert!(ran.status.success(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
     String::from_utf8_lossy(&ran.stdout).lines().filter_map(|line| line.trim().parse().ok()).collect()

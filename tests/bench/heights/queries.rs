@@ -253,7 +253,7 @@ struct Peer {
 
 impl Peer {
     fn start(python: &str) -> Self {
-        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bench/peers/bilinear.py");
+        let script = concat!(env!("SANDTABLE_ROOT"), "tests/bench/peers/bilinear.py");
         let mut child = Command::new(python)
             .arg(script)
             .arg(peers::folder())

@@ -248,7 +248,7 @@ impl Drop for Embree {
 
 /// The peer's program, compiled below the target directory.
 fn compiled() -> Option<PathBuf> {
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bench/peers/embree.cpp");
+    let source = concat!(env!("SANDTABLE_ROOT"), "tests/bench/peers/embree.cpp");
     let program = peers::folder().join("embree");
     let made = Command::new("g++")
         .args(["-O3", "-march=native", source, "-o"])

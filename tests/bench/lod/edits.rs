@@ -261,7 +261,7 @@ fn print_constrained() {
         "ground", "posts", "reach", "plain", "constrained, same reach", "constrained, same mean"
     );
     for (name, path) in GROUNDS {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(path);
+        let path = Path::new(env!("SANDTABLE_ROOT")).join("../shared/data").join(path);
         let Some(lattice) = real(&path) else {
             println!("{name:<14}SKIPPED: no elevation model at {}", path.display());
             continue;

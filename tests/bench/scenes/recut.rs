@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use sandtable_scene::scene_file::open_scene;
-use sandtable_ribbon::patches::StalePatch;
 use sandtable_picture::{camera, display, recut};
+use sandtable_ribbon::patches::StalePatch;
+use sandtable_scene::scene_file::open_scene;
 
 use crate::rounds::{median, quantile, time_ms};
 
 /// Prints the demonstration's patches.
 pub fn print() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/jacksboro.toml");
+    let path = Path::new(env!("SANDTABLE_ROOT")).join("scenes/jacksboro.toml");
     let scene = open_scene(&path, &[], &|_| {}).expect("the demonstration is sound");
     let mut drapes = None;
     let dividing = time_ms(|| drapes = Some(recut::drapes(&scene)));

@@ -45,7 +45,7 @@ pub fn print() {
 
 /// Porto Alegre, where the test data is there.
 fn print_city(folder: &Path) {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/scenes/porto_alegre_br");
+    let data = Path::new(env!("SANDTABLE_ROOT")).join("../shared/data/scenes/porto_alegre_br");
     let Ok(data) = data.canonicalize() else { return println!("SKIPPED: no test data of Porto Alegre") };
     let text = format!(
         "[terrain]\ndem = '{0}/poa_elevation.tif'\n[[road]]\nfile = '{0}/poa_osm.pbf'\nlayer = 'roads'\nwidth = 7\n",

@@ -129,7 +129,7 @@ fn a_road_beyond_all_measure_still_has_no_two_triangles_over_one_another() {
 
 #[test]
 fn the_junctions_of_the_gallery_lie_apart() {
-    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let scenes = std::path::Path::new(env!("SANDTABLE_ROOT")).join("scenes");
     for name in ["junctions.toml", "road.toml", "jacksboro.toml"] {
         check_laid(&built(&scenes.join(name), &[]));
     }

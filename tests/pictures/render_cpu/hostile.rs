@@ -3,7 +3,9 @@
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use sandtable_draw::color::Srgba;
-use sandtable_draw::list::{DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId};
+use sandtable_draw::list::{
+    DepthLayer, DrawList, DrawListError, DrawMesh, DrawVertex, FeatureId, MaterialId,
+};
 use sandtable_draw::material::{AlphaMode, Material};
 use sandtable_draw::pixels::Pixels;
 use sandtable_mesh::sink::{MeshSink, VertexId};

@@ -133,7 +133,7 @@ fn a_complaint_that_nobody_hears_still_has_its_exit_code() {
 fn a_full_disk_is_told() {
     for arguments in [&["dem", "info", "assets/jacksboro/dem.tif"][..], &["check", "scenes/road.toml"]] {
         let full = std::fs::File::options().write(true).open("/dev/full").expect("a full disk");
-        let mut command = program(std::path::Path::new(env!("CARGO_MANIFEST_DIR")), arguments);
+        let mut command = program(std::path::Path::new(env!("SANDTABLE_ROOT")), arguments);
         let output = command.stdout(full).output().expect("the program starts");
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{said}");

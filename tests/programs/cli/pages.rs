@@ -6,9 +6,9 @@ use std::path::Path;
 use std::process::Command;
 
 use image::RgbImage;
-use sandtable_sheet::picture::{PictureSize, draw_view};
-use sandtable_scene::scene_file::open_scene;
 use sandtable_render::RenderBackend;
+use sandtable_scene::scene_file::open_scene;
+use sandtable_sheet::picture::{PictureSize, draw_view};
 use serde_json::Value;
 
 use crate::cli::{project, run_in};

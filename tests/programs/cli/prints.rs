@@ -46,7 +46,7 @@ fn assert_printable(files: &[&Path]) {
         );
         return;
     };
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/check_solids.py");
+    let script = concat!(env!("SANDTABLE_ROOT"), "tests/tools/check_solids.py");
     let ran = Command::new(python).arg(script).args(files).output().expect("Python runs");
     assert!(
         ran.status.success(),

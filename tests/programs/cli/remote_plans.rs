@@ -91,7 +91,7 @@ fn a_new_scene_surveys_vector_files_by_address_as_those_on_disk() {
 #[test]
 fn a_new_scene_finds_the_tables_of_a_shapefile_on_a_server() {
     let Some(mut server) = TestServer::s3() else { return };
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/scenes/swellendam_za");
+    let folder = std::path::Path::new(env!("SANDTABLE_ROOT")).join("../shared/data/scenes/swellendam_za");
     for file in ["rivers.shp", "rivers.dbf", "rivers.prj", "rivers.cpg", "dem_srtm_utm33s_i16.tif"] {
         let Some(path) = data(&format!("scenes/swellendam_za/{file}")) else { return };
         server.put(&path, file);

@@ -81,7 +81,7 @@ impl TestServer {
     fn start(python: OsString, script: &str, arguments: impl FnOnce(&Scratch) -> Vec<OsString>) -> Self {
         let scratch = Scratch::new();
         let mut child = Command::new(python)
-            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools").join(script))
+            .arg(Path::new(env!("SANDTABLE_ROOT")).join("tests/tools").join(script))
             .args(arguments(&scratch))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -76,7 +76,7 @@ fn links_and_pictures_are_found_outside_of_code() {
     let page = "![a b](one.png)\n[two](two.md#x) and [three](#end)\n`[no](no)` <img src=\"four.png\">\n```\n[no](no)\n```\n# The End, of\n";
     assert_eq!(pictures(page), ["one.png", "four.png"]);
     assert_eq!(all(page), ["one.png", "two.md#x", "#end", "four.png"]);
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let here = Path::new(env!("SANDTABLE_ROOT"));
     assert_eq!(fault("Cargo.toml", here, page), None);
     assert_eq!(fault("#the-end-of", here, page), None);
     assert!(fault("#end", here, page).is_some() && fault("no.md", here, page).is_some());

@@ -19,7 +19,7 @@ impl Sandbox {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let _ = fs::remove_dir_all(&folder);
         for part in ["scenes", "assets"] {
-            copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(part), &folder.join(part));
+            copy(&Path::new(env!("SANDTABLE_ROOT")).join(part), &folder.join(part));
         }
         Self { folder }
     }

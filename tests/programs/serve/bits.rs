@@ -153,7 +153,7 @@ fn the_ground_is_answered_alike_by_library_and_service_at_latitudes_and_longitud
 
 #[test]
 fn a_scene_is_asked_for_its_ground_and_its_source_in_its_own_coordinates() {
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/heightmap.toml");
+    let scene = Path::new(env!("SANDTABLE_ROOT")).join("scenes/heightmap.toml");
     let dataset = open(&scene);
     let lattice = all_ground(&dataset).lattice;
     let extent = lattice.extent();

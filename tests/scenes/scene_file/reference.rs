@@ -107,7 +107,7 @@ fn page() -> String {
 
 #[test]
 fn the_reference_page_lists_the_keys_as_they_are_declared() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/README.md");
+    let file = Path::new(env!("SANDTABLE_ROOT")).join("scenes/README.md");
     if std::env::var_os("SANDTABLE_BLESS").is_some() {
         std::fs::write(&file, page()).expect("writable");
     }

@@ -129,7 +129,7 @@ fn flaws_of(text: &str) -> Vec<String> {
 
 #[test]
 fn every_scene_of_the_project_and_every_key_is_sound() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Path::new(env!("SANDTABLE_ROOT")).join("scenes");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("the scenes") {
         let path = entry.expect("readable").path();

@@ -6,7 +6,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use sandtable_symbology::entities::{SETS, SymbolEntity, entities};
-use sandtable_symbology::fields::{CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus, SymbolVersion};
+use sandtable_symbology::fields::{
+    CodedField, SymbolAmplifier, SymbolContext, SymbolIdentity, SymbolRole, SymbolSet, SymbolStatus,
+    SymbolVersion,
+};
 use sandtable_symbology::modifiers::modifiers;
 use sandtable_symbology::texts::{TEXT_FIELDS, TextPlace};
 
@@ -144,7 +147,7 @@ const GRAPHICS: &str = "<!-- graphics -->";
 
 #[test]
 fn the_page_of_symbols_is_up_to_date() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/SYMBOLS.md");
+    let file = Path::new(env!("SANDTABLE_ROOT")).join("scenes/SYMBOLS.md");
     let committed = std::fs::read_to_string(&file).expect("scenes/SYMBOLS.md");
     let start = committed.find(GRAPHICS).unwrap_or(committed.len());
     let (symbols, graphics) = committed.split_at(start);

@@ -26,7 +26,6 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use sandtable_geom::rect::Rect;
 use crate::active::ActiveSet;
 use crate::block::{BlockError, BlockSource, PatchBlock};
 use crate::graph::Vertex;
@@ -35,6 +34,7 @@ use crate::refine::changes::RefinementChanges;
 use crate::refine::deferred::patch::{Decider, EyeStation, PatchMesh, UpdateCounts};
 use crate::refine::deferred::topology::Topology;
 use crate::refine::deferred::wheel::{FARTHEST, Wheel};
+use sandtable_geom::rect::Rect;
 
 /// Ticks in the distance between posts. Coarser ticks make more vertices due every frame, finer ones more slots to turn;
 /// arbitrary within a few times of this.

@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
-use sandtable_geom::rect::Rect;
 use crate::block::PatchBlock;
 use crate::refine::deferred::topology::{CENTER, NONE, Topology, TopologyNode, triangle};
 use crate::refine::deferred::wheel::{FARTHEST, Wheel, WheelList};
+use sandtable_geom::rect::Rect;
 
 /// Slack is shortened by this share before it is turned into ticks: more than all rounding on the way.
 const SAFETY: f64 = 1.0 - 1e-9;

@@ -2,12 +2,12 @@
 
 use glam::{DVec2, Vec3};
 
-use sandtable_geom::rect::Rect;
 use crate::block::BlockSource;
 use crate::graph::Vertex;
 use crate::refine::deferred::Deferred;
 use crate::refine::deferred::patch::PatchMesh;
 use crate::refine::deferred::topology::{NONE, Topology, triangle};
+use sandtable_geom::rect::Rect;
 use sandtable_terrain::triangle_surface::{SurfaceTriangle, TriangleSurface};
 
 /// The displayed triangles of the listed patches.

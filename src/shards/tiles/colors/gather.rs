@@ -1,6 +1,5 @@
 //! The coarse levels of pictures, which are made of what several shards did.
 
-use sandtable_files::disk;
 use crate::error::{PlanError, PlanFault, ShardError};
 use crate::plan::ShardPlan;
 use crate::record::result_path;
@@ -9,6 +8,7 @@ use crate::tiles::colors::pixels::{PixelHeights, TILE_PIXELS, heights_from_bytes
 use crate::tiles::colors::pyramid::ColorPyramid;
 use crate::tiles::colors::work::EXTENSION;
 use crate::tiles::tiling::TileAddress;
+use sandtable_files::disk;
 
 /// Writes the tiles of the levels above all shards, which are done.
 ///

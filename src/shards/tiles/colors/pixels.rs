@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
+use crate::tiles::colors::pyramid::PIXELS;
+use crate::tiles::tiling::{TileAddress, TileScheme};
 use sandtable_dem::formats::height_encoding::HeightEncoding;
 use sandtable_draw::color::Srgba;
 use sandtable_draw::pixels::Pixels;
 use sandtable_files::png::encode_png;
-use crate::tiles::colors::pyramid::PIXELS;
-use crate::tiles::tiling::{TileAddress, TileScheme};
 
 /// Pixels of a tile.
 pub const TILE_PIXELS: usize = (PIXELS * PIXELS) as usize;

@@ -1,7 +1,7 @@
 //! The tiles of a pyramid of pictures.
 
-use sandtable_dem::formats::height_encoding::HeightEncoding;
 use crate::tiles::tiling::{TileAddress, TileRange, TileScheme};
+use sandtable_dem::formats::height_encoding::HeightEncoding;
 
 /// Pixels along a side of a tile.
 pub const PIXELS: u32 = 256;

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use sandtable_dem::formats::height_encoding::HeightEncoding;
 use crate::tiles::colors::pyramid::{ColorPyramid, PIXELS};
 use crate::tiles::degree_bounds::described_bounds;
+use sandtable_dem::formats::height_encoding::HeightEncoding;
 
 /// The description of all tiles, with the keys `encoding` and `tileSize` of a source `raster-dem` of MapLibre and Mapbox.
 pub fn tilejson(pyramid: &ColorPyramid) -> Value {

@@ -3,11 +3,6 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use sandtable_dem::answer::Answer;
-use sandtable_dem::height_datum::HeightDatum;
-use sandtable_geom::geoid::Geoid;
-use sandtable_files::error::FileError;
-use sandtable_query::heights_above::bring_heights;
 use crate::error::ShardError;
 use crate::planned_dataset::QueriedDataset;
 use crate::record::ShardFile;
@@ -16,6 +11,11 @@ use crate::tiles::meshes::groups::tiles_of;
 use crate::tiles::meshes::posts::{POSTS, posts};
 use crate::tiles::meshes::quantized_mesh::tile_bytes;
 use crate::tiles::tiling::TileAddress;
+use sandtable_dem::answer::Answer;
+use sandtable_dem::height_datum::HeightDatum;
+use sandtable_files::error::FileError;
+use sandtable_geom::geoid::Geoid;
+use sandtable_query::heights_above::bring_heights;
 
 /// Tiles whose posts are asked about together.
 const TILES_AT_ONCE: usize = 64;

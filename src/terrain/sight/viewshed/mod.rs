@@ -27,7 +27,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use sandtable_dem::answer::Answer;
 use crate::lattice::{Lattice, Post};
 use crate::query::{Interpolation, ground_height};
 use crate::sight::Curvature;
@@ -36,6 +35,7 @@ use crate::sight::line::{SightEnd, SightLine};
 use crate::sight::viewshed::frame::OctantFrame;
 use crate::sight::viewshed::sweep::{Margins, PostTests, SweepScene, sweep};
 use crate::stop_flag::StopFlag;
+use sandtable_dem::answer::Answer;
 
 /// The parameters of a viewshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
