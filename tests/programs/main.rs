@@ -1,4 +1,4 @@
-//! The command line, the HTTP service and the README.
+//! The command line, the HTTP service, and the README with its book.
 
 #[path = "../common/mod.rs"]
 mod common;

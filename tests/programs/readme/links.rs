@@ -1,5 +1,6 @@
 //! Links and pictures in Markdown pages.
 
+use std::fs;
 use std::path::Path;
 
 /// The targets of all links and pictures, outside of code.
@@ -36,12 +37,24 @@ pub fn fault(target: &str, folder: &Path, text: &str) -> Option<String> {
     let elsewhere = ["https://", "http://", "mailto:"].iter().any(|scheme| target.starts_with(scheme));
     let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
     if elsewhere {
-        None
-    } else if path.is_empty() {
-        (!anchors(text).contains(&anchor.to_owned())).then(|| "no heading of this page is called that".into())
-    } else {
-        (!folder.join(path).exists()).then(|| "there is no such file".into())
+        return None;
     }
+    let page = folder.join(path);
+    if path.is_empty() {
+        (!has_heading(text, anchor)).then(|| "no heading of this page is called that".into())
+    } else if !page.exists() {
+        Some("there is no such file".into())
+    } else if anchor.is_empty() || !path.ends_with(".md") {
+        None
+    } else {
+        let text = fs::read_to_string(&page).unwrap_or_default();
+        (!has_heading(&text, anchor)).then(|| "no heading of that page is called that".into())
+    }
+}
+
+/// Whether a link to `anchor` leads to a heading of `page`.
+fn has_heading(page: &str, anchor: &str) -> bool {
+    anchors(page).iter().any(|heading| heading == anchor)
 }
 
 /// What headings are called in links: small letters and digits, hyphens for spaces.
@@ -80,4 +93,6 @@ fn links_and_pictures_are_found_outside_of_code() {
     assert_eq!(fault("Cargo.toml", here, page), None);
     assert_eq!(fault("#the-end-of", here, page), None);
     assert!(fault("#end", here, page).is_some() && fault("no.md", here, page).is_some());
+    assert_eq!(fault("README.md#license", here, page), None);
+    assert!(fault("README.md#no-such-heading", here, page).is_some());
 }
