@@ -192,7 +192,8 @@ mod tests {
     const SIZE: PictureSize = PictureSize { width: 64, height: 40 };
 
     fn scene() -> (SceneModel, SceneSource) {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         (editor.source().build(&|_| ()).expect("sound"), editor.source().clone())
     }
 
@@ -235,7 +236,8 @@ mod tests {
     fn a_picture_of_a_view_is_that_of_its_scene_and_never_replaces_another() {
         let folder = env::temp_dir().join(format!("sandtable-snapshot-{}", std::process::id()));
         fs::create_dir_all(&folder).expect("a folder");
-        fs::copy("assets/jacksboro/valley.asc", folder.join("valley.asc")).expect("copied");
+        fs::copy(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc"), folder.join("valley.asc"))
+            .expect("copied");
         let file = folder.join("valley.asc");
         let source = open_to_view(&file, &[]).expect("readable").source().clone();
         let scene = source.build(&|_| ()).expect("sound");

@@ -42,7 +42,9 @@ mod tests {
 
     #[test]
     fn an_elevation_file_is_a_scene_of_its_ground() {
-        let editor = open_to_view(Path::new("assets/jacksboro/valley.asc"), &[]).expect("readable");
+        let editor =
+            open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc")), &[])
+                .expect("readable");
         let scene = editor.source().build(&|_| ()).expect("sound");
         assert!(scene.lattice.columns() > 100 && scene.features.is_empty() && scene.cameras.len() == 1);
         assert!(!editor.is_changed(), "nothing is lost where nothing was edited");

@@ -30,8 +30,12 @@ impl TestScene {
         fs::create_dir_all(folder.join("scenes")).expect("a folder");
         fs::create_dir_all(folder.join("assets/jacksboro")).expect("a folder");
         let file = folder.join("scenes/road.toml");
-        fs::copy("scenes/road.toml", &file).expect("copied");
-        fs::copy("assets/jacksboro/valley.asc", folder.join("assets/jacksboro/valley.asc")).expect("copied");
+        fs::copy(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"), &file).expect("copied");
+        fs::copy(
+            concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc"),
+            folder.join("assets/jacksboro/valley.asc"),
+        )
+        .expect("copied");
         Self { folder, file }
     }
 }
@@ -96,7 +100,7 @@ fn is_changed(harness: &AppHarness) -> bool {
 
 #[test]
 fn every_widget_of_an_open_scene_has_a_name() {
-    let harness = window(Some(Path::new("scenes/road.toml")));
+    let harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     assert_eq!(app(&harness).stage(), ViewerStage::Ready);
     harness.check_accessibility();
     for name in ["Open", "Orbit", "Fly", "Walk", "Picture", "crater", "Find", "View of the scene"] {
@@ -118,7 +122,7 @@ fn without_a_file_there_is_a_list_and_a_wrong_file_is_named_with_its_line() {
 
 #[test]
 fn a_click_says_what_is_there() {
-    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     assert_eq!(app(&harness).picked, None);
     click(&mut harness, IN_VIEW);
     let picked = app(&harness).picked.clone().expect("picked");
@@ -128,7 +132,7 @@ fn a_click_says_what_is_there() {
 
 #[test]
 fn keys_and_the_wheel_move_the_camera_and_typing_does_not() {
-    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     let eye = |harness: &AppHarness| app(harness).opened.as_ref().expect("open").navigator.pose().eye;
     let start = eye(&harness);
     harness.key_down(Key::W);
@@ -187,7 +191,7 @@ fn an_edit_made_while_a_file_is_read_is_kept() {
     until(&mut harness, waits);
     assert!(is_changed(&harness), "the file as it was does not replace the edit");
     assert!(app(&harness).notice_texts().any(|text| text.contains("edits that are not saved")));
-    opens(&mut harness, Path::new("scenes/lake.toml"));
+    opens(&mut harness, Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/lake.toml")));
     click(&mut harness, IN_VIEW - egui::vec2(60.0, 0.0));
     until(&mut harness, waits);
     let opened = |harness: &AppHarness| app(harness).opened.as_ref().expect("open").path.clone();
@@ -195,12 +199,12 @@ fn an_edit_made_while_a_file_is_read_is_kept() {
     harness.run_steps(2);
     harness.get_by_label("Go on without saving").click();
     until(&mut harness, |app| app.question.is_none() && app.loading.is_none());
-    assert_eq!(opened(&harness), Path::new("scenes/lake.toml"));
+    assert_eq!(opened(&harness), Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/lake.toml")));
 }
 
 #[test]
 fn the_sun_and_what_is_hidden_wait_for_a_thread_and_the_picture_stays() {
-    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     let low = glam::Vec3::new(0.8, 0.0, 0.6);
     let app_mut = |harness: &mut AppHarness, act: &dyn Fn(&mut ViewerApp)| {
         act(harness.state_mut().as_mut().expect("shown"));
@@ -242,7 +246,7 @@ fn a_view_is_kept_as_a_camera_and_undone() {
 
 #[test]
 fn a_viewshed_is_tinted_until_it_is_cleared() {
-    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     harness.get_by_label("Viewshed").click();
     harness.run_steps(2);
     click(&mut harness, IN_VIEW);

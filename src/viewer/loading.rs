@@ -189,14 +189,20 @@ mod tests {
     #[test]
     fn a_scene_arrives_from_its_thread() {
         assert_eq!(
-            opened("scenes/road.toml").expect("sound").opened.scene.title.as_deref(),
+            opened(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))
+                .expect("sound")
+                .opened
+                .scene
+                .title
+                .as_deref(),
             Some("Two roads")
         );
     }
 
     #[test]
     fn a_file_that_is_not_there_is_named() {
-        let error = opened("scenes/no-such.toml").err().expect("it is not there");
+        let error =
+            opened(concat!(env!("SANDTABLE_ROOT"), "scenes/no-such.toml")).err().expect("it is not there");
         assert!(error.contains("no-such.toml"), "{error}");
     }
 }

@@ -206,7 +206,8 @@ mod tests {
     use std::sync::Arc;
 
     fn walk() -> Walk {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         Walk::new(Arc::new(editor.source().build(&|_| ()).expect("sound")), WalkOptions::default())
     }
 

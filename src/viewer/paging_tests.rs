@@ -91,8 +91,14 @@ fn settle(opened: &mut OpenedScene, shown: &mut std::collections::BTreeSet<Patch
 fn a_file_that_fits_is_no_terrain_on_disk() {
     let file = LargeFile::new("fits");
     assert!(PagedElevation::open(&file.path, 1_000_000).expect("readable").is_none());
-    assert!(PagedElevation::open(Path::new("assets/jacksboro/valley.asc"), 10).expect("readable").is_none());
-    let degrees = PagedElevation::open(Path::new("assets/jacksboro/dem.tif"), 10).expect("readable");
+    assert!(
+        PagedElevation::open(Path::new(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/valley.asc")), 10)
+            .expect("readable")
+            .is_none()
+    );
+    let degrees =
+        PagedElevation::open(Path::new(concat!(env!("SANDTABLE_ROOT"), "assets/jacksboro/dem.tif")), 10)
+            .expect("readable");
     assert!(degrees.is_none(), "what fits is resampled in memory");
 }
 
@@ -139,7 +145,7 @@ fn a_large_file_is_flown_over_in_pages_whose_heights_are_those_of_the_file() {
 }
 
 fn paged_window(file: &LargeFile) -> AppHarness {
-    let mut harness = window(Some(Path::new("scenes/road.toml")));
+    let mut harness = window(Some(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml"))));
     let opened = file.opened();
     let state = harness.state_mut().as_mut().expect("shown");
     (state.opened, state.session) = (Some(opened), None);

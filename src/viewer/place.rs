@@ -83,7 +83,8 @@ mod tests {
 
     #[test]
     fn a_place_is_told_in_every_system_with_height_and_slope() {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         let scene = editor.source().build(&|_| ()).expect("sound");
         let walk = Walk::new(Arc::new(scene), WalkOptions::default());
         let scene = walk.scene();

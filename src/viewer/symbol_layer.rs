@@ -170,7 +170,8 @@ mod tests {
 
     #[test]
     fn a_symbol_is_opaque_inside_and_clear_outside_and_stands_over_its_place() {
-        let editor = open_to_view(Path::new("scenes/symbols.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/symbols.toml")), &[])
+            .expect("readable");
         let scene = editor.source().build(&|_| ()).expect("sound");
         let picture = SymbolPicture::new(&scene.military[0], 40.0, None).expect("drawn");
         let at = |x: u32, y: u32| picture.pixels[(y * picture.size.x + x) as usize];

@@ -170,7 +170,8 @@ mod tests {
     use sandtable_scene::ground_map::GroundMapKey;
 
     fn scene() -> (Arc<SceneModel>, GroundWindowLight) {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         let scene = Arc::new(editor.source().build(&|_| ()).expect("sound"));
         let to_sun = Vec3::new(-0.5, 0.5, 0.7).normalize();
         let map = scene.map(GroundMapKey { level: 0, to_sun }, || ());

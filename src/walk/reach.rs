@@ -97,7 +97,8 @@ mod tests {
 
     #[test]
     fn spheres_of_a_task_show_the_ground_that_an_update_would() {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         let scene = Arc::new(editor.source().build(&|_| ()).expect("sound"));
         let by_task = WalkOptions { renewal: ReachRenewal::ByTask, ..WalkOptions::default() };
         let mut walks =

@@ -87,7 +87,8 @@ mod tests {
 
     #[test]
     fn a_tint_is_laid_with_the_list_that_has_its_texture_and_taken_away() {
-        let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");
+        let editor = open_to_view(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes/road.toml")), &[])
+            .expect("readable");
         let scene = Arc::new(editor.source().build(&|_| ()).expect("sound"));
         let mut walk = Walk::new(Arc::clone(&scene), WalkOptions::default());
         let camera = picture::camera(&scene, &scene.cameras[0], (640, 400)).expect("sound");

@@ -150,7 +150,11 @@ mod tests {
     }
 
     fn harness(recent: RecentFiles) -> Harness<'static, OpenTest> {
-        let state = OpenTest { panel: OpenPanel::at(Path::new("scenes")), recent, chosen: None };
+        let state = OpenTest {
+            panel: OpenPanel::at(Path::new(concat!(env!("SANDTABLE_ROOT"), "scenes"))),
+            recent,
+            chosen: None,
+        };
         let draw = |ui: &mut Ui, state: &mut OpenTest| {
             let chosen = open_panel(ui, &mut state.panel, &state.recent);
             state.chosen = chosen.or(state.chosen.take());
