@@ -1,10 +1,13 @@
 //! Holds the code to the map: `src/ARCHITECTURE.md` and `src/` must agree.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const ROOT: &str = env!("SANDTABLE_ROOT");
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The package at the top.
+const ROOT_CRATE: &str = "sandtable";
 
 /// The cells of every row of the table whose heading row is `heading`.
 fn table(page: &str, heading: &str) -> Vec<Vec<String>> {
@@ -18,11 +21,26 @@ fn page() -> String {
     fs::read_to_string(Path::new(ROOT).join("src/ARCHITECTURE.md")).expect("the map is there")
 }
 
-/// Every module with its layer.
+/// Every crate with its layer.
 fn layers() -> BTreeMap<String, u32> {
-    let rows = table(&page(), "| layer | module | what lives there | knows nothing of |");
-    assert!(rows.len() > 10, "the table of modules was not found");
+    let rows = table(&page(), "| layer | crate | what lives there | knows nothing of |");
+    assert!(rows.len() > 10, "the table of crates was not found");
     rows.into_iter().map(|row| (row[1].clone(), row[0].parse().expect("a layer is a number"))).collect()
+}
+
+/// The folder of a crate of the table.
+fn folder(name: &str) -> PathBuf {
+    if name == ROOT_CRATE { ROOT.into() } else { Path::new(ROOT).join("src").join(name) }
+}
+
+/// The crates of this workspace that a crate's manifest names under `[dependencies]`, whatever the platform and the features.
+fn dependencies(name: &str) -> Vec<String> {
+    let text = fs::read_to_string(folder(name).join("Cargo.toml")).expect("a crate has a manifest");
+    let manifest: toml::Table = text.parse().expect("a manifest is TOML");
+    let dependencies = manifest["dependencies"].as_table().expect("a table").keys();
+    let own = dependencies
+        .filter_map(|name| name.strip_prefix("sandtable-").or((name == ROOT_CRATE).then_some(name)));
+    own.map(str::to_owned).collect()
 }
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
@@ -61,28 +79,27 @@ fn names(code: &str, name: &str) -> bool {
 }
 
 #[test]
-fn every_source_folder_is_in_the_table_and_every_module_exists() {
-    let layers = layers();
-    let mut folders: Vec<String> = fs::read_dir(Path::new(ROOT).join("src"))
-        .expect("readable")
-        .map(|entry| entry.expect("readable").path())
-        .filter(|path| path.is_dir() && !rust_files(path).is_empty())
-        .map(|path| path.file_name().expect("named").to_string_lossy().into_owned())
+fn every_crate_is_in_the_table_and_every_row_is_a_crate() {
+    let manifest = fs::read_to_string(Path::new(ROOT).join("Cargo.toml")).expect("readable");
+    let manifest: toml::Table = manifest.parse().expect("TOML");
+    let members = manifest["workspace"]["members"].as_array().expect("a list");
+    let members: BTreeSet<String> = members
+        .iter()
+        .map(|member| member.as_str().expect("a path").trim_start_matches("src/"))
+        .map(|member| if member == "." { ROOT_CRATE.to_owned() } else { member.to_owned() })
         .collect();
-    folders.sort();
-    let modules: Vec<String> = layers.keys().cloned().collect();
-    assert_eq!(folders, modules, "folders of src/ on the left, modules of the table on the right");
+    let listed: BTreeSet<String> = layers().into_keys().collect();
+    assert_eq!(members, listed, "members of the workspace on the left, crates of the table on the right");
 }
 
 #[test]
-fn no_module_imports_upward_or_sideways() {
+fn a_crate_depends_on_crates_of_lower_layers_alone() {
     let layers = layers();
     let mut wrong = Vec::new();
-    for (file, code) in sources().iter().filter(|(file, _)| file.contains('/')) {
-        let module = file.split('/').next().expect("in a module");
-        for (other, layer) in layers.iter().filter(|(other, _)| other.as_str() != module) {
-            if *layer >= layers[module] && names(code, &format!("crate::{other}")) {
-                wrong.push(format!("{file} (layer {}) names {other} (layer {layer})", layers[module]));
+    for (name, layer) in &layers {
+        for other in dependencies(name) {
+            if layers[&other] >= *layer {
+                wrong.push(format!("{name} (layer {layer}) depends on {other} (layer {})", layers[&other]));
             }
         }
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes assets/NOTICES.txt anew: what the program is made of and the licenses of it.
 
-Every package that Cargo.lock reaches from [dependencies], whatever the features and the platform, with its version, the
+Every package of others that Cargo.lock reaches from [dependencies], whatever the features and the platform, with its version, the
 license that it is used under and the lines of copyright in its files; then each license once.
 
 usage: python3 tests/tools/notices.py, in the project's folder, where `cargo metadata` can reach every package
@@ -27,8 +27,15 @@ BEGINNINGS = {
 }
 
 
-def reached(lock, direct):
-    """The packages of Cargo.lock that are reached from those named in [dependencies]."""
+def dependencies(path):
+    """The names in the tables of dependencies of a manifest, without those of tests."""
+    manifest = tomllib.loads(pathlib.Path(path).read_text())
+    tables = [manifest, *manifest.get("target", {}).values()]
+    return {name for table in tables for name in table.get("dependencies", {})}
+
+
+def reached(lock):
+    """The packages of others in Cargo.lock that are reached from [dependencies]."""
     by_name = {}
     for package in lock:
         by_name.setdefault(package["name"], []).append(package)
@@ -37,16 +44,24 @@ def reached(lock, direct):
         name, _, version = reference.partition(" ")
         return [package for package in by_name[name] if not version or package["version"] == version.split(" ")[0]]
 
-    root = by_name["sandtable"][0]
-    waiting = [d for d in root["dependencies"] if d.split(" ")[0] in direct]
+    def needs(package):
+        # The lock file does not tell what tests need from what all need; the manifests of the workspace do.
+        names = package.get("dependencies", [])
+        if not package["name"].startswith("sandtable"):
+            return names
+        own = package["name"].removeprefix("sandtable").removeprefix("-")
+        direct = dependencies(f"src/{own}/Cargo.toml" if own else "Cargo.toml")
+        return [name for name in names if name.split(" ")[0] in direct]
+
+    waiting = needs(by_name["sandtable"][0])
     found = {}
     while waiting:
         for package in find(waiting.pop()):
             key = (package["name"], package["version"])
             if key not in found:
                 found[key] = package
-                waiting += package.get("dependencies", [])
-    return sorted(found)
+                waiting += needs(package)
+    return sorted(key for key in found if not key[0].startswith("sandtable"))
 
 
 def chosen(expression):
@@ -103,15 +118,11 @@ def license_text(license, all_texts):
 
 def main():
     lock = tomllib.loads(pathlib.Path("Cargo.lock").read_text())["package"]
-    manifest = tomllib.loads(pathlib.Path("Cargo.toml").read_text())
-    direct = set(manifest["dependencies"])
-    for target in manifest.get("target", {}).values():
-        direct |= set(target.get("dependencies", {}))
     command = ["cargo", "metadata", "--format-version", "1", "--locked", "--all-features"]
     metadata = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)["packages"]
     metadata = {(package["name"], package["version"]): package for package in metadata}
     lines, used = [], {}
-    for key in reached(lock, direct):
+    for key in reached(lock):
         package = metadata[key]
         folder = pathlib.Path(package["manifest_path"]).parent
         all_texts = texts(folder)

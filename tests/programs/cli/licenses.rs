@@ -14,14 +14,25 @@ fn text<'a>(table: &'a Value, key: &str) -> &'a str {
     table[key].as_str().expect("a text")
 }
 
-/// The packages of Cargo.lock that are reached from `[dependencies]`, with their versions.
+/// The names in the tables of dependencies of a manifest, without those of tests.
+fn dependencies(path: &str) -> BTreeSet<String> {
+    let manifest = table(path);
+    let of = |table: &Table| -> Vec<String> {
+        table
+            .get("dependencies")
+            .and_then(Value::as_table)
+            .into_iter()
+            .flatten()
+            .map(|(name, _)| name.clone())
+            .collect()
+    };
+    let targets = manifest.get("target").and_then(Value::as_table).into_iter().flatten();
+    let targets = targets.filter_map(|(_, target)| target.as_table()).flat_map(of);
+    of(&manifest).into_iter().chain(targets).collect()
+}
+
+/// The packages of others of Cargo.lock that are reached from `[dependencies]`, with their versions.
 fn shipped() -> BTreeSet<String> {
-    let manifest = table("Cargo.toml");
-    let mut direct: BTreeSet<String> =
-        manifest["dependencies"].as_table().expect("a table").keys().cloned().collect();
-    for target in manifest["target"].as_table().expect("a table").values() {
-        direct.extend(target["dependencies"].as_table().expect("a table").keys().cloned());
-    }
     let lock = table("Cargo.lock");
     let mut named: BTreeMap<&str, Vec<&Value>> = BTreeMap::new();
     for package in lock["package"].as_array().expect("packages") {
@@ -29,15 +40,26 @@ fn shipped() -> BTreeSet<String> {
     }
     let needs = |package: &Value| -> Vec<String> {
         let names = package.get("dependencies").and_then(Value::as_array).into_iter().flatten();
-        names.map(|name| name.as_str().expect("a name").to_owned()).collect()
+        let names = names.map(|name| name.as_str().expect("a name").to_owned());
+        // The lock file does not tell what tests need from what all need; the manifests of the workspace do.
+        match text(package, "name").strip_prefix("sandtable") {
+            Some(own) => {
+                let path = own
+                    .strip_prefix('-')
+                    .map_or("Cargo.toml".to_owned(), |own| format!("src/{own}/Cargo.toml"));
+                let direct = dependencies(&path);
+                names.filter(|name| direct.contains(name.split(' ').next().expect("a name"))).collect()
+            }
+            None => names.collect(),
+        }
     };
     let mut waiting = needs(named["sandtable"][0]);
-    waiting.retain(|name| direct.contains(name.split(' ').next().expect("a name")));
-    let mut found = BTreeSet::new();
+    let (mut found, mut own) = (BTreeSet::new(), BTreeSet::new());
     while let Some(reference) = waiting.pop() {
         let mut words = reference.split(' ');
         let (name, version) = (words.next().expect("a name"), words.next());
         for package in &named[name] {
+            let found = if name.starts_with("sandtable-") { &mut own } else { &mut found };
             if version.is_none_or(|version| version == text(package, "version"))
                 && found.insert(format!("{name} {}", text(package, "version")))
             {
