@@ -6,9 +6,9 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::FeatureKind;
 use crate::near::Clipped;
 use crate::scene_findings::FeatureTable;
 use crate::sources::{Sourced, Sources};

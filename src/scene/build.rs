@@ -11,7 +11,6 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
 
-use crate::SceneModel;
 use crate::areas;
 use crate::assets::Assets;
 use crate::attributes;
@@ -31,6 +30,7 @@ use crate::models;
 use crate::planned_pictures::ElevationNeed;
 use crate::roads::centerline::{self, Centerline};
 use crate::roads::{conform, network};
+use crate::scene_model::SceneModel;
 use crate::sight_layers;
 use crate::sources::Sources;
 use crate::spot_heights::spot_heights;

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use crate::builder::{SceneBuilder, described};
+use crate::builder::SceneBuilder;
+use crate::feature::described;
 use crate::world_frame::WorldFrame;
 use sandtable_description::finding::Finding;
 use sandtable_description::finding_code::FindingCode;

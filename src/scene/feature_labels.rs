@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::SceneLabel;
 use crate::attributes::Attributes;
 use crate::exact_ground::ExactGround;
 use crate::label_course::{LabelCourse, across, along};
 use crate::near::MERGE_M;
 use crate::scene_findings::SceneFindings;
+use crate::scene_label::SceneLabel;
 use crate::sources::Sources;
 use crate::views::whole_meters;
 use crate::world_frame::WorldFrame;

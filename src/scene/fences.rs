@@ -6,12 +6,13 @@
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
 use crate::crossed_shapes::CrossedShapes;
+use crate::feature::FeatureKind;
+use crate::feature_meshes::FeatureSolid;
 use crate::near::{self, Clipped};
 use crate::report::TrenchRow;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
 use crate::vertical_scale::DrawnGround;
-use crate::{FeatureKind, FeatureSolid};
 use sandtable_base::limits::LINE_PIECES;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::document::Document;

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;
 use sandtable_base::limits::SCENE_GRAPHICS;

@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{Vec2, Vec3};
 
-use crate::SceneModel;
 use crate::relief_strength::ReliefStrength;
+use crate::scene_model::SceneModel;
 use crate::texture_shading::TextureShading;
 use crate::undergrowth::undergrowth;
 use sandtable_dem::raster::Samples;

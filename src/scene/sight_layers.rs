@@ -5,10 +5,10 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::all_samples::PartTooLarge;
 use crate::builder::SceneBuilder;
 use crate::exact_ground::{ExactGround, ExactPartError};
+use crate::feature::FeatureKind;
 use crate::feature_origin::FeatureOrigin;
 use crate::seen_ground::{SceneSight, SceneViewshed};
 use crate::world_frame::WorldFrame;

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, Vec2};
 
-use crate::SceneLabel;
 use crate::exact_ground::{ExactGround, ExactSpot};
 use crate::label_course::LabelCourse;
+use crate::scene_label::SceneLabel;
 use crate::views::whole_meters;
 use sandtable_description::diagnostic::Diagnostic;
 use sandtable_description::words::LabelKind;

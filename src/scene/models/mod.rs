@@ -18,13 +18,14 @@ use glam::DVec2;
 
 use crate::attributes::{Attributes, DefaultCounts};
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::feature_origin::FeatureOrigin;
 use crate::models::library::Library;
+use crate::placed_model::{GroundFit, Placement};
 use crate::scatter;
 use crate::scene_findings::SceneFindings;
 use crate::sources::{Sourced, Sources};
 use crate::world_frame::WorldFrame;
-use crate::{FeatureKind, GroundFit, Placement};
 use sandtable_base::limits::SCENE_MODELS;
 use sandtable_base::message::suggest::listed;
 use sandtable_description::diagnostic::Diagnostic;

@@ -1,8 +1,8 @@
 //! The document's roads as centerlines, each with what it is to become.
 
-use crate::FeatureKind;
 use crate::attributes::Attributes;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::near;
 use crate::scene_findings::FeatureTable;
 use crate::sources::Sources;

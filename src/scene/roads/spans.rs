@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::FeatureKind;
 use crate::builder::SceneBuilder;
+use crate::feature::FeatureKind;
 use crate::feature_origin::FeatureOrigin;
 use crate::near;
 use crate::roads::centerline::{self, Centerline};

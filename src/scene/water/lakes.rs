@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::FeatureKind;
 use crate::attributes::{Attributes, count_default};
-use crate::builder::{SceneBuilder, described};
+use crate::builder::SceneBuilder;
+use crate::feature::{FeatureKind, described};
 use crate::feature_origin::FeatureOrigin;
 use crate::near::Clipped;
 use crate::report::LakeRow;
