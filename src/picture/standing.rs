@@ -11,7 +11,7 @@ use crate::models::PlacementMoves;
 use crate::setting::PictureSetting;
 use crate::{airspace, ground, has_table, lighting, models, solids, table, uprights, voids};
 use sandtable_draw::list::DrawList;
-use sandtable_scene::ground_map::GroundMapKey;
+use sandtable_scene::ground_map_cache::GroundMapKey;
 use sandtable_scene::scene_model::SceneModel;
 use sandtable_terrain::full_resolution::FullResolution;
 use sandtable_terrain::lattice::Lattice;

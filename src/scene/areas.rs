@@ -58,7 +58,7 @@ pub fn lay(
             patch.lay(feature, collected);
         }
         let outcome = "what an odd number of its turns runs around is covered";
-        crossed.report(("area", outcome), table.source.span(), sources.frame, collected);
+        crossed.report(("area", outcome), table.source.span(), sources.frame, &mut collected.findings);
         let named =
             FeatureTable { kind: FeatureKind::Area, name: table.name.as_deref(), source: &table.source };
         collected.findings.left_out(off, &named, "off the elevation model");

@@ -140,7 +140,7 @@ pub fn lay_out(
             plots.push(Plot { table, attributes, parts, pad_m, feature });
         }
         let outcome = "it is built in pieces that do not";
-        crossed.report(("building", outcome), building.source.span(), sources.frame, collected);
+        crossed.report(("building", outcome), building.source.span(), sources.frame, &mut collected.findings);
     }
     tally.note(document, &mut collected.findings);
     Ok(plots)

@@ -1,9 +1,10 @@
 //! From a scene file to a draw list.
 //!
 //! `build` turns a document and its assets into a [`SceneGround`](build::SceneGround) or a
-//! [`SceneModel`](scene_model::SceneModel), one pass a file: the
-//! ground (`ground`), ribbons (`areas`, `water`, `roads`), solids (`buildings`, `fences`, `bridges`), models (`models`,
-//! `scatter`; `footprint` and `placement` set them on the ground), labels and cameras (`views`). The passes add to `builder`.
+//! [`SceneModel`](scene_model::SceneModel), one pass a file: the ground (`ground`), ribbons (`areas`, `water`, `roads`),
+//! solids (`buildings`, `fences`, `bridges`), models (`models`, `scatter`; `footprint` and `placement` set them on the
+//! ground), labels (`labels`) and cameras (`views`). The passes add to `builder`; what they add (`feature`,
+//! `feature_meshes`, `placed_model`, `scene_graphic`, `scene_label`, `scene_view`) knows none of them.
 //! `picture` turns a scene and a camera into a draw list.
 
 mod all_samples;
@@ -34,9 +35,11 @@ pub mod framing;
 pub mod graphics;
 pub mod ground;
 pub mod ground_map;
+pub mod ground_map_cache;
 pub mod ground_window;
 pub mod imagery;
 pub mod label_course;
+mod labels;
 pub mod land_cover;
 pub mod military;
 pub mod misplacement;
@@ -46,6 +49,7 @@ pub mod near;
 pub mod overridden_crs;
 pub mod paper_sheet;
 pub mod placed_model;
+mod placed_sight;
 pub mod placement;
 pub mod planned_pictures;
 pub mod plinth;
@@ -57,10 +61,13 @@ pub mod roads;
 pub mod scatter;
 pub mod scene_file;
 pub mod scene_findings;
+pub mod scene_graphic;
 pub mod scene_label;
 pub mod scene_model;
 pub mod scene_view;
 pub mod seen_ground;
+mod shape_place;
+mod shaped_ground;
 pub mod sight_layers;
 pub mod source_reach;
 pub mod sources;

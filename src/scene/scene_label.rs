@@ -1,4 +1,4 @@
-//! A name on the picture, with its place on the ground.
+//! A name or a height on the picture, with its place on the ground.
 
 use std::ops::Range;
 
@@ -24,4 +24,21 @@ pub struct SceneLabel {
     pub kind: LabelKind,
     /// The lower, the more important; never NaN.
     pub rank: f64,
+}
+
+/// A height in whole meters, without a sign before 0.
+pub fn whole_meters(height_m: f32) -> String {
+    let rounded = height_m.round();
+    format!("{:.0}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_height_is_written_as_minus_nothing() {
+        let written = [-0.3, 0.0, 0.4, -0.6, 311.5].map(whole_meters);
+        assert_eq!(written, ["0", "0", "0", "-1", "312"]);
+    }
 }

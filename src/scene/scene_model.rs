@@ -8,14 +8,14 @@ use crate::earthworks::water_beside;
 use crate::feature::{FEATURE_NOUNS, FeatureKind, SceneFeature};
 use crate::feature_meshes::{FeatureSolid, Ribbon, Solid};
 use crate::finer_elevation::FinerElevation;
-use crate::graphics::SceneGraphic;
-use crate::ground_map::{GroundMapCache, GroundMapKey};
+use crate::ground_map_cache::GroundMapCache;
 use crate::land_cover::CoverLines;
 use crate::military::SceneSymbol;
 use crate::placed_model::Placement;
 use crate::ramps::TintedGround;
 use crate::report::SceneReport;
 use crate::roads::profiles::{BridgeProfile, RoadProfile};
+use crate::scene_graphic::SceneGraphic;
 use crate::scene_label::SceneLabel;
 use crate::scene_view::SceneView;
 use crate::sight_layers::SightLayers;
@@ -28,7 +28,7 @@ use sandtable_description::document::FurnitureTable;
 use sandtable_description::finding::Finding;
 use sandtable_description::words::{GridName, StylePreset, TableTop};
 use sandtable_draw::font::FontFile;
-use sandtable_draw::ground::{ColorRamp, Contours, GroundMap};
+use sandtable_draw::ground::{ColorRamp, Contours};
 use sandtable_draw::ground_cover::GroundCover;
 use sandtable_draw::ground_imagery::GroundImagery;
 use sandtable_draw::list::FeatureId;
@@ -157,11 +157,6 @@ impl SceneModel {
     /// The ground as it is drawn, made on first use; what is measured of it is measured when it is first asked for.
     pub fn ground(&self) -> &MeasuredGround {
         self.ground.get_or_init(|| MeasuredGround::with_layout(self.scale.drawn(&self.lattice), self.layout))
-    }
-
-    /// What the ground looks like, its light computed unless the last picture had the same; `making` is called before.
-    pub fn map(&self, key: GroundMapKey, making: impl FnOnce()) -> Arc<GroundMap> {
-        self.maps.get(self, key, making)
     }
 
     /// The water that the elevations themselves show, found on first use; none where the scene file forbids it.

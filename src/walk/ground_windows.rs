@@ -167,7 +167,7 @@ mod tests {
 
     use super::*;
     use sandtable_editing::viewing::open_to_view;
-    use sandtable_scene::ground_map::GroundMapKey;
+    use sandtable_scene::ground_map_cache::GroundMapKey;
 
     fn scene() -> (Arc<SceneModel>, GroundWindowLight) {
         let editor = open_to_view(Path::new("scenes/road.toml"), &[]).expect("readable");

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::footprint::ModelFootprint;
-use crate::models::PlacedModels;
+use crate::models::placed_models::PlacedModels;
 use crate::placed_model::{GroundFit, Placement};
 use crate::placement::{outline, stand};
 use crate::vertical_scale::VerticalScale;

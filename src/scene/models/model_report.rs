@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::builder::SceneBuilder;
 use crate::footprint::ModelFootprint;
-use crate::models::{InstanceGroup, PlacedModels};
+use crate::models::placed_models::{InstanceGroup, PlacedModels};
 use crate::placed_model::Placement;
 use crate::placement::stand;
 use crate::report::{InstancesRow, ModelRow};

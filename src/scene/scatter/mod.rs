@@ -20,7 +20,7 @@ use crate::crossed_shapes::CrossedShapes;
 use crate::feature::{FeatureKind, described};
 use crate::feature_origin::FeatureOrigin;
 use crate::models::library::Library;
-use crate::models::{PlacedModels, within};
+use crate::models::placed_models::{PlacedModels, within};
 use crate::placed_model::{GroundFit, Placement};
 use crate::placement::outline;
 use crate::report::ScatterRow;
@@ -103,7 +103,7 @@ pub fn strew(
             areas += 1;
         }
         let outcome = "models stand in what an odd number of its turns runs around";
-        crossed.report(("scatter", outcome), table.source.span(), frame, collected);
+        crossed.report(("scatter", outcome), table.source.span(), frame, &mut collected.findings);
         // Areas that overlap give the same points.
         stood.sort_by(|a, b| a.at.y.total_cmp(&b.at.y).then(a.at.x.total_cmp(&b.at.x)));
         stood.dedup_by(|a, b| a.at == b.at);

@@ -64,7 +64,7 @@ pub fn collect(
         let widths_m = lines.first().and_then(|line| near::widths_m(river.widths.as_deref(), &line.shape));
         let named =
             FeatureTable { kind: FeatureKind::River, name: river.name.as_deref(), source: &river.source };
-        for (attributes, line) in near::lines(lines, &extent, REACH_M, &named, collected) {
+        for (attributes, line) in near::lines(lines, &extent, REACH_M, &named, &mut collected.findings) {
             let widths = widths_m.as_ref();
             let widths = widths.and_then(|widths_m| Profile::new(line.stations().to_vec(), widths_m.clone()));
             drawn.push((river, attributes, line, widths));
